@@ -1,0 +1,26 @@
+/* Fragments: connected components over surviving links, as a public pure function (design: joint 6). An engine calls it
+ * at the end of a run; analysis may call it again on a snapshot. */
+#ifndef CLAST_ENGINE_FRAGMENTS_H
+#define CLAST_ENGINE_FRAGMENTS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+struct fragment {
+  double mass;              /* kg (2D: kg per metre of thickness) */
+  double position[3];       /* m, centre of mass */
+  double velocity[3];       /* m/s, of the centre of mass */
+  double spin[3];           /* rad/s: angular momentum about the centre of mass over moment of inertia (2D: z only) */
+  double moment_of_inertia; /* kg m^2, about the centre of mass (2D: about z; 3D: trace/3 of the tensor) */
+  double kinetic_energy;    /* J, all of it: translation + rotation + internal relative motion */
+  uint32_t count;           /* grains or particles in it */
+  uint32_t first;           /* its lowest member index */
+};
+
+/* Union-find over `links` (pairs of indices below n). label[i] = fragment number, fragments numbered by descending mass,
+ * ties by lowest member index. Returns the number of fragments. `label` has n entries, owned by the caller. */
+size_t fragments_label(size_t n, const double *mass, size_t link_count, const uint32_t (*links)[2], uint32_t *label);
+
+#endif

@@ -1,0 +1,39 @@
+/* What every engine reports of a finished run, whatever its physics: the columns of table `run` that are results. */
+#ifndef CLAST_ENGINE_OUTCOME_H
+#define CLAST_ENGINE_OUTCOME_H
+
+#include "engine/fragments.h"
+#include "schemas/field.h"
+
+/* A run's own verdict (a result, part of the deterministic record), not a lost attempt. */
+enum outcome_state {
+  OUTCOME_COMPLETED,  /* fracture had ceased by the scene's declared rule */
+  OUTCOME_END_TIME,   /* the hard end came first: fragments may still be breaking */
+  OUTCOME_NOT_FINITE, /* NaN or infinity appeared */
+  OUTCOME_TIME_STEP,  /* the stable time step collapsed */
+  OUTCOME_ENERGY,     /* the energy ledger drifted out of its declared bound */
+  OUTCOME_INVALID,    /* the inputs cannot be run together (the message says why) */
+};
+
+struct outcome {
+  int state;                 /* enum outcome_state, a FIELD_CHOICE */
+  char message[FIELD_TEXT_SIZE]; /* diagnostics for a person; empty when all is well */
+  int64_t steps;
+  double time;               /* s simulated */
+  double time_step;          /* s, the smallest used */
+  double total_mass;         /* kg or kg/m */
+  double energy_error;       /* ledger: |closed sum - initial| / energy put in */
+  double momentum_error;     /* |sum p - initial - external impulse| / sum |p| */
+  int64_t fragment_count;    /* all, single grains (dust) included */
+  int64_t single_count;      /* fragments of one grain: unresolved */
+  double dust_fraction;      /* mass share of single grains */
+  double largest_fraction;   /* M_1 / M */
+  double second_fraction;    /* M_2 / M */
+  double mean_fragment_mass; /* second moment over first of all fragment masses, kg */
+  double mean_fragment_mass_rest; /* the same without the largest fragment */
+  double kinetic_energy_share; /* fragments' translation energy over the energy put in */
+};
+
+extern const struct field_table outcome_table;
+
+#endif

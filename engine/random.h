@@ -1,0 +1,24 @@
+/* Random numbers: counter-based (Random123 Philox4x64-10), so that a draw depends on (seed, purpose, item, draw) alone,
+ * never on order, threads or restarts (design: joint 3). Known-answer vectors are tested. */
+#ifndef CLAST_ENGINE_RANDOM_H
+#define CLAST_ENGINE_RANDOM_H
+
+#include <stdint.h>
+
+enum random_purpose { /* pinned: they are part of what a seed means */
+  RANDOM_LATTICE = 1,
+  RANDOM_THRESHOLD = 2,
+  RANDOM_FLAW_STRENGTH = 3,
+  RANDOM_FLAW_PLACE = 4,
+  RANDOM_DESIGN = 5,
+  RANDOM_SEED = 6,
+  RANDOM_RESAMPLE = 7,
+};
+
+void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, uint64_t bits[4]);
+/* Uniform in [0, 1) with 53 bits, from `bits` of the call above. */
+double random_uniform(uint64_t bits);
+/* One uniform in [0,1): first word of (seed, purpose, item, draw). */
+double random_draw(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw);
+
+#endif

@@ -1,0 +1,37 @@
+/* A scene: which engine, and its typed inputs. Built-in scenes are documents with their sources, kept in
+ * engine/<engine>/scenes/ and compiled into the program; `clast scenes NAME` prints one as a start for one's own. */
+#ifndef CLAST_ENGINE_SCENE_H
+#define CLAST_ENGINE_SCENE_H
+
+#include "engine/engine.h"
+
+struct scene {
+  const struct engine_kind *kind;
+  void *inputs; /* kind->inputs->size bytes, SI, defaults filled */
+  bool *given;  /* per input row: set by the document or an override (an inactive input that was given is refused) */
+  char name[FIELD_TEXT_SIZE]; /* built-in name, or the document's own `name:` */
+};
+
+size_t scene_builtin_count(void);
+const char *scene_builtin_name(size_t index);
+const char *scene_builtin_text(const char *name); /* the document, or NULL */
+
+/* `reference` is a built-in name or a path (a path when it holds '/' or ends in .yaml/.yml/.json), relative to `folder`
+ * (NULL: the current one). All errors of the document come in *error in one go.
+ * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
+status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
+status scene_parse(const char *name, const char *text, struct scene **out, struct error *error);
+struct scene *scene_copy(const struct scene *scene);
+void scene_free(struct scene *scene);
+
+/* Override one input by path or unique suffix, from text ("5 km/s") or as a value. Not checked across fields. */
+status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
+status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
+/* After the last override: inactive inputs that were set are refused, cross-field conditions checked. */
+status scene_check(const struct scene *scene, struct error *error);
+
+char *scene_json(const struct scene *scene); /* resolved: engine, name and every active input; malloc'd */
+/* 128-bit identity of a run: hash of engine, results_version, sorted active inputs as %a, and seed. */
+void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]);
+
+#endif

@@ -1,0 +1,52 @@
+/* Reading a YAML 1.2 (core schema) document into a struct through its field table, with every error of the file
+ * reported in one go as
+ *     file:line:col: error: path: what was expected, what came, what to do
+ *       the line
+ *       ^~~~
+ * Refused: unknown keys (the nearest known one is named), duplicate keys, a second document, NUL bytes, invalid UTF-8,
+ * anchors' cycles, nesting or size beyond sane limits (4 MiB, depth 32), values out of range or of the wrong dimension.
+ *
+ * Opaque over libfyaml: no other folder includes <libfyaml.h>. */
+#ifndef CLAST_SCHEMAS_DOCUMENT_H
+#define CLAST_SCHEMAS_DOCUMENT_H
+
+#include "schemas/field.h"
+
+struct document;                              /* owns the text and the tree */
+typedef struct document_node document_node;   /* borrowed from its document */
+
+/* STATUS_MISSING when there is no such file, STATUS_IO when unreadable (a directory, permission), STATUS_CONTENT when
+ * it is no YAML mapping: *error holds the located report. */
+status document_open(const char *path, struct document **out, struct error *error);
+status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error);
+void document_free(struct document *document); /* NULL is fine */
+
+const char *document_text(const struct document *document); /* the file as read, NUL-terminated */
+const char *document_name(const struct document *document);
+
+enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };
+
+document_node *document_root(struct document *document);
+enum document_kind document_kind(const document_node *node);
+const char *document_scalar(document_node *node);           /* NULL unless a scalar; plain or quoted text */
+document_node *document_key(document_node *mapping, const char *key); /* NULL when absent; marks the key as seen */
+size_t document_count(const document_node *node);            /* items of a sequence, pairs of a mapping */
+document_node *document_item(document_node *node, size_t index, const char **key); /* key set for mappings (may be NULL) */
+
+/* Read one scalar node through a row (unit, range, choice). False: the error was reported. */
+bool document_value(document_node *node, const struct field *row, struct field_value *value);
+
+/* Read the nested mapping `node` into *object (already holding defaults) through the table. Keys listed in `also`
+ * (NULL-terminated, may be NULL) belong to the caller and are left alone; every other unknown key is reported.
+ * `when` conditions are judged after all keys are read. Returns false when anything was reported. */
+bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object);
+
+/* Add a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
+void document_report(document_node *node, const char *path, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Report every key of the mapping that no call above has marked as seen. */
+void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);
+
+/* STATUS_OK when nothing was reported; else STATUS_CONTENT with the whole report in *report (owned by the document). */
+status document_finish(struct document *document, const char **report);
+
+#endif

@@ -1,0 +1,100 @@
+/* Field tables: one row per quantity, and nothing else anywhere lists the same names (design: joint 1).
+ *
+ * A table is a plain `static const struct field rows[]` beside the struct it describes, with offsetof. From it come:
+ * YAML reading and its errors, defaults, `clast explain PATH`, JSON Schemas, resolved JSON, the identity of a run,
+ * SQL columns, HDF5 attributes and the versioned byte encoding that serves pipe, MPI and store.
+ *
+ * Paths are dotted ("grain.young_modulus"); a YAML document nests them as mappings. Values inside a struct are SI.
+ * C types by kind: FIELD_REAL double, FIELD_INTEGER int64_t, FIELD_BOOLEAN bool, FIELD_CHOICE int (index into
+ * choices), FIELD_TEXT char[FIELD_TEXT_SIZE] (inline, so that a struct is copied by assignment). */
+#ifndef CLAST_SCHEMAS_FIELD_H
+#define CLAST_SCHEMAS_FIELD_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "schemas/status.h"
+
+enum field_kind { FIELD_REAL, FIELD_INTEGER, FIELD_BOOLEAN, FIELD_CHOICE, FIELD_TEXT };
+enum { FIELD_TEXT_SIZE = 256 };
+
+enum field_flags {
+  FIELD_REQUIRED = 1,      /* no default: a document must give it */
+  FIELD_MAY_BE_OFF = 2,    /* FIELD_REAL only: the keyword `off` is accepted; stored as NaN, see field_is_off() */
+  FIELD_ABOVE_MINIMUM = 4, /* minimum itself is out of range */
+  FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
+  FIELD_VOLATILE = 16,     /* results only: times, host...: differs between identical runs; not compared by tests */
+  FIELD_LOG = 32,          /* a positive quantity usually varied over decades (hint for plots and designs) */
+};
+
+struct field {
+  const char *path;          /* dotted, lower_case words */
+  enum field_kind kind;
+  const char *unit;          /* SI: "m", "kg/m^3", "1", "rad"; NULL for non-numbers */
+  size_t offset;             /* offsetof in the struct the table describes */
+  double minimum, maximum;   /* inclusive unless flagged; -HUGE_VAL / HUGE_VAL for none. Integers too */
+  double number;             /* default of REAL/INTEGER/BOOLEAN (0/1)/CHOICE (index); NAN with MAY_BE_OFF = off */
+  const char *text;          /* default of TEXT */
+  const char *const *choices; /* NULL-terminated, for CHOICE */
+  const char *choice_docs;   /* optional, one sentence per choice, separated by '\n' */
+  unsigned flags;
+  const char *when;          /* NULL, or "path=value|value": active only then; given otherwise, it is refused */
+  const char *doc;           /* meaning, one or more sentences */
+  const char *source;        /* paper and equation, or NULL */
+};
+
+struct field_table {
+  const struct field *rows;
+  size_t count;
+  size_t size; /* sizeof the struct described */
+  const char *name; /* "dem scene", for messages */
+  const char *doc;
+};
+#define FIELD_TABLE(rows_, type_, name_, doc_)                                                                         \
+  { .rows = rows_, .count = sizeof rows_ / sizeof rows_[0], .size = sizeof(type_), .name = name_, .doc = doc_ }
+
+/* A value on its own: what a sweep axis holds, what the store writes. */
+struct field_value {
+  enum field_kind kind;
+  double number;  /* REAL (NaN = off), BOOLEAN 0/1, CHOICE index */
+  int64_t integer; /* INTEGER */
+  char text[FIELD_TEXT_SIZE]; /* TEXT; for CHOICE the choice's name too */
+};
+
+bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
+
+/* Exact path, or unique suffix after a dot ("strain" for "beam.threshold.strain"). NULL: *error names the nearest
+ * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
+const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
+
+/* Nearest known path by edit distance, or NULL when nothing is near. */
+const char *field_nearest(const struct field_table *table, const char *path);
+
+void field_defaults(const struct field_table *table, void *object); /* fills every row; required ones get zero/NaN */
+bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
+
+void field_get(const struct field *row, const void *object, struct field_value *value);
+/* Checks kind and range, then stores. STATUS_CONTENT with a message that names path, range and what came. */
+status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error);
+/* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked. */
+status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
+/* Human text of a value, SI with unit ("5000 m/s"), shortest digits that round-trip. Returns length as snprintf. */
+int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size);
+
+/* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). malloc'd. */
+char *field_json(const struct field_table *table, const void *object);
+/* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). malloc'd. */
+char *field_identity(const struct field_table *table, const void *object);
+/* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. */
+void field_explain(const struct field_table *table, const char *prefix, FILE *out);
+
+/* Table-driven byte encoding: little-endian, rows in table order, preceded by a hash of the table's names and kinds,
+ * so that a reader with other rows refuses instead of misreading. */
+size_t field_encoded_size(const struct field_table *table, const void *object);
+size_t field_encode(const struct field_table *table, const void *object, uint8_t *bytes);
+/* Returns bytes consumed, 0 when truncated or made from another table. */
+size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object);
+
+#endif

@@ -1,0 +1,37 @@
+#include "schemas/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+status status_fail(struct error *error, status code, const char *format, ...) {
+  if (error) {
+    error->status = code;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+  }
+  return code;
+}
+
+const char *status_name(status code) {
+  switch (code) {
+#define STATUS_NAME(constant, value, name, meaning)                                                                    \
+  case constant:                                                                                                       \
+    return name;
+    STATUS_LIST(STATUS_NAME)
+#undef STATUS_NAME
+  }
+  return "unknown";
+}
+
+const char *status_meaning(status code) {
+  switch (code) {
+#define STATUS_MEANING(constant, value, name, meaning)                                                                 \
+  case constant:                                                                                                       \
+    return meaning;
+    STATUS_LIST(STATUS_MEANING)
+#undef STATUS_MEANING
+  }
+  return "unknown status";
+}

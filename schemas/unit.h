@@ -1,0 +1,25 @@
+/* Units: text such as "km/s", "kg/m^3", "dyn/cm^2", "deg", "%" turned into a factor to SI and a dimension, once, when a
+ * document is read. Everything behind that is SI doubles. */
+#ifndef CLAST_SCHEMAS_UNIT_H
+#define CLAST_SCHEMAS_UNIT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "schemas/status.h"
+
+struct unit {
+  double factor;               /* 1 of this unit in SI */
+  signed char kg, m, s, K, rad; /* exponents; rad is kept apart so that "4 deg" is refused for a length or a number */
+};
+
+/* Grammar: factors joined by space, '*', '.', '/' with integer powers '^n' or '**n'; parentheses; SI prefixes.
+ * "1" and "%" are dimensionless. STATUS_CONTENT with the nearest known unit on a bad name. */
+status unit_parse(const char *text, struct unit *unit, struct error *error);
+bool unit_same_dimension(const struct unit *a, const struct unit *b);
+
+/* "5 km/s" with expected "m/s" -> 5000. A bare number is taken in the expected SI unit. Refuses NaN, inf, hex floats,
+ * trailing text, wrong dimension; messages say which unit was expected and what came. */
+status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);
+
+#endif
