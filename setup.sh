@@ -1,0 +1,78 @@
+#!/bin/sh
+# Sets up, builds, and runs clast on Debian 12. Needs nothing but a shell, and root for packages that are missing.
+#
+#   ./setup.sh demo     install what is missing, build, run the demo campaign
+#   ./setup.sh test     install what is missing, build with warnings as errors, pass every test; again under sanitizers
+#   ./setup.sh build    install what is missing, build build/release/clast
+#   ./setup.sh packages only install what is missing
+set -eu
+cd "$(dirname "$0")"
+
+packages="build-essential cmake ninja-build pkg-config
+libfyaml-dev libopenmpi-dev openmpi-bin libsqlite3-dev libhdf5-dev libgsl-dev libplfit-dev librandom123-dev
+libcairo2-dev libcmocka-dev libqhull-dev
+python3 python3-jsonschema python3-ruamel.yaml sqlite3"
+
+say() { printf '\n== %s\n' "$*" >&2; }
+
+usage() {
+  sed -n '2,8s/^# \{0,1\}//p' "$0"
+  exit "$1"
+}
+
+install_missing() {
+  command -v apt-get >/dev/null || {
+    echo "setup.sh: this is not Debian (no apt-get). Install the equivalents of: $(echo $packages)" >&2
+    exit 66
+  }
+  missing=
+  for package in $packages; do
+    case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)" in
+      "install ok installed") ;;
+      *) missing="$missing $package" ;;
+    esac
+  done
+  [ -n "$missing" ] || return 0
+  say "installing:$missing"
+  if [ "$(id -u)" -ne 0 ]; then
+    echo "setup.sh: run this as root, or first: sudo apt-get install$missing" >&2
+    exit 66
+  fi
+  export DEBIAN_FRONTEND=noninteractive
+  apt-get update -qq
+  # shellcheck disable=SC2086
+  apt-get install -y -qq --no-install-recommends $missing >/dev/null
+}
+
+build() { # preset
+  say "building build/$1"
+  cmake --preset "$1" >/dev/null
+  cmake --build --preset "$1" -j "$(nproc)" | tail -n 1
+}
+
+case "${1:-}" in
+  packages)
+    install_missing
+    ;;
+  build)
+    install_missing
+    build release
+    ;;
+  demo)
+    install_missing
+    build release
+    say "build/release/clast run campaign/examples/demo.yaml"
+    build/release/clast run campaign/examples/demo.yaml
+    ;;
+  test)
+    install_missing
+    build ci
+    say "tests, release build"
+    ctest --preset ci -j "$(nproc)"
+    build asan-ubsan
+    say "tests, address and undefined-behaviour sanitizers"
+    ctest --preset asan-ubsan -j "$(nproc)"
+    ;;
+  -h | --help | help) usage 0 ;;
+  *) usage 64 >&2 ;;
+esac
