@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "analysis/spectrum.h"
+#include "engine/spectrum.h"
 #include "schemas/field.h"
 
 enum exponent_method {
