@@ -7,6 +7,8 @@
 #ifndef CLAST_DB_STORE_H
 #define CLAST_DB_STORE_H
 
+#include <stdio.h>
+
 #include "engine/outcome.h"
 #include "engine/scene.h"
 #include "schemas/status.h"
@@ -14,10 +16,15 @@
 struct store;
 
 /* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer or
- * foreign one. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named), STATUS_CONTENT: not a clast
- * store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file system). */
-status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
-/* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. */
+ * foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: exponent_table); NULL when no
+ * estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
+ * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
+ * system), or "". The lock is a POSIX record lock: it dies with the process, is not inherited by a fork, and a process
+ * must not open one store for writing twice. */
+status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
+                         size_t warning_size, struct error *error);
+/* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are asked
+ * through db/query.h, which works on a writer too (and sees its open batch). */
 status store_open_reader(const char *path, struct store **out, struct error *error);
 /* Commits, checkpoints, back to journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
@@ -45,7 +52,8 @@ struct store_run {
   const void *result;       /* kind->results->size bytes */
   const struct fragment *fragments; /* descending mass */
   size_t fragment_count;
-  const uint8_t *estimates; /* encoded rows of the table given to store_set_estimates, or NULL */
+  bool keep_motion;         /* store each fragment's position, velocity and spin too (44 bytes per fragment) */
+  const void *estimates;    /* array of structs of the estimate_table given at open, or NULL */
   size_t estimate_count;
   double wall_s, cpu_s;
   int64_t peak_memory;      /* bytes */
@@ -71,6 +79,15 @@ struct store_attempt {
   int rank;
 };
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error);
+
+/* The estimates of a run (run_id > 0) or of a whole point (run_id = 0, pooled): replaces those of the same owner and
+ * results_version. `rows`: array of structs of the estimate_table given at open. Joins the open batch. */
+status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
+                           const void *rows, struct error *error);
+/* A stopping rule has spoken: the point's replicates below `prefix` are its statistics, the others are surplus. Running
+ * sums follow. Joins the open batch. */
+status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
+
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 status store_tick(struct store *store, struct error *error);  /* commit when the batch is older than 1 s */
 
@@ -79,15 +96,21 @@ bool store_has_run(struct store *store, const uint8_t identity[16]);
 /* Failed attempts so far of an identity. */
 int store_attempts(struct store *store, const uint8_t identity[16]);
 
-/* Checks (PRAGMA integrity_check, foreign keys, orphans, missing field files, running sums against their rows); each
- * problem as a line to `line`. STATUS_CONTENT when any. */
+/* Checks integrity, foreign keys, orphans, missing field files, running sums and spectra against the masses, masses against
+ * the total mass, identities against the scenes; each problem as a line to `line`. STATUS_CONTENT when any. For a reader
+ * or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context, struct error *error);
-/* All of `source` that `store` lacks, one transaction per source; counts what was added. */
+/* All of `source` that `store` (a writer) lacks, one transaction per source; *added counts the runs. Of a run that both
+ * hold, ours stays. Merging twice adds nothing. */
 status store_merge(struct store *store, const char *source, int64_t *added, struct error *error);
-/* VACUUM INTO. */
+/* One compact file for hand-over (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 
-/* The whole schema as SQL text (what schemas/results.sql must equal). malloc'd. */
-char *store_schema_sql(void);
+/* What a determinism test compares: every run by identity with all its deterministic values (%a), masses and spectrum;
+ * no volatile field, no time, host or session, no surplus run. Same text whatever the number of workers. */
+status store_dump(struct store *store, FILE *out, struct error *error);
+
+/* The whole schema as SQL text (what schemas/results.sql must equal). malloc'd, NULL when out of memory. */
+char *store_schema_sql(const struct field_table *estimate_table);
 
 #endif
