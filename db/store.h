@@ -75,6 +75,7 @@ struct store_attempt {
   int exit_code, signal;
   double wall_s;
   int64_t peak_memory;
+  double limit;       /* the limit that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
   const char *message, *host;
   int rank;
 };
@@ -93,8 +94,29 @@ status store_tick(struct store *store, struct error *error);  /* commit when the
 
 /* What is there already: is this identity stored (resume)? */
 bool store_has_run(struct store *store, const uint8_t identity[16]);
-/* Failed attempts so far of an identity. */
-int store_attempts(struct store *store, const uint8_t identity[16]);
+/* Failed attempts so far of an identity that still count: those ended by a time or memory limit below the limits given
+ * (s, bytes; 0 = no limit now) do not, so that raising a limit retries them. */
+int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
+
+/* The stored runs of a point, for a driver that resumes and for stopping rules; in order of replicate. `row` names the
+ * quantity wanted: of outcome_table, or else of the engine's results. Borrowed for the call. */
+struct store_point_run {
+  int64_t replicate;
+  uint8_t identity[16];
+  bool surplus;
+  int state;               /* enum outcome_state */
+  double value;            /* of `row`, NaN when NULL in the store */
+  double wall_s, cpu_s;
+  int64_t peak_memory;
+  const char *fields_path; /* NULL when none was kept */
+};
+status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
+                        bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
+                        struct error *error);
+/* Replicates below `prefix` count in the point's statistics from now on: their surplus mark goes, running sums grow. */
+status store_admit(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
+/* The HDF5 file kept of a stored run (written by a replay after the run, when a campaign asks for it later). */
+status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
 /* Checks integrity, foreign keys, orphans, missing field files, running sums and spectra against the masses, masses against
  * the total mass, identities against the scenes; each problem as a line to `line`. STATUS_CONTENT when any. For a reader

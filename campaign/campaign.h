@@ -1,0 +1,91 @@
+/* A campaign: many runs of one scene. The document (`clast run campaign.yaml`) is read here into a plain struct; the plain
+ * keys are rows of campaign_table, the few keys that are unions (vary, set, design, keep) are read by hand and their JSON
+ * Schema fragments stand in campaign_schema.c.
+ *
+ *     name: thresholds
+ *     scene: disc-explosion             # built-in name, or a file relative to the campaign's folder
+ *     vary:
+ *       beam.threshold.strain: [1 %, 3 %, 6 %]
+ *       beam.threshold.angle: {from: 1 deg, to: 7 deg, n: 4}
+ *     set: {grain.friction: 0.2}
+ *     seeds: {first: 1, per_point: 30}  # or {until: {quantity: largest_fraction, half_width: 0.01}, max: 200}
+ *     design: grid                      # or list, or {kind: random | latin_hypercube | sobol, points: 64, seed: 1}
+ *     keep: {fields: none}              # none | all | extremes | first N
+ *     limits: {time: 10 min, memory: 2 GiB, attempts: 2, failures: 20}
+ *     store: thresholds.db              # relative to the current folder */
+#ifndef CLAST_CAMPAIGN_CAMPAIGN_H
+#define CLAST_CAMPAIGN_CAMPAIGN_H
+
+#include "campaign/design/axis.h"
+#include "engine/scene.h"
+#include "schemas/field.h"
+
+enum campaign_design { CAMPAIGN_GRID, CAMPAIGN_LIST, CAMPAIGN_RANDOM, CAMPAIGN_LATIN_HYPERCUBE, CAMPAIGN_SOBOL };
+enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREMES, CAMPAIGN_KEEP_FIRST };
+
+struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */
+  int kind;       /* enum campaign_design */
+  int64_t points; /* of the sampling kinds; 0 for grid and list, whose axes say it */
+  int64_t seed;   /* of the sampling kinds: shift, permutations, draws */
+};
+
+struct campaign {
+  char name[FIELD_TEXT_SIZE];
+  char scene_reference[FIELD_TEXT_SIZE];
+  char quantity[FIELD_TEXT_SIZE]; /* the main quantity: shown while running, judged by `extremes` */
+  char store[FIELD_TEXT_SIZE];    /* path, relative to the current folder */
+  int64_t first_seed;
+  bool independent;               /* seeds derive from point and replicate instead of first_seed + r */
+  int64_t per_point;              /* replicates of every point; 0 when `until` decides */
+  int64_t maximum;                /* of replicates when `until` decides */
+  char until_quantity[FIELD_TEXT_SIZE];
+  double until_half_width;        /* of the confidence interval of the mean, SI of the quantity */
+  double until_level;             /* 0.95 */
+  int64_t until_minimum, until_batch;
+  double time_limit;              /* s per attempt, NaN = off */
+  double memory_limit;            /* bytes per attempt, NaN = off */
+  int64_t attempts;               /* of one run, in all */
+  int64_t failures;               /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
+  struct campaign_design_keys design;
+  int keep;                       /* enum campaign_keep */
+  int64_t keep_first;             /* of CAMPAIGN_KEEP_FIRST */
+
+  struct design_axis *axes;       /* owned */
+  size_t axis_count;
+  struct scene *scene;            /* owned: the scene with `set` applied; axes are applied to copies of it */
+  char *text;                     /* owned: the document as read, for the store */
+};
+enum { CAMPAIGN_FIRST_RUNS = 50 };
+
+extern const struct field_table campaign_table;        /* the plain keys */
+extern const struct field_table campaign_design_table; /* the keys of `design` as a mapping */
+
+/* All errors of the document come in *error in one go, located. STATUS_MISSING, STATUS_IO, STATUS_CONTENT.
+ * Safe before farm_start: opens no HDF5, starts no thread. */
+status campaign_load(const char *path, struct campaign **out, struct error *error);
+/* `folder` is what `scene` is relative to (NULL: the current one). */
+status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
+                      struct error *error);
+void campaign_free(struct campaign *campaign); /* NULL is fine */
+
+/* Points of the design (0 to 2^53; the document check refused more). Duplicates among them are computed once. */
+uint64_t campaign_points(const struct campaign *campaign);
+/* Replicates of a point at least, and at most. Equal for per_point. */
+int64_t campaign_replicates_least(const struct campaign *campaign);
+int64_t campaign_replicates_most(const struct campaign *campaign);
+
+/* The scene of a design point from its row of axis values (design_next). NULL with *error when the values cannot be run
+ * together (cross-field check). Owned by the caller. */
+struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values, struct error *error);
+/* Seed of replicate r: first_seed + r, the same for every point; with independent seeds derived from the point's inputs. */
+uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate);
+
+/* A quantity of a run by its path or unique suffix: a row of outcome_table or of the engine's results. NULL + *error. */
+const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
+                                      struct error *error);
+/* Its value in a finished run: NaN when the run failed (outcome states other than completed and end_time). */
+double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result);
+/* A finished run that is a usable result. */
+bool campaign_usable(const struct outcome *outcome);
+
+#endif

@@ -1,0 +1,41 @@
+/* One axis of a campaign: a path into the scene and the values it takes. An axis never knows physics (design: a sweep axis
+ * is a path, never an if on its name). Every kind of axis is one function of u in [0, 1): its quantile. Grids walk the
+ * levels of the kinds that have levels. */
+#ifndef CLAST_CAMPAIGN_DESIGN_AXIS_H
+#define CLAST_CAMPAIGN_DESIGN_AXIS_H
+
+#include "schemas/field.h"
+
+enum design_axis_kind {
+  DESIGN_AXIS_LEVELS,      /* a list, {from, to, n}, {log: [a, b], n}: `levels` */
+  DESIGN_AXIS_UNIFORM,     /* {uniform: [a, b]} */
+  DESIGN_AXIS_LOG_UNIFORM, /* {log_uniform: [a, b]} */
+  DESIGN_AXIS_NORMAL,      /* {normal: {mean, sd}} */
+  DESIGN_AXIS_LOGNORMAL,   /* {lognormal: {median, sigma}}: sigma = standard deviation of the natural logarithm */
+  DESIGN_AXIS_LINKED,      /* {linked: path, factor, offset}, or {linked: path, values: [...]} by level of the other */
+};
+
+struct design_axis {
+  const struct field *row;    /* of the engine's inputs */
+  int kind;                   /* enum design_axis_kind */
+  struct field_value *levels; /* owned */
+  size_t level_count;
+  double a, b;                /* bounds (uniform kinds), mean and sd, median and sigma; factor and offset (linked) */
+  double lower, upper;        /* truncation, -HUGE_VAL / HUGE_VAL for none */
+  size_t linked;              /* index of the axis it follows, which is not itself linked */
+};
+
+void design_axis_free_all(struct design_axis *axes, size_t count); /* frees the array too */
+
+/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest, and no bound is crossed. */
+void design_axis_quantile(const struct design_axis *axis, double u, struct field_value *value);
+/* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
+void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
+                        struct field_value *value);
+/* Level of a LEVELS axis that quantile u falls in. */
+size_t design_axis_level(const struct design_axis *axis, double u);
+
+/* Evenly spaced levels, ends exact: linear or (both ends positive) logarithmic. n >= 2, or n == 1 gives `from`. */
+double design_axis_spaced(double from, double to, size_t n, bool logarithmic, size_t i);
+
+#endif

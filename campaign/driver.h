@@ -1,0 +1,60 @@
+/* Drives one campaign through farm and store: design points out as runs, results in as rows, until every point has its
+ * replicates. Resume is free: a run is known by its identity, and what the store has is not computed again.
+ *
+ *     campaign_load(path, &campaign, &error);                 // every rank
+ *     driver_farm_options(campaign, &farm_options);           // limits of the document
+ *     farm_start(&farm_options, run_work, &farm, &error);     // before HDF5, threads, MPI
+ *     driver_run(campaign, farm, &options, &summary, &error); // every rank; only rank 0 opens the store
+ *     farm_stop(farm, &error);
+ *
+ * A point's statistics use a fixed prefix of replicate numbers 0..n-1. With `seeds: until` the prefix grows batch by batch
+ * and the decision looks at complete prefixes only, never at "the first n that finished" (which is biased towards quick
+ * runs). Slots that would idle compute ahead; such runs are stored with surplus = 1 and counted only if the prefix comes
+ * to cover them. */
+#ifndef CLAST_CAMPAIGN_DRIVER_H
+#define CLAST_CAMPAIGN_DRIVER_H
+
+#include "campaign/campaign.h"
+#include "campaign/farm/farm.h"
+#include "campaign/progress.h"
+#include "db/store.h"
+
+struct driver_options {
+  const char *store_path;    /* NULL: the campaign's */
+  const char *facts;         /* JSON of provenance_json() */
+  struct progress *progress; /* NULL: silent. Borrowed */
+  void (*note)(void *context, const char *text); /* warnings and notes for a person, one line each; may be NULL */
+  void *note_context;
+  int slots;                 /* for the time left; farm_slots_total() */
+};
+
+struct driver_summary {
+  int64_t campaign_id, session_id;
+  uint64_t points, points_done;      /* points whose replicates are complete */
+  int64_t runs_reused, runs_done;    /* found in the store; computed now */
+  int64_t runs_failed;               /* gave up after their attempts, or ended in a failed state; reused ones included */
+  int64_t runs_censored;             /* ended at the hard end time: usable, but fragments may still be breaking */
+  int64_t runs_surplus;              /* computed now and left out of statistics */
+  int64_t attempts_failed;           /* of this invocation */
+  uint64_t points_interval_met, points_cap_reached; /* with `until` */
+  double cpu_s;                      /* of the runs computed now */
+};
+
+/* time and memory limits of the document into *options; the rest is left alone. */
+void driver_farm_options(const struct campaign *campaign, struct farm_options *options);
+
+/* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed; STATUS_STOPPED:
+ * signal, the same command resumes; STATUS_IO and STATUS_CONTENT from the store. *summary is filled in every case.
+ * On ranks other than 0: serves, returns the manager's status, *summary zero. */
+status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
+                  struct driver_summary *summary, struct error *error);
+
+/* The pieces of driver_run, for tests that play the farm themselves. */
+struct driver;
+status driver_open(const struct campaign *campaign, struct store *store, const struct driver_options *options,
+                   struct driver **out, struct error *error);
+struct farm_manager driver_manager(struct driver *driver);
+void driver_summarise(const struct driver *driver, struct driver_summary *summary);
+void driver_free(struct driver *driver); /* NULL is fine; the store stays open */
+
+#endif

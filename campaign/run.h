@@ -1,0 +1,48 @@
+/* One run from bytes to bytes: what a slot of the farm does with a task, the same code in process, in children, over MPI
+ * and in `clast simulate`. A task names the engine, its encoded inputs, the seed and what to keep; the answer is one
+ * versioned encoding of outcome, engine results, fragments and estimates, made from the field tables. */
+#ifndef CLAST_CAMPAIGN_RUN_H
+#define CLAST_CAMPAIGN_RUN_H
+
+#include "engine/scene.h"
+
+struct run_request {
+  const struct engine_kind *kind;
+  const void *inputs;      /* kind->inputs->size bytes */
+  uint64_t seed;
+  const char *fields_path; /* HDF5 file to write at the end, or NULL */
+};
+
+struct run_result {
+  struct outcome outcome;
+  void *result;            /* owned: kind->results->size bytes */
+  struct fragment *fragments; /* owned: by descending mass */
+  size_t fragment_count;
+  uint8_t *estimates;      /* owned: encoded rows of analysis' estimates table */
+  size_t estimate_count, estimates_size;
+  double prepare_s, step_s, finish_s; /* wall time of each part */
+};
+
+/* Called between blocks of steps: snapshots, a progress line. Anything but STATUS_OK ends the run with it. */
+typedef status (*run_watch)(void *context, const struct engine_kind *kind, void *run, struct error *error);
+
+/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. */
+status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
+                    struct run_result *result, struct error *error);
+void run_result_clear(struct run_result *result);
+
+/* malloc'd; NULL when memory is out. */
+uint8_t *run_encode_task(const struct run_request *request, size_t *size);
+uint8_t *run_encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size);
+/* STATUS_INTERNAL when the bytes are another version's or damaged. */
+status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
+                         struct error *error);
+
+/* Finds an engine by name (engine_find, or a test's). */
+typedef const struct engine_kind *(*run_find)(const char *name, struct error *error);
+status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
+                   struct error *error);
+/* The farm_work of clast: run_execute with engine_find. */
+status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error);
+
+#endif
