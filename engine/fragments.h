@@ -23,4 +23,18 @@ struct fragment {
  * ties by lowest member index. Returns the number of fragments. `label` has n entries, owned by the caller. */
 size_t fragments_label(size_t n, const double *mass, size_t link_count, const uint32_t (*links)[2], uint32_t *label);
 
+/* What a fragment is made of: grains, or particles. */
+struct fragment_member {
+  double mass;
+  double position[3], velocity[3];
+  double spin;              /* rad/s about z (particles: 0) */
+  double moment_of_inertia; /* kg m^2 about its own centre (particles: 0) */
+};
+
+/* Label, then measure, in the plane: spin and moment of inertia are about z. *out has *count fragments by descending
+ * mass (malloc'd, owned by the caller; NULL when n is 0); `label` (n entries) may be NULL. STATUS_MEMORY. */
+status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error);
+
 #endif

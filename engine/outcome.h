@@ -36,4 +36,7 @@ struct outcome {
 
 extern const struct field_table outcome_table;
 
+/* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
+void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments);
+
 #endif

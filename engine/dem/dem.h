@@ -1,0 +1,11 @@
+/* Engine `dem`: grains on breakable beams, in the plane (Kun, D'Addetta, Herrmann & Ramm 1999). */
+#ifndef CLAST_ENGINE_DEM_DEM_H
+#define CLAST_ENGINE_DEM_DEM_H
+
+#include "engine/dem/inputs.h"
+#include "engine/dem/results.h"
+#include "engine/engine.h"
+
+extern const struct engine_kind dem_engine;
+
+#endif

@@ -1,0 +1,62 @@
+#include "engine/outcome.h"
+
+#include <math.h>
+
+static const char *const states[] = {"completed", "end-time", "not-finite", "time-step", "energy", "invalid", NULL};
+
+#define ROW(path_, kind_, unit_, ...) {.path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__}
+#define REAL(path_, unit_, low, ...) ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, __VA_ARGS__)
+#define COUNT(path_, ...) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, __VA_ARGS__)
+
+static const struct field rows[] = {
+    ROW(state, FIELD_CHOICE, NULL, .choices = states,
+        .choice_docs = "fracture had ceased by the scene's declared rule\n"
+                       "the hard end came first: fragments may still be breaking\n"
+                       "NaN or infinity appeared\n"
+                       "the stable time step collapsed\n"
+                       "the energy ledger drifted out of its declared bound\n"
+                       "the inputs cannot be run together",
+        .doc = "The run's own verdict: a result, not a lost attempt."),
+    ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "Diagnostics for a person; empty when all is well."),
+    COUNT(steps, .doc = "Time steps taken."),
+    REAL(time, "s", 0, .doc = "Simulated time at the end."),
+    REAL(time_step, "s", 0, .doc = "The smallest time step used."),
+    REAL(total_mass, "kg", 0, .doc = "Mass of the body at the end (two dimensions: per metre of thickness)."),
+    REAL(energy_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
+         .doc = "Drift of the closed energy ledger over the energy put in."),
+    REAL(momentum_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
+         .doc = "Change of total momentum not explained by outer forces, over the sum of the members' momenta."),
+    COUNT(fragment_count, .doc = "Fragments of any size, single grains (dust) included."),
+    COUNT(single_count, .doc = "Fragments of one grain or particle: below the model's resolution."),
+    ROW(dust_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass share of single grains."),
+    ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass of the largest fragment over the total mass, M_1/M."),
+    ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
+    REAL(mean_fragment_mass, "kg", 0, .doc = "Second moment over first of all fragment masses (not M_2/M_1)."),
+    REAL(mean_fragment_mass_rest, "kg", 0, .doc = "The same without the largest fragment."),
+    REAL(kinetic_energy_share, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
+         .doc = "Translation energy of the fragments over the energy put in."),
+};
+
+const struct field_table outcome_table =
+    FIELD_TABLE(rows, struct outcome, "outcome", "What every engine reports of a finished run.");
+
+void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments) {
+  double mass = 0, square = 0, dust = 0;
+  outcome->fragment_count = (int64_t)count;
+  outcome->single_count = 0;
+  for (size_t k = 0; k < count; k++) {
+    mass += fragments[k].mass;
+    square += fragments[k].mass * fragments[k].mass;
+    if (fragments[k].count == 1) {
+      outcome->single_count++;
+      dust += fragments[k].mass;
+    }
+  }
+  double largest = count > 0 ? fragments[0].mass : 0, rest = mass - largest;
+  outcome->total_mass = mass;
+  outcome->dust_fraction = mass > 0 ? fmin(dust / mass, 1) : 0;
+  outcome->largest_fraction = mass > 0 ? fmin(largest / mass, 1) : 0;
+  outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
+  outcome->mean_fragment_mass = mass > 0 ? square / mass : 0;
+  outcome->mean_fragment_mass_rest = count > 1 && rest > 0 ? fmax(square - largest * largest, 0) / rest : 0;
+}

@@ -1,0 +1,26 @@
+#include "engine/random.h"
+
+/* Random123's headers are not -Wconversion clean; ours is. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#include <Random123/philox.h>
+#pragma GCC diagnostic pop
+
+/* Philox4x64-10 (Salmon, Moraes, Dror & Shaw 2011): key = (seed, 0), counter = (draw, item, purpose, 0). */
+void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, uint64_t bits[4]) {
+  philox4x64_ctr_t counter = {{draw, item, purpose, 0}};
+  philox4x64_key_t key = {{seed, 0}};
+  philox4x64_ctr_t out = philox4x64(counter, key);
+  for (int i = 0; i < 4; i++)
+    bits[i] = out.v[i];
+}
+
+double random_uniform(uint64_t bits) { return (double)(bits >> 11) * 0x1p-53; }
+
+double random_draw(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw) {
+  uint64_t bits[4];
+  random_bits(seed, purpose, item, draw, bits);
+  return random_uniform(bits[0]);
+}
