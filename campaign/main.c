@@ -1,8 +1,75 @@
+/* The program: finds the command, parses its options, runs it, and is the only place that prints errors and exits.
+ * Nothing here starts a thread, MPI or HDF5: `clast run` must fork its slots before any of them. */
+#include <signal.h>
+#include <stdalign.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
-#include "schemas/status.h"
+#include "campaign/commands/commands.h"
+#include "campaign/commands/help.h"
+#include "campaign/commands/table.h"
 
-int main(void) {
-  puts("clast");
-  return STATUS_OK;
+static bool colour(void) {
+  const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");
+  return !(no_colour && *no_colour) && terminal && strcmp(terminal, "dumb") != 0 && isatty(STDERR_FILENO);
+}
+
+/* A report on a document's content comes with its own "file:line:col: error:" lines and stands as it is. */
+static void print_error(const struct error *error) {
+  size_t line = strcspn(error->message, "\n");
+  const char *located = strstr(error->message, ": error: ");
+  bool report = located && (size_t)(located - error->message) < line;
+  if (!report)
+    fprintf(stderr, "clast: %serror:%s ", colour() ? "\033[1;31m" : "", colour() ? "\033[0m" : "");
+  fprintf(stderr, "%s%s", error->message,
+          *error->message && error->message[strlen(error->message) - 1] == '\n' ? "" : "\n");
+}
+
+static status run_command_line(int argc, char **argv, struct error *error) {
+  alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
+  static char version[] = "version";
+  if (argc < 2) {
+    help_overview(stderr);
+    return status_fail(error, STATUS_USAGE, "which command? The list is above");
+  }
+  if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+    help_overview(stdout);
+    return STATUS_OK;
+  }
+  argc--, argv++;
+  if (strcmp(argv[0], "--version") == 0 || strcmp(argv[0], "-V") == 0)
+    argv[0] = version;
+  if (argv[0][0] == '-')
+    return status_fail(error, STATUS_USAGE, "expected a command before the option %.64s; `clast help` lists them", argv[0]);
+  const struct command *command = commands_find(argv[0], error);
+  if (!command)
+    return STATUS_USAGE;
+  size_t count = 0;
+  char **arguments = NULL;
+  bool help = false;
+  status code = option_parse(command, argc, argv, options, &count, &arguments, &help, error);
+  if (code)
+    return code;
+  if (help) {
+    option_help(command, stdout);
+    return STATUS_OK;
+  }
+  return command->run(options, count, arguments, error);
+}
+
+int main(int argc, char **argv) {
+  signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) is no reason to die in the middle of a commit */
+  struct error error = {.status = STATUS_OK};
+  status code = run_command_line(argc, argv, &error);
+  struct error output = {.status = STATUS_OK};
+  status written = table_flush(stdout, &output);
+  if (code != STATUS_OK && error.message[0])
+    print_error(&error);
+  if (written && (code == STATUS_OK || code == STATUS_FAILED_RUNS)) {
+    print_error(&output);
+    code = written;
+  }
+  return (int)code;
 }

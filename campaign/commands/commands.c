@@ -1,0 +1,26 @@
+#include "campaign/commands/commands.h"
+
+#include <string.h>
+
+static const struct command *const all[] = {
+    &help_command,
+    &version_command,
+    &completion_command,
+};
+
+size_t commands_count(void) { return sizeof all / sizeof all[0]; }
+
+const struct command *const *commands_all(void) { return all; }
+
+const struct command *commands_find(const char *name, struct error *error) {
+  const char *names[sizeof all / sizeof all[0]];
+  for (size_t i = 0; i < commands_count(); i++) {
+    if (strcmp(all[i]->name, name) == 0)
+      return all[i];
+    names[i] = all[i]->name;
+  }
+  const char *nearest = option_nearest(name, commands_count(), names);
+  status_fail(error, STATUS_USAGE, "there is no command \"%.64s\"%s%s%s `clast help` lists all", name,
+              nearest ? "; did you mean `clast " : ";", nearest ? nearest : "", nearest ? "`?" : "");
+  return NULL;
+}

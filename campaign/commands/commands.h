@@ -1,0 +1,18 @@
+/* Every command of the program, in the order `clast help` shows them. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
+#define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
+
+#include "campaign/commands/option.h"
+
+extern const struct command run_command, plan_command, simulate_command;
+extern const struct command explain_command, scenes_command, schema_command, cite_command;
+extern const struct command status_command, stats_command, spectrum_command, query_command, picture_command;
+extern const struct command check_command, export_command, merge_command, replay_command, retry_command;
+extern const struct command help_command, version_command, completion_command;
+
+size_t commands_count(void);
+const struct command *const *commands_all(void);
+/* NULL: *error says so (STATUS_USAGE) with the nearest known name. */
+const struct command *commands_find(const char *name, struct error *error);
+
+#endif

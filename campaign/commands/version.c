@@ -1,0 +1,67 @@
+/* `clast version`, also as `clast --version`: what this program was built from and with, and what it runs on. */
+#include "campaign/build_facts.h"
+#include "campaign/commands/commands.h"
+#include "campaign/commands/table.h"
+
+struct options {
+  bool json;
+};
+
+struct fact {
+  const char *name, *value;
+};
+
+static void print_json(size_t count, const struct fact *facts) {
+  fputc('{', stdout);
+  for (size_t i = 0; i < count; i++) {
+    fputs(i ? ",\n " : "\n ", stdout);
+    table_json_string(facts[i].name, stdout);
+    fputs(": ", stdout);
+    table_json_string(facts[i].value, stdout);
+  }
+  fputs("\n}\n", stdout);
+}
+
+static status run(const void *options, size_t count, char **arguments, struct error *error) {
+  (void)count, (void)arguments, (void)error;
+  const struct fact facts[] = {
+      {"version", BUILD_VERSION},
+      {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
+      {"commit_date", BUILD_DATE},
+      {"compiler", BUILD_COMPILER},
+      {"flags", BUILD_FLAGS},
+      {"MPI", BUILD_MPI},
+      {"SQLite", BUILD_SQLITE},
+      {"HDF5", BUILD_HDF5},
+      {"GSL", BUILD_GSL},
+      {"cairo", BUILD_CAIRO},
+      {"libfyaml", BUILD_FYAML},
+      {"plfit", BUILD_PLFIT},
+  };
+  size_t facts_count = sizeof facts / sizeof facts[0];
+  if (((const struct options *)options)->json) {
+    print_json(facts_count, facts);
+    return STATUS_OK;
+  }
+  printf("clast %s\n", facts[0].value);
+  for (size_t i = 1; i < facts_count; i++)
+    printf("  %-12s %s\n", facts[i].name, facts[i].value);
+  return STATUS_OK;
+}
+
+static const struct option_row rows[] = {
+    {"json", 0, OPTION_FLAG, NULL, offsetof(struct options, json), 0, 0, NULL, "Print one JSON object."},
+};
+
+const struct command version_command = {
+    .name = "version",
+    .group = "about clast",
+    .arguments = "",
+    .summary = "version, commit, compiler and libraries (also: clast --version)",
+    .doc = "Prints what this program was built from and with. The same facts are stored with every campaign.",
+    .examples = "clast --version\nclast version --json",
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

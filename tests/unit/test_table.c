@@ -1,0 +1,130 @@
+/* One set of rows, three formats: they agree, and the hard cells (NaN, quotes, bad UTF-8, many rows) come out right. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/commands/table.h"
+
+static char *print_rows(enum table_format format, int rows) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  struct table *table = table_new(format, out);
+  table_column(table, "name", NULL);
+  table_column(table, "speed", "m/s");
+  table_column(table, "n", "1");
+  for (int i = 0; i < rows; i++) {
+    table_text(table, i % 2 ? "plain" : "a \"b\", c");
+    table_real(table, i == 1 ? (double)NAN : 0.1 + i);
+    table_integer(table, -i);
+  }
+  assert_int_equal(table_end(table, NULL), STATUS_OK);
+  fclose(out);
+  return text;
+}
+
+static void test_csv(void **state) {
+  (void)state;
+  char *text = print_rows(TABLE_CSV, 2);
+  assert_string_equal(text, "name,speed,n\r\n\"a \"\"b\"\", c\",0.1,0\r\nplain,,-1\r\n");
+  free(text);
+}
+
+static void test_json(void **state) {
+  (void)state;
+  char *text = print_rows(TABLE_JSON, 2);
+  assert_string_equal(text, "[\n {\"name\": \"a \\\"b\\\", c\", \"speed\": 0.1, \"n\": 0},\n"
+                            " {\"name\": \"plain\", \"speed\": null, \"n\": -1}\n]\n");
+  free(text);
+  text = print_rows(TABLE_JSON, 0);
+  assert_string_equal(text, "[]\n");
+  free(text);
+}
+
+static void test_text(void **state) {
+  (void)state;
+  char *text = print_rows(TABLE_TEXT, 2);
+  assert_string_equal(text, "name      speed [m/s]   n\n"
+                            "a \"b\", c          0.1   0\n"
+                            "plain               -  -1\n");
+  free(text);
+  for (int rows = 499; rows <= 501; rows++) { /* around the number of rows kept for the widths */
+    text = print_rows(TABLE_TEXT, rows);
+    size_t lines = 0;
+    for (char *c = text; *c; c++)
+      lines += *c == '\n';
+    assert_int_equal(lines, rows + 1);
+    free(text);
+  }
+}
+
+static void test_numbers_round_trip(void **state) {
+  (void)state;
+  static const double numbers[] = {0.1, 1.0 / 3, 1e300, 5e-324, -0.0, 123456789.123456789, 2.0000000000000004};
+  for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    struct table *table = table_new(TABLE_CSV, out);
+    table_column(table, "x", NULL);
+    table_real(table, numbers[i]);
+    assert_int_equal(table_end(table, NULL), STATUS_OK);
+    fclose(out);
+    double back = strtod(strchr(text, '\n'), NULL);
+    assert_memory_equal(&back, &numbers[i], sizeof back);
+    free(text);
+  }
+}
+
+static void test_strings(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *json;
+  } cases[] = {
+      {"\xc3\xa9", "\"\xc3\xa9\""},
+      {"\xff", "\"\\ufffd\""},
+      {"\xc0\xaf", "\"\\ufffd\\ufffd\""},                     /* overlong */
+      {"\xed\xa0\x80", "\"\\ufffd\\ufffd\\ufffd\""},          /* a lone surrogate */
+      {"\xf4\x90\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""}, /* beyond U+10FFFF */
+      {"a\xe2\x82", "\"a\\ufffd\\ufffd\""},                   /* truncated */
+      {"\001\n\t\\", "\"\\u0001\\n\\t\\\\\""},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    table_json_string(cases[i].text, out);
+    fclose(out);
+    assert_string_equal(text, cases[i].json);
+    free(text);
+  }
+}
+
+static void test_full_disk(void **state) {
+  (void)state;
+  FILE *out = fopen("/dev/full", "w");
+  assert_non_null(out);
+  struct table *table = table_new(TABLE_CSV, out);
+  table_column(table, "x", NULL);
+  for (int i = 0; i < 10000; i++)
+    table_integer(table, i);
+  struct error error;
+  assert_true(table_broken(table));
+  assert_int_equal(table_end(table, &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "No space"));
+  fclose(out);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_csv),     cmocka_unit_test(test_json),
+      cmocka_unit_test(test_text),    cmocka_unit_test(test_numbers_round_trip),
+      cmocka_unit_test(test_strings), cmocka_unit_test(test_full_disk),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
