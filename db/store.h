@@ -113,8 +113,6 @@ struct store_point_run {
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
                         bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
                         struct error *error);
-/* Replicates below `prefix` count in the point's statistics from now on: their surplus mark goes, running sums grow. */
-status store_admit(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
 /* The HDF5 file kept of a stored run (written by a replay after the run, when a campaign asks for it later). */
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 

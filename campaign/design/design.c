@@ -1,0 +1,163 @@
+#include "campaign/design/design.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct design {
+  enum design_kind kind;
+  const struct design_axis *axes;
+  size_t axis_count, free_count; /* free: not linked */
+  uint64_t points, seed, next;
+  struct design_sobol *sobol;
+  size_t *levels; /* of the point under way, per axis */
+  double *coordinates;
+};
+
+#define MOST_POINTS (UINT64_C(1) << 53) /* a count stays exact in a double, and in SQL and JSON */
+
+static status count_grid(struct design *design, struct error *error) {
+  design->points = 1;
+  for (size_t i = 0; i < design->axis_count; i++) {
+    const struct design_axis *axis = &design->axes[i];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      continue;
+    if (axis->kind != DESIGN_AXIS_LEVELS)
+      return status_fail(error, STATUS_CONTENT,
+                         "vary.%s: a distribution has no grid; give levels ([a, b, c] or {from, to, n}), or use design "
+                         "{kind: random | latin_hypercube | sobol, points: n}",
+                         axis->row->path);
+    if (axis->level_count > MOST_POINTS / design->points)
+      return status_fail(error, STATUS_CONTENT, "design grid: more than 2^53 points; vary fewer inputs");
+    design->points *= axis->level_count;
+  }
+  return STATUS_OK;
+}
+
+static status count_list(struct design *design, struct error *error) {
+  const struct design_axis *longest = NULL;
+  for (size_t i = 0; i < design->axis_count; i++) {
+    const struct design_axis *axis = &design->axes[i];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      continue;
+    if (axis->kind != DESIGN_AXIS_LEVELS)
+      return status_fail(error, STATUS_CONTENT, "vary.%s: design list needs values, not a distribution",
+                         axis->row->path);
+    if (longest && longest->level_count != axis->level_count)
+      return status_fail(error, STATUS_CONTENT,
+                         "vary.%s: %zu values, but vary.%s has %zu; design list takes the i-th value of every input "
+                         "for point i, so the lists must be equally long (or use design grid)",
+                         axis->row->path, axis->level_count, longest->row->path, longest->level_count);
+    longest = axis;
+  }
+  design->points = longest ? longest->level_count : 1;
+  return STATUS_OK;
+}
+
+static status count_sample(struct design *design, uint64_t points, struct error *error) {
+  if (points < 1)
+    return status_fail(error, STATUS_CONTENT, "design: say how many points, e.g. {kind: sobol, points: 64}");
+  if (points > MOST_POINTS || (design->kind == DESIGN_SOBOL && points > (UINT64_C(1) << DESIGN_SOBOL_BITS)))
+    return status_fail(error, STATUS_CONTENT, "design.points: %llu is more than this design has",
+                       (unsigned long long)points);
+  if (design->free_count == 0)
+    return status_fail(error, STATUS_CONTENT, "vary: nothing is varied, so a sampling design has nothing to sample");
+  design->points = points;
+  return STATUS_OK;
+}
+
+status design_create(enum design_kind kind, const struct design_axis *axes, size_t axis_count, uint64_t points,
+                     uint64_t seed, struct design **out, struct error *error) {
+  *out = NULL;
+  struct design *design = calloc(1, sizeof *design);
+  if (!design)
+    return status_fail(error, STATUS_MEMORY, "design: no memory");
+  *design = (struct design){.kind = kind, .axes = axes, .axis_count = axis_count, .seed = seed};
+  for (size_t i = 0; i < axis_count; i++)
+    design->free_count += axes[i].kind != DESIGN_AXIS_LINKED;
+  design->levels = calloc(axis_count + 1, sizeof *design->levels);
+  design->coordinates = calloc(axis_count + 1, sizeof *design->coordinates);
+  status code = STATUS_OK;
+  if (!design->levels || !design->coordinates)
+    code = status_fail(error, STATUS_MEMORY, "design: no memory");
+  else if (kind == DESIGN_GRID)
+    code = count_grid(design, error);
+  else if (kind == DESIGN_LIST)
+    code = count_list(design, error);
+  else
+    code = count_sample(design, points, error);
+  if (code == STATUS_OK && kind == DESIGN_SOBOL)
+    code = design_sobol_create(design->free_count, seed, &design->sobol, error);
+  if (code != STATUS_OK) {
+    design_free(design);
+    return code;
+  }
+  *out = design;
+  return STATUS_OK;
+}
+
+void design_free(struct design *design) {
+  if (!design)
+    return;
+  design_sobol_free(design->sobol);
+  free(design->levels);
+  free(design->coordinates);
+  free(design);
+}
+
+uint64_t design_points(const struct design *design) { return design->points; }
+
+/* Levels of point i of a grid (the last axis turns fastest) or a list. */
+static void walk_levels(struct design *design, uint64_t i) {
+  for (size_t a = design->axis_count; a-- > 0;) {
+    const struct design_axis *axis = &design->axes[a];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      continue;
+    if (design->kind == DESIGN_LIST) {
+      design->levels[a] = (size_t)i;
+    } else {
+      design->levels[a] = (size_t)(i % axis->level_count);
+      i /= axis->level_count;
+    }
+  }
+}
+
+static void sample(struct design *design, uint64_t i) {
+  if (design->kind == DESIGN_SOBOL)
+    design_sobol_next(design->sobol, design->coordinates);
+  for (size_t d = 0; d < design->free_count; d++) {
+    if (design->kind == DESIGN_RANDOM)
+      design->coordinates[d] = design_random_coordinate(design->seed, i, d);
+    else if (design->kind == DESIGN_LATIN_HYPERCUBE)
+      design->coordinates[d] = design_latin_coordinate(design->seed, design->points, i, d);
+  }
+}
+
+bool design_next(struct design *design, struct field_value *values) {
+  if (design->next >= design->points)
+    return false;
+  uint64_t i = design->next++;
+  bool levels = design->kind == DESIGN_GRID || design->kind == DESIGN_LIST;
+  if (levels)
+    walk_levels(design, i);
+  else
+    sample(design, i);
+  size_t dimension = 0;
+  for (size_t a = 0; a < design->axis_count; a++) {
+    const struct design_axis *axis = &design->axes[a];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      continue;
+    if (levels) {
+      values[a] = axis->levels[design->levels[a]];
+      continue;
+    }
+    double u = design->coordinates[dimension++];
+    design->levels[a] = axis->kind == DESIGN_AXIS_LEVELS ? design_axis_level(axis, u) : 0;
+    design_axis_quantile(axis, u, &values[a]);
+  }
+  for (size_t a = 0; a < design->axis_count; a++) {
+    const struct design_axis *axis = &design->axes[a];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      design_axis_follow(axis, &values[axis->linked], design->levels[axis->linked], &values[a]);
+  }
+  return true;
+}
