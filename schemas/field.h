@@ -40,7 +40,8 @@ struct field {
   const char *const *choices; /* NULL-terminated, for CHOICE */
   const char *choice_docs;   /* optional, one sentence per choice, separated by '\n' */
   unsigned flags;
-  const char *when;          /* NULL, or "path=value|value": active only then; given otherwise, it is refused */
+  const char *when;          /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active):
+                              * active only then; given otherwise, it is refused */
   const char *doc;           /* meaning, one or more sentences */
   const char *source;        /* paper and equation, or NULL */
 };
@@ -63,11 +64,15 @@ struct field_value {
   char text[FIELD_TEXT_SIZE]; /* TEXT; for CHOICE the choice's name too */
 };
 
+size_t field_choice_count(const struct field *row);
 bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
 
 /* Exact path, or unique suffix after a dot ("strain" for "beam.threshold.strain"). NULL: *error names the nearest
  * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
+
+/* Edits (insert, delete, replace) between two names; SIZE_MAX when one is longer than any name of ours. */
+size_t field_distance(const char *a, const char *b);
 
 /* Nearest known path by edit distance, or NULL when nothing is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
@@ -76,19 +81,34 @@ void field_defaults(const struct field_table *table, void *object); /* fills eve
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
 
 void field_get(const struct field *row, const void *object, struct field_value *value);
-/* Checks kind and range, then stores. STATUS_CONTENT with a message that names path, range and what came. */
+/* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row, and
+ * a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message that
+ * names path, range and what came. */
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error);
-/* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked. */
+/* Stores a value that is known to suit the row. */
+void field_set_unchecked(const struct field *row, void *object, const struct field_value *value);
+/* What field_set does, without storing: *out is `value` brought to the row's own kind, in range. */
+status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out, struct error *error);
+/* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked, range is checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
+/* What a number's row asks for: "above 0 m", "at least 1 and at most 12". */
+void field_describe_range(const struct field *row, char *text, size_t size);
+
+/* Shortest decimal text that reads back as the same double: "5000", "0.05", "1e30"; "off" for NaN. */
+void field_print_number(double number, char text[32]);
 /* Human text of a value, SI with unit ("5000 m/s"), shortest digits that round-trip. Returns length as snprintf. */
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size);
 
 /* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). malloc'd. */
 char *field_json(const struct field_table *table, const void *object);
+/* Parts of it, for a caller that writes the outer object: its members without braces; one value; any text quoted. */
+void field_json_members(const struct field_table *table, const void *object, FILE *out);
+void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
+void field_json_string(const char *text, FILE *out);
 /* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). malloc'd. */
 char *field_identity(const struct field_table *table, const void *object);
-/* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. */
-void field_explain(const struct field_table *table, const char *prefix, FILE *out);
+/* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */
+size_t field_explain(const struct field_table *table, const char *prefix, FILE *out);
 
 /* Table-driven byte encoding: little-endian, rows in table order, preceded by a hash of the table's names and kinds,
  * so that a reader with other rows refuses instead of misreading. */

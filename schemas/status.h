@@ -23,10 +23,11 @@ typedef enum status {
 #undef STATUS_ENUM
 } status;
 
-/* Caller-owned. `message` is whole sentences for a person: what, where, what to do. May span lines. */
+/* Caller-owned. `message` is whole sentences for a person: what, where, what to do. May span lines: it has room for the
+ * report of a document with a few dozen errors (schemas/document.h). */
 struct error {
   status status;
-  char message[2048];
+  char message[8192];
 };
 
 /* Fill *error (NULL is fine) and return `code`, so that `return status_fail(error, STATUS_IO, "...", ...)` reads well. */

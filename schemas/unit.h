@@ -9,17 +9,22 @@
 #include "schemas/status.h"
 
 struct unit {
-  double factor;               /* 1 of this unit in SI */
-  signed char kg, m, s, K, rad; /* exponents; rad is kept apart so that "4 deg" is refused for a length or a number */
+  double factor; /* 1 of this unit in SI: times / per * 10^ten */
+  int ten;       /* kept apart so that "5 cm", "50 mm" and "0.05 m" become the same double: decimal shifts are exact */
+  double times, per;
+  /* Exponents. rad and byte are kept apart so that "4 deg" is refused for a length or a plain number. */
+  signed char kg, m, s, K, rad, byte;
 };
 
-/* Grammar: factors joined by space, '*', '.', '/' with integer powers '^n' or '**n'; parentheses; SI prefixes.
- * "1" and "%" are dimensionless. STATUS_CONTENT with the nearest known unit on a bad name. */
+/* Grammar: names joined by space, '*', '.', '/' with integer powers '^n' or '**n'; parentheses; SI prefixes, and
+ * Ki Mi Gi Ti for bytes (B). "1" and "%" are dimensionless. A product behind a '/' needs parentheses: "J/(kg K)".
+ * STATUS_CONTENT with the nearest known unit on a bad name. */
 status unit_parse(const char *text, struct unit *unit, struct error *error);
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 
-/* "5 km/s" with expected "m/s" -> 5000. A bare number is taken in the expected SI unit. Refuses NaN, inf, hex floats,
- * trailing text, wrong dimension; messages say which unit was expected and what came. */
+/* "5 km/s" with expected "m/s" -> 5000. A bare number is taken in the expected unit. Refuses NaN, inf, hex floats,
+ * trailing text, wrong dimension; messages say which unit was expected and what came. The result is the double nearest
+ * to the exact decimal value whenever the unit is a power of ten of SI. */
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);
 
 #endif

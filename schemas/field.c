@@ -1,0 +1,328 @@
+#include "schemas/field.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NAME_LENGTH = 128, QUOTE = 60 };
+
+bool field_is_off(double value) {
+  return isnan(value);
+}
+
+/* ---- names ---- */
+
+static size_t distance(const char *a, const char *b) {
+  size_t row[NAME_LENGTH + 1], a_length = strlen(a), b_length = strlen(b);
+  if (a_length > NAME_LENGTH || b_length > NAME_LENGTH) return SIZE_MAX;
+  for (size_t j = 0; j <= b_length; j++)
+    row[j] = j;
+  for (size_t i = 1; i <= a_length; i++) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b_length; j++) {
+      size_t best = diagonal + (a[i - 1] != b[j - 1]);
+      if (row[j] + 1 < best) best = row[j] + 1;
+      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+      diagonal = row[j];
+      row[j] = best;
+    }
+  }
+  return row[b_length];
+}
+
+size_t field_distance(const char *a, const char *b) {
+  return distance(a, b);
+}
+
+/* `suffix` is a whole number of trailing words of `path`. */
+static bool ends_with(const char *path, const char *suffix) {
+  size_t path_length = strlen(path), length = strlen(suffix);
+  if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0) return false;
+  return length == path_length || path[path_length - length - 1] == '.';
+}
+
+const char *field_nearest(const struct field_table *table, const char *path) {
+  /* Compared with every suffix of each path, so that "young_modulos" finds "grain.young_modulus"; a suffix costs a
+   * little, so that a whole path wins over one. */
+  size_t best = SIZE_MAX, limit = strlen(path) / 3 > 2 ? strlen(path) / 3 : 2;
+  const char *found = NULL;
+  for (size_t i = 0; i < table->count; i++) {
+    for (const char *tail = table->rows[i].path; tail; tail = strchr(tail, '.')) {
+      tail += *tail == '.';
+      size_t d = distance(path, tail);
+      if (d > limit || d >= strlen(tail)) continue;
+      d = 2 * d + (tail != table->rows[i].path);
+      if (d < best) best = d, found = table->rows[i].path;
+    }
+  }
+  return found;
+}
+
+const struct field *field_find(const struct field_table *table, const char *path, struct error *error) {
+  const struct field *found = NULL;
+  size_t candidates = 0, used = 0;
+  char names[600] = "";
+  for (size_t i = 0; i < table->count; i++) {
+    if (strcmp(table->rows[i].path, path) == 0) return &table->rows[i];
+    if (!ends_with(table->rows[i].path, path)) continue;
+    found = &table->rows[i];
+    candidates++;
+    int n = snprintf(names + used, sizeof names - used, "%s'%s'", candidates > 1 ? ", " : "", found->path);
+    if (n > 0 && (size_t)n < sizeof names - used)
+      used += (size_t)n;
+    else
+      names[used] = 0;
+  }
+  if (candidates == 1) return found;
+  if (candidates > 1) {
+    status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
+    return NULL;
+  }
+  const char *near = field_nearest(table, path);
+  if (near)
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);
+  else
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; 'clast explain' lists what it has", table->name, QUOTE,
+                path);
+  return NULL;
+}
+
+/* ---- values ---- */
+static const void *seat(const struct field *row, const void *object) {
+  return (const char *)object + row->offset;
+}
+
+size_t field_choice_count(const struct field *row) {
+  size_t count = 0;
+  while (row->choices[count])
+    count++;
+  return count;
+}
+
+static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
+  memset(to, 0, FIELD_TEXT_SIZE); /* whole: structs are compared and hashed by some */
+  if (from) memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
+}
+
+void field_get(const struct field *row, const void *object, struct field_value *value) {
+  const void *from = seat(row, object);
+  memset(value, 0, sizeof *value);
+  value->kind = row->kind;
+  switch (row->kind) {
+  case FIELD_REAL:
+    memcpy(&value->number, from, sizeof value->number);
+    break;
+  case FIELD_INTEGER:
+    memcpy(&value->integer, from, sizeof value->integer);
+    break;
+  case FIELD_BOOLEAN: {
+    bool truth;
+    memcpy(&truth, from, sizeof truth);
+    value->number = truth;
+    break;
+  }
+  case FIELD_CHOICE: {
+    int index;
+    memcpy(&index, from, sizeof index);
+    value->number = index;
+    if (index >= 0 && (size_t)index < field_choice_count(row)) copy_text(value->text, row->choices[index]);
+    break;
+  }
+  case FIELD_TEXT:
+    copy_text(value->text, from);
+    break;
+  }
+}
+
+void field_defaults(const struct field_table *table, void *object) {
+  memset(object, 0, table->size);
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    struct field_value value = {.kind = row->kind, .number = row->number};
+    if (row->flags & FIELD_REQUIRED)
+      value.number = row->kind == FIELD_REAL ? NAN : 0;
+    else if (row->kind == FIELD_INTEGER)
+      value.integer = (int64_t)row->number;
+    else if (row->kind == FIELD_TEXT)
+      copy_text(value.text, row->text);
+    field_set_unchecked(row, object, &value);
+  }
+}
+
+static const struct field *exact(const struct field_table *table, const char *path, size_t length) {
+  for (size_t i = 0; i < table->count; i++)
+    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == 0) return &table->rows[i];
+  return NULL;
+}
+
+static bool value_is(const struct field *row, const void *object, const char *text, size_t length) {
+  struct field_value value;
+  field_get(row, object, &value);
+  char shown[FIELD_TEXT_SIZE] = "";
+  if (row->kind == FIELD_BOOLEAN)
+    strcpy(shown, value.number != 0 ? "true" : "false");
+  else if (row->kind == FIELD_INTEGER)
+    snprintf(shown, sizeof shown, "%" PRId64, value.integer);
+  else if (row->kind == FIELD_REAL)
+    field_print_number(value.number, shown);
+  else
+    memcpy(shown, value.text, sizeof shown);
+  return strlen(shown) == length && memcmp(shown, text, length) == 0;
+}
+
+bool field_is_active(const struct field_table *table, const struct field *row, const void *object) {
+  /* A chain of conditions is as long as the table at most: a circular one ends inactive instead of never. */
+  for (size_t links = 0; row->when; links++) {
+    const char *equals = strchr(row->when, '=');
+    const struct field *other = equals ? exact(table, row->when, (size_t)(equals - row->when)) : NULL;
+    if (!other || links > table->count) return false;
+    bool met = false;
+    for (const char *at = equals + 1; !met;) {
+      size_t length = strcspn(at, "|");
+      met = value_is(other, object, at, length);
+      if (!at[length]) break;
+      at += length + 1;
+    }
+    if (!met) return false;
+    row = other;
+  }
+  return true;
+}
+
+void field_describe_range(const struct field *row, char *text, size_t size) {
+  char low[32], high[32];
+  const char *unit = row->unit && strcmp(row->unit, "1") ? row->unit : "";
+  const char *space = *unit ? " " : "";
+  field_print_number(row->minimum, low);
+  field_print_number(row->maximum, high);
+  bool has_low = row->minimum > -HUGE_VAL, has_high = row->maximum < HUGE_VAL;
+  const char *from = row->flags & FIELD_ABOVE_MINIMUM ? "above" : "at least";
+  const char *to = row->flags & FIELD_BELOW_MAXIMUM ? "below" : "at most";
+  if (has_low && has_high)
+    snprintf(text, size, "%s %s and %s %s%s%s", from, low, to, high, space, unit);
+  else if (has_low)
+    snprintf(text, size, "%s %s%s%s", from, low, space, unit);
+  else if (has_high)
+    snprintf(text, size, "%s %s%s%s", to, high, space, unit);
+  else
+    snprintf(text, size, "a number%s%s", *unit ? " in " : "", unit);
+}
+
+/* ---- bytes ---- */
+
+static uint64_t mix(uint64_t hash, const char *text) { /* FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/ */
+  for (; *text; text++)
+    hash = (hash ^ (uint8_t)*text) * 1099511628211u;
+  return (hash ^ 0xff) * 1099511628211u; /* 0xff: never a byte of our names, so "ab","c" differs from "a","bc" */
+}
+
+/* Names, kinds and choices: what decides how bytes are read. Ranges and texts may change freely. */
+static uint64_t table_hash(const struct field_table *table) {
+  static const char *const kinds[] = {"real", "integer", "boolean", "choice", "text"};
+  uint64_t hash = 14695981039346656037u;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    hash = mix(mix(hash, row->path), kinds[row->kind]);
+    for (size_t c = 0; row->kind == FIELD_CHOICE && row->choices[c]; c++)
+      hash = mix(hash, row->choices[c]);
+  }
+  return hash;
+}
+
+static size_t put(uint8_t *bytes, uint64_t value, size_t count) {
+  for (size_t i = 0; bytes && i < count; i++)
+    bytes[i] = (uint8_t)(value >> (8 * i));
+  return count;
+}
+
+static uint64_t take(const uint8_t *bytes, size_t count) {
+  uint64_t value = 0;
+  for (size_t i = 0; i < count; i++)
+    value |= (uint64_t)bytes[i] << (8 * i);
+  return value;
+}
+
+size_t field_encode(const struct field_table *table, const void *object, uint8_t *bytes) {
+  size_t size = put(bytes, table_hash(table), 8);
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    const char *from = (const char *)object + row->offset;
+    uint8_t *to = bytes ? bytes + size : NULL;
+    uint64_t bits = 0;
+    switch (row->kind) {
+    case FIELD_REAL:
+    case FIELD_INTEGER:
+      memcpy(&bits, from, 8);
+      size += put(to, bits, 8);
+      break;
+    case FIELD_BOOLEAN: {
+      bool truth;
+      memcpy(&truth, from, sizeof truth);
+      size += put(to, truth, 1);
+      break;
+    }
+    case FIELD_CHOICE: {
+      int index;
+      memcpy(&index, from, sizeof index);
+      size += put(to, (uint64_t)(uint16_t)index, 2);
+      break;
+    }
+    case FIELD_TEXT: {
+      size_t length = strnlen(from, FIELD_TEXT_SIZE - 1);
+      size += put(to, length, 1);
+      if (to) memcpy(to + 1, from, length);
+      size += length;
+      break;
+    }
+    }
+  }
+  return size;
+}
+
+size_t field_encoded_size(const struct field_table *table, const void *object) {
+  return field_encode(table, object, NULL);
+}
+
+size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object) {
+  size_t used = 8;
+  if (size < used || take(bytes, 8) != table_hash(table)) return 0;
+  memset(object, 0, table->size);
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    char *to = (char *)object + row->offset;
+    static const size_t widths[] = {8, 8, 1, 2, 1};
+    size_t width = widths[row->kind];
+    if (size - used < width) return 0;
+    uint64_t bits = take(bytes + used, width);
+    used += width;
+    switch (row->kind) {
+    case FIELD_REAL:
+    case FIELD_INTEGER:
+      memcpy(to, &bits, 8);
+      break;
+    case FIELD_BOOLEAN: {
+      bool truth = bits == 1;
+      if (bits > 1) return 0;
+      memcpy(to, &truth, sizeof truth);
+      break;
+    }
+    case FIELD_CHOICE: {
+      int index = (int)bits;
+      size_t count = 0;
+      while (row->choices[count])
+        count++;
+      if (bits >= count) return 0;
+      memcpy(to, &index, sizeof index);
+      break;
+    }
+    case FIELD_TEXT:
+      if (size - used < bits) return 0;
+      memcpy(to, bytes + used, bits);
+      used += bits;
+      break;
+    }
+  }
+  return used;
+}

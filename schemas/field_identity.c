@@ -1,0 +1,67 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/field.h"
+
+static int by_path(const void *a, const void *b) {
+  const struct field *const *left = a, *const *right = b;
+  return strcmp((*left)->path, (*right)->path);
+}
+
+/* Text with what would break a line escaped, so that no value can pretend to be another line. */
+static void write_text(const char *text, FILE *out) {
+  for (; *text; text++) {
+    if (*text == '\n')
+      fputs("\\n", out);
+    else if (*text == '\\')
+      fputs("\\\\", out);
+    else
+      fputc(*text, out);
+  }
+}
+
+char *field_identity(const struct field_table *table, const void *object) {
+  char *text = NULL;
+  size_t size = 0, count = 0;
+  const struct field **rows = malloc((table->count + 1) * sizeof *rows);
+  FILE *out = rows ? open_memstream(&text, &size) : NULL;
+  if (!out) {
+    free(rows);
+    return NULL;
+  }
+  for (size_t i = 0; i < table->count; i++)
+    if (field_is_active(table, &table->rows[i], object)) rows[count++] = &table->rows[i];
+  qsort(rows, count, sizeof *rows, by_path);
+  for (size_t i = 0; i < count; i++) {
+    struct field_value value;
+    field_get(rows[i], object, &value);
+    fprintf(out, "%s=", rows[i]->path);
+    switch (rows[i]->kind) {
+    case FIELD_REAL:
+      if (isnan(value.number))
+        fputs("off", out);
+      else
+        fprintf(out, "%a", value.number + 0.0);
+      break;
+    case FIELD_INTEGER:
+      fprintf(out, "%" PRId64, value.integer);
+      break;
+    case FIELD_BOOLEAN:
+      fputs(value.number != 0 ? "true" : "false", out);
+      break;
+    case FIELD_CHOICE:
+    case FIELD_TEXT:
+      write_text(value.text, out);
+      break;
+    }
+    fputc('\n', out);
+  }
+  free(rows);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

@@ -1,0 +1,94 @@
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/field.h"
+
+void field_json_string(const char *text, FILE *out) {
+  fputc('"', out);
+  for (const unsigned char *at = (const unsigned char *)text; *at; at++) {
+    if (*at == '"' || *at == '\\')
+      fprintf(out, "\\%c", *at);
+    else if (*at == '\n')
+      fputs("\\n", out);
+    else if (*at == '\t')
+      fputs("\\t", out);
+    else if (*at < 0x20 || *at == 0x7f)
+      fprintf(out, "\\u%04x", *at);
+    else
+      fputc(*at, out);
+  }
+  fputc('"', out);
+}
+
+static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
+  char number[32];
+  switch (row->kind) {
+  case FIELD_REAL:
+    field_print_number(value->number, number);
+    fputs(isnan(value->number) ? "\"off\"" : isinf(value->number) ? "null" : number, out); /* JSON has no infinity */
+    break;
+  case FIELD_INTEGER:
+    fprintf(out, "%" PRId64, value->integer);
+    break;
+  case FIELD_BOOLEAN:
+    fputs(value->number != 0 ? "true" : "false", out);
+    break;
+  case FIELD_CHOICE:
+  case FIELD_TEXT:
+    field_json_string(value->text, out);
+    break;
+  }
+}
+
+void field_json_value(const struct field *row, const struct field_value *value, FILE *out) {
+  write_value(row, value, out);
+}
+
+/* Rows that share their first word become one object. They need not stand together in the table: every section is
+ * opened once, at its first active row, and gathers the rest from there. */
+static void write_level(const struct field_table *table, const void *object, const char *prefix, size_t length,
+                        FILE *out) {
+  bool first = true;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    if (strncmp(row->path, prefix, length) != 0 || !field_is_active(table, row, object)) continue;
+    const char *word = row->path + length;
+    size_t word_length = strcspn(word, "."), whole = length + word_length + 1;
+    bool section = word[word_length] == '.', seen = false;
+    for (size_t j = 0; section && j < i && !seen; j++)
+      seen = strncmp(table->rows[j].path, row->path, whole) == 0 && field_is_active(table, &table->rows[j], object);
+    if (seen) continue;
+    fprintf(out, "%s\"%.*s\":", first ? "" : ",", (int)word_length, word);
+    first = false;
+    if (section) {
+      fputc('{', out);
+      write_level(table, object, row->path, whole, out);
+      fputc('}', out);
+    } else {
+      struct field_value value;
+      field_get(row, object, &value);
+      write_value(row, &value, out);
+    }
+  }
+}
+
+void field_json_members(const struct field_table *table, const void *object, FILE *out) {
+  write_level(table, object, "", 0, out);
+}
+
+char *field_json(const struct field_table *table, const void *object) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return NULL;
+  fputc('{', out);
+  write_level(table, object, "", 0, out);
+  fputc('}', out);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}
