@@ -1,0 +1,325 @@
+/* Voronoi cells against libqhull_r: areas and common sides to 1e-12 over seeds, sizes and disorders; and what must hold
+ * of any tessellation of a body: it fills the rectangle, neighbours share vertices to the last bit, disorder 0 is the
+ * square lattice. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <cmocka.h>
+
+#include <libqhull_r/qhull_ra.h>
+
+#include "engine/dem/lattice.h"
+
+/* ---- the oracle: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
+
+struct oracle {
+  size_t n;
+  long double *area;           /* by point; 0 for unbounded cells */
+  double (*side)[64][2];       /* by point: (other point, length), ended by a negative */
+};
+
+static void add_side(struct oracle *o, unsigned i, unsigned j, double length) {
+  int k = 0;
+  while (o->side[i][k][0] >= 0 && (unsigned)o->side[i][k][0] != j)
+    k++;
+  assert_true(k < 62);
+  if (o->side[i][k][0] < 0) {
+    o->side[i][k + 1][0] = -1;
+    o->side[i][k][0] = j;
+    o->side[i][k][1] = 0;
+  }
+  o->side[i][k][1] += length;
+}
+
+static void circumcentre(const double *points, const unsigned *t, long double *x, long double *y) {
+  const double *p = points + 2 * t[0], *q = points + 2 * t[1], *r = points + 2 * t[2];
+  long double ax = (long double)q[0] - p[0], ay = (long double)q[1] - p[1];
+  long double bx = (long double)r[0] - p[0], by = (long double)r[1] - p[1];
+  long double a = ax * ax + ay * ay, b = bx * bx + by * by, d = 2 * (ax * by - ay * bx);
+  *x = p[0] + (a * by - b * ay) / d;
+  *y = p[1] + (b * ax - a * bx) / d;
+}
+
+/* Voronoi areas of points[0..wanted) among all `n` points, from the Delaunay triangulation. */
+static void oracle_make(struct oracle *o, double *points, size_t n, size_t wanted) {
+  o->n = wanted;
+  o->area = calloc(n, sizeof *o->area);
+  o->side = malloc(n * sizeof *o->side);
+  for (size_t i = 0; i < n; i++)
+    o->side[i][0][0] = -1;
+  qhT qhull = {0};
+  qhT *qh = &qhull;
+  qh_zero(qh, stderr);
+  char options[] = "qhull d Qt Qbb Qc Qz";
+  assert_int_equal(qh_new_qhull(qh, 2, (int)n, points, False, options, NULL, stderr), 0);
+  facetT *facet;
+  FORALLfacets {
+    if (facet->upperdelaunay)
+      continue;
+    unsigned t[3], k = 0;
+    vertexT *vertex, **vertexp;
+    FOREACHvertex_(facet->vertices) t[k++] = (unsigned)qh_pointid(qh, vertex->point);
+    long double x, y;
+    circumcentre(points, t, &x, &y);
+    /* Each edge (a, b) of a triangle: the part of their common side on this triangle's side of the edge's middle,
+     * signed; over the two triangles the parts add up. Area of a's cell = sum of (half distance x part) / 2 x 2. */
+    for (int e = 0; e < 3; e++) {
+      unsigned a = t[e], b = t[(e + 1) % 3], c = t[(e + 2) % 3];
+      if (a >= n || b >= n || c >= n)
+        continue;
+      long double ex = (long double)points[2 * b] - points[2 * a], ey = (long double)points[2 * b + 1] - points[2 * a + 1];
+      long double length = sqrtl(ex * ex + ey * ey);
+      long double nx = -ey / length, ny = ex / length;
+      long double mx = (points[2 * a] + (long double)points[2 * b]) / 2, my = (points[2 * a + 1] + (long double)points[2 * b + 1]) / 2;
+      long double towards = nx * (points[2 * c] - mx) + ny * (points[2 * c + 1] - my);
+      long double part = (nx * (x - mx) + ny * (y - my)) * (towards > 0 ? 1 : -1);
+      o->area[a] += part * length / 4;
+      o->area[b] += part * length / 4;
+      add_side(o, a, b, (double)part);
+      add_side(o, b, a, (double)part);
+    }
+  }
+  qh_freeqhull(qh, !qh_ALL);
+  int current, total;
+  qh_memfreeshort(qh, &current, &total);
+}
+
+static void oracle_free(struct oracle *o) {
+  free(o->area);
+  free(o->side);
+}
+
+static const double tolerance = 1e-12; /* of spacing and spacing^2: asked for; rounding is some 1e-14 */
+
+/* Compare a tessellation (spacing 1, origin chosen so that world = lattice coordinates) with the oracle. */
+static void compare(const struct dem_tessellation *t, const struct oracle *o, uint32_t columns) {
+  uint32_t *cell_of = malloc(o->n * sizeof *cell_of);
+  memset(cell_of, 0xff, o->n * sizeof *cell_of);
+  for (uint32_t c = 0; c < t->cell_count; c++)
+    cell_of[t->grid_y[c] * columns + t->grid_x[c]] = c;
+  size_t pairs = 0;
+  for (uint32_t c = 0; c < t->cell_count; c++) {
+    uint32_t i = t->grid_y[c] * columns + t->grid_x[c];
+    if (!(fabs(t->area[c] - (double)o->area[i]) <= tolerance))
+      fail_msg("area of cell %u: %.17g, qhull %.17Lg", c, t->area[c], o->area[i]);
+    for (int k = 0; o->side[i][k][0] >= 0; k++) {
+      uint32_t j = (uint32_t)o->side[i][k][0];
+      /* below 1e-10 spacings our corners are one and there is no side */
+      if (j < o->n && j > i && cell_of[j] != UINT32_MAX && o->side[i][k][1] > 1e-10)
+        pairs++;
+    }
+  }
+  assert_int_equal(pairs, t->pair_count);
+  for (size_t p = 0; p < t->pair_count; p++) {
+    uint32_t a = t->pair[p][0], b = t->pair[p][1], i = t->grid_y[a] * columns + t->grid_x[a];
+    uint32_t j = t->grid_y[b] * columns + t->grid_x[b];
+    assert_true(a < b);
+    assert_true(p == 0 || t->pair[p - 1][0] < a || (t->pair[p - 1][0] == a && t->pair[p - 1][1] < b));
+    bool found = false;
+    for (int k = 0; o->side[i][k][0] >= 0; k++)
+      if ((uint32_t)o->side[i][k][0] == j) {
+        found = true;
+        if (!(fabs(o->side[i][k][1] - t->side[p]) <= tolerance))
+          fail_msg("side %u-%u: %.17g, qhull %.17g", a, b, t->side[p], o->side[i][k][1]);
+      }
+    assert_true(found);
+  }
+  free(cell_of);
+}
+
+static void block_equals_qhull(void **state) {
+  (void)state;
+  const uint32_t sizes[][2] = {{1, 2}, {3, 3}, {12, 7}, {40, 25}};
+  const double disorders[] = {0, 1e-3, 0.3, 0.7, 1};
+  for (size_t s = 0; s < 4; s++)
+    for (size_t d = 0; d < 5; d++)
+      for (uint64_t seed = 0; seed < 8; seed++) {
+        struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 1, disorders[d], 0, sizes[s][0], sizes[s][1], {0, 0}, seed, 0};
+        struct dem_lattice_points points;
+        assert_int_equal(dem_lattice_fill(&lattice, &points, NULL), STATUS_OK);
+        size_t n = (size_t)points.columns * points.rows;
+        /* walls by mirror images: the bisector of a point and its image is the wall */
+        double *all = malloc(10 * n * sizeof *all);
+        for (size_t i = 0; i < n; i++) {
+          double x = points.point[i].x, y = points.point[i].y;
+          const double copies[5][2] = {{x, y}, {-x, y}, {2.0 * points.columns - x, y}, {x, -y}, {x, 2.0 * points.rows - y}};
+          for (size_t k = 0; k < 5; k++) {
+            all[2 * (k * n + i)] = copies[k][0];
+            all[2 * (k * n + i) + 1] = copies[k][1];
+          }
+        }
+        struct oracle o;
+        oracle_make(&o, all, 5 * n, n);
+        struct dem_tessellation *t;
+        assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+        assert_int_equal(t->cell_count, n);
+        compare(t, &o, points.columns);
+        double sum = 0;
+        for (size_t c = 0; c < n; c++)
+          sum += t->area[c];
+        assert_true(fabs(sum - (double)n) < 1e-12 * (double)n); /* cells fill the rectangle */
+        dem_tessellation_free(t);
+        oracle_free(&o);
+        free(all);
+        free(points.point);
+      }
+}
+
+static void disc_equals_qhull(void **state) {
+  (void)state;
+  const double radii[] = {0.8, 4.3, 18.7}, disorders[] = {0, 0.5, 1};
+  for (size_t r = 0; r < 3; r++)
+    for (size_t d = 0; d < 3; d++)
+      for (uint64_t seed = 0; seed < 6; seed++) {
+        struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 1, .disorder = disorders[d], .radius = radii[r], .seed = seed};
+        struct dem_lattice_points points;
+        assert_int_equal(dem_lattice_fill(&lattice, &points, NULL), STATUS_OK);
+        size_t n = (size_t)points.columns * points.rows;
+        double middle = points.columns / 2.0;
+        struct oracle o;
+        oracle_make(&o, &points.point[0].x, n, n);
+        struct dem_tessellation *t;
+        assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+        compare(t, &o, points.columns);
+        double area = 0;
+        for (uint32_t c = 0; c < t->cell_count; c++) {
+          assert_true(hypot(t->centroid[c].x, t->centroid[c].y) <= radii[r]);
+          /* the centroid is nearer to its own point than to any other (it lies in its convex cell) */
+          double px = points.point[t->grid_y[c] * points.columns + t->grid_x[c]].x - middle;
+          assert_true(fabs(px - t->centroid[c].x) < 1.5);
+          area += t->area[c];
+        }
+        if (radii[r] > 18) /* Gauss's circle: the boundary's cells scatter the number by about sqrt(2 pi R)/2 */
+          assert_true(fabs(area / (3.14159265358979 * radii[r] * radii[r]) - 1) < 0.03);
+        dem_tessellation_free(t);
+        oracle_free(&o);
+        free(points.point);
+      }
+}
+
+static void neighbours_share_vertices(void **state) {
+  (void)state;
+  for (uint64_t seed = 0; seed < 20; seed++) {
+    struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 0.01069, seed % 4 ? 1 : 0, 0, 30, 20, {3.7, -11.1}, seed, 2};
+    struct dem_tessellation *t;
+    assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+    for (size_t p = 0; p < t->pair_count; p++) {
+      const uint32_t *pair = t->pair[p];
+      int shared = 0;
+      for (uint32_t u = t->first_vertex[pair[0]]; u < t->first_vertex[pair[0] + 1]; u++)
+        for (uint32_t v = t->first_vertex[pair[1]]; v < t->first_vertex[pair[1] + 1]; v++)
+          shared += memcmp(&t->vertex[u], &t->vertex[v], sizeof t->vertex[u]) == 0;
+      assert_int_equal(shared, 2);
+      assert_true(t->side[p] > 1e-12 * lattice.spacing);
+    }
+    for (uint32_t c = 0; c < t->cell_count; c++) { /* counter-clockwise, convex */
+      uint32_t start = t->first_vertex[c], n = t->first_vertex[c + 1] - start;
+      for (uint32_t k = 0; k < n; k++) {
+        struct dem_point a = t->vertex[start + k], b = t->vertex[start + (k + 1) % n], d = t->vertex[start + (k + 2) % n];
+        double turn = (b.x - a.x) * (d.y - b.y) - (b.y - a.y) * (d.x - b.x);
+        assert_true(turn > -1e-13 * lattice.spacing * lattice.spacing);
+      }
+    }
+    dem_tessellation_free(t);
+  }
+}
+
+static void no_disorder_is_the_square_lattice(void **state) {
+  (void)state;
+  struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 0.5, 0, 0, 9, 7, {0, 0}, 1, 0};
+  struct dem_tessellation *t;
+  assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+  assert_int_equal(t->pair_count, 9 * 6 + 8 * 7);
+  for (uint32_t c = 0; c < t->cell_count; c++) {
+    assert_int_equal(t->first_vertex[c + 1] - t->first_vertex[c], 4);
+    assert_true(fabs(t->area[c] - 0.25) < 1e-15);
+    assert_true(fabs(t->polar_moment[c] - 0.0625 / 6) < 1e-15); /* a^4/6 */
+    assert_true(fabs(t->centroid[c].x - (0.25 + 0.5 * t->grid_x[c])) < 1e-14);
+  }
+  for (size_t p = 0; p < t->pair_count; p++)
+    assert_true(fabs(t->side[p] - 0.5) < 1e-14);
+  dem_tessellation_free(t);
+}
+
+static void streams_and_seeds_differ_and_repeat(void **state) {
+  (void)state;
+  struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 0.01, .disorder = 1, .radius = 0.1, .seed = 5};
+  struct dem_tessellation *a, *b, *joined;
+  assert_int_equal(dem_tessellation_make(&lattice, &a, NULL), STATUS_OK);
+  assert_int_equal(dem_tessellation_make(&lattice, &b, NULL), STATUS_OK);
+  assert_int_equal(a->cell_count, b->cell_count);
+  assert_memory_equal(a->vertex, b->vertex, a->first_vertex[a->cell_count] * sizeof *a->vertex);
+  dem_tessellation_free(b);
+  lattice.stream = 1;
+  lattice.origin.x = 0.3;
+  assert_int_equal(dem_tessellation_make(&lattice, &b, NULL), STATUS_OK);
+  assert_true(fabs(a->area[0] - b->area[0]) > 1e-12);
+  assert_int_equal(dem_tessellation_join(a, b, &joined, NULL), STATUS_OK);
+  assert_int_equal(joined->cell_count, a->cell_count + b->cell_count);
+  assert_int_equal(joined->pair_count, a->pair_count + b->pair_count);
+  uint32_t last = joined->pair[joined->pair_count - 1][0], of_b = b->pair[b->pair_count - 1][0];
+  assert_int_equal(last, of_b + a->cell_count);
+  assert_true(joined->centroid[last].x == b->centroid[of_b].x);
+  assert_true(joined->first_vertex[joined->cell_count] == a->first_vertex[a->cell_count] + b->first_vertex[b->cell_count]);
+  dem_tessellation_free(a);
+  dem_tessellation_free(b);
+  dem_tessellation_free(joined);
+  /* a larger disc of the same seed holds the smaller one's grains */
+  lattice = (struct dem_lattice){.outline = DEM_OUTLINE_DISC, .spacing = 1, .disorder = 1, .radius = 3, .seed = 9};
+  assert_int_equal(dem_tessellation_make(&lattice, &a, NULL), STATUS_OK);
+  lattice.radius = 6;
+  assert_int_equal(dem_tessellation_make(&lattice, &b, NULL), STATUS_OK);
+  for (uint32_t i = 0; i < a->cell_count; i++) {
+    bool found = false;
+    for (uint32_t j = 0; j < b->cell_count; j++)
+      found |= hypot(a->centroid[i].x - b->centroid[j].x, a->centroid[i].y - b->centroid[j].y) < 1e-13;
+    assert_true(found);
+  }
+  dem_tessellation_free(a);
+  dem_tessellation_free(b);
+}
+
+static void ten_thousand_cells_in_time(void **state) {
+  (void)state;
+  double best = HUGE_VAL;
+  for (int i = 0; i < 5; i++) {
+    struct dem_lattice lattice = {DEM_OUTLINE_BLOCK, 1, 1, 0, 100, 100, {0, 0}, 3, 0};
+    struct dem_tessellation *t;
+    clock_t start = clock();
+    assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+    best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
+    dem_tessellation_free(t);
+  }
+  print_message("10 000 cells: %.1f ms\n", 1e3 * best);
+  assert_true(best < 1); /* 50 ms is asked of a release build on a quiet core; sanitizers and neighbours need room */
+}
+
+static void nonsense_is_refused(void **state) {
+  (void)state;
+  struct dem_tessellation *t;
+  struct error error = {0};
+  struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 1e-9, .disorder = 1, .radius = 1};
+  assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_CONTENT);
+  assert_null(t);
+  assert_non_null(strstr(error.message, "spacing"));
+  lattice.spacing = NAN;
+  assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_CONTENT);
+  lattice = (struct dem_lattice){DEM_OUTLINE_BLOCK, 1, 1, 0, 0, 5, {0, 0}, 0, 0};
+  assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_CONTENT);
+  dem_tessellation_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(block_equals_qhull),          cmocka_unit_test(disc_equals_qhull),
+      cmocka_unit_test(neighbours_share_vertices),   cmocka_unit_test(no_disorder_is_the_square_lattice),
+      cmocka_unit_test(streams_and_seeds_differ_and_repeat), cmocka_unit_test(ten_thousand_cells_in_time),
+      cmocka_unit_test(nonsense_is_refused)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
