@@ -16,7 +16,7 @@
 struct store;
 
 /* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer or
- * foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: exponent_table); NULL when no
+ * foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: estimates_table); NULL when no
  * estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
  * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
  * system), or "". The lock is a POSIX record lock: it dies with the process, is not inherited by a fork, and a process

@@ -1,0 +1,41 @@
+/* The standard set of exponent estimates that every run stores: methods x windows, so that no later comparison of methods
+ * or windows needs a re-run. Pooled estimates of a point have rows of the same table (pooled.h). */
+#ifndef CLAST_ANALYSIS_ESTIMATES_H
+#define CLAST_ANALYSIS_ESTIMATES_H
+
+#include "analysis/exponent.h"
+#include "engine/fragments.h"
+
+/* Windows begin at so many mean grain masses and end below the run's largest fragment M_1. Grains of nearly equal mass make
+ * small fragments nearly discrete: fitted as continuous from one grain up, a true 2.0 reads 2.8; from 10 grains on the steps
+ * are finer than the scatter. From 2 is the paper's own choice (all but single grains), 5 lies between and shows the
+ * trend. */
+enum estimates_window { ESTIMATES_FROM_2, ESTIMATES_FROM_5, ESTIMATES_FROM_10, ESTIMATES_WINDOWS };
+extern const char *const estimates_window_names[]; /* "from_2"..., NULL-terminated */
+double estimates_window_grains(enum estimates_window window);
+
+struct estimate {
+  int window;    /* enum estimates_window */
+  bool headline; /* the one that is called `beta` */
+  struct exponent fit; /* fit.cutoff_mass NaN also where no cut-off was needed */
+};
+extern const struct field_table estimates_table;
+
+/* The headline is maximum likelihood on masses from 10 mean grains up to M_1, itself left out: free of the bias of least
+ * squares, of discreteness and of a giant remnant that belongs to no power law. One run of 1100 grains has some ten such
+ * fragments: expect a standard error of 0.3 and, as for any ratio of small numbers, a bias of about (beta-1)/n; pool runs. */
+enum {
+  ESTIMATES_HEADLINE_METHOD = EXPONENT_MASSES,
+  ESTIMATES_HEADLINE_WINDOW = ESTIMATES_FROM_10,
+  ESTIMATES_COUNT = 3 * ESTIMATES_WINDOWS + 2, /* least_squares, binned, masses in each; ks from 2; cutoff from 10 */
+};
+
+/* Fragments by descending mass, dust included (the mean grain mass is total mass over total count; fragments of one grain
+ * are then left out). Always fills all rows; a run without enough fragments has beta = NaN there. */
+status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
+                      struct error *error);
+
+/* The row called `beta`; NULL when there is none among them. */
+const struct estimate *estimates_headline(size_t count, const struct estimate *rows);
+
+#endif

@@ -1,0 +1,34 @@
+/* The two rivals of the pure power law: with an exponential cut-off, and the lognormal. With u = ln(m/a) both are the power
+ * law times one factor more,
+ *     f(u) = exp(-k u - s h(u)) / Z,  0 <= u < L,  k = beta - 1,  s >= 0
+ *     cut-off: h = e^u - 1 (s = a / cut-off mass);  lognormal: h = u^2
+ * so that s = 0 is the power law itself and 2 x (difference of log-likelihoods) is a likelihood ratio. Both are exponential
+ * families: the log-likelihood is concave and its derivatives are means and covariances of u and h, so Newton's method
+ * needs no derivative-free search. Z and the moments come from Gauss-Legendre panels in u: one formula for every beta,
+ * bounded or open window, where the closed form Gamma(1 - beta, s) cancels or needs negative arguments (a test compares
+ * them). Clauset, Shalizi & Newman (2009), doi 10.1137/070710111, tables 2.1 and 6. */
+#ifndef CLAST_ANALYSIS_TEMPERED_H
+#define CLAST_ANALYSIS_TEMPERED_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum tempered_kind { TEMPERED_CUTOFF, TEMPERED_LOGNORMAL };
+
+struct tempered {
+  double beta, standard_error; /* NaN when it cannot be told; for the lognormal, the local exponent at m = a */
+  double rate;                 /* s; 0 = the pure power law is the best of the family */
+  double rate_error;           /* NaN at s = 0 */
+  double log_likelihood;       /* of u, natural log */
+};
+
+/* u: ln(m/a) of each fragment, all in [0, span); span may be HUGE_VAL. */
+struct tempered tempered_fit(enum tempered_kind kind, size_t n, const double *u, double span);
+
+/* ln Z and, where not NULL, mean (2) and covariance (uu, uh, hh) of (u, h). With an open window s > 0 or k > 0. */
+double tempered_log_normalisation(enum tempered_kind kind, double k, double s, double span, double mean[2],
+                                  double covariance[3]);
+/* ln of the density of u. */
+double tempered_log_density(enum tempered_kind kind, double k, double s, double log_normalisation, double u);
+
+#endif

@@ -1,0 +1,46 @@
+/* Cost of what every run pays for its estimates, and of a pooled exponent with its bootstrap. Prints `name value unit`. */
+#include <math.h>
+#include <stdio.h>
+#include <time.h>
+
+#include "analysis/analysis.h"
+#include "analysis/estimates.h"
+#include "engine/random.h"
+
+static double seconds(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int main(void) {
+  enum { N = 500 };
+  analysis_init();
+  struct fragment fragments[N] = {0};
+  double masses[N];
+  for (uint32_t i = 0; i < N; i++) { /* about 500 fragments, a power law of grains, descending */
+    double rank = (i + 0.5) / N;
+    fragments[i].count = (uint32_t)(1 / rank);
+    fragments[i].mass = fragments[i].count * (0.8 + 0.4 * random_draw(1, 1, i, 0));
+    masses[i] = fragments[i].mass;
+  }
+  struct estimate rows[ESTIMATES_COUNT];
+  double best = HUGE_VAL;
+  for (int repeat = 0; repeat < 50; repeat++) {
+    double start = seconds();
+    if (estimates_make(N, fragments, rows, NULL)) return 70;
+    best = fmin(best, seconds() - start);
+  }
+  printf("analysis_estimates_500_ms %.3f ms\n", 1e3 * best);
+  for (int method = 0; method < EXPONENT_METHODS; method++) {
+    best = HUGE_VAL;
+    for (int repeat = 0; repeat < 50; repeat++) {
+      struct exponent fit;
+      double start = seconds();
+      if (exponent_fit((enum exponent_method)method, N, masses, (struct exponent_window){0.8, HUGE_VAL}, &fit, NULL)) return 70;
+      best = fmin(best, seconds() - start);
+    }
+    printf("analysis_%s_500_ms %.4f ms\n", exponent_method_names[method], 1e3 * best);
+  }
+  return 0;
+}

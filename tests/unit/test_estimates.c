@@ -1,0 +1,92 @@
+/* The standard rows of a run: windows in mean grain masses, dust and the largest left out, one headline. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "analysis/analysis.h"
+#include "analysis/estimates.h"
+
+static void rows_of_a_run(void **state) {
+  (void)state;
+  /* 60 resolved fragments of 100/1..100/60 x 3 grains each, 140 grains of dust; every grain 2 kg. */
+  struct fragment fragments[200] = {0};
+  double total = 0, grains = 0;
+  for (uint32_t i = 0; i < 200; i++) {
+    fragments[i].count = i < 60 ? 300 / (i + 1) : 1;
+    fragments[i].mass = 2.0 * fragments[i].count;
+    total += fragments[i].mass;
+    grains += fragments[i].count;
+  }
+  assert_true(total / grains == 2);
+  struct estimate rows[ESTIMATES_COUNT];
+  assert_int_equal(estimates_make(200, fragments, rows, NULL), STATUS_OK);
+  int headlines = 0;
+  for (int i = 0; i < ESTIMATES_COUNT; i++) {
+    headlines += rows[i].headline;
+    assert_true(isfinite(rows[i].fit.beta) && rows[i].fit.standard_error > 0);
+    assert_true(rows[i].fit.lower >= 2 * estimates_window_grains((enum estimates_window)rows[i].window));
+    assert_true(rows[i].fit.upper <= fragments[0].mass);
+    assert_true(!isinf(rows[i].fit.cutoff_mass));
+  }
+  assert_int_equal(headlines, 1);
+  const struct estimate *headline = estimates_headline(ESTIMATES_COUNT, rows);
+  assert_int_equal(headline->fit.method, EXPONENT_MASSES);
+  assert_true(headline->fit.lower == 20 && headline->fit.upper == 600);
+  assert_int_equal(headline->fit.n, 29); /* 300/2 .. 300/30 = 10 grains; not the 300 of M_1 */
+  assert_null(estimates_headline(0, NULL));
+}
+
+static void nothing_to_fit(void **state) {
+  (void)state;
+  struct estimate rows[ESTIMATES_COUNT];
+  struct fragment whole = {.mass = 5, .count = 1000}, dust[3] = {{.mass = 1, .count = 1}, {.mass = 1, .count = 1}, {.mass = 1, .count = 1}};
+  assert_int_equal(estimates_make(1, &whole, rows, NULL), STATUS_OK);
+  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+  assert_int_equal(estimates_make(3, dust, rows, NULL), STATUS_OK);
+  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+  assert_int_equal(estimates_make(0, NULL, rows, NULL), STATUS_OK);
+  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+}
+
+static void equal_masses_have_no_exponent(void **state) {
+  (void)state;
+  double masses[50];
+  for (int i = 0; i < 50; i++) masses[i] = 3;
+  const struct exponent_window windows[] = {{3, HUGE_VAL}, {1, HUGE_VAL}, {3, 4}, {1, 3.0000001}};
+  for (int w = 0; w < 4; w++) {
+    for (int method = 0; method < EXPONENT_METHODS; method++) {
+      struct exponent fit;
+      assert_int_equal(exponent_fit((enum exponent_method)method, 50, masses, windows[w], &fit, NULL), STATUS_OK);
+      assert_true(!isinf(fit.beta)); /* a number or NaN, never a hang or a trap */
+    }
+  }
+}
+
+static void bad_windows_are_refused(void **state) {
+  (void)state;
+  double masses[5] = {1, 2, 3, 4, 5};
+  const struct exponent_window windows[] = {{0, 1}, {-1, 1}, {2, 2}, {3, 2}, {NAN, 2}, {1, NAN}, {HUGE_VAL, HUGE_VAL}};
+  struct exponent fit;
+  struct error error;
+  for (size_t w = 0; w < sizeof windows / sizeof *windows; w++)
+    assert_int_equal(exponent_fit(EXPONENT_MASSES, 5, masses, windows[w], &fit, &error), STATUS_USAGE);
+  assert_int_equal(exponent_fit((enum exponent_method)17, 5, masses, (struct exponent_window){1, 2}, &fit, &error),
+                   STATUS_USAGE);
+  struct spectrum_bin_row bin = {0, 5, 5};
+  assert_int_equal(exponent_fit_bins(EXPONENT_KS, 1, &bin, (struct exponent_window){1, 20}, &fit, &error), STATUS_USAGE);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rows_of_a_run),
+      cmocka_unit_test(nothing_to_fit),
+      cmocka_unit_test(equal_masses_have_no_exponent),
+      cmocka_unit_test(bad_windows_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
