@@ -1,0 +1,374 @@
+#include "campaign/campaign.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/campaign_vary.h"
+#include "campaign/design/design.h"
+#include "engine/random.h"
+#include "schemas/document.h"
+
+#define ROW(path_, member_, kind_, unit_, ...)                                                                         \
+  {.path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__}
+#define TEXT(path_, member_, ...) ROW(path_, member_, FIELD_TEXT, NULL, __VA_ARGS__)
+#define COUNT(path_, member_, default_, low, high, ...)                                                                \
+  ROW(path_, member_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
+
+static const struct field rows[] = {
+    TEXT("name", name, .flags = FIELD_REQUIRED, .doc = "Name of the campaign, as the store lists it."),
+    TEXT("scene", scene_reference, .flags = FIELD_REQUIRED,
+         .doc = "What is run: a built-in scene (`clast scenes`) or a file, relative to this document's folder."),
+    TEXT("quantity", quantity, .text = "largest_fraction",
+         .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: extremes}`. Any "
+                "number that a run reports (`clast explain results`)."),
+    TEXT("store", store, .text = "",
+         .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
+    COUNT("seeds.first", first_seed, 1, 0, 0x1p62,
+          .doc = "Seed of replicate 0; replicate r of every point has first + r, so that points share their random bodies."),
+    ROW("seeds.independent", independent, FIELD_BOOLEAN, NULL, .maximum = 1,
+        .doc = "Every point gets seeds of its own, derived from its inputs and the replicate."),
+    COUNT("seeds.per_point", per_point, 20, 1, 0x1p40, .doc = "Replicates (seeds) of every point."),
+    COUNT("seeds.max", maximum, 200, 2, 0x1p40, .doc = "Most replicates of a point when `until` decides."),
+    TEXT("seeds.until.quantity", until_quantity, .text = "",
+         .doc = "The quantity whose mean must be known well enough. Default: the main quantity."),
+    ROW("seeds.until.half_width", until_half_width, FIELD_REAL, "1", .number = 0.01, .minimum = 0, .maximum = HUGE_VAL,
+        .flags = FIELD_ABOVE_MINIMUM,
+        .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this, in the SI "
+               "unit of the quantity. Judged on fixed prefixes of replicate numbers.",
+        .source = "Chow & Robbins 1965"),
+    ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
+        .flags = FIELD_BELOW_MAXIMUM, .doc = "Confidence level of that interval."),
+    COUNT("seeds.until.minimum", until_minimum, 30, 2, 0x1p40,
+          .doc = "Replicates before the first decision: with fewer, intervals of skew or two-humped quantities are too narrow "
+                 "far too often."),
+    COUNT("seeds.until.batch", until_batch, 10, 1, 0x1p40, .doc = "Replicates between two decisions."),
+    ROW("limits.time", time_limit, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e9,
+        .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM, .doc = "Wall time of one attempt at a run; off: none."),
+    ROW("limits.memory", memory_limit, FIELD_REAL, "B", .number = NAN, .minimum = 1048576, .maximum = 0x1p60,
+        .flags = FIELD_MAY_BE_OFF, .doc = "Memory of one attempt at a run; off: none."),
+    COUNT("limits.attempts", attempts, 2, 1, 1000, .doc = "Attempts at one run, in all, before it is given up as failed."),
+    COUNT("limits.failures", failures, 20, 0, 50,
+          .doc = "The campaign stops when this many of its first 50 runs have failed; 0: it goes on whatever happens."),
+};
+const struct field_table campaign_table =
+    FIELD_TABLE(rows, struct campaign, "campaign", "Many runs of one scene: what is varied, how often, within which limits.");
+
+static const char *const kinds[] = {"grid", "list", "random", "latin_hypercube", "sobol", NULL};
+static const struct field design_rows[] = {
+    {.path = "kind", .kind = FIELD_CHOICE, .offset = offsetof(struct campaign_design_keys, kind), .choices = kinds,
+     .choice_docs = "every combination of the varied inputs' values\n"
+                    "the i-th value of every varied input makes point i\n"
+                    "independent draws\n"
+                    "each input's range is cut into as many strata as there are points, one point in each\n"
+                    "Sobol numbers, digitally shifted: the most even of the three samplings",
+     .doc = "How points are made from the varied inputs."},
+    {.path = "points", .kind = FIELD_INTEGER, .unit = "1", .offset = offsetof(struct campaign_design_keys, points),
+     .minimum = 1, .maximum = 0x1p53, .number = 0, .when = "kind=random|latin_hypercube|sobol",
+     .doc = "How many points are sampled."},
+    {.path = "seed", .kind = FIELD_INTEGER, .unit = "1", .offset = offsetof(struct campaign_design_keys, seed),
+     .minimum = 0, .maximum = 0x1p62, .number = 1, .when = "kind=random|latin_hypercube|sobol",
+     .doc = "Of the draws, permutations and shifts; the runs' seeds are another matter (`seeds`)."},
+};
+const struct field_table campaign_design_table =
+    FIELD_TABLE(design_rows, struct campaign_design_keys, "design", "How points are made from the varied inputs.");
+
+bool campaign_usable(const struct outcome *outcome) {
+  return outcome->state == OUTCOME_COMPLETED || outcome->state == OUTCOME_END_TIME;
+}
+
+const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
+                                      struct error *error) {
+  struct error first, second;
+  const struct field *row = field_find(&outcome_table, path, &first);
+  *of_outcome = row != NULL;
+  if (!row)
+    row = field_find(kind->results, path, &second);
+  if (!row) {
+    const char *nearest = field_nearest(&outcome_table, path);
+    if (!nearest)
+      nearest = field_nearest(kind->results, path);
+    status_fail(error, STATUS_CONTENT, "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "
+                "mean_fragment_mass and more (`clast explain results`)", path, nearest ? ": did you mean '" : "",
+                nearest ? nearest : "", nearest ? "'?" : "", kind->name);
+    return NULL;
+  }
+  if (row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) {
+    status_fail(error, STATUS_CONTENT, "'%s' is no number, so it has no mean; name another quantity", path);
+    return NULL;
+  }
+  return row;
+}
+
+double campaign_value(const struct field *row, bool of_outcome, const struct outcome *outcome, const void *result) {
+  if (!campaign_usable(outcome))
+    return NAN;
+  struct field_value value;
+  field_get(row, of_outcome ? (const void *)outcome : result, &value);
+  return row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
+}
+
+static void read_set(document_node *set, struct campaign *campaign) {
+  if (!set)
+    return;
+  if (document_kind(set) != DOCUMENT_MAPPING) {
+    document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
+    return;
+  }
+  for (size_t i = 0; i < document_count(set); i++) {
+    const char *key = NULL;
+    struct error error = {0};
+    document_node *node = document_item(set, i, &key);
+    const char *text = document_scalar(node);
+    char path[320];
+    snprintf(path, sizeof path, "set.%.300s", key ? key : "");
+    if (!text || !key) {
+      document_report(node, path, "expected one value; several values belong in `vary`");
+      continue;
+    }
+    const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
+    if (row)
+      for (size_t j = 0; j < campaign->axis_count; j++)
+        if (campaign->axes[j].row == row) {
+          status_fail(&error, STATUS_CONTENT, "set here and varied in `vary`; leave one of them out");
+          row = NULL;
+          break;
+        }
+    if (!row || scene_set_text(campaign->scene, key, text, &error) != STATUS_OK)
+      document_report(node, path, "%s", error.message);
+  }
+}
+
+static void read_keep(document_node *keep, struct campaign *campaign) {
+  static const char *const expected = "expected {fields: none | all | extremes | first N}";
+  if (!keep)
+    return;
+  document_node *fields = document_kind(keep) == DOCUMENT_MAPPING ? document_key(keep, "fields") : NULL;
+  const char *text = fields ? document_scalar(fields) : NULL;
+  if (document_kind(keep) == DOCUMENT_MAPPING)
+    document_unknown_keys(keep, "keep", (const char *const[]){"fields", NULL});
+  if (!text) {
+    document_report(fields ? fields : keep, "keep", "%s", expected);
+    return;
+  }
+  char *end = NULL;
+  if (strcmp(text, "none") == 0)
+    campaign->keep = CAMPAIGN_KEEP_NONE;
+  else if (strcmp(text, "all") == 0)
+    campaign->keep = CAMPAIGN_KEEP_ALL;
+  else if (strcmp(text, "extremes") == 0)
+    campaign->keep = CAMPAIGN_KEEP_EXTREMES;
+  else if (strncmp(text, "first ", 6) == 0 && text[6] >= '1' && text[6] <= '9' && strlen(text + 6) < 10 &&
+           (campaign->keep_first = strtoll(text + 6, &end, 10)) > 0 && *end == '\0')
+    campaign->keep = CAMPAIGN_KEEP_FIRST;
+  else
+    document_report(fields, "keep.fields", "%s, got '%.80s'", expected, text);
+}
+
+static void read_design(document_node *design, struct campaign *campaign) {
+  field_defaults(&campaign_design_table, &campaign->design);
+  if (!design)
+    return;
+  if (document_kind(design) == DOCUMENT_MAPPING) {
+    document_read(design, &campaign_design_table, NULL, &campaign->design);
+    return;
+  }
+  struct field row = design_rows[0];
+  row.path = "design";
+  struct field_value value;
+  if (document_value(design, &row, &value))
+    campaign->design.kind = (int)value.number;
+}
+
+static document_node *key_of(document_node *mapping, const char *key) {
+  return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
+}
+
+/* The union in `seeds`: a fixed number, or a rule with a maximum. */
+static void check_seeds(document_node *root, struct campaign *campaign) {
+  document_node *seeds = key_of(root, "seeds");
+  document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
+  if (until && per_point)
+    document_report(per_point, "seeds.per_point", "a fixed number and `until` exclude each other; leave one of them out");
+  if (max && !until)
+    document_report(max, "seeds.max", "only `until` has a maximum; a fixed number is per_point");
+  if (!until)
+    return;
+  campaign->per_point = 0;
+  if (!campaign->until_quantity[0])
+    memcpy(campaign->until_quantity, campaign->quantity, sizeof campaign->until_quantity);
+  if (!key_of(until, "half_width"))
+    document_report(until, "seeds.until", "'half_width' is missing: how narrow must the interval be?");
+  if (campaign->until_minimum > campaign->maximum)
+    document_report(max ? max : until, "seeds.max", "%lld replicates at most, but the first decision comes after %lld; raise max "
+                    "or lower until.minimum", (long long)campaign->maximum, (long long)campaign->until_minimum);
+}
+
+static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
+  struct error error;
+  bool of_outcome;
+  if (!campaign_quantity(campaign->scene->kind, name, &of_outcome, &error))
+    document_report(node, path, "%s", error.message);
+}
+
+/* Every point is tried when there are few; else the first ones. Whoever samples a million points gets the rest as notes. */
+static void check_points(document_node *root, struct campaign *campaign) {
+  enum { TRIED = 1000 };
+  struct error error = {0};
+  struct design *design = NULL;
+  document_node *vary = document_key(root, "vary"), *where = document_key(root, "design");
+  document_node *node = vary ? vary : root;
+  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
+  if (!values || design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                               (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) !=
+                     STATUS_OK) {
+    document_report(where ? where : node, "design", "%s", values ? error.message : "no memory");
+    free(values);
+    return;
+  }
+  for (int i = 0; i < TRIED && design_next(design, values); i++) {
+    struct scene *scene = campaign_point_scene(campaign, values, &error);
+    if (!scene) {
+      document_report(node, vary ? "vary" : "scene", "%s", error.message);
+      break;
+    }
+    scene_free(scene);
+  }
+  design_free(design);
+  free(values);
+}
+
+static void read_all(document_node *root, const char *folder, struct campaign *campaign) {
+  static const char *const also[] = {"vary", "set", "design", "keep", NULL};
+  struct error error = {0};
+  field_defaults(&campaign_table, campaign);
+  bool plain = document_read(root, &campaign_table, also, campaign);
+  document_node *scene = document_key(root, "scene");
+  document_node *vary = document_key(root, "vary"), *set = document_key(root, "set");
+  read_keep(document_key(root, "keep"), campaign);
+  read_design(document_key(root, "design"), campaign);
+  check_seeds(root, campaign);
+  if (!campaign->store[0] && snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >=
+                                 (int)sizeof campaign->store)
+    document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
+  if (!scene || !campaign->scene_reference[0])
+    return; /* said by document_read; nothing more can be read without it */
+  if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) != STATUS_OK) {
+    document_report(scene, "scene", "%s", error.message);
+    return;
+  }
+  bool varied = campaign_vary_read(vary, campaign);
+  read_set(set, campaign);
+  document_node *quantity = document_key(root, "quantity"), *until = key_of(key_of(root, "seeds"), "until");
+  document_node *until_quantity = key_of(until, "quantity");
+  check_quantity(quantity ? quantity : scene, "quantity", campaign->quantity, campaign);
+  if (until_quantity)
+    check_quantity(until_quantity, "seeds.until.quantity", campaign->until_quantity, campaign);
+  if (plain && varied)
+    check_points(root, campaign);
+}
+
+static status from_document(struct document *document, const char *folder, struct campaign **out, struct error *error) {
+  struct campaign *campaign = calloc(1, sizeof *campaign);
+  if (campaign)
+    campaign->text = strdup(document_text(document));
+  if (!campaign || !campaign->text) {
+    campaign_free(campaign);
+    return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
+  }
+  read_all(document_root(document), folder, campaign);
+  const char *report = NULL;
+  status code = document_finish(document, &report);
+  if (code != STATUS_OK) {
+    status_fail(error, code, "%s", report);
+    campaign_free(campaign);
+    return code;
+  }
+  *out = campaign;
+  return STATUS_OK;
+}
+
+status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
+                      struct error *error) {
+  struct document *document = NULL;
+  *out = NULL;
+  status code = document_parse(name, text, size, &document, error);
+  if (code == STATUS_OK)
+    code = from_document(document, folder, out, error);
+  document_free(document);
+  return code;
+}
+
+status campaign_load(const char *path, struct campaign **out, struct error *error) {
+  struct document *document = NULL;
+  *out = NULL;
+  status code = document_open(path, &document, error);
+  const char *slash = strrchr(path, '/');
+  char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : NULL;
+  if (code == STATUS_OK && slash && !folder)
+    code = status_fail(error, STATUS_MEMORY, "no memory for the campaign");
+  if (code == STATUS_OK)
+    code = from_document(document, folder, out, error);
+  free(folder);
+  document_free(document);
+  return code;
+}
+
+void campaign_free(struct campaign *campaign) {
+  if (!campaign)
+    return;
+  design_axis_free_all(campaign->axes, campaign->axis_count);
+  scene_free(campaign->scene);
+  free(campaign->text);
+  free(campaign);
+}
+
+uint64_t campaign_points(const struct campaign *campaign) {
+  struct design *design = NULL;
+  if (design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, NULL) != STATUS_OK)
+    return 0;
+  uint64_t points = design_points(design);
+  design_free(design);
+  return points;
+}
+
+int64_t campaign_replicates_least(const struct campaign *campaign) {
+  return campaign->per_point ? campaign->per_point : campaign->until_minimum;
+}
+
+int64_t campaign_replicates_most(const struct campaign *campaign) {
+  return campaign->per_point ? campaign->per_point : campaign->maximum;
+}
+
+struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values, struct error *error) {
+  struct scene *scene = scene_copy(campaign->scene);
+  if (!scene) {
+    status_fail(error, STATUS_MEMORY, "no memory for a point");
+    return NULL;
+  }
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (scene_set(scene, campaign->axes[i].row->path, &values[i], error) != STATUS_OK) {
+      scene_free(scene);
+      return NULL;
+    }
+  if (scene_check(scene, error) != STATUS_OK) {
+    scene_free(scene);
+    return NULL;
+  }
+  return scene;
+}
+
+uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate) {
+  if (!campaign->independent)
+    return (uint64_t)campaign->first_seed + (uint64_t)replicate;
+  /* A property of the point, not of its place in the design: a design that grows keeps its seeds. 63 bits, because SQL's
+   * integers have a sign. */
+  uint8_t identity[16];
+  uint64_t item = 0, bits[4];
+  scene_identity(point, 0, identity);
+  for (int i = 0; i < 8; i++)
+    item = item << 8 | identity[i];
+  random_bits((uint64_t)campaign->first_seed, RANDOM_SEED, item, (uint64_t)replicate, bits);
+  return bits[0] >> 1;
+}

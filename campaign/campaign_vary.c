@@ -1,0 +1,316 @@
+#include "campaign/campaign_vary.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_LEVELS = 1000000, PATH_SIZE = 320 };
+
+struct reading { /* one axis being read */
+  struct campaign *campaign;
+  struct design_axis *axis;
+  document_node *node;
+  char path[PATH_SIZE]; /* "vary.threshold.strain", for messages */
+};
+
+static bool wrong(struct reading *r, document_node *node, const char *text) {
+  document_report(node ? node : r->node, r->path, "%s", text);
+  return false;
+}
+
+/* A row like the axis' own but with other limits: a mean may lie where no value may. */
+static struct field number_row(const struct reading *r, const char *unit, double minimum, double maximum, unsigned flags) {
+  struct field row = *r->axis->row;
+  row.path = r->path;
+  row.kind = FIELD_REAL;
+  row.unit = unit;
+  row.minimum = minimum;
+  row.maximum = maximum;
+  row.flags = flags;
+  row.when = NULL;
+  return row;
+}
+
+static bool read_number(struct reading *r, document_node *node, const char *what, const struct field *row, double *x) {
+  struct field_value value;
+  if (!node) {
+    document_report(r->node, r->path, "'%s' is missing", what);
+    return false;
+  }
+  if (!document_value(node, row, &value))
+    return false;
+  *x = value.number;
+  return true;
+}
+
+/* A value of the axis' own row, as a number. */
+static bool read_own(struct reading *r, document_node *node, double *x) {
+  struct field_value value;
+  struct field row = *r->axis->row;
+  row.path = r->path;
+  row.flags &= ~(unsigned)FIELD_MAY_BE_OFF; /* an end of a range cannot be off */
+  if (!document_value(node, &row, &value))
+    return false;
+  *x = row.kind == FIELD_INTEGER ? (double)value.integer : value.number;
+  return true;
+}
+
+static bool is_number(const struct field *row) { return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER; }
+
+static bool read_pair(struct reading *r, document_node *node, bool positive, double *a, double *b) {
+  if (document_kind(node) != DOCUMENT_SEQUENCE || document_count(node) != 2)
+    return wrong(r, node, "expected two values, [from, to]");
+  if (!read_own(r, document_item(node, 0, NULL), a) || !read_own(r, document_item(node, 1, NULL), b))
+    return false;
+  if (!(*a < *b))
+    return wrong(r, node, "expected the smaller value first, and two different ones");
+  if (positive && !(*a > 0))
+    return wrong(r, node, "a logarithmic range needs both ends above zero; use {from, to, n} or {uniform: [a, b]}");
+  return true;
+}
+
+static bool make_levels(struct reading *r, size_t count) {
+  r->axis->kind = DESIGN_AXIS_LEVELS;
+  r->axis->levels = calloc(count, sizeof *r->axis->levels);
+  r->axis->level_count = r->axis->levels ? count : 0;
+  return r->axis->levels || wrong(r, NULL, "no memory for the values");
+}
+
+static bool read_values(struct reading *r, document_node *node) {
+  size_t count = document_count(node);
+  if (count == 0 || count > MOST_LEVELS)
+    return wrong(r, node, "expected one value at least (and at most 1000000)");
+  if (!make_levels(r, count))
+    return false;
+  bool good = true;
+  struct field row = *r->axis->row;
+  row.path = r->path;
+  for (size_t i = 0; i < count; i++)
+    good &= document_value(document_item(node, i, NULL), &row, &r->axis->levels[i]);
+  return good;
+}
+
+static bool read_spaced(struct reading *r, double from, double to, bool logarithmic) {
+  document_node *node = document_key(r->node, "n");
+  struct field row = number_row(r, "1", 2, MOST_LEVELS, 0);
+  row.kind = FIELD_INTEGER;
+  struct field_value n;
+  if (!node)
+    return wrong(r, NULL, "'n', the number of values, is missing");
+  if (!document_value(node, &row, &n))
+    return false;
+  if (!make_levels(r, (size_t)n.integer))
+    return false;
+  for (size_t i = 0; i < r->axis->level_count; i++) {
+    double x = design_axis_spaced(from, to, r->axis->level_count, logarithmic, i);
+    struct field_value *value = &r->axis->levels[i];
+    value->kind = r->axis->row->kind;
+    if (value->kind == FIELD_INTEGER)
+      value->integer = (int64_t)llround(x);
+    else
+      value->number = x;
+  }
+  if (r->axis->row->kind == FIELD_INTEGER && fabs(to - from) < (double)(r->axis->level_count - 1))
+    return wrong(r, node, "more values than whole numbers in the range");
+  return true;
+}
+
+static bool read_truncation(struct reading *r, bool positive) {
+  document_node *node = document_key(r->node, "truncated");
+  if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
+    return false;
+  /* What the law can reach must be within what the input can take. */
+  const struct field *row = r->axis->row;
+  double lower = positive ? fmax(r->axis->lower, 0) : r->axis->lower;
+  if (lower < row->minimum || r->axis->upper > row->maximum) {
+    document_report(r->node, r->path,
+                    "the law reaches values that this input cannot take (%g to %g); cut it: {..., truncated: [a, b]}",
+                    row->minimum, row->maximum);
+    return false;
+  }
+  /* Beyond 37 standard deviations a normal law's mass is no double any more. */
+  const struct design_axis *axis = r->axis;
+  double from = positive ? log(fmax(axis->lower, 0) / axis->a) / axis->b : (axis->lower - axis->a) / axis->b;
+  double to = positive ? log(axis->upper / axis->a) / axis->b : (axis->upper - axis->a) / axis->b;
+  if (from > 37 || to < -37)
+    return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
+  return true;
+}
+
+static bool read_normal(struct reading *r, document_node *node) {
+  struct field any = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, 0);
+  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM);
+  r->axis->kind = DESIGN_AXIS_NORMAL;
+  if (document_kind(node) != DOCUMENT_MAPPING)
+    return wrong(r, node, "expected {mean: m, sd: s}");
+  bool good = read_number(r, document_key(node, "mean"), "mean", &any, &r->axis->a);
+  good &= read_number(r, document_key(node, "sd"), "sd", &positive, &r->axis->b);
+  document_unknown_keys(node, r->path, (const char *const[]){"mean", "sd", NULL});
+  return good && read_truncation(r, false);
+}
+
+static bool read_lognormal(struct reading *r, document_node *node) {
+  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM);
+  struct field sigma = number_row(r, "1", 0, 100, FIELD_ABOVE_MINIMUM);
+  r->axis->kind = DESIGN_AXIS_LOGNORMAL;
+  if (document_kind(node) != DOCUMENT_MAPPING)
+    return wrong(r, node, "expected {median: m, sigma: s}; sigma is the standard deviation of the natural logarithm");
+  bool good = read_number(r, document_key(node, "median"), "median", &positive, &r->axis->a);
+  good &= read_number(r, document_key(node, "sigma"), "sigma", &sigma, &r->axis->b);
+  document_unknown_keys(node, r->path, (const char *const[]){"median", "sigma", NULL});
+  return good && read_truncation(r, true);
+}
+
+static bool read_linked(struct reading *r, document_node *node) {
+  r->axis->kind = DESIGN_AXIS_LINKED;
+  struct error error;
+  const char *other = document_scalar(node);
+  const struct field *row = other ? field_find(r->campaign->scene->kind->inputs, other, &error) : NULL;
+  if (!row)
+    return wrong(r, node, other ? error.message : "expected the path of the varied input that this one follows");
+  r->axis->linked = SIZE_MAX; /* by name first: the other may come later in the document */
+  for (size_t i = 0; i < r->campaign->axis_count; i++)
+    if (r->campaign->axes[i].row == row)
+      r->axis->linked = i;
+  if (r->axis->linked == SIZE_MAX || row == r->axis->row)
+    return wrong(r, node, "follows an input that is not varied; name one of the other keys of `vary`");
+  document_node *values = document_key(r->node, "values");
+  if (values) {
+    if (document_kind(values) != DOCUMENT_SEQUENCE)
+      return wrong(r, values, "expected a list of values, one for each value of the input it follows");
+    bool good = read_values(r, values);
+    r->axis->kind = DESIGN_AXIS_LINKED;
+    return good;
+  }
+  r->axis->a = 1;
+  struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
+  struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, 0);
+  document_node *factor_node = document_key(r->node, "factor"), *offset_node = document_key(r->node, "offset");
+  bool good = true;
+  if (!is_number(row) || !is_number(r->axis->row))
+    return wrong(r, node, "only numbers follow by factor and offset; give `values`");
+  if (factor_node)
+    good &= read_number(r, factor_node, "factor", &factor, &r->axis->a);
+  if (offset_node)
+    good &= read_number(r, offset_node, "offset", &offset, &r->axis->b);
+  return good;
+}
+
+/* The forms that are mappings: the key that stands in it says which. */
+static bool read_form(struct reading *r) {
+  static const char *const forms[] = {"from", "log", "uniform", "log_uniform", "normal", "lognormal", "linked", NULL};
+  static const char *const keys[][4] = {{"from", "to", "n", NULL}, {"log", "n", NULL},
+                                        {"uniform", NULL},         {"log_uniform", NULL},
+                                        {"normal", "truncated", NULL}, {"lognormal", "truncated", NULL},
+                                        {"linked", "factor", "offset", "values"}};
+  int form = -1, found = 0;
+  document_node *node = NULL;
+  for (int i = 0; forms[i]; i++) {
+    document_node *here = document_key(r->node, forms[i]);
+    if (here) {
+      form = i;
+      node = here;
+      found++;
+    }
+  }
+  if (found != 1)
+    return wrong(r, NULL,
+                 "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
+                 "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
+  const char *known[5] = {NULL};
+  for (int k = 0; k < 4 && keys[form][k]; k++)
+    known[k] = keys[form][k];
+  document_unknown_keys(r->node, r->path, known);
+  if (form != 6 && !is_number(r->axis->row))
+    return wrong(r, NULL, "this input is no number: give a list of its values");
+  double a = 0, b = 0;
+  switch (form) {
+  case 0: {
+    document_node *to = document_key(r->node, "to");
+    if (!to)
+      return wrong(r, NULL, "'to' is missing");
+    return read_own(r, node, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
+  }
+  case 1:
+    return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
+  case 2:
+  case 3:
+    r->axis->kind = form == 2 ? DESIGN_AXIS_UNIFORM : DESIGN_AXIS_LOG_UNIFORM;
+    return read_pair(r, node, form == 3, &r->axis->a, &r->axis->b);
+  case 4:
+    return read_normal(r, node);
+  case 5:
+    return read_lognormal(r, node);
+  default:
+    return read_linked(r, node);
+  }
+}
+
+static bool read_axis(struct reading *r) {
+  switch (document_kind(r->node)) {
+  case DOCUMENT_SEQUENCE:
+    return read_values(r, r->node);
+  case DOCUMENT_MAPPING:
+    return read_form(r);
+  default:
+    return wrong(r, NULL, "expected a list of values or a range; a single value belongs in `set`");
+  }
+}
+
+/* An axis follows a free axis, and lists go together one to one. */
+static bool check_links(struct reading *readings, struct campaign *campaign) {
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    struct design_axis *axis = &campaign->axes[i];
+    if (axis->kind != DESIGN_AXIS_LINKED)
+      continue;
+    const struct design_axis *other = &campaign->axes[axis->linked];
+    if (other->kind == DESIGN_AXIS_LINKED)
+      return wrong(&readings[i], NULL, "follows an input that is linked itself; link both to the same one");
+    if (axis->level_count && (other->kind != DESIGN_AXIS_LEVELS || other->level_count != axis->level_count))
+      return wrong(&readings[i], NULL, "`values` must be as many as the values of the input it follows");
+  }
+  return true;
+}
+
+bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
+  if (!vary)
+    return true;
+  if (document_kind(vary) != DOCUMENT_MAPPING) {
+    document_report(vary, "vary", "expected a mapping of paths to values, e.g. threshold.strain: [1 %%, 3 %%]");
+    return false;
+  }
+  size_t count = document_count(vary);
+  struct reading *readings = calloc(count + 1, sizeof *readings);
+  campaign->axes = calloc(count + 1, sizeof *campaign->axes);
+  bool good = readings && campaign->axes;
+  if (!good)
+    document_report(vary, "vary", "no memory");
+  for (size_t i = 0; good && i < count; i++) { /* rows first, so that links find each other in any order */
+    const char *key = NULL;
+    struct error error = {0};
+    readings[i].node = document_item(vary, i, &key);
+    readings[i].campaign = campaign;
+    readings[i].axis = &campaign->axes[i];
+    snprintf(readings[i].path, sizeof readings[i].path, "vary.%.300s", key ? key : "");
+    const struct field *row = key ? field_find(campaign->scene->kind->inputs, key, &error) : NULL;
+    if (!row) {
+      document_report(readings[i].node, readings[i].path, "%s", key ? error.message : "expected a path");
+      good = false;
+      continue;
+    }
+    for (size_t j = 0; j < i; j++)
+      if (campaign->axes[j].row == row) {
+        document_report(readings[i].node, readings[i].path, "the same input as %s", readings[j].path);
+        good = false;
+      }
+    campaign->axes[i] = (struct design_axis){.row = row, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+    campaign->axis_count = i + 1;
+  }
+  bool rows = good;
+  for (size_t i = 0; rows && i < count; i++)
+    good &= read_axis(&readings[i]);
+  if (good)
+    good = check_links(readings, campaign);
+  free(readings);
+  return good;
+}
