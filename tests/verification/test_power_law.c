@@ -1,0 +1,192 @@
+/* Exact answers: stationary likelihoods for any exponent, the normalisation against closed forms, invariances. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <gsl/gsl_sf_gamma.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/analysis.h"
+#include "analysis/cutoff.h"
+#include "analysis/power_law.h"
+#include "analysis/tempered.h"
+#include "engine/random.h"
+
+/* The sample mean of a cut exponential, straight from its definition; the fit must return the rate. */
+static double exact_mean(double k, double span) {
+  if (isinf(span)) return 1 / k;
+  if (k == 0) return span / 2;
+  return 1 / k - span / expm1(k * span);
+}
+
+static void masses_any_exponent(void **state) {
+  (void)state;
+  const double betas[] = {-1, 0, 0.5, 0.999, 1, 1.001, 1.5, 2, 3.7, 8}, spans[] = {0.7, 3, 9, HUGE_VAL};
+  for (size_t s = 0; s < 4; s++) {
+    for (size_t b = 0; b < sizeof betas / sizeof *betas; b++) {
+      double k = betas[b] - 1;
+      if (isinf(spans[s]) && k <= 0) continue;
+      struct power_law_group group = {100, exact_mean(k, spans[s]), spans[s]};
+      struct power_law fit = power_law_fit(1, &group, 0);
+      /* The definition itself loses digits for small k: 1e-16 of 1/k over the slope of the mean, span^2/12. */
+      assert_true(fabs(fit.beta - betas[b]) < 1e-11);
+      assert_true(fit.standard_error > 0);
+    }
+  }
+  /* beta exactly 1: u uniform, standard error sqrt(12/n)/span. */
+  struct power_law_group uniform = {400, 2.5, 5};
+  struct power_law fit = power_law_fit(1, &uniform, 0);
+  assert_true(fabs(fit.beta - 1) < 1e-15 && fabs(fit.standard_error - sqrt(12.0 / 400) / 5) < 1e-14);
+  assert_true(fabs(fit.log_likelihood + 400 * log(5)) < 1e-10);
+}
+
+static void bins_any_exponent(void **state) {
+  (void)state;
+  const double h = log(10) / 10, betas[] = {0, 0.5, 1, 1.5, 2, 3}, spans[] = {2, 7, 30, HUGE_VAL};
+  for (size_t s = 0; s < 4; s++) {
+    for (size_t b = 0; b < 6; b++) {
+      double y = (betas[b] - 1) * h, mean = 0, sum = 0;
+      if (isinf(spans[s]) && y <= 0) continue;
+      int bins = isinf(spans[s]) ? 2000 : (int)spans[s];
+      for (int j = 0; j < bins; j++) { /* the share of each bin: integral of m^-beta over it */
+        sum += exp(-y * j);
+        mean += j * exp(-y * j);
+      }
+      struct power_law_group group = {50, mean / sum, spans[s]};
+      struct power_law fit = power_law_fit(1, &group, h);
+      assert_true(fabs(fit.beta - betas[b]) < 1e-10);
+      if (!isinf(spans[s])) assert_true(fabs(fit.log_likelihood + 50 * (y * mean / sum + log(sum))) < 1e-9);
+    }
+  }
+}
+
+static void groups_are_one_sample(void **state) {
+  (void)state;
+  struct power_law_group one = {30, 0.8, 5}, split[3] = {{10, 0.5, 5}, {12, 1.0, 5}, {8, 0.875, 5}};
+  assert_true(fabs((10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30 - 0.8) < 0.04);
+  one.mean = (10 * 0.5 + 12 * 1.0 + 8 * 0.875) / 30;
+  struct power_law a = power_law_fit(1, &one, 0), b = power_law_fit(3, split, 0);
+  assert_true(fabs(a.beta - b.beta) < 1e-13 && fabs(a.standard_error - b.standard_error) < 1e-13);
+  /* A group at one end of its window says nothing alone, but does not spoil the others. */
+  struct power_law_group with_edge[2] = {{10, 0.5, 5}, {1, 0, 3}};
+  assert_true(isfinite(power_law_fit(2, with_edge, 0).beta));
+  assert_true(isnan(power_law_fit(1, &with_edge[1], 0).beta));
+  assert_true(isnan(power_law_fit(0, NULL, 0).beta));
+}
+
+static void normalisation_is_incomplete_gamma(void **state) {
+  (void)state;
+  /* Z = integral over m > a of (m/a)^-beta exp(-(m-a)/xc) dm/m... = e^s s^k Gamma(-k, s), also for negative arguments. */
+  const double ks[] = {-1.5, -0.3, 0.5, 1, 1.7, 3}, rates[] = {1e-6, 1e-3, 0.1, 1, 20};
+  for (size_t i = 0; i < 6; i++) {
+    for (size_t j = 0; j < 5; j++) {
+      double k = ks[i], s = rates[j];
+      double exact = s + k * log(s) + log(gsl_sf_gamma_inc(-k, s));
+      double ours = tempered_log_normalisation(TEMPERED_CUTOFF, k, s, HUGE_VAL, NULL, NULL);
+      /* quadrature error, and GSL's own near-cancellation at small s (its stated error grows to 1e-10) */
+      if (!(fabs(ours - exact) < 1e-9 * (1 + fabs(exact)))) fail_msg("k %g s %g: %.15g, exact %.15g", k, s, ours, exact);
+    }
+  }
+  /* Without the factor the closed form of the pure law. */
+  for (size_t i = 0; i < 6; i++) {
+    double k = ks[i], span = 9, exact = log(-expm1(-k * span) / k);
+    assert_true(fabs(tempered_log_normalisation(TEMPERED_CUTOFF, k, 0, span, NULL, NULL) - exact) < 1e-12);
+    assert_true(fabs(tempered_log_normalisation(TEMPERED_LOGNORMAL, k, 0, span, NULL, NULL) - exact) < 1e-12);
+  }
+  /* Half a normal curve. */
+  double half = tempered_log_normalisation(TEMPERED_LOGNORMAL, 0, 0.5, HUGE_VAL, NULL, NULL);
+  assert_true(fabs(half - log(sqrt(M_PI / 2))) < 1e-12);
+}
+
+static void moments_are_derivatives(void **state) {
+  (void)state;
+  for (int kind = 0; kind < 2; kind++) {
+    double mean[2], covariance[3], k = 0.8, s = 0.05, step = 1e-5;
+    enum tempered_kind which = (enum tempered_kind)kind;
+    tempered_log_normalisation(which, k, s, 7, mean, covariance);
+    double up = tempered_log_normalisation(which, k + step, s, 7, NULL, NULL);
+    double down = tempered_log_normalisation(which, k - step, s, 7, NULL, NULL);
+    double here = tempered_log_normalisation(which, k, s, 7, NULL, NULL);
+    /* central differences: error step^2, and 1e-16/step (1e-16/step^2 for the second) of rounding */
+    assert_true(fabs(mean[0] + (up - down) / (2 * step)) < 1e-8);
+    assert_true(fabs(covariance[0] - (up - 2 * here + down) / (step * step)) < 1e-4);
+    up = tempered_log_normalisation(which, k, s + step, 7, NULL, NULL);
+    down = tempered_log_normalisation(which, k, s - step, 7, NULL, NULL);
+    assert_true(fabs(mean[1] + (up - down) / (2 * step)) < 1e-4 * mean[1]); /* h reaches e^7: third derivative times step^2 */
+  }
+}
+
+static void pure_sample_needs_no_factor(void **state) {
+  (void)state;
+  /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
+  double u[200];
+  for (int i = 0; i < 200; i++) u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
+  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
+  assert_true(fit.rate == 0 && isnan(fit.rate_error));
+  double mean = 0;
+  for (int i = 0; i < 200; i++) mean += u[i] / 200;
+  assert_true(fabs(fit.beta - 1 - 1 / mean) < 1e-13);
+}
+
+/* Moving all masses by a factor moves no exponent; the windows go along. */
+static void units_do_not_matter(void **state) {
+  (void)state;
+  double masses[300], scaled[300];
+  for (uint64_t i = 0; i < 300; i++) {
+    masses[i] = pow(1 - random_draw(3, 3, i, 0), -0.8);
+    scaled[i] = masses[i] * 1e-5; /* 50 bins: bins move along exactly */
+  }
+  for (int method = 0; method < EXPONENT_METHODS; method++) {
+    struct exponent a, b;
+    assert_int_equal(exponent_fit((enum exponent_method)method, 300, masses, (struct exponent_window){1.1, 40}, &a, NULL), 0);
+    assert_int_equal(exponent_fit((enum exponent_method)method, 300, scaled, (struct exponent_window){1.1e-5, 40e-5}, &b, NULL), 0);
+    assert_int_equal(a.n, b.n);
+    assert_true(fabs(a.beta - b.beta) < 1e-6); /* the cut-off's Newton stops at 1e-7 of the standard error */
+  }
+}
+
+static void search_of_the_lower_end(void **state) {
+  (void)state;
+  enum { N = 1500 };
+  double masses[N];
+  /* Above 10 a power law of 2.2; below, 500 fragments of a flat distribution that belongs to none. */
+  for (uint64_t i = 0; i < N; i++)
+    masses[i] = i < 1000 ? 10 * pow(1 - random_draw(4, 1, i, 0), -1 / 1.2) : 1 + 9 * random_draw(4, 2, i, 0);
+  struct exponent fit, all;
+  struct exponent_window window = {1, HUGE_VAL};
+  assert_int_equal(exponent_fit(EXPONENT_KS, N, masses, window, &fit, NULL), STATUS_OK);
+  assert_int_equal(exponent_fit(EXPONENT_MASSES, N, masses, window, &all, NULL), STATUS_OK);
+  assert_true(fit.lower > 8 && fit.lower < 20);
+  assert_true(fabs(fit.beta - 2.2) < 4 * fit.standard_error * 1.5 /* its search: a third more */);
+  assert_true(fabs(all.beta - 2.2) > 8 * all.standard_error);
+  assert_true(fit.ks_distance < all.ks_distance / 3);
+  struct cutoff_error bootstrap;
+  assert_int_equal(cutoff_bootstrap(N, masses, window, 40, 1, &bootstrap, NULL), STATUS_OK);
+  assert_int_equal(bootstrap.resamples, 40);
+  assert_true(bootstrap.beta_error > 0.9 * fit.standard_error && bootstrap.beta_error < 4 * fit.standard_error);
+  double good, bad;
+  assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &good, NULL), STATUS_OK);
+  for (int i = 0; i < 400; i++) masses[i] = exp(2 * random_draw(4, 3, (uint64_t)i, 0)) + 3; /* no power law anywhere */
+  assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &bad, NULL), STATUS_OK);
+  printf("  exact p: power law %.2f, none %.2f\n", good, bad);
+  assert_true(good > 0.1 && bad < 0.1);
+  assert_int_equal(cutoff_p_value(400, masses, 1, 0, 1, &bad, NULL), STATUS_USAGE);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(masses_any_exponent),
+      cmocka_unit_test(bins_any_exponent),
+      cmocka_unit_test(groups_are_one_sample),
+      cmocka_unit_test(normalisation_is_incomplete_gamma),
+      cmocka_unit_test(moments_are_derivatives),
+      cmocka_unit_test(pure_sample_needs_no_factor),
+      cmocka_unit_test(units_do_not_matter),
+      cmocka_unit_test(search_of_the_lower_end),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,146 @@
+/* Summaries against exact numbers; coverage of intervals, of stopping rules and of the bootstrap against their nominal
+ * level, within Monte-Carlo errors (sqrt(p(1-p)/N), four of them). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/analysis.h"
+#include "analysis/sample.h"
+#include "engine/random.h"
+
+static double normal(uint64_t stream, uint64_t sample, uint64_t i) {
+  uint64_t bits[4];
+  random_bits(30, stream, sample, i, bits);
+  return sqrt(-2 * log(1 - random_uniform(bits[0]))) * cos(2 * M_PI * random_uniform(bits[1]));
+}
+
+static void summaries_are_exact(void **state) {
+  (void)state;
+  /* Offsets that a sum of squares would not survive: mean 1e9 + 3, variance 2.5. */
+  const double values[] = {1e9 + 1, NAN, 1e9 + 2, 1e9 + 5, 1e9 + 4, NAN, 1e9 + 3};
+  struct sample_summary s = sample_summarise(7, values, 0.95);
+  assert_int_equal(s.n, 5);
+  assert_true(s.mean == 1e9 + 3 && s.median == 1e9 + 3 && s.minimum == 1e9 + 1 && s.maximum == 1e9 + 5);
+  assert_true(fabs(s.standard_deviation - sqrt(2.5)) < 1e-15 * 4);
+  /* Student t, 4 degrees of freedom, 97.5 %: 2.776445105 (tables). */
+  assert_true(fabs(s.half_width / (2.776445105198 * sqrt(0.5)) - 1) < 1e-10);
+  s = sample_summarise(1, values, 0.95);
+  assert_true(s.n == 1 && s.mean == 1e9 + 1 && s.median == s.mean && isnan(s.standard_deviation) && isnan(s.half_width));
+  s = sample_summarise(0, NULL, 0.95);
+  assert_true(s.n == 0 && isnan(s.mean) && isnan(s.minimum));
+}
+
+/* Share of `trials` in which the interval at the stopped prefix holds the true mean. */
+static double coverage(bool bimodal, size_t n0, double half_width, int trials, double *mean_length) {
+  enum { MOST = 600 };
+  double values[MOST];
+  int held = 0;
+  *mean_length = 0;
+  for (int trial = 0; trial < trials; trial++) {
+    for (uint64_t r = 0; r < MOST; r++)
+      values[r] = bimodal ? (random_draw(31, n0, (uint64_t)trial, r) < 0.1 ? 1 : 0) : normal(n0, (uint64_t)trial, r);
+    size_t length = sample_stopping_prefix(MOST, values, half_width, 0.95, n0);
+    assert_true(length >= n0 && length <= MOST);
+    assert_true(sample_may_stop(length, values, half_width, 0.95, n0));
+    assert_int_equal(sample_stopping_prefix(length, values, half_width, 0.95, n0), length); /* a prefix decides alone */
+    struct sample_summary s = sample_summarise(length, values, 0.95);
+    held += fabs(s.mean - (bimodal ? 0.1 : 0)) <= half_width;
+    *mean_length += (double)length / trials;
+  }
+  printf("  %s n0 %zu: coverage %.3f, stops at %.0f\n", bimodal ? "90/10 " : "normal", n0, (double)held / trials, *mean_length);
+  return (double)held / trials;
+}
+
+static void stopping_keeps_its_level(void **state) {
+  (void)state;
+  enum { TRIALS = 2000 };
+  double length, error = sqrt(0.95 * 0.05 / TRIALS);
+  /* Normal data: at least the level (the guard and the last batch overshoot the width wanted). */
+  assert_true(coverage(false, 20, 0.5, TRIALS, &length) > 0.95 - 4 * error);
+  assert_true(coverage(false, 30, 0.2, TRIALS, &length) > 0.95 - 4 * error);
+  /* (1.97/0.2)^2 = 97 runs, the guard adds (20 t)^2/97 = 16, the batch half of ten */
+  assert_true(length > 105 && length < 125);
+  /* One run in ten is 1, the rest 0. Without the guard .85-.89 from n0 = 30 and .7 from 3: this would be red. */
+  double least = 0.91 - 4 * sqrt(0.91 * 0.09 / TRIALS);
+  assert_true(coverage(true, SAMPLE_FIRST, 0.06, TRIALS, &length) > least);
+  assert_true(coverage(true, SAMPLE_FIRST, 0.05, TRIALS, &length) > least);
+  assert_true(coverage(true, SAMPLE_FIRST, 0.04, TRIALS, &length) > least);
+  assert_true(coverage(true, 3, 0.05, TRIALS, &length) > least);
+}
+
+static void stopping_waits(void **state) {
+  (void)state;
+  double equal[100], scattered[100];
+  for (int i = 0; i < 100; i++) {
+    equal[i] = 0.25;
+    scattered[i] = i % 2;
+  }
+  assert_int_equal(sample_stopping_prefix(29, equal, 0.01, 0.95, 30), 0);
+  assert_int_equal(sample_stopping_prefix(100, equal, 0.01, 0.95, 30), 50); /* 20 t = 40.4 */
+  assert_int_equal(sample_stopping_prefix(100, scattered, 0.01, 0.95, 30), 0);
+  equal[3] = NAN; /* a failed run: 29 values in 30 replicates */
+  assert_int_equal(sample_stopping_prefix(100, equal, 0.01, 0.95, 30), 50);
+  assert_false(sample_may_stop(30, equal, 0.01, 0.95, 30));
+  assert_int_equal(sample_stopping_prefix(100, equal, 0, 0.95, 30), 0);
+  assert_int_equal(sample_stopping_prefix(100, equal, NAN, 0.95, 30), 0);
+}
+
+struct clusters {
+  const double *values;
+};
+static double mean_of(size_t n, const uint32_t *runs, void *context) {
+  const double *values = ((struct clusters *)context)->values;
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += values[runs[i]];
+  return sum / (double)n;
+}
+
+static void bootstrap_knows_the_error_of_a_mean(void **state) {
+  (void)state;
+  enum { RUNS = 50, RESAMPLES = 1000, TRIALS = 400 };
+  double values[RUNS], ratio = 0;
+  int held = 0;
+  for (uint64_t trial = 0; trial < TRIALS; trial++) {
+    for (uint64_t i = 0; i < RUNS; i++) values[i] = normal(77, trial, i);
+    struct sample_interval b = sample_bootstrap(RUNS, trial < 20 ? RESAMPLES : 200, 5, 0.95, mean_of, &(struct clusters){values});
+    struct sample_summary s = sample_summarise(RUNS, values, 0.95);
+    assert_true(fabs(b.estimate - s.mean) < 1e-14);
+    ratio += b.standard_error / s.standard_error / TRIALS;
+    held += b.lower <= 0 && 0 <= b.upper;
+  }
+  /* The bootstrap's variance of a mean is (n-1)/n of the unbiased one; 200 resamples know an error to 5 %. */
+  printf("  bootstrap error over standard error %.4f, coverage %.3f\n", ratio, (double)held / TRIALS);
+  assert_true(fabs(ratio - sqrt(1 - 1.0 / RUNS)) < 4 * 0.05 / sqrt(TRIALS));
+  assert_true(fabs((double)held / TRIALS - 0.94) < 0.01 + 4 * sqrt(0.94 * 0.06 / TRIALS)); /* percentile, n = 50: .93-.95 */
+}
+
+static void bootstrap_repeats_its_bits(void **state) {
+  (void)state;
+  const double values[7] = {1, 4, 2, 8, 5, 7, 1};
+  struct clusters clusters = {values};
+  struct sample_interval a = sample_bootstrap(7, 100, 9, 0.9, mean_of, &clusters);
+  struct sample_interval b = sample_bootstrap(7, 100, 9, 0.9, mean_of, &clusters);
+  struct sample_interval c = sample_bootstrap(7, 100, 10, 0.9, mean_of, &clusters);
+  assert_true(a.lower == b.lower && a.upper == b.upper && a.standard_error == b.standard_error && a.resamples == 100);
+  assert_true(a.standard_error != c.standard_error);
+  a = sample_bootstrap(0, 100, 9, 0.9, mean_of, &clusters);
+  assert_true(isnan(a.estimate) && isnan(a.lower));
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(summaries_are_exact),
+      cmocka_unit_test(stopping_keeps_its_level),
+      cmocka_unit_test(stopping_waits),
+      cmocka_unit_test(bootstrap_knows_the_error_of_a_mean),
+      cmocka_unit_test(bootstrap_repeats_its_bits),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
