@@ -172,23 +172,50 @@ static bool value_is(const struct field *row, const void *object, const char *te
   return strlen(shown) == length && memcmp(shown, text, length) == 0;
 }
 
-bool field_is_active(const struct field_table *table, const struct field *row, const void *object) {
-  /* A chain of conditions is as long as the table at most: a circular one ends inactive instead of never. */
+/* The first condition on the way up that is not met, or NULL: the row is active. A chain is as long as the table at
+ * most, so that a circular one ends (inactive). */
+static const struct field *unmet(const struct field_table *table, const struct field *row, const void *object,
+                                 const struct field **other) {
   for (size_t links = 0; row->when; links++) {
     const char *equals = strchr(row->when, '=');
-    const struct field *other = equals ? exact(table, row->when, (size_t)(equals - row->when)) : NULL;
-    if (!other || links > table->count) return false;
+    *other = equals ? exact(table, row->when, (size_t)(equals - row->when)) : NULL;
+    if (!*other || links > table->count) return row;
     bool met = false;
     for (const char *at = equals + 1; !met;) {
       size_t length = strcspn(at, "|");
-      met = value_is(other, object, at, length);
+      met = value_is(*other, object, at, length);
       if (!at[length]) break;
       at += length + 1;
     }
-    if (!met) return false;
-    row = other;
+    if (!met) return row;
+    row = *other;
   }
-  return true;
+  return NULL;
+}
+
+bool field_is_active(const struct field_table *table, const struct field *row, const void *object) {
+  const struct field *other;
+  return unmet(table, row, object, &other) == NULL;
+}
+
+void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
+                             size_t size) {
+  const struct field *other, *link = unmet(table, row, object, &other);
+  *text = 0;
+  if (!link || !other) return;
+  char wanted[200], came[FIELD_TEXT_SIZE];
+  size_t used = 0;
+  for (const char *at = strchr(link->when, '=') + 1; *at && used + 5 < sizeof wanted; at++) {
+    if (*at == '|')
+      used += (size_t)sprintf(wanted + used, " or ");
+    else
+      wanted[used++] = *at;
+  }
+  wanted[used] = 0;
+  struct field_value value;
+  field_get(other, object, &value);
+  field_print(other, &value, came, sizeof came);
+  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted, came);
 }
 
 void field_describe_range(const struct field *row, char *text, size_t size) {

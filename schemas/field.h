@@ -80,6 +80,10 @@ const char *field_nearest(const struct field_table *table, const char *path);
 void field_defaults(const struct field_table *table, void *object); /* fills every row; required ones get zero/NaN */
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
 
+/* Why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is active. */
+void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
+                             size_t size);
+
 void field_get(const struct field *row, const void *object, struct field_value *value);
 /* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row, and
  * a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message that

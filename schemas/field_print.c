@@ -31,7 +31,7 @@ void field_print_number(double number, char text[32]) {
     to += sprintf(to, "0.%.*s", (int)(-exponent - 1), "00000");
     memcpy(to, mantissa, count);
     to[count] = 0;
-  } else if (exponent >= 0 && exponent < 9) { /* 5000, 12.5 */
+  } else if (exponent >= 0 && (exponent < 6 || (exponent < 9 && count > 4))) { /* 5000, 12.5; but 5e8 */
     size_t whole = (size_t)exponent + 1;
     for (size_t k = 0; k < count || k < whole; k++) {
       if (k == whole) *to++ = '.';

@@ -44,7 +44,7 @@ static status check_range(const struct field *row, double number, const struct f
   field_describe_range(row, range, sizeof range);
   field_print(row, value, came, sizeof came);
   return status_fail(error, STATUS_CONTENT, "%s: expected %s%s, got %s", row->path, range,
-                     row->flags & FIELD_MAY_BE_OFF ? " or off" : "",
+                     row->flags & FIELD_MAY_BE_OFF ? ", or off" : "",
                      isfinite(number) ? came : "a number that is not finite");
 }
 

@@ -1,0 +1,257 @@
+#include "engine/scene.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/blake2s.h"
+#include "engine/scene_builtin.h"
+#include "schemas/document.h"
+
+/* ---- built-in scenes ---- */
+
+size_t scene_builtin_count(void) {
+  size_t count = 0;
+  while (scene_builtin_list[count].name)
+    count++;
+  return count;
+}
+
+const char *scene_builtin_name(size_t index) {
+  return index < scene_builtin_count() ? scene_builtin_list[index].name : NULL;
+}
+
+const char *scene_builtin_text(const char *name) {
+  for (size_t i = 0; scene_builtin_list[i].name; i++)
+    if (strcmp(scene_builtin_list[i].name, name) == 0) return scene_builtin_list[i].text;
+  return NULL;
+}
+
+static status unknown_builtin(const char *name, struct error *error) {
+  const char *near = NULL;
+  size_t best = strlen(name) / 2 + 1;
+  for (size_t i = 0; scene_builtin_list[i].name; i++) {
+    size_t d = field_distance(name, scene_builtin_list[i].name);
+    if (d < best) best = d, near = scene_builtin_list[i].name;
+  }
+  if (near)
+    return status_fail(error, STATUS_MISSING,
+                       "there is no built-in scene '%.100s'; did you mean '%s'? A file is named with its folder or "
+                       "ending, such as ./%.100s.yaml",
+                       name, near, name);
+  return status_fail(error, STATUS_MISSING,
+                     "there is no built-in scene '%.100s'; 'clast scenes' lists them. A file is named with its folder "
+                     "or ending, such as ./%.100s.yaml",
+                     name, name);
+}
+
+/* ---- reading ---- */
+
+static const char *const own_keys[] = {"engine", "name", "source", NULL};
+
+static const struct field head_rows[] = {
+    {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"},
+    {.path = "source", .kind = FIELD_TEXT, .doc = "Where it comes from: paper, section, figure"},
+};
+
+/* Which rows the document gives; reads nothing, so that it may run after document_read. */
+static void mark_given(struct scene *scene, document_node *root) {
+  const struct field_table *table = scene->kind->inputs;
+  for (size_t i = 0; i < table->count; i++) {
+    document_node *node = root;
+    for (const char *at = table->rows[i].path; node; at++) {
+      char word[128];
+      size_t length = strcspn(at, ".");
+      snprintf(word, sizeof word, "%.*s", (int)length, at);
+      node = document_key(node, word);
+      at += length;
+      if (!*at) break;
+    }
+    scene->given[i] = node != NULL;
+  }
+}
+
+static struct scene *create(const struct engine_kind *kind) {
+  struct scene *scene = calloc(1, sizeof *scene);
+  if (!scene) return NULL;
+  scene->kind = kind;
+  scene->inputs = malloc(kind->inputs->size);
+  scene->given = calloc(kind->inputs->count + 1, sizeof *scene->given);
+  if (!scene->inputs || !scene->given) {
+    scene_free(scene);
+    return NULL;
+  }
+  field_defaults(kind->inputs, scene->inputs);
+  return scene;
+}
+
+/* Takes the document. */
+static status read_document(struct document *document, const char *fallback, struct scene **out, struct error *error) {
+  status code = STATUS_CONTENT;
+  struct scene *scene = NULL;
+  document_node *root = document_root(document), *engine = document_key(root, "engine");
+  struct error unknown;
+  const char *engine_name = engine ? document_scalar(engine) : NULL, *report = NULL;
+  const struct engine_kind *kind = engine_name ? engine_find(engine_name, &unknown) : NULL;
+  if (!engine)
+    document_report(root, "engine", "is missing; say which engine runs this scene, such as 'engine: dem'");
+  else if (!engine_name)
+    document_report(engine, "engine", "expected an engine's name, such as 'engine: dem'");
+  else if (!kind)
+    document_report(engine, "engine", "%s", unknown.message);
+  struct field_value name = {.kind = FIELD_TEXT}, ignored;
+  for (size_t i = 0; i < 2; i++) {
+    document_node *node = document_key(root, head_rows[i].path);
+    if (node) document_value(node, &head_rows[i], i == 0 ? &name : &ignored);
+  }
+  if (kind) {
+    scene = create(kind);
+    if (!scene) {
+      code = status_fail(error, STATUS_MEMORY, "no memory for a scene");
+      goto cleanup;
+    }
+    document_read(root, kind->inputs, own_keys, scene->inputs);
+    mark_given(scene, root);
+    snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
+  }
+  code = document_finish(document, &report);
+  if (code) status_fail(error, code, "%s", report);
+cleanup:
+  document_free(document);
+  if (code) {
+    scene_free(scene);
+    scene = NULL;
+  }
+  *out = scene;
+  return code;
+}
+
+static bool is_path(const char *reference) {
+  const char *dot = strrchr(reference, '.');
+  return strchr(reference, '/') || (dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml") || !strcmp(dot, ".json")));
+}
+
+status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error) {
+  *out = NULL;
+  struct document *document = NULL;
+  char *path = NULL, *stem = NULL;
+  status code;
+  if (!is_path(reference)) {
+    const char *text = scene_builtin_text(reference);
+    if (!text) return unknown_builtin(reference, error);
+    return scene_parse(reference, text, out, error);
+  }
+  bool absolute = reference[0] == '/' || !folder || !*folder;
+  size_t size = strlen(reference) + (absolute ? 0 : strlen(folder)) + 2;
+  const char *slash = strrchr(reference, '/');
+  path = malloc(size);
+  stem = strdup(slash ? slash + 1 : reference);
+  if (!path || !stem) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
+    goto cleanup;
+  }
+  snprintf(path, size, "%s%s%s", absolute ? "" : folder, absolute ? "" : "/", reference);
+  char *dot = strrchr(stem, '.');
+  if (dot && dot != stem) *dot = 0;
+  code = document_open(path, &document, error);
+  if (!code) code = read_document(document, stem, out, error);
+cleanup:
+  free(path);
+  free(stem);
+  return code;
+}
+
+status scene_parse(const char *name, const char *text, struct scene **out, struct error *error) {
+  *out = NULL;
+  struct document *document = NULL;
+  status code = document_parse(name, text, strlen(text), &document, error);
+  return code ? code : read_document(document, name, out, error);
+}
+
+struct scene *scene_copy(const struct scene *scene) {
+  struct scene *copy = create(scene->kind);
+  if (!copy) return NULL;
+  memcpy(copy->inputs, scene->inputs, scene->kind->inputs->size);
+  memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
+  memcpy(copy->name, scene->name, sizeof copy->name);
+  return copy;
+}
+
+void scene_free(struct scene *scene) {
+  if (!scene) return;
+  free(scene->inputs);
+  free(scene->given);
+  free(scene);
+}
+
+/* ---- overrides ---- */
+
+status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
+  const struct field_table *table = scene->kind->inputs;
+  const struct field *row = field_find(table, path, error);
+  if (!row) return STATUS_CONTENT;
+  status code = field_set(row, scene->inputs, value, error);
+  if (!code) scene->given[row - table->rows] = true;
+  return code;
+}
+
+status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error) {
+  struct field_value value;
+  const struct field *row = field_find(scene->kind->inputs, path, error);
+  if (!row) return STATUS_CONTENT;
+  status code = field_parse(row, text, &value, error);
+  return code ? code : scene_set(scene, row->path, &value, error);
+}
+
+status scene_check(const struct scene *scene, struct error *error) {
+  const struct field_table *table = scene->kind->inputs;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    if (field_is_active(table, row, scene->inputs)) {
+      if (row->flags & FIELD_REQUIRED && !scene->given[i])
+        return status_fail(error, STATUS_CONTENT, "%s: is missing and has no default; %s", row->path, row->doc);
+    } else if (scene->given[i]) {
+      char why[600];
+      field_describe_inactive(table, row, scene->inputs, why, sizeof why);
+      return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
+                         row->path, why);
+    }
+  }
+  return scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
+}
+
+/* ---- output ---- */
+
+char *scene_json(const struct scene *scene) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return NULL;
+  fputs("{\"engine\":", out);
+  field_json_string(scene->kind->name, out);
+  fputs(",\"name\":", out);
+  field_json_string(scene->name, out);
+  fputc(',', out);
+  field_json_members(scene->kind->inputs, scene->inputs, out);
+  fputc('}', out);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}
+
+void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]) {
+  char *inputs = field_identity(scene->kind->inputs, scene->inputs), *text = NULL;
+  size_t size = 0;
+  FILE *out = inputs ? open_memstream(&text, &size) : NULL;
+  memset(identity, 0, 16); /* all zero: no memory; no document hashes to that */
+  if (!out) {
+    free(inputs);
+    return;
+  }
+  fprintf(out, "engine=%s\nresults_version=%d\nseed=%llu\n%s", scene->kind->name, scene->kind->results_version,
+          (unsigned long long)seed, inputs);
+  if (fclose(out) == 0) blake2s(text, size, identity);
+  free(text);
+  free(inputs);
+}

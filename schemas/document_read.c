@@ -1,0 +1,157 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/document_tree.h"
+
+enum { PATH_SIZE = 256 };
+
+/* One reading of a table: where each row was given (NULL: not), and whether its value was good. */
+struct reading {
+  const struct field_table *table;
+  const char *const *also;
+  void *object;
+  struct place {
+    document_node *key;
+    bool good;
+  } * places;
+};
+
+static bool listed(const char *word, const char *const *words) {
+  for (; words && *words; words++)
+    if (strcmp(word, *words) == 0) return true;
+  return false;
+}
+
+/* The words that may stand at this level, each once; malloc'd, the strings too. */
+static char **siblings(const struct reading *r, const char *prefix) {
+  size_t length = strlen(prefix), count = 0, extra = 0;
+  while (r->also && r->also[extra])
+    extra++;
+  char **words = calloc(r->table->count + extra + 1, sizeof *words);
+  if (!words) return NULL;
+  for (size_t i = 0; i < r->table->count; i++) {
+    const char *path = r->table->rows[i].path;
+    if (strncmp(path, prefix, length) != 0) continue;
+    char *word = strndup(path + length, strcspn(path + length, "."));
+    bool known = !word;
+    for (size_t j = 0; j < count && !known; j++)
+      known = strcmp(words[j], word) == 0;
+    if (known)
+      free(word);
+    else
+      words[count++] = word;
+  }
+  for (size_t i = 0; i < extra && length == 0; i++)
+    if ((words[count] = strdup(r->also[i])) != NULL) count++;
+  return words;
+}
+
+static void unknown(const struct reading *r, document_node *key, const char *prefix) {
+  if (key->document->error_count >= DOCUMENT_MOST_ERRORS) {
+    document_unknown_key(key, NULL, NULL, NULL); /* counted */
+    return;
+  }
+  char path[PATH_SIZE];
+  snprintf(path, sizeof path, "%.*s", (int)(strlen(prefix) - (*prefix != 0)), prefix);
+  char **words = siblings(r, prefix);
+  document_unknown_key(key, path, (const char *const *)words, field_nearest(r->table, key->text));
+  for (size_t i = 0; words && words[i]; i++)
+    free(words[i]);
+  free(words);
+}
+
+static void walk(struct reading *r, document_node *mapping, const char *prefix) {
+  const struct field_table *table = r->table;
+  for (size_t i = 0; i < mapping->count; i++) {
+    document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
+    if (key->faulty || (!*prefix && listed(key->text, r->also))) continue;
+    mapping->pairs[i].seen = true;
+    char path[PATH_SIZE];
+    int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
+    bool fits = length > 0 && length < PATH_SIZE - 2 && !strchr(key->text, '.'), section = false;
+    const struct field *row = NULL;
+    for (size_t k = 0; fits && k < table->count && !row; k++) {
+      if (strcmp(table->rows[k].path, path) == 0) row = &table->rows[k];
+      section =
+          section || (strncmp(table->rows[k].path, path, (size_t)length) == 0 && table->rows[k].path[length] == '.');
+    }
+    if (row) {
+      struct place *place = &r->places[row - table->rows];
+      struct field_value value;
+      if (place->key) continue; /* a duplicate: reported already, the first one counts */
+      place->key = key;
+      place->good = document_value(node, row, &value);
+      if (place->good) field_set_unchecked(row, r->object, &value);
+    } else if (section && node->kind == DOCUMENT_MAPPING) {
+      path[length] = '.';
+      path[length + 1] = 0;
+      walk(r, node, path);
+    } else if (section) {
+      document_report(node, path, "expected keys and values below it, got %s",
+                      document_value_is_null(node) ? "nothing" : document_value_what(node));
+    } else {
+      unknown(r, key, prefix);
+    }
+  }
+}
+
+/* The mapping that would hold a path, as far as the document has it: where a missing key is reported. */
+static document_node *holder(document_node *mapping, const char *path) {
+  for (;;) {
+    size_t length = strcspn(path, ".");
+    document_node *next = NULL;
+    for (size_t i = 0; path[length] && i < mapping->count && !next; i++)
+      if (strncmp(mapping->pairs[i].key->text, path, length) == 0 && !mapping->pairs[i].key->text[length])
+        next = mapping->pairs[i].value;
+    if (!next || next->kind != DOCUMENT_MAPPING) return mapping;
+    mapping = next;
+    path += length + 1;
+  }
+}
+
+/* A condition cannot be judged when a row that it rests on was given, but wrongly. */
+static bool judgeable(const struct reading *r, const struct field *row) {
+  for (size_t links = 0; row && row->when && links <= r->table->count; links++) {
+    const struct field *other = NULL;
+    size_t length = strcspn(row->when, "=");
+    for (size_t i = 0; i < r->table->count && !other; i++)
+      if (strncmp(r->table->rows[i].path, row->when, length) == 0 && !r->table->rows[i].path[length])
+        other = &r->table->rows[i];
+    if (other && r->places[other - r->table->rows].key && !r->places[other - r->table->rows].good) return false;
+    row = other;
+  }
+  return true;
+}
+
+bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object) {
+  struct document *document = node->document;
+  size_t before = document->error_count;
+  if (node->faulty) return false;
+  if (node->kind != DOCUMENT_MAPPING) {
+    document_report(node, NULL, "expected the keys and values of a %s, got %s", table->name,
+                    document_value_is_null(node) ? "nothing" : document_value_what(node));
+    return false;
+  }
+  struct reading r = {
+      .table = table, .also = also, .object = object, .places = calloc(table->count + 1, sizeof *r.places)};
+  if (!r.places) {
+    document_report(node, NULL, "no memory to read it");
+    return false;
+  }
+  walk(&r, node, "");
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    char why[600];
+    if (!judgeable(&r, row)) continue;
+    if (field_is_active(table, row, object)) {
+      if (row->flags & FIELD_REQUIRED && !r.places[i].key)
+        document_report(holder(node, row->path), row->path, "is missing and has no default; %s",
+                        row->doc ? row->doc : "give it");
+    } else if (r.places[i].key) {
+      field_describe_inactive(table, row, object, why, sizeof why);
+      document_report(r.places[i].key, row->path, "has no effect: it is %s; remove one or change the other", why);
+    }
+  }
+  free(r.places);
+  return document->error_count == before;
+}

@@ -1,0 +1,67 @@
+/* Inside of documents: shared by the document_*.c files, used by nobody else. */
+#ifndef CLAST_SCHEMAS_DOCUMENT_TREE_H
+#define CLAST_SCHEMAS_DOCUMENT_TREE_H
+
+#include "schemas/document.h"
+
+enum {
+  DOCUMENT_LARGEST = 4 << 20, /* bytes */
+  DOCUMENT_DEEPEST = 32,
+  DOCUMENT_MOST_NODES = 1 << 20, /* aliases count as often as they are used: a "billion laughs" ends here */
+  DOCUMENT_MOST_ANCHORS = 1000,
+  DOCUMENT_MOST_ERRORS = 100, /* kept with their text; more are counted */
+};
+
+struct document_pair {
+  document_node *key; /* NULL in a sequence */
+  document_node *value;
+  bool seen;
+};
+
+struct document_node {
+  struct document *document;
+  struct document_node *next; /* all nodes, for freeing */
+  enum document_kind kind;
+  bool plain;        /* scalar without quotes: the core schema gives it a type */
+  bool faulty;       /* an error about it was reported already: readers pass over it in silence */
+  size_t start, end; /* bytes in the text */
+  struct document_pair *pairs;
+  size_t count, capacity;
+  char text[]; /* of a scalar */
+};
+
+struct document_error {
+  size_t start, end, order;
+  char *message;
+};
+
+struct document {
+  char *name, *text;
+  size_t size, node_count, error_count; /* error_count may exceed what is kept */
+  document_node *root, *nodes;
+  struct document_error errors[DOCUMENT_MOST_ERRORS];
+  char *report;
+};
+
+/* Bytes that must never reach libfyaml or a terminal: NUL, invalid UTF-8, control characters, tabs as indentation.
+ * False: an error was reported. */
+bool document_guard(struct document *document);
+/* Well-formed UTF-8 without surrogates, overlong forms and control characters but tab and line ends. Returns the offset
+ * of the first offence, or size. */
+size_t document_guard_text(const char *text, size_t size);
+
+/* An error about bytes [start, end) of the text. */
+void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format, ...)
+    __attribute__((format(printf, 5, 6)));
+size_t document_report_line(const struct document *document, size_t offset); /* counted from 1 */
+char *document_report_text(struct document *document);                       /* malloc'd, sorted by line */
+
+/* "a list", "nothing", "the text 'x'": what a node is, for messages. */
+const char *document_value_what(const document_node *node);
+bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */
+
+/* Report a key that nobody knows: `known` are the names that may stand beside it, `elsewhere` (may be NULL) a whole
+ * path that was perhaps meant. */
+void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere);
+
+#endif

@@ -1,0 +1,46 @@
+#include <string.h>
+
+#include "schemas/document_tree.h"
+
+enum { PATH_SIZE = 300, LIST_SIZE = 400 };
+
+void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere) {
+  if (key->faulty) return;
+  struct document *document = key->document;
+  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: do not search for what nobody will see */
+    document->error_count++;
+    return;
+  }
+  char whole[PATH_SIZE], list[LIST_SIZE] = "";
+  snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
+  const char *near = NULL;
+  size_t best = 1 + (strlen(key->text) / 3 > 2 ? strlen(key->text) / 3 : 2), used = 0;
+  for (size_t i = 0; known && known[i]; i++) {
+    size_t d = field_distance(key->text, known[i]);
+    if (d < best && d < strlen(known[i])) best = d, near = known[i];
+    if (used < sizeof list) {
+      int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);
+      used += n > 0 ? (size_t)n : 0;
+    }
+  }
+  if (used >= sizeof list) memcpy(list + sizeof list - 4, "...", 4);
+  if (strcmp(key->text, "<<") == 0)
+    document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
+  else if (near)
+    document_report(key, whole, "unknown key; did you mean '%s'?", near);
+  else if (elsewhere && strcmp(elsewhere, key->text) == 0)
+    document_report(key, whole, "a path with dots; nest it: write '%.*s:' and the rest indented below it",
+                    (int)strcspn(elsewhere, "."), elsewhere);
+  else if (elsewhere)
+    document_report(key, whole, "unknown key; did you mean '%s'?", elsewhere);
+  else if (*list)
+    document_report(key, whole, "unknown key; known here are %s", list);
+  else
+    document_report(key, whole, "unknown key; remove it");
+}
+
+void document_unknown_keys(document_node *mapping, const char *path, const char *const *known) {
+  if (mapping->kind != DOCUMENT_MAPPING) return;
+  for (size_t i = 0; i < mapping->count; i++)
+    if (!mapping->pairs[i].seen) document_unknown_key(mapping->pairs[i].key, path, known, NULL);
+}
