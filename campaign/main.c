@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/help.h"
 #include "campaign/commands/table.h"
@@ -46,21 +47,21 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   const struct command *command = commands_find(argv[0], error);
   if (!command)
     return STATUS_USAGE;
-  size_t count = 0;
-  char **arguments = NULL;
+  struct command_line line = {.options = options, .argc = argc + 1, .argv = argv - 1};
   bool help = false;
-  status code = option_parse(command, argc, argv, options, &count, &arguments, &help, error);
+  status code = option_parse(command, argc, argv, options, &line.count, &line.arguments, &help, error);
   if (code)
     return code;
   if (help) {
     option_help(command, stdout);
     return STATUS_OK;
   }
-  return command->run(options, count, arguments, error);
+  return command->run(&line, error);
 }
 
 int main(int argc, char **argv) {
   signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) is no reason to die in the middle of a commit */
+  analysis_init();
   struct error error = {.status = STATUS_OK};
   status code = run_command_line(argc, argv, &error);
   struct error output = {.status = STATUS_OK};

@@ -3,6 +3,9 @@
 #include <string.h>
 
 static const struct command *const all[] = {
+    &explain_command,
+    &scenes_command,
+    &cite_command,
     &help_command,
     &version_command,
     &completion_command,

@@ -3,11 +3,9 @@
 
 #include "campaign/commands/commands.h"
 
-static status run(const void *options, size_t count, char **arguments, struct error *error) {
-  (void)options;
-  (void)count;
-  if (strcmp(arguments[0], "bash") != 0)
-    return status_fail(error, STATUS_USAGE, "completion is made for bash only, not for \"%.64s\"", arguments[0]);
+static status run(const struct command_line *line, struct error *error) {
+  if (strcmp(line->arguments[0], "bash") != 0)
+    return status_fail(error, STATUS_USAGE, "completion is made for bash only, not for \"%.64s\"", line->arguments[0]);
   option_completion(commands_count(), commands_all(), stdout);
   return STATUS_OK;
 }

@@ -23,13 +23,12 @@ void help_overview(FILE *out) {
   fputs("\n`clast COMMAND --help` tells more, with examples. Data goes to stdout, remarks and errors to stderr.\n", out);
 }
 
-static status run(const void *options, size_t count, char **arguments, struct error *error) {
-  (void)options;
-  if (count == 0) {
+static status run(const struct command_line *line, struct error *error) {
+  if (line->count == 0) {
     help_overview(stdout);
     return STATUS_OK;
   }
-  const struct command *command = commands_find(arguments[0], error);
+  const struct command *command = commands_find(line->arguments[0], error);
   if (!command)
     return STATUS_USAGE;
   option_help(command, stdout);

@@ -35,6 +35,15 @@ struct option_row {
   const char *doc;      /* one or two sentences */
 };
 
+/* What a command gets. */
+struct command_line {
+  const void *options;    /* the command's struct, filled */
+  size_t count;           /* operands, within the command's bounds */
+  char **arguments;
+  int argc;               /* the whole command line, for provenance */
+  char *const *argv;
+};
+
 struct command {
   const char *name;
   const char *group;     /* heading in `clast help` */
@@ -47,8 +56,8 @@ struct command {
   size_t option_count;
   size_t options_size;   /* sizeof the options struct */
   bool runs_campaign;    /* exits 1 and 75 apply */
-  /* options: the struct, filled. Prints data on stdout, remarks on stderr; an error is returned, not printed. */
-  status (*run)(const void *options, size_t count, char **arguments, struct error *error);
+  /* Prints data on stdout, remarks on stderr; an error is returned, not printed. */
+  status (*run)(const struct command_line *line, struct error *error);
 };
 
 enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* no options struct is larger */

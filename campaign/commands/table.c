@@ -319,6 +319,21 @@ status table_flush(FILE *out, struct error *error) {
   return verdict(code, error);
 }
 
+void table_drop(struct table *table) {
+  if (!table->out)
+    return; /* the one that could not be made */
+  for (size_t i = 0; i < table->kept_count; i++)
+    free(table->kept[i]);
+  for (size_t c = 0; c < table->column_count; c++) {
+    free(table->columns[c].name);
+    free(table->columns[c].unit);
+  }
+  free(table->kept);
+  free(table->kept_text);
+  free(table->columns);
+  free(table);
+}
+
 status table_end(struct table *table, struct error *error) {
   bool out_of_memory = table->out_of_memory;
   if (!table->out)
@@ -335,16 +350,7 @@ status table_end(struct table *table, struct error *error) {
   }
   int write_error = table->write_error;
   clearerr(table->out); /* reported here, once */
-  for (size_t i = 0; i < table->kept_count; i++)
-    free(table->kept[i]);
-  for (size_t c = 0; c < table->column_count; c++) {
-    free(table->columns[c].name);
-    free(table->columns[c].unit);
-  }
-  free(table->kept);
-  free(table->kept_text);
-  free(table->columns);
-  free(table);
+  table_drop(table);
   if (out_of_memory)
     return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
   return verdict(write_error, error);

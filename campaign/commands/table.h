@@ -33,6 +33,8 @@ void table_missing(struct table *table);
  * (EPIPE: `| head`) is fine. */
 status table_end(struct table *table, struct error *error);
 
+void table_drop(struct table *table); /* frees it, prints nothing that was not printed yet */
+
 /* True once the reader has gone away or writing failed: no need to make more rows. */
 bool table_broken(const struct table *table);
 

@@ -22,8 +22,8 @@ static void print_json(size_t count, const struct fact *facts) {
   fputs("\n}\n", stdout);
 }
 
-static status run(const void *options, size_t count, char **arguments, struct error *error) {
-  (void)count, (void)arguments, (void)error;
+static status run(const struct command_line *line, struct error *error) {
+  (void)error;
   const struct fact facts[] = {
       {"version", BUILD_VERSION},
       {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
@@ -39,7 +39,7 @@ static status run(const void *options, size_t count, char **arguments, struct er
       {"plfit", BUILD_PLFIT},
   };
   size_t facts_count = sizeof facts / sizeof facts[0];
-  if (((const struct options *)options)->json) {
+  if (((const struct options *)line->options)->json) {
     print_json(facts_count, facts);
     return STATUS_OK;
   }

@@ -1,0 +1,67 @@
+/* `clast cite SCENE`: the papers behind what is switched on, from the sources of the field tables. */
+#include <string.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/explain.h"
+
+struct options {
+  struct option_list set;
+  struct table_options table;
+};
+
+static void cite_row(struct table *table, const struct field *row) {
+  if (!row->source)
+    return;
+  table_text(table, row->path);
+  table_text(table, row->source);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  struct scene *scene = NULL;
+  if (!code)
+    code = scene_load(line->arguments[0], NULL, &scene, error);
+  for (size_t i = 0; !code && i < options->set.count; i++)
+    code = explain_override(scene, options->set.items[i], error);
+  if (!code)
+    code = scene_check(scene, error);
+  if (code) {
+    scene_free(scene);
+    return code;
+  }
+  struct table *table = table_new(format, stdout);
+  table_column(table, "what", NULL);
+  table_column(table, "source", NULL);
+  table_text(table, scene->kind->name);
+  table_text(table, scene->kind->doc);
+  for (size_t i = 0; i < scene->kind->inputs->count; i++)
+    if (field_is_active(scene->kind->inputs, &scene->kind->inputs->rows[i], scene->inputs))
+      cite_row(table, &scene->kind->inputs->rows[i]);
+  for (size_t i = 0; i < scene->kind->results->count; i++)
+    cite_row(table, &scene->kind->results->rows[i]);
+  scene_free(scene);
+  return table_end(table, error);
+}
+
+static const struct option_row rows[] = {
+    EXPLAIN_SET(struct options, set),
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command cite_command = {
+    .name = "cite",
+    .group = "scenes and inputs",
+    .arguments = "SCENE",
+    .summary = "the papers behind what a scene switches on",
+    .doc = "Prints the sources of the engine and of every active input and result of the scene (a built-in name or a\n"
+           "file), so that a paper can name what it really used.",
+    .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,178 @@
+/* `clast explain [PATH|SCENE]`: what an input or result means; what a scene models and costs. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/estimates.h"
+#include "campaign/campaign.h"
+#include "campaign/commands/commands.h"
+#include "campaign/commands/explain.h"
+#include "campaign/commands/table.h"
+#include "engine/scene.h"
+
+enum { TABLES_MAXIMUM = 24 };
+
+/* Every field table a person may ask about. */
+static size_t tables(const struct field_table *list[TABLES_MAXIMUM]) {
+  size_t count = 0;
+  for (size_t i = 0; i < engine_count() && count + 5 < TABLES_MAXIMUM; i++) {
+    list[count++] = engine_at(i)->inputs;
+    list[count++] = engine_at(i)->results;
+  }
+  list[count++] = &outcome_table;
+  list[count++] = &estimates_table;
+  list[count++] = &campaign_table;
+  list[count++] = &campaign_design_table;
+  return count;
+}
+
+static bool has_prefix(const struct field_table *table, const char *prefix) {
+  size_t length = strlen(prefix);
+  for (size_t i = 0; i < table->count; i++)
+    if (strncmp(table->rows[i].path, prefix, length) == 0 && table->rows[i].path[length] == '.')
+      return true;
+  return false;
+}
+
+static status explain_path(const char *path, struct error *error) {
+  const struct field_table *list[TABLES_MAXIMUM];
+  size_t count = tables(list), found = 0;
+  const char *nearest = NULL;
+  for (size_t i = 0; i < count; i++) {
+    struct error missed = {.status = STATUS_OK};
+    const struct field *row = field_find(list[i], path, &missed);
+    if (!row && !has_prefix(list[i], path)) {
+      const char *near = field_nearest(list[i], path);
+      if (near && (!nearest || option_distance(path, near) < option_distance(path, nearest)))
+        nearest = near;
+      continue;
+    }
+    printf("%s%s: %s\n", found++ ? "\n" : "", list[i]->name, list[i]->doc);
+    field_explain(list[i], row ? row->path : path, stdout);
+  }
+  if (found)
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT, "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
+                     path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
+}
+
+static void first_sentence(const char *doc, char *text, size_t size) {
+  size_t length = 0;
+  while (doc[length] && !(doc[length] == '.' && (doc[length + 1] == ' ' || doc[length + 1] == '\0')))
+    length++;
+  snprintf(text, size, "%.*s", (int)length, doc);
+}
+
+static status list_paths(const struct explain_options *options, struct error *error) {
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  if (code)
+    return code;
+  const struct field_table *list[TABLES_MAXIMUM];
+  size_t count = tables(list);
+  struct table *table = table_new(format, stdout);
+  table_column(table, "of", NULL);
+  table_column(table, "path", NULL);
+  table_column(table, "unit", NULL);
+  table_column(table, "default", NULL);
+  table_column(table, "meaning", NULL);
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < list[i]->count; k++) {
+      const struct field *row = &list[i]->rows[k];
+      char text[FIELD_TEXT_SIZE];
+      table_text(table, list[i]->name);
+      table_text(table, row->path);
+      table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
+      void *object = calloc(1, list[i]->size);
+      struct field_value value;
+      bool input = list[i] != &outcome_table && list[i] != &estimates_table && !(row->flags & FIELD_REQUIRED);
+      if (object && input) {
+        field_defaults(list[i], object);
+        field_get(row, object, &value);
+        field_print(row, &value, text, sizeof text);
+      }
+      table_text(table, object && input && *text ? text : NULL);
+      free(object);
+      first_sentence(row->doc, text, sizeof text);
+      table_text(table, text);
+    }
+  return table_end(table, error);
+}
+
+void explain_inputs(const struct scene *scene, FILE *out) {
+  const struct field_table *inputs = scene->kind->inputs;
+  for (size_t i = 0; i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
+    struct field_value value;
+    char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
+    field_get(row, scene->inputs, &value);
+    field_print(row, &value, text, sizeof text);
+    first_sentence(row->doc, doc, sizeof doc);
+    fprintf(out, "  %-28s %-20s %s\n", row->path, text, doc);
+  }
+}
+
+static status explain_scene(struct scene *scene, struct error *error) {
+  status code = scene_check(scene, error);
+  if (code)
+    return code;
+  char *description = scene->kind->describe(scene->inputs);
+  if (!description)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  printf("%s, engine %s\n\n%s%s\ninputs:\n", scene->name, scene->kind->name, description,
+         *description && description[strlen(description) - 1] == '\n' ? "" : "\n");
+  free(description);
+  explain_inputs(scene, stdout);
+  return STATUS_OK;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct explain_options *options = line->options;
+  if (line->count == 0)
+    return list_paths(options, error);
+  const char *name = line->arguments[0];
+  const char *ending = strrchr(name, '.');
+  bool file = strchr(name, '/') || (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0 ||
+                                               strcmp(ending, ".json") == 0));
+  if (!file && !scene_builtin_text(name) && options->set.count == 0)
+    return explain_path(name, error);
+  struct scene *scene = NULL;
+  status code = scene_load(name, NULL, &scene, error);
+  for (size_t i = 0; !code && i < options->set.count; i++)
+    code = explain_override(scene, options->set.items[i], error);
+  if (!code)
+    code = explain_scene(scene, error);
+  scene_free(scene);
+  return code;
+}
+
+status explain_override(struct scene *scene, const char *text, struct error *error) {
+  const char *equals = strchr(text, '=');
+  char path[FIELD_TEXT_SIZE];
+  if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
+    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"", text);
+  snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
+  return scene_set_text(scene, path, equals + 1, error);
+}
+
+static const struct option_row rows[] = {
+    EXPLAIN_SET(struct explain_options, set),
+    TABLE_OPTIONS(struct explain_options, table),
+};
+
+const struct command explain_command = {
+    .name = "explain",
+    .group = "scenes and inputs",
+    .arguments = "[PATH|SCENE]",
+    .summary = "what an input or result means; what a scene models and what it costs",
+    .doc = "Of a PATH (threshold.strain, or strain where that is unique; contact for a whole section): meaning, unit,\n"
+           "range, default and source. Of a SCENE (a built-in name or a file): what is modelled and why, the expected\n"
+           "cost, and every input with its value. Without argument: a table of all inputs and results.",
+    .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct explain_options),
+    .run = run,
+};

@@ -1,0 +1,23 @@
+/* What the commands that take a scene share: --set, and the list of its inputs. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_EXPLAIN_H
+#define CLAST_CAMPAIGN_COMMANDS_EXPLAIN_H
+
+#include "campaign/commands/option.h"
+#include "campaign/commands/table.h"
+#include "engine/scene.h"
+
+struct explain_options {
+  struct option_list set;
+  struct table_options table;
+};
+
+#define EXPLAIN_SET(type_, member_)                                                                                    \
+  {"set", 's', OPTION_LIST, "PATH=VALUE", offsetof(type_, member_), 0, 0, NULL,                                        \
+   "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times."}
+
+/* One --set; not checked across fields (scene_check). STATUS_USAGE, STATUS_CONTENT. */
+status explain_override(struct scene *scene, const char *text, struct error *error);
+/* Every active input: path, value, first sentence of its meaning. */
+void explain_inputs(const struct scene *scene, FILE *out);
+
+#endif

@@ -1,0 +1,75 @@
+/* `clast export STORE TARGET`: one compact file for hand-over, or a folder of CSV files. */
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/rows.h"
+
+struct options {
+  bool csv;
+};
+
+static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
+
+/* Written under a temporary name and renamed: a file with its final name is whole. */
+static status export_view(struct store *store, const char *folder, const char *view, struct error *error) {
+  char path[4096], temporary[4096], sql[64];
+  if (snprintf(path, sizeof path, "%s/%s.csv", folder, view) >= (int)sizeof path ||
+      snprintf(temporary, sizeof temporary, "%s/.%s.csv.part", folder, view) >= (int)sizeof temporary)
+    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  snprintf(sql, sizeof sql, "select * from %s", view);
+  FILE *out = fopen(temporary, "w");
+  if (!out)
+    return status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
+  status code = rows_print(store, sql, 0, NULL, TABLE_CSV, out, error);
+  if (fclose(out) && !code)
+    code = status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
+  if (!code && rename(temporary, path))
+    code = status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
+  if (code)
+    remove(temporary);
+  return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  const char *target = line->arguments[1];
+  struct store *store = NULL;
+  status code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  if (!options->csv) {
+    code = store_export(store, target, error);
+  } else if (mkdir(target, 0777) && errno != EEXIST) {
+    code = status_fail(error, STATUS_IO, "cannot make the folder %s: %s", target, strerror(errno));
+  } else {
+    for (size_t i = 0; !code && i < sizeof exported / sizeof exported[0]; i++)
+      code = export_view(store, target, exported[i], error);
+  }
+  if (!code)
+    fprintf(stderr, "%s written\n", target);
+  store_close(store, NULL);
+  return code;
+}
+
+static const struct option_row rows[] = {
+    {"csv", 0, OPTION_FLAG, NULL, offsetof(struct options, csv), 0, 0, NULL,
+     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with meaning and unit of each column."},
+};
+
+const struct command export_command = {
+    .name = "export",
+    .group = "the store",
+    .arguments = "STORE TARGET",
+    .summary = "one compact file for hand-over, or a folder of CSV files",
+    .doc = "Writes a compact copy of the store as one SQLite file (also while a campaign is running), or with --csv its\n"
+           "views as CSV files in a folder. An existing store is never overwritten; CSV files are.",
+    .examples = "clast export out.db handover.db\nclast export out.db tables --csv",
+    .minimum_arguments = 2,
+    .maximum_arguments = 2,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,32 @@
+/* From a campaign to its finished store: what `clast run` and `clast retry` share. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
+#define CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
+
+#include "campaign/campaign.h"
+#include "campaign/commands/option.h"
+#include "campaign/commands/table.h"
+
+struct launch_options {
+  int64_t slots;
+  bool in_process, quiet;
+  struct table_options table;
+};
+
+#define LAUNCH_OPTIONS(type_, member_)                                                                                 \
+  {"slots", 'j', OPTION_INTEGER, "N", offsetof(type_, member_) + offsetof(struct launch_options, slots), 0, 4096, "0", \
+   "Runs at a time; under mpirun or srun, of each rank. 0 is one per core, and one per rank."},                        \
+      {"in-process", 0, OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, in_process), 0,  \
+       0, NULL, "No process of its own for each run: faster for runs of milliseconds, but a crash takes a slot along."}, \
+  {"quiet", 'q', OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, quiet), 0, 0, NULL,     \
+   "No progress and no remarks on stderr; warnings and errors stay."}
+
+/* Farm, driver, and at the end the table of estimates from the store, on rank 0. The farm is started before anything
+ * that opens HDF5 or starts a thread. */
+status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
+                       enum table_format format, const struct command_line *line, struct error *error);
+
+/* One voice under mpirun: on ranks other than 0 an error is silent, and the process lives a moment longer, because
+ * mpirun ends all ranks when the first one leaves with an error. Returns `code`. */
+status launch_quiet_ranks(status code, struct error *error);
+
+#endif

@@ -1,0 +1,67 @@
+/* `clast plan CAMPAIGN`: what a campaign would do and cost. */
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/plan.h"
+
+struct options {
+  const char *store;
+  int64_t slots;
+  bool no_trial, json;
+};
+
+status plan_command_print(const char *path, const char *store, int64_t slots, bool no_trial, bool json, struct error *error) {
+  struct campaign *campaign = NULL;
+  struct plan plan = {0};
+  long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  struct plan_options options = {.store_path = store, .no_trial = no_trial,
+                                 .slots = slots ? (int)slots : cores > 0 ? (int)cores : 1};
+  status code = campaign_load(path, &campaign, error);
+  if (!code)
+    code = plan_make(campaign, &options, &plan, error);
+  if (!code && json) {
+    char *text = plan_json(campaign, &plan, options.slots);
+    if (text)
+      puts(text);
+    else
+      code = status_fail(error, STATUS_MEMORY, "out of memory");
+    free(text);
+  } else if (!code) {
+    plan_print(campaign, &plan, options.slots, stdout);
+  }
+  plan_clear(&plan);
+  campaign_free(campaign);
+  return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  return plan_command_print(line->arguments[0], options->store, options->slots, options->no_trial, options->json, error);
+}
+
+static const struct option_row rows[] = {
+    {"slots", 'j', OPTION_INTEGER, "N", offsetof(struct options, slots), 0, 1000000, "0",
+     "Runs at a time the wall time is meant for; 0 is one per core of this machine."},
+    {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
+     "Look in this store for runs that are there already, instead of the campaign's."},
+    {"no-trial", 0, OPTION_FLAG, NULL, offsetof(struct options, no_trial), 0, 0, NULL,
+     "Do not time a trial run (up to 5 s)."},
+    {"json", 0, OPTION_FLAG, NULL, offsetof(struct options, json), 0, 0, NULL, "Print one JSON object."},
+};
+
+const struct command plan_command = {
+    .name = "plan",
+    .group = "running",
+    .arguments = "CAMPAIGN.yaml",
+    .summary = "what a campaign would do and cost; stores nothing",
+    .doc = "Reads and checks the campaign, counts its points and runs (and those the store has already), times up to 5 s\n"
+           "of a trial run, and prints what is modelled and the expected time, memory and disk. Nothing is stored.",
+    .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,127 @@
+#include "campaign/commands/results.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "analysis/estimates.h"
+
+static void value_cell(struct table *table, const struct field *row, const void *object) {
+  struct field_value value;
+  field_get(row, object, &value);
+  switch (row->kind) {
+  case FIELD_REAL:
+    table_real(table, value.number);
+    break;
+  case FIELD_INTEGER:
+    table_integer(table, value.integer);
+    break;
+  case FIELD_BOOLEAN:
+    table_boolean(table, value.number != 0);
+    break;
+  case FIELD_CHOICE:
+  case FIELD_TEXT:
+    table_text(table, value.text);
+    break;
+  }
+}
+
+static bool empty(const struct field *row, const void *object) {
+  struct field_value value;
+  field_get(row, object, &value);
+  return (row->kind == FIELD_REAL && isnan(value.number)) || (row->kind == FIELD_TEXT && !*value.text);
+}
+
+static void list(struct table *table, const struct field_table *fields, const void *object) {
+  for (size_t i = 0; i < fields->count; i++) {
+    const struct field *row = &fields->rows[i];
+    if (empty(row, object)) /* does not apply to this scene, or nothing to say */
+      continue;
+    table_text(table, row->path);
+    value_cell(table, row, object);
+    table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
+    char meaning[128];
+    size_t length = strcspn(row->doc, ".;:");
+    snprintf(meaning, sizeof meaning, "%.*s", (int)(length < 90 ? length : 90), row->doc);
+    table_text(table, meaning);
+  }
+}
+
+/* Paths become column names of the store's tables: dots to underscores. */
+static void heading(struct table *table, const struct field *row) {
+  char name[FIELD_TEXT_SIZE];
+  snprintf(name, sizeof name, "%s", row->path);
+  for (char *c = name; *c; c++)
+    if (*c == '.')
+      *c = '_';
+  table_column(table, name, row->unit);
+}
+
+static status print_wide(const struct engine_kind *kind, int64_t seed, const struct run_result *result, size_t count,
+                         const struct estimate *estimates, enum table_format format, struct error *error) {
+  const struct field_table *tables[] = {&outcome_table, kind->results};
+  const void *objects[] = {&result->outcome, result->result};
+  struct table *table = table_new(format, stdout);
+  table_column(table, "engine", NULL);
+  table_column(table, "seed", NULL);
+  for (size_t t = 0; t < 2; t++)
+    for (size_t i = 0; i < tables[t]->count; i++)
+      heading(table, &tables[t]->rows[i]);
+  for (size_t i = 0; i < count; i++) {
+    char name[128];
+    const char *method = exponent_method_names[estimates[i].fit.method];
+    const char *window = estimates_window_names[estimates[i].window];
+    snprintf(name, sizeof name, "beta_%s_%s", method, window);
+    table_column(table, name, NULL);
+    snprintf(name, sizeof name, "beta_%s_%s_error", method, window);
+    table_column(table, name, NULL);
+  }
+  table_text(table, kind->name);
+  table_integer(table, seed);
+  for (size_t t = 0; t < 2; t++)
+    for (size_t i = 0; i < tables[t]->count; i++)
+      value_cell(table, &tables[t]->rows[i], objects[t]);
+  for (size_t i = 0; i < count; i++) {
+    table_real(table, estimates[i].fit.beta);
+    table_real(table, estimates[i].fit.standard_error);
+  }
+  return table_end(table, error);
+}
+
+static status print_long(const struct engine_kind *kind, const struct run_result *result, size_t count,
+                         const struct estimate *estimates, struct error *error) {
+  struct table *table = table_new(TABLE_TEXT, stdout);
+  table_column(table, "result", NULL);
+  table_column(table, "value", NULL);
+  table_column(table, "unit", NULL);
+  table_column(table, "meaning", NULL);
+  list(table, &outcome_table, &result->outcome);
+  list(table, kind->results, result->result);
+  status code = table_end(table, error);
+  if (code)
+    return code;
+  fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
+  table = table_new(TABLE_TEXT, stdout);
+  table_column(table, "method", NULL);
+  table_column(table, "window", NULL);
+  table_column(table, "fragments", NULL);
+  table_column(table, "beta", NULL);
+  table_column(table, "error", NULL);
+  for (size_t i = 0; i < count; i++) {
+    table_text(table, exponent_method_names[estimates[i].fit.method]);
+    table_text(table, estimates_window_names[estimates[i].window]);
+    table_integer(table, estimates[i].fit.n);
+    table_real(table, estimates[i].fit.beta);
+    table_real(table, estimates[i].fit.standard_error);
+  }
+  return table_end(table, error);
+}
+
+status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
+                     enum table_format format, struct error *error) {
+  struct estimate estimates[ESTIMATES_COUNT];
+  status code = estimates_make(result->fragment_count, result->fragments, estimates, error);
+  if (code)
+    return code;
+  return format == TABLE_TEXT ? print_long(kind, result, ESTIMATES_COUNT, estimates, error)
+                              : print_wide(kind, seed, result, ESTIMATES_COUNT, estimates, format, error);
+}

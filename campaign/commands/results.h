@@ -1,0 +1,11 @@
+/* Results of one run on stdout: for people one quantity per line with unit and meaning, for programs one row. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_RESULTS_H
+#define CLAST_CAMPAIGN_COMMANDS_RESULTS_H
+
+#include "campaign/commands/table.h"
+#include "campaign/run.h"
+
+status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
+                     enum table_format format, struct error *error);
+
+#endif

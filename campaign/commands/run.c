@@ -1,0 +1,60 @@
+/* `clast run CAMPAIGN`: runs or resumes a campaign, alone or under mpirun and srun. */
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/launch.h"
+#include "campaign/commands/plan.h"
+#include "campaign/commands/table.h"
+
+struct options {
+  struct launch_options launch;
+  const char *store;
+  bool dry_run;
+};
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  const char *path = line->arguments[0];
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->launch.table, &format, error);
+  if (code)
+    return code;
+  if (options->dry_run)
+    return plan_command_print(path, options->store, options->launch.slots, false, options->launch.table.json, error);
+  struct campaign *campaign = NULL;
+  code = campaign_load(path, &campaign, error);
+  if (!code)
+    code = launch_campaign(campaign, options->store ? options->store : campaign->store, &options->launch, format, line,
+                           error);
+  campaign_free(campaign);
+  return launch_quiet_ranks(code, error);
+}
+
+static const struct option_row rows[] = {
+    LAUNCH_OPTIONS(struct options, launch),
+    {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
+     "Store to write, instead of the campaign's."},
+    {"dry-run", 'n', OPTION_FLAG, NULL, offsetof(struct options, dry_run), 0, 0, NULL,
+     "Only say what would be done, like `clast plan`."},
+    TABLE_OPTIONS(struct options, launch.table),
+};
+
+const struct command run_command = {
+    .name = "run",
+    .group = "running",
+    .arguments = "CAMPAIGN.yaml",
+    .summary = "run a campaign, or go on with it: only what is missing is computed",
+    .doc = "Computes every run the campaign asks for and its store lacks, on all cores of this machine or on the ranks of\n"
+           "mpirun or srun, and prints the estimates of every point at the end. Ctrl-C stops it cleanly (exit 75); the\n"
+           "same command goes on. Killed, it loses at most the last second of results.",
+    .examples = "clast run campaign.yaml -j 4\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .runs_campaign = true,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

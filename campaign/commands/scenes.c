@@ -1,0 +1,72 @@
+/* `clast scenes [NAME]`: the built-in scenes, or one as a document to start from. */
+#include <string.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/table.h"
+#include "engine/scene.h"
+
+struct options {
+  struct table_options table;
+};
+
+/* The document's first comment line says what the scene is. */
+static void headline(const char *text, char *line, size_t size) {
+  while (*text == '#' && strstr(text, "yaml-language-server") && strstr(text, "yaml-language-server") < strchr(text, '\n'))
+    text = strchr(text, '\n') + 1;
+  text += strspn(text, "# ");
+  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  if (code)
+    return code;
+  if (line->count == 1) {
+    const char *text = scene_builtin_text(line->arguments[0]);
+    if (text) {
+      fputs(text, stdout);
+      return STATUS_OK;
+    }
+    struct scene *scene = NULL;
+    code = scene_load(line->arguments[0], NULL, &scene, error); /* names the nearest scene */
+    scene_free(scene);
+    return code ? code : status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", line->arguments[0]);
+  }
+  struct table *table = table_new(format, stdout);
+  table_column(table, "name", NULL);
+  table_column(table, "engine", NULL);
+  table_column(table, "what", NULL);
+  for (size_t i = 0; !code && i < scene_builtin_count(); i++) {
+    struct scene *scene = NULL;
+    char what[256];
+    code = scene_load(scene_builtin_name(i), NULL, &scene, error);
+    if (code)
+      break;
+    headline(scene_builtin_text(scene_builtin_name(i)), what, sizeof what);
+    table_text(table, scene_builtin_name(i));
+    table_text(table, scene->kind->name);
+    table_text(table, what);
+    scene_free(scene);
+  }
+  status ended = table_end(table, code ? NULL : error);
+  return code ? code : ended;
+}
+
+static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
+
+const struct command scenes_command = {
+    .name = "scenes",
+    .group = "scenes and inputs",
+    .arguments = "[NAME]",
+    .summary = "the built-in scenes; with a name, its document to start from",
+    .doc = "Lists the scenes that are built in. With a NAME it prints that scene's document, with its sources: save it,\n"
+           "edit it, and give the file wherever a scene is asked for.",
+    .examples = "clast scenes\nclast scenes disc-explosion > my-disc.yaml",
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

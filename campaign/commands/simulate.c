@@ -1,0 +1,112 @@
+/* `clast simulate SCENE`: one run, here and now. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/estimates.h"
+#include "campaign/campaign.h"
+#include "campaign/commands/commands.h"
+#include "campaign/commands/explain.h"
+#include "campaign/commands/results.h"
+#include "campaign/run.h"
+
+enum { BLOCK = 200 }; /* steps between looks at progress: about a tenth of a second for a thousand grains */
+
+struct options {
+  int64_t seed, snapshots;
+  struct option_list set;
+  const char *fields;
+  bool quiet;
+  struct table_options table;
+};
+
+struct watch {
+  const struct options *options;
+  const char *name; /* of the scene, for snapshots */
+  int64_t written;
+  bool terminal;
+  int percent;
+};
+
+/* Snapshot k of n when the run has done k/n of its time; a percentage on a terminal. */
+static status look(void *context, const struct engine_kind *kind, void *run, struct error *error) {
+  struct watch *watch = context;
+  double progress = kind->progress(run);
+  while (watch->written < watch->options->snapshots &&
+         progress * (double)watch->options->snapshots >= (double)watch->written) {
+    char path[FIELD_TEXT_SIZE + 64];
+    snprintf(path, sizeof path, "%s_%06lld.h5", watch->name, (long long)watch->written++);
+    status code = kind->write_fields(run, path, error);
+    if (code)
+      return code;
+  }
+  int percent = (int)floor(100 * progress);
+  if (watch->terminal && percent != watch->percent)
+    fprintf(stderr, "\r%3d %% of the longest time it may take", watch->percent = percent);
+  return STATUS_OK;
+}
+
+static status simulate(const struct scene *scene, const struct options *options, enum table_format format,
+                       struct error *error) {
+  struct watch watch = {.options = options, .name = scene->name, .percent = -1,
+                        .terminal = !options->quiet && isatty(STDERR_FILENO)};
+  struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)options->seed,
+                                .fields_path = options->fields};
+  struct run_result result = {0};
+  status code = run_simulate(&request, look, &watch, BLOCK, &result, error);
+  if (watch.terminal)
+    fputs("\r\033[K", stderr);
+  if (!code)
+    code = results_print(scene->kind, options->seed, &result, format, error);
+  if (!code && !campaign_usable(&result.outcome))
+    code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
+  run_result_clear(&result);
+  return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  struct scene *scene = NULL;
+  status code = table_choose(&options->table, &format, error);
+  if (!code)
+    code = scene_load(line->arguments[0], NULL, &scene, error);
+  for (size_t i = 0; !code && i < options->set.count; i++)
+    code = explain_override(scene, options->set.items[i], error);
+  if (!code)
+    code = scene_check(scene, error);
+  if (!code)
+    code = simulate(scene, options, format, error);
+  scene_free(scene);
+  return code;
+}
+
+static const struct option_row rows[] = {
+    {"seed", 0, OPTION_INTEGER, "N", offsetof(struct options, seed), 0, INT64_MAX, "1",
+     "Seed of the run: the same seed gives the same bits."},
+    EXPLAIN_SET(struct options, set),
+    {"fields", 0, OPTION_TEXT, "FILE.h5", offsetof(struct options, fields), 0, 0, NULL,
+     "Write grains, beams and the break log at the end as an HDF5 file."},
+    {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
+     "Write N such files on the way, SCENE_000000.h5 and so on, evenly over the longest time the run may take."},
+    {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command simulate_command = {
+    .name = "simulate",
+    .group = "running",
+    .arguments = "SCENE",
+    .summary = "one run of a scene, with pictures and fields",
+    .doc = "Runs one simulation of a SCENE (a built-in name or a file) and prints its results: fragments, largest\n"
+           "fraction, energies, exponents of the fragment spectrum. Nothing is stored but the files asked for.",
+    .examples = "clast simulate disc-explosion --seed 7 --fields disc.h5\n"
+                "clast simulate disc-explosion --set threshold.strain=5% --json",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

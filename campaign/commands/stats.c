@@ -1,0 +1,51 @@
+/* `clast stats STORE --by AXES`: means over seeds, with their errors. */
+#include "campaign/commands/commands.h"
+#include "campaign/commands/rows.h"
+
+struct options {
+  const char *by, *quantity;
+  struct table_options table;
+};
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  struct store *store = NULL;
+  status code = table_choose(&options->table, &format, error);
+  if (!code)
+    code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  struct rows rows;
+  struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  code = query_group(store, options->by, options->quantity, &sink, error);
+  code = rows_end(&rows, code, error);
+  store_close(store, NULL);
+  return code;
+}
+
+static const struct option_row rows_of_options[] = {
+    {"by", 'b', OPTION_TEXT, "AXES", offsetof(struct options, by), 0, 0, "",
+     "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs are "
+     "pooled."},
+    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, NULL,
+     "Results to average, comma-separated; without it the main ones. `clast explain` lists all."},
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command stats_command = {
+    .name = "stats",
+    .group = "results",
+    .arguments = "STORE",
+    .summary = "means over seeds with standard deviation, standard error and 95 % interval",
+    .doc = "Groups the runs by varied inputs and prints for each group how many runs count, failed or reached the hard\n"
+           "end time, and of each quantity mean, standard deviation, standard error and half width of the 95 % interval\n"
+           "of the mean (Student t). Runs of different results versions are never mixed.",
+    .examples = "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .options = rows_of_options,
+    .option_count = sizeof rows_of_options / sizeof rows_of_options[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};
