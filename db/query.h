@@ -46,10 +46,11 @@ status query_number(struct store *store, const char *sql, size_t parameter_count
  * pools mass blobs into the store's bins as a JSON array of [bin, count, mass]. The shipped views do without them. */
 status query_register_functions(struct store *store, struct error *error);
 
-/* n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, pooled over all
- * runs that share the named axes. `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools
- * everything. `quantities`: comma-separated result columns or unique suffixes; NULL = the main ones. Results of different
- * results_version are different rows. Registers the functions above. STATUS_USAGE names the known axes and quantities. */
+/* n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, pooled over
+ * all runs that share the named axes. `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k");
+ * "" pools everything. `quantities`: comma-separated result columns or unique suffixes; NULL = the main ones. Results
+ * of different results_version are different rows. Registers the functions above. STATUS_USAGE names the known axes and
+ * quantities. */
 status query_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
                    struct error *error);
 

@@ -1,9 +1,9 @@
 /* The store: every result of a campaign in one SQLite file that any tool can read (design: joint 5).
  *
- * One writer under an OS lock that dies with it; many readers that never block it (WAL while running; a clean end leaves
- * journal_mode=DELETE). STRICT tables, foreign keys, application_id, user_version. The schema is in schemas/results.sql,
- * made from the field tables plus db/schema.sql; `point.scene` (resolved JSON) and `point_input` are the truth, the views
- * runs, points, spectra, estimates are regenerated when the set of varied paths grows. */
+ * One writer under an OS lock that dies with it; many readers that never block it (WAL while running; a clean end
+ * leaves journal_mode=DELETE). STRICT tables, foreign keys, application_id, user_version. The schema is in
+ * schemas/results.sql, made from the field tables plus db/schema.sql; `point.scene` (resolved JSON) and `point_input`
+ * are the truth, the views runs, points, spectra, estimates are regenerated when the set of varied paths grows. */
 #ifndef CLAST_DB_STORE_H
 #define CLAST_DB_STORE_H
 
@@ -15,16 +15,16 @@
 
 struct store;
 
-/* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer or
- * foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: estimates_table); NULL when no
- * estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
+/* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer
+ * or foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: estimates_table); NULL when
+ * no estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
  * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
  * system), or "". The lock is a POSIX record lock: it dies with the process, is not inherited by a fork, and a process
  * must not open one store for writing twice. */
 status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
                          size_t warning_size, struct error *error);
-/* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are asked
- * through db/query.h, which works on a writer too (and sees its open batch). */
+/* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are
+ * asked through db/query.h, which works on a writer too (and sees its open batch). */
 status store_open_reader(const char *path, struct store **out, struct error *error);
 /* Commits, checkpoints, back to journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
@@ -46,24 +46,24 @@ struct store_run {
   int64_t replicate;
   uint64_t seed;
   uint8_t identity[16];
-  bool surplus;             /* beyond a stopping prefix: kept, left out of statistics */
+  bool surplus; /* beyond a stopping prefix: kept, left out of statistics */
   const struct engine_kind *kind;
   const struct outcome *outcome;
-  const void *result;       /* kind->results->size bytes */
+  const void *result;               /* kind->results->size bytes */
   const struct fragment *fragments; /* descending mass */
   size_t fragment_count;
-  bool keep_motion;         /* store each fragment's position, velocity and spin too (44 bytes per fragment) */
-  const void *estimates;    /* array of structs of the estimate_table given at open, or NULL */
+  bool keep_motion;      /* store each fragment's position, velocity and spin too (44 bytes per fragment) */
+  const void *estimates; /* array of structs of the estimate_table given at open, or NULL */
   size_t estimate_count;
   double wall_s, cpu_s;
-  int64_t peak_memory;      /* bytes */
-  int attempt;              /* 1.. */
+  int64_t peak_memory; /* bytes */
+  int attempt;         /* 1.. */
   const char *host;
   int rank;
-  const char *fields_path;  /* HDF5 file kept, or NULL */
+  const char *fields_path; /* HDF5 file kept, or NULL */
 };
-/* Adds run, result_<engine>, masses, spectrum rows and the running point sums in one transaction with its batch (500 rows
- * or 1 s, BEGIN IMMEDIATE). Adding an identity that is there already is STATUS_OK and changes nothing. */
+/* Adds run, result_<engine>, masses, spectrum rows and the running point sums in one transaction with its batch (500
+ * rows or 1 s, BEGIN IMMEDIATE). Adding an identity that is there already is STATUS_OK and changes nothing. */
 status store_add_run(struct store *store, const struct store_run *run, struct error *error);
 
 struct store_attempt {
@@ -75,7 +75,7 @@ struct store_attempt {
   int exit_code, signal;
   double wall_s;
   int64_t peak_memory;
-  double limit;       /* the limit that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
+  double limit; /* the limit that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
   const char *message, *host;
   int rank;
 };
@@ -102,11 +102,10 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
  * quantity wanted: of outcome_table, or else of the engine's results. Borrowed for the call. */
 struct store_point_run {
   int64_t replicate;
-  uint64_t seed;
   uint8_t identity[16];
   bool surplus;
-  int state;               /* enum outcome_state */
-  double value;            /* of `row`, NaN when NULL in the store */
+  int state;    /* enum outcome_state */
+  double value; /* of `row`, NaN when NULL in the store */
   double wall_s, cpu_s;
   int64_t peak_memory;
   const char *fields_path; /* NULL when none was kept */
@@ -117,10 +116,11 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
 /* The HDF5 file kept of a stored run (written by a replay after the run, when a campaign asks for it later). */
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
-/* Checks integrity, foreign keys, orphans, missing field files, running sums and spectra against the masses, masses against
- * the total mass, identities against the scenes; each problem as a line to `line`. STATUS_CONTENT when any. For a reader
- * or a writer. */
-status store_check(struct store *store, void (*line)(void *context, const char *text), void *context, struct error *error);
+/* Checks integrity, foreign keys, orphans, missing field files, running sums and spectra against the masses, masses
+ * against the total mass, identities against the scenes; each problem as a line to `line`. STATUS_CONTENT when any. For
+ * a reader or a writer. */
+status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
+                   struct error *error);
 /* All of `source` that `store` (a writer) lacks, one transaction per source; *added counts the runs. Of a run that both
  * hold, ours stays. Merging twice adds nothing. */
 status store_merge(struct store *store, const char *source, int64_t *added, struct error *error);

@@ -1,0 +1,172 @@
+#include "db/sql.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+static const char *remedy(int code) {
+  switch (code & 0xff) {
+  case SQLITE_FULL:
+    return "The disk is full (or a quota or file size limit is reached). What was committed is safe; free some space "
+           "and "
+           "give the same command again.";
+  case SQLITE_READONLY:
+    return "The file or its folder cannot be written. Give yourself write permission, or copy the store elsewhere.";
+  case SQLITE_PERM:
+  case SQLITE_AUTH:
+    return "Permission was refused. Look at the owner and the permissions of the file and its folder.";
+  case SQLITE_CANTOPEN:
+    return "It cannot be opened. Look whether its folder exists and may be written, and at the file's permissions.";
+  case SQLITE_BUSY:
+  case SQLITE_LOCKED:
+    return "Another program holds the store. Close it there (a database browser with unsaved changes?), then give the "
+           "same command again.";
+  case SQLITE_IOERR:
+    return "Reading or writing failed (disk full, quota, file size limit, or a disk or network file system in "
+           "trouble). "
+           "What was committed is safe; mend that and give the same command again.";
+  case SQLITE_CORRUPT:
+    return "The file is damaged. Restore a copy, or save what can be saved with `sqlite3 FILE .recover`.";
+  case SQLITE_NOTADB:
+    return "It is no SQLite database.";
+  case SQLITE_NOMEM:
+    return "Memory ran out.";
+  default:
+    return "This is a bug in clast, or another program has changed the store's tables.";
+  }
+}
+
+static status status_of(int code) {
+  switch (code & 0xff) {
+  case SQLITE_FULL:
+  case SQLITE_READONLY:
+  case SQLITE_PERM:
+  case SQLITE_AUTH:
+  case SQLITE_CANTOPEN:
+  case SQLITE_BUSY:
+  case SQLITE_LOCKED:
+  case SQLITE_IOERR:
+    return STATUS_IO;
+  case SQLITE_CORRUPT:
+  case SQLITE_NOTADB:
+    return STATUS_CONTENT;
+  case SQLITE_NOMEM:
+    return STATUS_MEMORY;
+  default:
+    return STATUS_INTERNAL;
+  }
+}
+
+status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error) {
+  const char *path = db ? sqlite3_db_filename(db, "main") : NULL;
+  const char *file = path && *path ? path : "(in memory)";
+  int system = db ? sqlite3_system_errno(db) : 0;
+  return status_fail(error, status_of(code), "%s: %s failed: %s%s%s%s. %s", file, doing,
+                     db ? sqlite3_errmsg(db) : sqlite3_errstr(code), system ? " (" : "", system ? strerror(system) : "",
+                     system ? ")" : "", remedy(code));
+}
+
+status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error) {
+  int code = sqlite3_exec(db, sql, NULL, NULL, NULL);
+  return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
+}
+
+status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...) {
+  va_list arguments;
+  va_start(arguments, format);
+  char *sql = sqlite3_vmprintf(format, arguments);
+  va_end(arguments);
+  if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result = sql_execute(db, sql, doing, error);
+  sqlite3_free(sql);
+  return result;
+}
+
+status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error) {
+  int code = sqlite3_prepare_v3(db, sql, -1, SQLITE_PREPARE_PERSISTENT, out, NULL);
+  return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
+}
+
+status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error) {
+  int code = sqlite3_step(statement);
+  status result = code == SQLITE_DONE || code == SQLITE_ROW
+                      ? STATUS_OK
+                      : sql_fail(sqlite3_db_handle(statement), code, doing, error);
+  sqlite3_reset(statement);
+  return result;
+}
+
+status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(db, sql, &statement, "reading", error);
+  if (result == STATUS_OK) {
+    int code = sqlite3_step(statement);
+    *out = otherwise;
+    if (code == SQLITE_ROW && sqlite3_column_type(statement, 0) != SQLITE_NULL)
+      *out = sqlite3_column_int64(statement, 0);
+    else if (code != SQLITE_ROW && code != SQLITE_DONE)
+      result = sql_fail(db, code, "reading", error);
+  }
+  sqlite3_finalize(statement);
+  return result;
+}
+
+void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text) {
+  const char *place = (const char *)object + row->offset;
+  switch (row->kind) {
+  case FIELD_REAL: {
+    double value;
+    memcpy(&value, place, sizeof value);
+    if (!isnan(value))
+      sqlite3_bind_double(statement, index, value);
+    else if (off_as_text)
+      sqlite3_bind_text(statement, index, "off", 3, SQLITE_STATIC);
+    else
+      sqlite3_bind_null(statement, index);
+    break;
+  }
+  case FIELD_INTEGER: {
+    int64_t value;
+    memcpy(&value, place, sizeof value);
+    sqlite3_bind_int64(statement, index, value);
+    break;
+  }
+  case FIELD_BOOLEAN: {
+    bool value;
+    memcpy(&value, place, sizeof value);
+    sqlite3_bind_int(statement, index, value);
+    break;
+  }
+  case FIELD_CHOICE: {
+    int value;
+    memcpy(&value, place, sizeof value);
+    sqlite3_bind_text(statement, index, row->choices[value], -1, SQLITE_STATIC);
+    break;
+  }
+  case FIELD_TEXT:
+    sqlite3_bind_text(statement, index, place, -1, SQLITE_STATIC);
+    break;
+  }
+}
+
+const char *sql_type(const struct field *row) {
+  switch (row->kind) {
+  case FIELD_REAL:
+    return "REAL";
+  case FIELD_INTEGER:
+  case FIELD_BOOLEAN:
+    return "INTEGER";
+  case FIELD_CHOICE:
+  case FIELD_TEXT:
+    break;
+  }
+  return "TEXT";
+}
+
+void sql_column_name(const char *path, char *name, size_t size) {
+  size_t i = 0;
+  for (; path[i] && i + 1 < size; i++)
+    name[i] = path[i] == '.' ? '_' : path[i];
+  name[i] = '\0';
+}

@@ -1,0 +1,57 @@
+/* What an open store holds. For db/ only. */
+#ifndef CLAST_DB_STORE_INTERNAL_H
+#define CLAST_DB_STORE_INTERNAL_H
+
+#include "db/identities.h"
+#include "db/sql.h"
+#include "db/store.h"
+#include "db/sums.h"
+
+enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
+#define STORE_BATCH_SECONDS 1.0
+
+struct store_kind { /* statement that fills result_<engine> */
+  const struct engine_kind *kind;
+  sqlite3_stmt *insert;
+};
+
+struct store {
+  sqlite3 *db;
+  bool writer, functions;
+  char *path;
+  int lock; /* descriptor, -1 for readers */
+  const struct field_table *estimate_table;
+
+  struct identities identities; /* a writer's at open, a reader's at the first question */
+  bool identities_loaded;
+  struct sums sums;
+  int lowest_bin, highest_bin; /* covered by table bin; lowest > highest: none */
+
+  bool in_batch, broken;
+  int batch_rows;
+  double batch_started; /* s, monotonic */
+  uint8_t batch_identities[STORE_BATCH_ROWS][16];
+  size_t batch_identity_count;
+
+  sqlite3_stmt *run, *masses, *motion, *spectrum, *attempt, *estimate;
+  sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
+  struct store_kind kinds[STORE_KINDS];
+  size_t kind_count;
+
+  uint8_t *blob; /* scratch for masses and motion */
+  size_t blob_capacity;
+  struct spectrum_bin_row *bins;
+  size_t bin_capacity;
+};
+
+/* Before the first row of a batch: refuses readers and stores that failed, begins the transaction. */
+status store_begin(struct store *store, struct error *error);
+/* After `rows` more rows: commits when the batch is large or old enough. On `result` not OK: takes the whole batch
+ * back, and the store refuses from then on. Returns `result`, or what the commit gave. */
+status store_end(struct store *store, status result, int rows, struct error *error);
+
+/* Insert estimates without clearing older ones, within the open batch. */
+status store_set_estimates_rows(struct store *store, int64_t point_id, int64_t run_id, int results_version,
+                                size_t count, const void *rows, struct error *error);
+
+#endif

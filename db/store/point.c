@@ -1,0 +1,56 @@
+/* A point's runs, for a driver that resumes and for stopping rules. */
+#include <math.h>
+#include <string.h>
+
+#include "db/schema.h"
+#include "db/store/internal.h"
+
+static int state_of(const char *name) {
+  static const char *const path = "state";
+  for (size_t i = 0; i < outcome_table.count; i++) {
+    const struct field *row = &outcome_table.rows[i];
+    if (strcmp(row->path, path) != 0) continue;
+    for (int k = 0; row->choices[k]; k++)
+      if (strcmp(row->choices[k], name) == 0) return k;
+  }
+  return OUTCOME_INVALID;
+}
+
+status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
+                        bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
+                        struct error *error) {
+  static const char doing[] = "reading a point's runs";
+  char column[SCHEMA_NAME_SIZE];
+  sqlite3_stmt *statement = NULL;
+  sql_column_name(row->path, column, sizeof column);
+  char *sql =
+      sqlite3_mprintf("SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
+                      "r.peak_memory, r.fields_path FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
+                      "= ?2 ORDER BY r.replicate, r.seed",
+                      of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_",
+                      of_outcome ? "" : kind->name, of_outcome ? "" : " e ON e.run_id = r.run_id");
+  if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result = sql_prepare(store->db, sql, &statement, doing, error);
+  sqlite3_free(sql);
+  if (result != STATUS_OK) return result;
+  sqlite3_bind_int64(statement, 1, point_id);
+  sqlite3_bind_int(statement, 2, kind->results_version);
+  int code;
+  while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
+    struct store_point_run run = {
+        .replicate = sqlite3_column_int64(statement, 0),
+        .surplus = sqlite3_column_int(statement, 2) != 0,
+        .state = state_of((const char *)sqlite3_column_text(statement, 3)),
+        .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),
+        .wall_s = sqlite3_column_double(statement, 5),
+        .cpu_s = sqlite3_column_double(statement, 6),
+        .peak_memory = sqlite3_column_int64(statement, 7),
+        .fields_path = (const char *)sqlite3_column_text(statement, 8),
+    };
+    if (sqlite3_column_bytes(statement, 1) == 16) memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
+    each(context, &run);
+  }
+  if (code != SQLITE_DONE) result = sql_fail(store->db, code, doing, error);
+  sqlite3_finalize(statement);
+  return result;
+}

@@ -1,0 +1,271 @@
+/* Writing and reading back: every column, blobs, running sums, batches, identities, surplus, views. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "engine/spectrum.h"
+#include "tests/store_fixture.h"
+
+static struct error error;
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+  } while (0)
+
+static double number(struct store *store, const char *sql) {
+  double value = 0;
+  OK(query_number(store, sql, 0, NULL, &value, &error));
+  return value;
+}
+
+static struct store *writer(const char *path) {
+  struct store *store = NULL;
+  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  return store;
+}
+
+static void every_value_comes_back(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "values"));
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 9, 1e33);
+  struct fixture_run f;
+  int64_t campaign, session, point;
+  OK(store_add_campaign(store, "c", "text", "{}", &campaign, &error));
+  OK(store_begin_session(store, "{\"a\":1}", &session, &error));
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &point, &error));
+  fixture_fill(&f, &scene, point, session, 4, 5);
+  f.run.keep_motion = true;
+  f.run.fields_path = "fields/4.h5";
+  f.run.rank = 2;
+  f.run.seed = UINT64_MAX;
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_flush(store, &error));
+  assert_near(number(store, "SELECT total_mass FROM run"), f.outcome.total_mass, 0);
+  assert_near(number(store, "SELECT steps FROM run"), 1004, 0);
+  assert_near(number(store, "SELECT kinetic_energy_share IS NULL FROM run"), 1, 0);
+  assert_near(number(store, "SELECT seed = -1 AND rank = 2 AND fields_path = 'fields/4.h5' AND state = 'completed' "
+                            "AND host = 'testhost' AND attempt = 1 AND results_version = 3 FROM run"),
+              1, 0);
+  assert_near(number(store, "SELECT broken_count = 12 AND hardest = 2.0 FROM result_fake"), 1, 0);
+  assert_near(number(store, "SELECT length(masses) FROM fragment_mass"), 40, 0);
+  assert_near(number(store, "SELECT length(motion) FROM fragment_motion"), 220, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimate WHERE run_id = 1"), 2, 0);
+  assert_near(number(store, "SELECT beta FROM estimates WHERE \"window\" = 'all'"), 1.54, 1e-15);
+  assert_near(number(store, "SELECT beta IS NULL FROM estimates WHERE \"window\" = 'tail'"), 1, 0);
+  assert_near(number(store, "SELECT value FROM point_input WHERE path = 'material.k'"), 1e33, 0);
+  assert_near(number(store, "SELECT value = 'off' FROM point_input WHERE path = 'material.threshold'"), 1, 0);
+  assert_near(number(store, "SELECT count(*) FROM point_input WHERE path = 'depth'"), 0, 0); /* inactive */
+  assert_near(number(store, "SELECT material_m = 9 AND material_k = 1e33 FROM runs"), 1, 0);
+  assert_near(number(store, "SELECT json_extract(scene, '$.material.m') FROM point"), 9, 0);
+  assert_near(number(store, "SELECT count(*) FROM campaign_point"), 1, 0);
+
+  /* masses: little-endian float64, descending; motion: float32, position x second of the second fragment */
+  sqlite3_stmt *statement;
+  sqlite3_prepare_v2(store_handle(store),
+                     "SELECT masses, motion FROM fragment_mass JOIN fragment_motion USING (run_id)", -1, &statement,
+                     NULL);
+  assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+  double masses[5];
+  float motion[55];
+  memcpy(masses, sqlite3_column_blob(statement, 0), sizeof masses);
+  memcpy(motion, sqlite3_column_blob(statement, 1), sizeof motion);
+  for (int i = 0; i < 5; i++) {
+    assert_true(masses[i] == f.fragments[i].mass);
+    assert_true(motion[11 * i] == (float)f.fragments[i].position[0]);
+  }
+  sqlite3_finalize(statement);
+  OK(store_close(store, &error));
+}
+
+static void same_run_is_stored_once(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "once"));
+  OK(fixture_populate(store, 1, 1, 20, false, &error));
+  OK(fixture_populate(store, 1, 1, 20, false, &error));
+  assert_near(number(store, "SELECT count(*) FROM run"), 20, 0);
+  assert_near(number(store, "SELECT count(*) FROM point"), 1, 0);
+  assert_near(number(store, "SELECT count(*) FROM campaign"), 1, 0);
+  assert_near(number(store, "SELECT runs FROM point_total"), 20, 0);
+  OK(store_close(store, &error));
+  store = writer(path);
+  OK(fixture_populate(store, 1, 1, 25, false, &error)); /* resumed: identities come from the file */
+  assert_near(number(store, "SELECT count(*) FROM run"), 25, 0);
+  OK(store_close(store, &error));
+}
+
+static void batches_commit_by_count_and_close(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "batch")), *reader = NULL;
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  struct fixture_run f;
+  int64_t point;
+  OK(store_add_point(store, 0, &scene, 0, NULL, &point, &error));
+  OK(store_flush(store, &error));
+  OK(store_open_reader(path, &reader, &error));
+  for (int r = 0; r < 499; r++) {
+    fixture_fill(&f, &scene, point, 0, r, 3);
+    OK(store_add_run(store, &f.run, &error));
+  }
+  double seen = number(reader, "SELECT count(*) FROM run");
+  assert_near(seen, 0, 0);
+  fixture_fill(&f, &scene, point, 0, 499, 3);
+  OK(store_add_run(store, &f.run, &error));
+  assert_near(number(reader, "SELECT count(*) FROM run"), 500, 0);
+  fixture_fill(&f, &scene, point, 0, 500, 3);
+  OK(store_add_run(store, &f.run, &error));
+  assert_near(number(reader, "SELECT count(*) FROM run"), 500, 0);
+  usleep(1050000); /* a batch is at most 1 s old */
+  OK(store_tick(store, &error));
+  assert_near(number(reader, "SELECT count(*) FROM run"), 501, 0);
+  OK(store_close(reader, &error));
+  fixture_fill(&f, &scene, point, 0, 501, 3);
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &reader, &error));
+  assert_near(number(reader, "SELECT count(*) FROM run"), 502, 0);
+  assert_near(number(reader, "SELECT count(*) FROM holder"), 0, 0);
+  OK(store_close(reader, &error));
+  char log[80];
+  snprintf(log, sizeof log, "%s-wal", path);
+  assert_int_not_equal(access(log, F_OK), 0); /* a clean end leaves one file */
+}
+
+static void sums_are_those_of_the_rows(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "sums"));
+  OK(fixture_populate(store, 2, 3, 30, true, &error));
+  static const char different[] =
+      "SELECT count(*) FROM (SELECT r.point_id, s.bin, count(*) AS runs, sum(s.count) AS n, sum(s.count * s.count) AS "
+      "q "
+      "FROM run r JOIN spectrum s USING (run_id) WHERE r.counts GROUP BY 1, 2) a FULL JOIN point_spectrum b ON "
+      "a.point_id "
+      "= b.point_id AND a.bin = b.bin WHERE (a.runs, a.n, a.q) IS NOT (b.runs, b.count, b.count_squared)";
+  assert_near(number(store, different), 0, 0);
+  assert_near(number(store, "SELECT sum(fragments) FROM point_total"), 6 * 30 * FIXTURE_FRAGMENTS, 0);
+  /* a stopping prefix leaves replicates out, and takes them in again */
+  OK(store_set_prefix(store, 2, 12, &error));
+  assert_near(number(store, "SELECT runs = 12 AND surplus = 18 FROM point_total WHERE point_id = 2"), 1, 0);
+  assert_near(number(store, different), 0, 0);
+  assert_near(number(store, "SELECT n = 12 AND surplus = 18 FROM points WHERE point_id = 2"), 1, 0);
+  OK(store_set_prefix(store, 2, 20, &error));
+  assert_near(number(store, "SELECT n = 20 AND surplus = 10 FROM points WHERE point_id = 2"), 1, 0);
+  assert_near(number(store, different), 0, 0);
+  OK(store_close(store, &error));
+}
+
+static void failed_and_censored_are_counted_apart(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "failed"));
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  struct fixture_run f;
+  int64_t point;
+  OK(store_add_point(store, 0, &scene, 1, fixture_axes, &point, &error));
+  for (int r = 0; r < 10; r++) {
+    fixture_fill(&f, &scene, point, 0, r, 4);
+    if (r == 3) f.outcome.state = OUTCOME_NOT_FINITE;
+    if (r == 4 || r == 5) f.outcome.state = OUTCOME_END_TIME;
+    if (r == 9) f.run.surplus = true;
+    OK(store_add_run(store, &f.run, &error));
+  }
+  OK(store_flush(store, &error));
+  assert_near(number(store, "SELECT n = 8 AND failed = 1 AND censored = 2 AND surplus = 1 FROM points"), 1, 0);
+  assert_near(number(store, "SELECT sum(counts) FROM run"), 8, 0);
+  assert_near(number(store, "SELECT sum(count) FROM point_spectrum"), 32, 0);
+  struct store_attempt attempt = {.point_id = point,
+                                  .replicate = 20,
+                                  .seed = 5,
+                                  .identity = {7},
+                                  .attempt = 1,
+                                  .reason = "time_limit",
+                                  .limit = 10,
+                                  .message = "too long"};
+  OK(store_add_attempt(store, &attempt, &error));
+  attempt.reason = "crash";
+  attempt.signal = 11;
+  OK(store_add_attempt(store, &attempt, &error));
+  assert_int_equal(store_attempts(store, attempt.identity, 10, 0), 2);
+  assert_int_equal(store_attempts(store, attempt.identity, 20, 0), 1); /* a raised limit */
+  assert_int_equal(store_attempts(store, attempt.identity, 0, 0), 1);  /* no limit now */
+  assert_int_equal(store_attempts(store, f.run.identity, 10, 0), 0);
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &store, &error));
+  assert_int_equal(store_attempts(store, attempt.identity, 10, 0), 2);
+  assert_true(store_has_run(store, f.run.identity));
+  assert_false(store_has_run(store, attempt.identity));
+  OK(store_close(store, &error));
+}
+
+static void each_run(void *context, const struct store_point_run *run) {
+  double *sum = context;
+  assert_true(run->replicate == (int64_t)sum[0]);
+  assert_int_equal(run->state, OUTCOME_COMPLETED);
+  sum[0] += 1;
+  sum[1] += run->value;
+}
+
+static void runs_of_a_point_in_order(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "point"));
+  OK(fixture_populate(store, 1, 2, 10, true, &error));
+  double sum[2] = {0, 0};
+  OK(store_point_runs(store, 2, &fixture_kind, &fixture_result_rows[0], false, each_run, sum, &error));
+  assert_near(sum[0], 10, 0);
+  assert_near(sum[1], 3 * 45, 0);
+  sum[0] = sum[1] = 0;
+  const struct field *steps = field_find(&outcome_table, "steps", &error);
+  OK(store_point_runs(store, 1, &fixture_kind, steps, true, each_run, sum, &error));
+  assert_near(sum[1], 10 * 1000 + 45, 0);
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  uint8_t identity[16];
+  scene_identity(&scene, 1003, identity);
+  OK(store_set_fields(store, identity, "x.h5", &error));
+  assert_near(number(store, "SELECT replicate FROM run WHERE fields_path = 'x.h5'"), 3, 0);
+  identity[0] ^= 1;
+  assert_int_equal(store_set_fields(store, identity, "x.h5", &error), STATUS_INTERNAL);
+  store_close(store, NULL);
+}
+
+static void estimates_are_replaced(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = writer(fixture_path(path, "estimates"));
+  OK(fixture_populate(store, 1, 1, 3, false, &error));
+  struct fixture_estimate rows[2] = {{.window = 0, .beta = 2}, {.window = 1, .beta = 3}};
+  OK(store_set_estimates(store, 1, 0, 3, 2, rows, &error));
+  rows[0].beta = 4;
+  OK(store_set_estimates(store, 1, 0, 3, 1, rows, &error));
+  OK(store_set_estimates(store, 1, 2, 3, 1, rows, &error));
+  assert_near(number(store, "SELECT count(*) FROM estimate WHERE run_id IS NULL"), 1, 0);
+  assert_near(number(store, "SELECT beta FROM estimate WHERE run_id IS NULL"), 4, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimate"), 6, 0);
+  OK(store_close(store, &error));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_value_comes_back),
+      cmocka_unit_test(same_run_is_stored_once),
+      cmocka_unit_test(batches_commit_by_count_and_close),
+      cmocka_unit_test(sums_are_those_of_the_rows),
+      cmocka_unit_test(failed_and_censored_are_counted_apart),
+      cmocka_unit_test(runs_of_a_point_in_order),
+      cmocka_unit_test(estimates_are_replaced),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
