@@ -137,7 +137,8 @@ static void pure(size_t n, const double *u, double span, struct exponent *out) {
 }
 
 static void tempered(size_t n, const double *u, double span, struct exponent *out) {
-  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, n, u, span);
+  struct tempered_group group = tempered_group(TEMPERED_CUTOFF, n, u, span);
+  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
   out->beta = fit.beta;
   out->standard_error = fit.standard_error;
   out->log_likelihood = fit.log_likelihood;

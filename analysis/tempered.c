@@ -1,6 +1,7 @@
 #include "analysis/tempered.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "analysis/power_law.h"
 
@@ -83,63 +84,108 @@ double tempered_log_density(enum tempered_kind kind, double k, double s, double 
   return exponent_at(kind, k, s, u) - log_normalisation;
 }
 
-/* Is s = 0 the maximum? Concave: yes when the likelihood falls into s > 0 there, that is when the sample's mean of h is at
- * least the pure law's. */
-static bool pure_is_best(enum tempered_kind kind, double k, double span, double mean_h) {
-  if (isinf(span)) {
-    if (!(k > 0)) return false;
-    if (kind == TEMPERED_LOGNORMAL) return mean_h >= 2 / (k * k);
-    return k > 1 && mean_h >= 1 / (k - 1);
+struct tempered_group tempered_group(enum tempered_kind kind, size_t n, const double *u, double span) {
+  struct tempered_group group = {.weight = (double)n, .span = span};
+  for (size_t i = 0; i < n; i++) {
+    group.mean_u += u[i];
+    group.mean_h += factor(kind, u[i]);
   }
-  double mean[2];
-  tempered_log_normalisation(kind, k, 0, span, mean, NULL);
-  return mean_h >= mean[1];
+  group.mean_u /= group.weight;
+  group.mean_h /= group.weight;
+  return group;
 }
 
-struct tempered tempered_fit(enum tempered_kind kind, size_t n, const double *u, double span) {
-  struct tempered fit = {NAN, NAN, NAN, NAN, NAN};
-  double mean_u = 0, mean_h = 0, number = (double)n;
-  for (size_t i = 0; i < n; i++) {
-    mean_u += u[i];
-    mean_h += factor(kind, u[i]);
+/* Cost, -lnL of all groups per fragment, with its slopes and curvatures in (k, s). */
+struct cost {
+  double value, slope_k, slope_s, kk, ks, ss;
+};
+
+static struct cost cost_at(enum tempered_kind kind, size_t count, const struct tempered_group *groups, double weight,
+                           double k, double s) {
+  struct cost cost = {0};
+  double mean[2], covariance[3], log_z = 0;
+  for (size_t g = 0; g < count; g++) {
+    if (!(groups[g].weight > 0)) continue;
+    log_z = tempered_log_normalisation(kind, k, s, groups[g].span, mean, covariance);
+    double share = groups[g].weight / weight;
+    cost.value += share * (k * groups[g].mean_u + s * groups[g].mean_h + log_z);
+    cost.slope_k += share * (groups[g].mean_u - mean[0]);
+    cost.slope_s += share * (groups[g].mean_h - mean[1]);
+    cost.kk += share * covariance[0];
+    cost.ks += share * covariance[1];
+    cost.ss += share * covariance[2];
   }
-  mean_u /= number;
-  mean_h /= number;
-  struct power_law pure = power_law_fit(1, &(struct power_law_group){number, mean_u, span}, 0);
+  return cost;
+}
+
+/* Is s = 0 the maximum? Concave: yes when the likelihood falls into s > 0 there, that is when the samples' mean of h is at
+ * least the pure law's. */
+static bool pure_is_best(enum tempered_kind kind, size_t count, const struct tempered_group *groups, double k) {
+  double excess = 0;
+  for (size_t g = 0; g < count; g++) {
+    if (!(groups[g].weight > 0)) continue;
+    double mean[2] = {0, HUGE_VAL};
+    if (!isinf(groups[g].span)) tempered_log_normalisation(kind, k, 0, groups[g].span, mean, NULL);
+    else if (kind == TEMPERED_LOGNORMAL) mean[1] = 2 / (k * k);
+    else if (k > 1) mean[1] = 1 / (k - 1);
+    excess += groups[g].weight * (groups[g].mean_h - mean[1]);
+  }
+  return excess >= 0;
+}
+
+/* Newton's method on a convex cost, halving steps that leave s > 0 or do not lower it. */
+struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups) {
+  struct tempered fit = {NAN, NAN, NAN, NAN, NAN};
+  struct power_law_group *plain = malloc((count ? count : 1) * sizeof *plain);
+  if (!plain) return fit;
+  double weight = 0, mean_h = 0;
+  for (size_t g = 0; g < count; g++) {
+    plain[g] = (struct power_law_group){groups[g].weight, groups[g].mean_u, groups[g].span};
+    if (!(groups[g].weight > 0)) continue;
+    weight += groups[g].weight;
+    mean_h += groups[g].weight * groups[g].mean_h;
+  }
+  struct power_law pure = power_law_fit(count, plain, 0);
+  free(plain);
+  mean_h /= weight;
   if (!isfinite(pure.beta) || !isfinite(mean_h)) return fit;
-  double k = pure.beta - 1;
-  if (pure_is_best(kind, k, span, mean_h))
+  double k = pure.beta - 1, s = 0.1 / mean_h;
+  if (pure_is_best(kind, count, groups, k))
     return (struct tempered){pure.beta, pure.standard_error, 0, NAN, pure.log_likelihood};
 
-  /* Newton on cost(k, s) = k <u> + s <h> + ln Z(k, s), halving steps that leave s > 0 or do not lower the cost. */
-  double s = 0.1 / (mean_h > 0 ? mean_h : 1), mean[2], c[3];
-  double cost = k * mean_u + s * mean_h + tempered_log_normalisation(kind, k, s, span, mean, c);
+  struct cost here = cost_at(kind, count, groups, weight, k, s);
   for (int step = 0; step < 100; step++) {
-    double slope_k = mean_u - mean[0], slope_s = mean_h - mean[1], determinant = c[0] * c[2] - c[1] * c[1];
-    if (!(determinant > 1e-14 * c[0] * c[2])) break;
-    double dk = -(c[2] * slope_k - c[1] * slope_s) / determinant, ds = -(c[0] * slope_s - c[1] * slope_k) / determinant;
-    double decrement = -(slope_k * dk + slope_s * ds); /* twice the gain to be had, in log-likelihood per fragment */
+    double determinant = here.kk * here.ss - here.ks * here.ks;
+    if (!(determinant > 1e-14 * here.kk * here.ss)) break;
+    double dk = -(here.ss * here.slope_k - here.ks * here.slope_s) / determinant;
+    double ds = -(here.kk * here.slope_s - here.ks * here.slope_k) / determinant;
+    double decrement = -(here.slope_k * dk + here.slope_s * ds); /* twice the gain to be had per fragment */
     if (!(decrement > 0)) break;
-    double length = 1, next_cost = NAN, next_mean[2], next_c[3];
-    if (s + ds <= 0) length = -0.9 * s / ds;
+    double length = s + ds > 0 ? 1 : -0.9 * s / ds;
+    struct cost next = here;
     for (; length > 1e-9; length /= 2) {
-      next_cost = k * mean_u + length * dk * mean_u + (s + length * ds) * mean_h +
-                  tempered_log_normalisation(kind, k + length * dk, s + length * ds, span, next_mean, next_c);
-      if (next_cost < cost + 1e-15 * fabs(cost)) break;
+      next = cost_at(kind, count, groups, weight, k + length * dk, s + length * ds);
+      if (next.value < here.value + 1e-15 * fabs(here.value)) break;
     }
     if (!(length > 1e-9)) break;
     k += length * dk;
     s += length * ds;
-    cost = next_cost;
-    for (int i = 0; i < 2; i++) mean[i] = next_mean[i];
-    for (int i = 0; i < 3; i++) c[i] = next_c[i];
+    here = next;
     if (decrement < 1e-13) break; /* the next step would move beta by some 1e-7 of its standard error */
   }
-  double determinant = c[0] * c[2] - c[1] * c[1];
+  double determinant = here.kk * here.ss - here.ks * here.ks;
   if (!(determinant > 0)) return fit;
   return (struct tempered){.beta = k + 1,
-                           .standard_error = sqrt(c[2] / determinant / number),
+                           .standard_error = sqrt(here.ss / determinant / weight),
                            .rate = s,
-                           .rate_error = sqrt(c[0] / determinant / number),
-                           .log_likelihood = -cost * number};
+                           .rate_error = sqrt(here.kk / determinant / weight),
+                           .log_likelihood = -here.value * weight};
+}
+
+double tempered_ratio(const struct tempered *fit, double pure_log_likelihood) {
+  return fmax(2 * (fit->log_likelihood - pure_log_likelihood), 0);
+}
+
+double tempered_p_value(double ratio) {
+  return ratio > 0 ? 0.5 * erfc(sqrt(ratio / 2)) : 1; /* P(chi2_1 > x) = erfc(sqrt(x/2)) */
 }

@@ -22,8 +22,20 @@ struct tempered {
   double log_likelihood;       /* of u, natural log */
 };
 
-/* u: ln(m/a) of each fragment, all in [0, span); span may be HUGE_VAL. */
-struct tempered tempered_fit(enum tempered_kind kind, size_t n, const double *u, double span);
+/* One run's window: its fragments come down to two means. Runs may have windows of their own (power_law.h says why). */
+struct tempered_group {
+  double weight, mean_u, mean_h;
+  double span; /* ln(b/a), or HUGE_VAL */
+};
+/* u: ln(m/a) of each fragment, all in [0, span). */
+struct tempered_group tempered_group(enum tempered_kind kind, size_t n, const double *u, double span);
+struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups);
+
+/* 2 (lnL - lnL of the pure law) and its p-value. s = 0 lies on the boundary, so under the pure law half of all samples
+ * give 0 and the others chi-squared of one degree (Chernoff 1954): p = P(chi2 > ratio)/2; only approximate in samples of
+ * less than some hundred. Small p rejects the pure law in favour of the factor. */
+double tempered_ratio(const struct tempered *fit, double pure_log_likelihood);
+double tempered_p_value(double ratio);
 
 /* ln Z and, where not NULL, mean (2) and covariance (uu, uh, hh) of (u, h). With an open window s > 0 or k > 0. */
 double tempered_log_normalisation(enum tempered_kind kind, double k, double s, double span, double mean[2],

@@ -25,16 +25,18 @@ struct driver_options {
   struct progress *progress; /* NULL: silent. Borrowed */
   void (*note)(void *context, const char *text); /* warnings and notes for a person, one line each; may be NULL */
   void *note_context;
-  int slots;                 /* for the time left; farm_slots_total() */
+  int slots;                 /* for the time left; driver_run asks the farm */
 };
 
 struct driver_summary {
   int64_t campaign_id, session_id;
-  uint64_t points, points_done;      /* points whose replicates are complete */
+  uint64_t points, points_done;      /* different ones; those whose replicates are complete */
+  uint64_t points_invalid;           /* whose values cannot be run together: no runs, counted as failures */
   int64_t runs_reused, runs_done;    /* found in the store; computed now */
   int64_t runs_failed;               /* gave up after their attempts, or ended in a failed state; reused ones included */
   int64_t runs_censored;             /* ended at the hard end time: usable, but fragments may still be breaking */
   int64_t runs_surplus;              /* computed now and left out of statistics */
+  int64_t fields_written;            /* HDF5 files kept */
   int64_t attempts_failed;           /* of this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
   double cpu_s;                      /* of the runs computed now */
@@ -54,6 +56,8 @@ struct driver;
 status driver_open(const struct campaign *campaign, struct store *store, const struct driver_options *options,
                    struct driver **out, struct error *error);
 struct farm_manager driver_manager(struct driver *driver);
+/* After the farm: the last line of progress, the open batch committed; an error that no tick has passed on yet. */
+status driver_end(struct driver *driver, struct error *error);
 void driver_summarise(const struct driver *driver, struct driver_summary *summary);
 void driver_free(struct driver *driver); /* NULL is fine; the store stays open */
 

@@ -4,6 +4,7 @@
 #ifndef CLAST_CAMPAIGN_RUN_H
 #define CLAST_CAMPAIGN_RUN_H
 
+#include "analysis/estimates.h"
 #include "engine/scene.h"
 
 struct run_request {
@@ -18,15 +19,16 @@ struct run_result {
   void *result;            /* owned: kind->results->size bytes */
   struct fragment *fragments; /* owned: by descending mass */
   size_t fragment_count;
-  uint8_t *estimates;      /* owned: encoded rows of analysis' estimates table */
-  size_t estimate_count, estimates_size;
-  double prepare_s, step_s, finish_s; /* wall time of each part */
+  struct estimate estimates[ESTIMATES_COUNT];
+  size_t estimate_count;   /* 0 for a run without fragments */
 };
 
 /* Called between blocks of steps: snapshots, a progress line. Anything but STATUS_OK ends the run with it. */
 typedef status (*run_watch)(void *context, const struct engine_kind *kind, void *run, struct error *error);
 
-/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. */
+/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that the
+ * engine cannot run together (STATUS_CONTENT of prepare) are a result, OUTCOME_INVALID, not an error: the same seed would
+ * fail the same way again. main() has called analysis_init(). */
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error);
 void run_result_clear(struct run_result *result);

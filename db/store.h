@@ -102,6 +102,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
  * quantity wanted: of outcome_table, or else of the engine's results. Borrowed for the call. */
 struct store_point_run {
   int64_t replicate;
+  uint64_t seed;
   uint8_t identity[16];
   bool surplus;
   int state;    /* enum outcome_state */

@@ -30,6 +30,9 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
 /* After the last override: inactive inputs that were set are refused, cross-field conditions checked. */
 status scene_check(const struct scene *scene, struct error *error);
 
+/* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */
+void scene_schema(const struct engine_kind *kind, FILE *out);
+
 char *scene_json(const struct scene *scene); /* resolved: engine, name and every active input; malloc'd */
 /* 128-bit identity of a run: hash of engine, results_version, sorted active inputs as %a, and seed. */
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]);

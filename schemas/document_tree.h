@@ -50,6 +50,10 @@ bool document_guard(struct document *document);
  * of the first offence, or size. */
 size_t document_guard_text(const char *text, size_t size);
 
+/* Turns the guarded text into the tree, `root` at its top. STATUS_CONTENT when no tree could be made of it (errors were
+ * reported); errors that leave a tree (duplicate keys, tags, lost aliases) are reported and STATUS_OK. */
+status document_build(struct document *document);
+
 /* An error about bytes [start, end) of the text. */
 void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format, ...)
     __attribute__((format(printf, 5, 6)));

@@ -378,11 +378,13 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
   if (*rest == '_')
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number; write digits without separators",
                        QUOTE, rest);
+  bool spaced = *rest == ' ';
   while (*rest == ' ')
     rest++;
+  bool per = spaced && rest[0] == '1' && rest[1] == '/'; /* "5 1/s" */
   if (*rest == 0) {
     got = want;
-  } else if (isdigit((unsigned char)*rest) || *rest == '.' || *rest == '+' || *rest == '-') {
+  } else if ((isdigit((unsigned char)*rest) && !per) || *rest == '.' || *rest == '+' || *rest == '-') {
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number", QUOTE, rest);
   } else {
     code = unit_parse(rest, &got, error);

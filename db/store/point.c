@@ -25,7 +25,7 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
   sql_column_name(row->path, column, sizeof column);
   char *sql =
       sqlite3_mprintf("SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
-                      "r.peak_memory, r.fields_path FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
+                      "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
                       "= ?2 ORDER BY r.replicate, r.seed",
                       of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_",
                       of_outcome ? "" : kind->name, of_outcome ? "" : " e ON e.run_id = r.run_id");
@@ -39,6 +39,7 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
   while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
     struct store_point_run run = {
         .replicate = sqlite3_column_int64(statement, 0),
+        .seed = (uint64_t)sqlite3_column_int64(statement, 9),
         .surplus = sqlite3_column_int(statement, 2) != 0,
         .state = state_of((const char *)sqlite3_column_text(statement, 3)),
         .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),

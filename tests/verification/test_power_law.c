@@ -124,7 +124,8 @@ static void pure_sample_needs_no_factor(void **state) {
   /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
   double u[200];
   for (int i = 0; i < 200; i++) u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
-  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
+  struct tempered_group group = tempered_group(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
+  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
   assert_true(fit.rate == 0 && isnan(fit.rate_error));
   double mean = 0;
   for (int i = 0; i < 200; i++) mean += u[i] / 200;

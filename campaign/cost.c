@@ -1,0 +1,19 @@
+#include "campaign/cost.h"
+
+void cost_learn(struct cost_model *model, struct cost_point *point, double wall_s) {
+  if (!(wall_s >= 0))
+    return;
+  model->seconds += wall_s;
+  model->work += point->work;
+  model->runs++;
+  point->seconds += wall_s;
+  point->runs++;
+}
+
+double cost_predict(const struct cost_model *model, const struct cost_point *point) {
+  if (model->runs == 0 || !(model->work > 0))
+    return point->work;
+  /* The model's guess weighs as much as one finished run of the point. */
+  double guess = model->seconds / model->work * point->work;
+  return (guess + point->seconds) / (double)(1 + point->runs);
+}

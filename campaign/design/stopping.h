@@ -1,0 +1,22 @@
+/* When a point has enough replicates. The rule looks at complete prefixes 0..n-1 of replicate numbers and at nothing else:
+ * "the first n that finished" would favour quick runs (measured: 2.8 standard errors with 32 workers). */
+#ifndef CLAST_CAMPAIGN_DESIGN_STOPPING_H
+#define CLAST_CAMPAIGN_DESIGN_STOPPING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct design_stopping {
+  bool fixed;                      /* `minimum` replicates, nothing is judged */
+  int64_t minimum, batch, maximum;
+  double half_width, level;        /* of the confidence interval of the mean */
+};
+
+enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };
+
+/* All replicates below *prefix are in; values[r] is NaN for a run that failed. DESIGN_GROW: *prefix is the next one to
+ * complete. Otherwise the point is finished at this prefix. */
+enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix);
+
+#endif

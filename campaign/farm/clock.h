@@ -1,0 +1,27 @@
+/* Monotonic time in nanoseconds, and the CPU seconds of this process. */
+#ifndef CLAST_CAMPAIGN_FARM_CLOCK_H
+#define CLAST_CAMPAIGN_FARM_CLOCK_H
+
+#include <stdint.h>
+#include <time.h>
+
+#define FARM_CLOCK_MS INT64_C(1000000)
+#define FARM_CLOCK_S  INT64_C(1000000000)
+
+static inline int64_t farm_clock_ns(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * FARM_CLOCK_S + now.tv_nsec;
+}
+
+static inline double farm_clock_cpu_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static inline int64_t farm_clock_from_s(double seconds) {
+  return seconds > 1e9 ? (int64_t)1e18 : (int64_t)(seconds * 1e9);
+}
+
+#endif

@@ -1,0 +1,108 @@
+#include "campaign/farm/frame.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static size_t padded(size_t size) {
+  return (size + 15) & ~(size_t)15;
+}
+
+bool farm_frame_reserve(struct farm_bytes *bytes, size_t more) {
+  const size_t used = bytes->end - bytes->begin;
+  if (bytes->capacity - bytes->end >= more) return true;
+  if (bytes->begin > 0 && bytes->capacity - used >= more && bytes->begin >= used) { /* cheap: halves do not overlap */
+    memcpy(bytes->data, bytes->data + bytes->begin, used);
+  } else {
+    size_t capacity = bytes->capacity ? bytes->capacity : 4096;
+    while (capacity - used < more) {
+      if (capacity > SIZE_MAX / 4) return false;
+      capacity *= 2;
+    }
+    uint8_t *data = malloc(capacity);
+    if (!data) return false;
+    if (used) memcpy(data, bytes->data + bytes->begin, used);
+    free(bytes->data);
+    bytes->data = data;
+    bytes->capacity = capacity;
+  }
+  bytes->begin = 0;
+  bytes->end = used;
+  return true;
+}
+
+void farm_frame_free(struct farm_bytes *bytes) {
+  free(bytes->data);
+  *bytes = (struct farm_bytes){0};
+}
+
+void farm_frame_trim(struct farm_bytes *bytes) {
+  bytes->begin = bytes->end = 0;
+  if (bytes->capacity > (size_t)1 << 20) farm_frame_free(bytes);
+}
+
+/* Not cryptographic: it must see torn, shifted and foreign bytes, at memory speed. */
+static uint64_t mix(uint64_t hash, const uint8_t *bytes, size_t size) {
+  while (size > 0) {
+    uint64_t word = 0;
+    const size_t n = size < 8 ? size : 8;
+    memcpy(&word, bytes, n);
+    hash = (hash ^ word) * UINT64_C(0x9e3779b97f4a7c15); /* 2^64 over the golden ratio: an odd number of mixed bits */
+    hash ^= hash >> 29;
+    bytes += n;
+    size -= n;
+  }
+  return hash;
+}
+
+static uint64_t check_of(const struct farm_frame *frame, const uint8_t *payload) {
+  struct farm_frame head = *frame;
+  head.check = 0;
+  return mix(mix(frame->size, (const uint8_t *)&head, sizeof head), payload, frame->size);
+}
+
+bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint16_t ticket, uint64_t handle, int parts,
+                       const struct iovec *part) {
+  size_t size = 0;
+  for (int i = 0; i < parts; i++) {
+    if (part[i].iov_len > FARM_FRAME_LARGEST - size) return false;
+    size += part[i].iov_len;
+  }
+  const size_t total = sizeof(struct farm_frame) + padded(size);
+  if (!farm_frame_reserve(bytes, total)) return false;
+  uint8_t *const payload = bytes->data + bytes->end + sizeof(struct farm_frame);
+  uint8_t *to = payload;
+  for (int i = 0; i < parts; i++) {
+    if (part[i].iov_len) memcpy(to, part[i].iov_base, part[i].iov_len);
+    to += part[i].iov_len;
+  }
+  memset(to, 0, padded(size) - size);
+  struct farm_frame frame = {
+      .magic = FARM_FRAME_MAGIC, .kind = (uint16_t)kind, .ticket = ticket, .handle = handle, .size = size};
+  frame.check = check_of(&frame, payload);
+  memcpy(bytes->data + bytes->end, &frame, sizeof frame);
+  bytes->end += total;
+  return true;
+}
+
+int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload) {
+  const size_t used = bytes->end - bytes->begin;
+  if (used < sizeof *frame) return 0;
+  memcpy(frame, bytes->data + bytes->begin, sizeof *frame);
+  if (frame->magic != FARM_FRAME_MAGIC || frame->size > FARM_FRAME_LARGEST) return -1;
+  const size_t total = sizeof *frame + padded(frame->size);
+  if (used < total) return 0;
+  *payload = bytes->data + bytes->begin + sizeof *frame;
+  if (check_of(frame, *payload) != frame->check) return -1;
+  bytes->begin += total;
+  return 1;
+}
+
+size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum) {
+  const size_t used = bytes->end - bytes->begin;
+  struct farm_frame frame;
+  if (used < sizeof frame) return minimum;
+  memcpy(&frame, bytes->data + bytes->begin, sizeof frame);
+  if (frame.magic != FARM_FRAME_MAGIC || frame.size > FARM_FRAME_LARGEST) return minimum;
+  const size_t total = sizeof frame + padded(frame.size);
+  return total > used && total - used > minimum ? total - used : minimum;
+}

@@ -1,0 +1,71 @@
+/* The one message format: between manager, slots, children (pipes and sockets) and ranks (MPI).
+ *
+ * A frame is a 32-byte head and a payload padded to 16 bytes, so that payloads stay aligned in a buffer of frames. The
+ * head's magic carries the version; the check covers head and payload: a torn or foreign frame is an error that is
+ * seen, never a crash. Byte order is the machine's: all ranks run the same program on the same kind of machine. */
+#ifndef CLAST_CAMPAIGN_FARM_FRAME_H
+#define CLAST_CAMPAIGN_FARM_FRAME_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <sys/uio.h>
+
+#define FARM_FRAME_MAGIC UINT32_C(0x31464c43) /* "CLF1"; the digit is the version: raise it when any payload changes   \
+                                               */
+#define FARM_FRAME_LARGEST                                                                                             \
+  ((size_t)1 << 30) /* bytes of payload; MPI counts are int, and a larger size is a torn frame */
+
+enum farm_frame_kind {
+  FARM_FRAME_TASK = 1, /* manager -> slot or rank: the task's bytes */
+  FARM_FRAME_RESULT,   /* back: struct farm_result, result bytes, message */
+  FARM_FRAME_ANSWER,   /* child -> its slot: int64 status, result bytes or message */
+  FARM_FRAME_HELLO,    /* rank -> manager: struct farm_hello */
+  FARM_FRAME_ALIVE,    /* rank -> manager: heartbeat; handle = slots alive */
+  FARM_FRAME_SIGNAL,   /* rank -> manager: handle = signal number */
+  FARM_FRAME_RECALL,   /* manager -> rank: give back up to `handle` tasks that have not begun */
+  FARM_FRAME_RETURNED, /* rank -> manager: this task has not begun and is yours again */
+  FARM_FRAME_RECALLED, /* rank -> manager: the recall is answered */
+  FARM_FRAME_END,      /* manager -> rank: struct farm_end, message */
+  FARM_FRAME_BYE,      /* rank -> manager: double CPU seconds of its main process in this run */
+  FARM_FRAME_FINALIZE, /* manager -> rank: now MPI_Finalize */
+};
+
+struct farm_frame {
+  uint32_t magic;
+  uint16_t kind, ticket; /* ticket: see slot.h */
+  uint64_t handle;       /* which task; other meanings above */
+  uint64_t size;         /* of the payload without padding */
+  uint64_t check;
+};
+
+/* Head of a RESULT payload; `size` result bytes follow, then the message. */
+struct farm_result {
+  int32_t ending, exit_code, signal, slot;
+  double wall_s, cpu_s;
+  int64_t peak_memory;
+  uint64_t size;
+};
+
+/* A growing byte queue. data[begin..end) is what is in it; `begin` moves by whole frames, so that it stays aligned. */
+struct farm_bytes {
+  uint8_t *data;
+  size_t begin, end, capacity;
+};
+
+/* Room for `more` bytes at data+end; false when memory is refused (nothing changed). Moves what is in it. */
+bool farm_frame_reserve(struct farm_bytes *bytes, size_t more);
+void farm_frame_free(struct farm_bytes *bytes); /* and leaves it empty, ready for use */
+/* Keeps a small buffer for the next use, gives a large one back. Call when empty. */
+void farm_frame_trim(struct farm_bytes *bytes);
+
+/* Append a frame whose payload is the parts one after the other. False when memory is refused or it is too large. */
+bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint16_t ticket, uint64_t handle, int parts,
+                       const struct iovec *part);
+/* Take the first frame out: 1 found (payload borrowed until the next reserve or append), 0 not all there yet, -1 torn.
+ */
+int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload);
+/* How many more bytes the first, unfinished frame needs (at least `minimum`): what to reserve before reading. */
+size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum);
+
+#endif

@@ -1,0 +1,24 @@
+/* One run in a child process of its own: limits, deadline, and nothing it does can hurt the slot. */
+#ifndef CLAST_CAMPAIGN_FARM_ISOLATE_H
+#define CLAST_CAMPAIGN_FARM_ISOLATE_H
+
+#include "campaign/farm/slot.h"
+
+/* Kept by a slot between runs. */
+struct farm_isolate {
+  int channel;      /* the slot's: when it closes, the child is killed and the slot ends */
+  int child_signal; /* signalfd of SIGCHLD */
+  int result[2];    /* pipe, renewed after a run that left it in doubt */
+  struct farm_bytes in;
+};
+
+bool farm_isolate_open(struct farm_isolate *isolate, int channel);
+/* Runs the task in a child and appends the RESULT frame to `out`. False when memory or processes are refused. */
+bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
+                      const uint8_t *task, size_t size, struct farm_bytes *out);
+
+/* Bytes of address space in use now: the base over which a memory limit counts. */
+size_t farm_isolate_address_space(void);
+void farm_isolate_limit_memory(size_t bytes); /* soft RLIMIT_AS; 0 = none */
+
+#endif

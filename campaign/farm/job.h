@@ -1,0 +1,44 @@
+/* A task on its way: the manager's own record of it, or a rank's copy. */
+#ifndef CLAST_CAMPAIGN_FARM_JOB_H
+#define CLAST_CAMPAIGN_FARM_JOB_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct farm_job {
+  struct farm_job *next; /* in whatever queue it stands */
+  uint64_t handle;       /* the farm's, never used twice */
+  uint64_t id;           /* the caller's */
+  int rank;              /* where it was sent (manager only) */
+  uint16_t ticket;       /* while it is in a slot */
+  size_t size;
+  _Alignas(16) uint8_t bytes[];
+};
+
+/* NULL when memory is refused. Freed by free(). */
+struct farm_job *farm_job_new(uint64_t handle, const uint8_t *bytes, size_t size);
+
+struct farm_job_queue {
+  struct farm_job *first, *last;
+  size_t count;
+};
+void farm_job_push(struct farm_job_queue *queue, struct farm_job *job);
+void farm_job_push_front(struct farm_job_queue *queue, struct farm_job *job);
+struct farm_job *farm_job_pop(struct farm_job_queue *queue); /* NULL when empty */
+/* Takes out the one with this handle, NULL when there is none. Searches from the front: slots answer in order. */
+struct farm_job *farm_job_take(struct farm_job_queue *queue, uint64_t handle);
+void farm_job_clear(struct farm_job_queue *queue);
+
+/* The manager's table of what is out: handle -> job in O(1); a handle's low half is a place, its high half the use. */
+struct farm_job_table {
+  struct farm_job **job;
+  uint32_t *use, *vacant;
+  size_t capacity, vacant_count, count;
+};
+bool farm_job_table_add(struct farm_job_table *table, struct farm_job *job); /* sets job->handle; false: no memory */
+struct farm_job *farm_job_table_find(const struct farm_job_table *table, uint64_t handle);
+void farm_job_table_remove(struct farm_job_table *table, uint64_t handle); /* does not free the job */
+void farm_job_table_free(struct farm_job_table *table);                    /* frees the jobs too */
+
+#endif

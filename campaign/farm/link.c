@@ -1,0 +1,204 @@
+#include "campaign/farm/link.h"
+
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TAG             1
+#define LARGEST_MESSAGE ((size_t)1 << 24) /* frames are collected up to this; a larger frame goes alone */
+
+struct message {
+  struct message *next;
+  MPI_Request request;
+  int rank;
+  struct farm_bytes bytes;
+};
+
+struct farm_link {
+  int rank, ranks;
+  struct farm_bytes *out;                    /* per rank, not yet sent */
+  struct message *sending;                   /* in flight, any order */
+  struct message *arriving, **arriving_last; /* in the order of arrival */
+};
+
+status farm_link_open(struct farm_link **out, struct error *error) {
+  int provided, initialised = 0;
+  MPI_Initialized(&initialised);
+  if (!initialised && MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS)
+    return status_fail(error, STATUS_MEMORY, "MPI_Init failed: start with mpirun or srun --mpi=pmix");
+  MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
+  struct farm_link *link = calloc(1, sizeof *link);
+  if (!link) return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  MPI_Comm_rank(MPI_COMM_WORLD, &link->rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &link->ranks);
+  link->arriving_last = &link->arriving;
+  link->out = calloc((size_t)link->ranks, sizeof *link->out);
+  if (!link->out) {
+    free(link);
+    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  }
+  *out = link;
+  return STATUS_OK;
+}
+
+int farm_link_rank(const struct farm_link *link) {
+  return link->rank;
+}
+int farm_link_ranks(const struct farm_link *link) {
+  return link->ranks;
+}
+bool farm_link_sent(const struct farm_link *link) {
+  return link->sending == NULL;
+}
+
+static status post(struct farm_link *link, int rank, struct error *error) {
+  struct farm_bytes *const out = &link->out[rank];
+  if (out->begin == out->end) return STATUS_OK;
+  struct message *message = calloc(1, sizeof *message);
+  if (!message) return status_fail(error, STATUS_MEMORY, "no memory for a message to rank %d", rank);
+  message->bytes = *out;
+  message->rank = rank;
+  *out = (struct farm_bytes){0};
+  if (MPI_Isend(message->bytes.data + message->bytes.begin, (int)(message->bytes.end - message->bytes.begin), MPI_BYTE,
+                rank, TAG, MPI_COMM_WORLD, &message->request) != MPI_SUCCESS) {
+    farm_frame_free(&message->bytes);
+    free(message);
+    return status_fail(error, STATUS_INTERNAL, "MPI cannot send to rank %d", rank);
+  }
+  message->next = link->sending;
+  link->sending = message;
+  return STATUS_OK;
+}
+
+status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
+                      const struct iovec *part, struct error *error) {
+  struct farm_bytes *const out = &link->out[rank];
+  size_t size = 0;
+  for (int i = 0; i < parts; i++)
+    size += part[i].iov_len;
+  if (out->end - out->begin + size > LARGEST_MESSAGE) {
+    const status posted = post(link, rank, error);
+    if (posted != STATUS_OK) return posted;
+  }
+  if (farm_frame_append(out, kind, 0, handle, parts, part)) return STATUS_OK;
+  return status_fail(error, STATUS_MEMORY, "no memory for a message of %zu bytes to rank %d", size, rank);
+}
+
+status farm_link_flush(struct farm_link *link, struct error *error) {
+  for (int rank = 0; rank < link->ranks; rank++) {
+    const status posted = post(link, rank, error);
+    if (posted != STATUS_OK) return posted;
+  }
+  return STATUS_OK;
+}
+
+static bool done(struct message *message) {
+  int flag = 0;
+  return MPI_Test(&message->request, &flag, MPI_STATUS_IGNORE) == MPI_SUCCESS && flag;
+}
+
+static status receive(struct farm_link *link, bool *any, struct error *error) {
+  int flag = 0, size = 0;
+  MPI_Status from;
+  *any = false;
+  if (MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &flag, &from) != MPI_SUCCESS)
+    return status_fail(error, STATUS_INTERNAL, "MPI_Iprobe failed");
+  if (!flag) return STATUS_OK;
+  MPI_Get_count(&from, MPI_BYTE, &size);
+  struct message *message = calloc(1, sizeof *message);
+  if (!message || size < 0 || !farm_frame_reserve(&message->bytes, (size_t)size + 1)) {
+    free(message);
+    return status_fail(error, STATUS_MEMORY, "no memory for a message of %d bytes from rank %d", size, from.MPI_SOURCE);
+  }
+  message->rank = from.MPI_SOURCE;
+  message->bytes.end = (size_t)size;
+  if (MPI_Irecv(message->bytes.data, size, MPI_BYTE, from.MPI_SOURCE, TAG, MPI_COMM_WORLD, &message->request) !=
+      MPI_SUCCESS) {
+    farm_frame_free(&message->bytes);
+    free(message);
+    return status_fail(error, STATUS_INTERNAL, "MPI cannot receive from rank %d", from.MPI_SOURCE);
+  }
+  *link->arriving_last = message;
+  link->arriving_last = &message->next;
+  *any = true;
+  return STATUS_OK;
+}
+
+/* An earlier message of this rank has not all arrived yet. */
+static bool overtakes(const struct farm_link *link, const struct message *message) {
+  for (const struct message *before = link->arriving; before != message; before = before->next)
+    if (before->rank == message->rank) return true;
+  return false;
+}
+
+status farm_link_drain(struct farm_link *link,
+                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                                      struct error *error),
+                       void *context, int *count, struct error *error) {
+  status result = STATUS_OK;
+  *count = 0;
+  for (struct message **at = &link->sending; *at;) {
+    struct message *message = *at;
+    if (!done(message)) {
+      at = &message->next;
+      continue;
+    }
+    *at = message->next;
+    farm_frame_free(&message->bytes);
+    free(message);
+    ++*count;
+  }
+  for (bool any = true; any;) {
+    result = receive(link, &any, error);
+    if (result != STATUS_OK) return result;
+  }
+  for (struct message **at = &link->arriving; *at;) {
+    struct message *message = *at;
+    if (overtakes(link, message) || !done(message)) {
+      at = &message->next;
+      continue;
+    }
+    *at = message->next;
+    if (link->arriving_last == &message->next) link->arriving_last = at;
+    ++*count;
+    int got = 0;
+    struct farm_frame frame;
+    const uint8_t *payload;
+    while (result == STATUS_OK && (got = farm_frame_next(&message->bytes, &frame, &payload)) == 1)
+      result = take(context, message->rank, &frame, payload, error);
+    if (result == STATUS_OK && (got < 0 || message->bytes.begin != message->bytes.end))
+      result = status_fail(error, STATUS_INTERNAL,
+                           "rank %d sent a message this rank cannot read: do all ranks run the same version of clast?",
+                           message->rank);
+    farm_frame_free(&message->bytes);
+    free(message);
+    if (result != STATUS_OK) return result;
+  }
+  return STATUS_OK;
+}
+
+void farm_link_close(struct farm_link *link, bool together, int exit_code) {
+  if (!link) return;
+  if (!together) {
+    fflush(NULL);
+    MPI_Abort(MPI_COMM_WORLD, exit_code);
+  }
+  MPI_Finalize();
+  for (int rank = 0; rank < link->ranks; rank++)
+    farm_frame_free(&link->out[rank]);
+  while (link->sending) {
+    struct message *message = link->sending;
+    link->sending = message->next;
+    farm_frame_free(&message->bytes);
+    free(message);
+  }
+  while (link->arriving) {
+    struct message *message = link->arriving;
+    link->arriving = message->next;
+    farm_frame_free(&message->bytes);
+    free(message);
+  }
+  free(link->out);
+  free(link);
+}

@@ -1,0 +1,33 @@
+/* Frames between the ranks, by MPI point to point and never blocking.
+ *
+ * Frames to one rank are collected and leave together as one message at farm_link_flush. Sends are MPI_Isend of a
+ * buffer of their own, receives MPI_Iprobe + MPI_Irecv, as blocking calls spin and hang for ever on a dead or frozen
+ * partner as soon as the message is above the eager limit (4 kB in shared memory). Frames of one rank arrive in order.
+ */
+#ifndef CLAST_CAMPAIGN_FARM_LINK_H
+#define CLAST_CAMPAIGN_FARM_LINK_H
+
+#include "campaign/farm/frame.h"
+#include "schemas/status.h"
+
+struct farm_link;
+
+/* MPI_Init. Signals must be blocked before, as MPI starts threads. */
+status farm_link_open(struct farm_link **out, struct error *error);
+int farm_link_rank(const struct farm_link *link);
+int farm_link_ranks(const struct farm_link *link);
+/* Queues a frame for a rank. STATUS_MEMORY. */
+status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
+                      const struct iovec *part, struct error *error);
+status farm_link_flush(struct farm_link *link, struct error *error);
+/* Takes in what has arrived: calls `take` for every frame. *count of messages received, sends completed. */
+status farm_link_drain(struct farm_link *link,
+                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                                      struct error *error),
+                       void *context, int *count, struct error *error);
+/* Everything handed over has left. */
+bool farm_link_sent(const struct farm_link *link);
+/* MPI_Finalize when `together` (all ranks do the same now), else MPI_Abort with this exit code: does not return. */
+void farm_link_close(struct farm_link *link, bool together, int exit_code);
+
+#endif

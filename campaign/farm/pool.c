@@ -1,0 +1,414 @@
+#include "campaign/farm/pool.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "campaign/farm/clock.h"
+#include "campaign/farm/server.h"
+
+/* Tasks shorter than this are sent ahead in numbers, so that a slot never starves while the manager handles a batch. */
+#define AHEAD_NS    (500 * FARM_CLOCK_MS / 1000)
+#define IDLE_DEATHS 5 /* of a slot in a row, without a task: give it up */
+
+struct slot {
+  int channel; /* -1: none now */
+  pid_t pid;
+  bool given_up;
+  int idle_deaths;
+  uint64_t killed;   /* handle of the task it was killed for */
+  uint64_t forgiven; /* handle whose deadline was moved, and by how much */
+  int64_t forgiven_ns;
+  struct farm_job_queue jobs; /* sent to it, in order */
+  struct farm_bytes in, out;
+};
+
+struct farm_pool {
+  struct farm_slot_setup setup;
+  size_t records_size;
+  pid_t server;
+  int control;
+  struct slot *slots;
+  struct pollfd *fds;
+  struct farm_job_queue queue;
+  struct farm_pool_sink sink;
+  size_t count;
+  double mean_wall_s; /* of recent tasks */
+  int64_t looked_ns;
+  char why_lost[160];
+};
+
+status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out,
+                       struct error *error) {
+  const size_t slots = (size_t)options->slots;
+  status result = STATUS_MEMORY;
+  struct farm_pool *pool = calloc(1, sizeof *pool);
+  if (!pool) return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
+  pool->looked_ns = farm_clock_ns();
+  pool->slots = calloc(slots, sizeof *pool->slots);
+  pool->fds = calloc(slots + 2, sizeof *pool->fds);
+  pool->records_size = slots * sizeof *pool->setup.records;
+  pool->setup.records = mmap(NULL, pool->records_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (!pool->slots || !pool->fds || pool->setup.records == MAP_FAILED) {
+    if (pool->setup.records == MAP_FAILED) pool->setup.records = NULL;
+    status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
+    goto cleanup;
+  }
+  for (size_t i = 0; i < slots; i++)
+    pool->slots[i].channel = -1;
+  result = farm_server_start(&pool->setup, &pool->server, &pool->control, error);
+  if (result != STATUS_OK) goto cleanup;
+  *out = pool;
+  return STATUS_OK;
+cleanup:
+  farm_pool_end(pool);
+  return result;
+}
+
+void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink) {
+  pool->sink = sink;
+}
+
+void farm_pool_submit(struct farm_pool *pool, struct farm_job *job) {
+  farm_job_push(&pool->queue, job);
+  pool->count++;
+}
+
+int farm_pool_slots(const struct farm_pool *pool) {
+  int alive = 0;
+  if (pool->control < 0) return 0;
+  for (int i = 0; i < pool->setup.options.slots; i++)
+    alive += !pool->slots[i].given_up;
+  return alive;
+}
+
+static size_t depth(const struct farm_pool *pool) {
+  const double ahead = 1e-9 * (double)AHEAD_NS / (pool->mean_wall_s + 1e-9);
+  return ahead < 1 ? 2 : ahead > FARM_SLOT_TICKETS - 1 ? FARM_SLOT_TICKETS : 1 + (size_t)ahead;
+}
+
+size_t farm_pool_room(const struct farm_pool *pool) {
+  return (size_t)farm_pool_slots(pool) * depth(pool);
+}
+size_t farm_pool_count(const struct farm_pool *pool) {
+  return pool->count;
+}
+
+/* ---- to the slots ---- */
+
+static void flush(struct slot *slot) {
+  while (slot->channel >= 0 && slot->out.begin < slot->out.end) {
+    const ssize_t n = send(slot->channel, slot->out.data + slot->out.begin, slot->out.end - slot->out.begin,
+                           MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return; /* full: poll tells when not; dead: the server tells */
+    slot->out.begin += (size_t)n;
+  }
+  if (slot->out.begin == slot->out.end) farm_frame_trim(&slot->out);
+}
+
+static bool give(struct farm_pool *pool, int index, struct farm_job *job) {
+  struct farm_slot_record *const record = &pool->setup.records[index];
+  struct slot *const slot = &pool->slots[index];
+  for (uint16_t ticket = 0; ticket < FARM_SLOT_TICKETS; ticket++) {
+    if (atomic_load(&record->ticket[ticket]) != 0) continue;
+    if (!farm_frame_append(&slot->out, FARM_FRAME_TASK, ticket, job->handle, 1, &(struct iovec){job->bytes, job->size}))
+      return false;
+    atomic_store(&record->ticket[ticket], job->handle); /* before the flush that shows it to the slot */
+    job->ticket = ticket;
+    farm_job_push(&slot->jobs, job);
+    return true;
+  }
+  return false;
+}
+
+/* The last job of this slot that it has not begun, or NULL. */
+static struct farm_job *take_back(struct farm_pool *pool, int index) {
+  struct farm_slot_record *const record = &pool->setup.records[index];
+  struct slot *const slot = &pool->slots[index];
+  struct farm_job *last = NULL;
+  for (struct farm_job *job = slot->jobs.first; job; job = job->next)
+    if (atomic_load(&record->ticket[job->ticket]) == job->handle) last = job;
+  if (!last) return NULL;
+  uint64_t expected = last->handle;
+  if (!atomic_compare_exchange_strong(&record->ticket[last->ticket], &expected, 0)) return NULL;
+  return farm_job_take(&slot->jobs, last->handle);
+}
+
+static int slot_with(const struct farm_pool *pool, bool most) {
+  int best = -1;
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    const struct slot *slot = &pool->slots[i];
+    if (slot->channel < 0) continue;
+    if (best < 0 ||
+        (most ? slot->jobs.count > pool->slots[best].jobs.count : slot->jobs.count < pool->slots[best].jobs.count))
+      best = i;
+  }
+  return best;
+}
+
+void farm_pool_dispatch(struct farm_pool *pool) {
+  const size_t deep = depth(pool);
+  while (pool->queue.first) {
+    const int index = slot_with(pool, false);
+    if (index < 0 || pool->slots[index].jobs.count >= deep) break;
+    struct farm_job *job = farm_job_pop(&pool->queue);
+    if (!give(pool, index, job)) {
+      farm_job_push_front(&pool->queue, job);
+      break;
+    }
+  }
+  for (int index; !pool->queue.first && (index = slot_with(pool, false)) >= 0 && pool->slots[index].jobs.count == 0;) {
+    const int loaded = slot_with(pool, true);
+    if (pool->slots[loaded].jobs.count < 2) break;
+    struct farm_job *job = take_back(pool, loaded);
+    if (!job) break;
+    if (!give(pool, index, job)) {
+      farm_job_push_front(&pool->queue, job);
+      break;
+    }
+  }
+  for (int i = 0; i < pool->setup.options.slots; i++)
+    flush(&pool->slots[i]);
+}
+
+void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_queue *into) {
+  while (most > 0 && pool->queue.last) {
+    struct farm_job *job = farm_job_take(&pool->queue, pool->queue.last->handle);
+    farm_job_push_front(into, job);
+    pool->count--;
+    most--;
+  }
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    for (struct farm_job *job; most > 0 && (job = take_back(pool, i)); most--) {
+      farm_job_push(into, job);
+      pool->count--;
+    }
+  }
+}
+
+/* ---- from the slots ---- */
+
+static void ended(struct farm_pool *pool, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
+                  const char *message, size_t message_size) {
+  pool->count--;
+  pool->sink.ended(pool->sink.context, job, result, bytes, message, message_size);
+}
+
+/* Reads what the slot has written; false: its channel is closed or speaks nonsense. */
+static bool listen_to(struct farm_pool *pool, struct slot *slot) {
+  bool open = true;
+  for (;;) {
+    const size_t want = farm_frame_missing(&slot->in, 16384);
+    if (!farm_frame_reserve(&slot->in, want)) return false;
+    const size_t space = slot->in.capacity - slot->in.end;
+    const ssize_t n = recv(slot->channel, slot->in.data + slot->in.end, space, MSG_DONTWAIT);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) break;
+    if (n <= 0) {
+      open = false;
+      break;
+    }
+    slot->in.end += (size_t)n;
+    if ((size_t)n < space) break;
+  }
+  for (;;) {
+    struct farm_frame frame;
+    struct farm_result result;
+    const uint8_t *payload;
+    const int got = farm_frame_next(&slot->in, &frame, &payload);
+    if (got < 0) return false;
+    if (got == 0) break;
+    if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result) return false;
+    memcpy(&result, payload, sizeof result);
+    if (result.size > frame.size - sizeof result) return false;
+    struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
+    if (!job) continue; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
+    slot->idle_deaths = 0;
+    pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
+    ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
+          frame.size - sizeof result - result.size);
+  }
+  if (slot->in.begin == slot->in.end) farm_frame_trim(&slot->in);
+  return open;
+}
+
+/* The slot is dead: its running task gets the verdict, the others go back to the head of the queue. */
+static void mourn(struct farm_pool *pool, int index, const struct farm_result *verdict, const char *text) {
+  struct slot *const slot = &pool->slots[index];
+  struct farm_slot_record *const record = &pool->setup.records[index];
+  if (slot->channel >= 0) {
+    listen_to(pool, slot);
+    close(slot->channel);
+    slot->channel = -1;
+  }
+  farm_frame_free(&slot->in);
+  farm_frame_free(&slot->out);
+  const uint64_t running = atomic_load(&record->running);
+  struct farm_job *blamed = running ? farm_job_take(&slot->jobs, running) : NULL;
+  if (blamed && atomic_load(&record->ticket[blamed->ticket]) == running) { /* it had not quite begun */
+    farm_job_push_front(&slot->jobs, blamed);
+    blamed = NULL;
+  }
+  slot->idle_deaths = blamed ? 0 : slot->idle_deaths + 1;
+  struct farm_job_queue back = {0};
+  for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
+    farm_job_push_front(&back, job);
+  for (struct farm_job *job; (job = farm_job_pop(&back));)
+    farm_job_push_front(&pool->queue, job);
+  const int64_t started = atomic_load(&record->started_ns);
+  for (int i = 0; i < FARM_SLOT_TICKETS; i++)
+    atomic_store(&record->ticket[i], 0);
+  atomic_store(&record->running, 0);
+  const bool timed_out = running && slot->killed == running;
+  slot->killed = slot->forgiven = 0;
+  if (!blamed) return;
+  struct farm_result result = *verdict;
+  char limit[96];
+  if (timed_out) {
+    result.ending = FARM_TIME_LIMIT;
+    snprintf(limit, sizeof limit, "ended at its time limit of %g s", pool->setup.options.time_limit_s);
+    text = limit;
+  }
+  result.wall_s = 1e-9 * (double)(farm_clock_ns() - started);
+  result.slot = index;
+  ended(pool, blamed, &result, NULL, text, strlen(text));
+}
+
+static void slot_died(struct farm_pool *pool, const struct farm_server_message *message) {
+  struct slot *const slot = &pool->slots[message->slot];
+  const int value = message->value;
+  char text[160];
+  struct farm_result verdict = {.ending = pool->setup.options.in_process ? FARM_CRASHED : FARM_LOST};
+  if (message->pid == 0) {
+    snprintf(text, sizeof text, "the system refused a process for a slot: %s", strerror(value));
+  } else if (WIFSIGNALED(value)) {
+    verdict.signal = WTERMSIG(value);
+    snprintf(text, sizeof text, "%s killed by signal %d (%s)%s",
+             pool->setup.options.in_process ? "the run's process was" : "the slot (not the run) was", verdict.signal,
+             strsignal(verdict.signal),
+             verdict.signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
+  } else {
+    verdict.exit_code = WEXITSTATUS(value);
+    snprintf(text, sizeof text, "the run's process exited with code %d and no result", verdict.exit_code);
+  }
+  mourn(pool, message->slot, &verdict, text);
+  slot->pid = 0;
+  if (slot->idle_deaths >= IDLE_DEATHS || !farm_server_ask(pool->control, FARM_SERVER_SPAWN, message->slot, 0))
+    slot->given_up = true;
+}
+
+static void server_died(struct farm_pool *pool) {
+  const struct farm_result verdict = {.ending = FARM_LOST};
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    mourn(pool, i, &verdict, "the fork server of this rank is gone, and its slots with it");
+    pool->slots[i].given_up = true;
+  }
+  farm_server_end(pool->server, pool->control);
+  pool->control = -1;
+  pool->server = 0;
+}
+
+static void hear_server(struct farm_pool *pool) {
+  for (;;) {
+    struct farm_server_message message;
+    int channel;
+    const int got = farm_server_hear(pool->control, &message, &channel);
+    if (got == 0) return;
+    if (got < 0 || message.slot < 0 || message.slot >= pool->setup.options.slots) {
+      if (channel >= 0) close(channel);
+      server_died(pool);
+      return;
+    }
+    if (message.verb == FARM_SERVER_SPAWNED) {
+      pool->slots[message.slot].channel = channel;
+      pool->slots[message.slot].pid = message.pid;
+    } else if (message.verb == FARM_SERVER_DIED) {
+      slot_died(pool, &message);
+    }
+  }
+}
+
+/* In process, the deadline is kept here, as the slot is busy. Returns when to look again. In isolation the slot keeps
+ * it. */
+static int64_t keep_deadlines(struct farm_pool *pool) {
+  const int64_t now = farm_clock_ns(), late = now - pool->looked_ns;
+  pool->looked_ns = now;
+  int64_t next = INT64_MAX;
+  if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0)) return next;
+  const int64_t limit = farm_clock_from_s(pool->setup.options.time_limit_s);
+  for (int i = 0; i < pool->setup.options.slots; i++) {
+    struct slot *const slot = &pool->slots[i];
+    const uint64_t running = atomic_load(&pool->setup.records[i].running);
+    const int64_t started = atomic_load(&pool->setup.records[i].started_ns);
+    if (slot->channel < 0 || slot->jobs.count == 0) continue;
+    /* We look every second at least. If we did not, all of us were stopped (Ctrl-Z): not the run's fault. */
+    if (running && late > 2 * FARM_CLOCK_S) {
+      slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
+      slot->forgiven = running;
+    }
+    const int64_t until = (running ? started + (slot->forgiven == running ? slot->forgiven_ns : 0) : now) + limit;
+    if (running && now >= until && slot->killed != running) {
+      slot->killed = running;
+      farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
+    } else if (until < next && slot->killed != running) {
+      next = until;
+    }
+  }
+  return next;
+}
+
+bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns) {
+  const int slots = pool->setup.options.slots;
+  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = farm_clock_ns();
+  if (timeout_ns > FARM_CLOCK_S) timeout_ns = FARM_CLOCK_S;
+  if (deadline - now < timeout_ns) timeout_ns = deadline > now ? deadline - now : 0;
+  for (int i = 0; i < slots; i++) {
+    const struct slot *slot = &pool->slots[i];
+    pool->fds[i] = (struct pollfd){.fd = slot->channel, .events = POLLIN};
+    if (slot->out.begin < slot->out.end) pool->fds[i].events |= POLLOUT;
+  }
+  pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
+  pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
+  const struct timespec timeout = {timeout_ns / FARM_CLOCK_S, (long)(timeout_ns % FARM_CLOCK_S)};
+  const int ready = ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL);
+  if (ready <= 0) return false;
+  for (int i = 0; i < slots; i++) {
+    struct slot *const slot = &pool->slots[i];
+    if (pool->fds[i].revents & POLLOUT) flush(slot);
+    if (!(pool->fds[i].revents & (POLLIN | POLLHUP | POLLERR))) continue;
+    if (listen_to(pool, slot)) continue;
+    /* Closed: it is dead and the server will say why. Nonsense: kill it, and the server will say so. */
+    if (pool->control >= 0) farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
+    close(slot->channel);
+    slot->channel = -1;
+  }
+  if (pool->control >= 0 && pool->fds[slots].revents) hear_server(pool);
+  return true;
+}
+
+void farm_pool_end(struct farm_pool *pool) {
+  if (!pool) return;
+  if (pool->control >= 0) farm_server_end(pool->server, pool->control);
+  for (int i = 0; pool->slots && i < pool->setup.options.slots; i++) {
+    struct slot *const slot = &pool->slots[i];
+    if (slot->channel >= 0) close(slot->channel);
+    farm_job_clear(&slot->jobs);
+    farm_frame_free(&slot->in);
+    farm_frame_free(&slot->out);
+  }
+  farm_job_clear(&pool->queue);
+  if (pool->setup.records) munmap(pool->setup.records, pool->records_size);
+  free(pool->slots);
+  free(pool->fds);
+  free(pool);
+}

@@ -1,0 +1,39 @@
+/* The slots of one rank as its main process sees them: jobs in, results out, nothing blocks.
+ *
+ * Jobs wait in the pool's queue; each slot holds the one it computes and one more sent ahead (more if they are very
+ * short), so that it need not wait for the main process; what was sent ahead is taken back when another slot is idle.
+ */
+#ifndef CLAST_CAMPAIGN_FARM_POOL_H
+#define CLAST_CAMPAIGN_FARM_POOL_H
+
+#include "campaign/farm/farm.h"
+#include "campaign/farm/frame.h"
+#include "campaign/farm/job.h"
+
+struct farm_pool;
+
+/* A job ended. Called from farm_pool_wait only; the job is the receiver's from now on (free it). All else is borrowed.
+ */
+struct farm_pool_sink {
+  void *context;
+  void (*ended)(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
+                const char *message, size_t message_size);
+};
+
+status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out, struct error *error);
+void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink);
+void farm_pool_submit(struct farm_pool *pool, struct farm_job *job); /* owns the job until it ended */
+/* Takes back up to `most` jobs that have not begun, from the end of the queue, then from slots. */
+void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_queue *into);
+/* Hands waiting jobs to slots. Call after submitting and after farm_pool_wait. */
+void farm_pool_dispatch(struct farm_pool *pool);
+/* Sleeps until a slot, `signals` (a file to watch, or -1) or the timeout says something; takes in what slots say.
+ * True when anything happened. */
+bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns);
+int farm_pool_slots(const struct farm_pool *pool);    /* that work or will; 0: the pool is lost */
+size_t farm_pool_room(const struct farm_pool *pool);  /* how many jobs it wants in all, at the recent length of tasks */
+size_t farm_pool_count(const struct farm_pool *pool); /* jobs in it */
+/* Ends slots and server whatever they do, frees everything; jobs still in it are freed. NULL is fine. */
+void farm_pool_end(struct farm_pool *pool);
+
+#endif

@@ -1,0 +1,60 @@
+/* struct farm, shared by farm.c (start, end), manage.c (rank 0) and serve.c (the other ranks). */
+#ifndef CLAST_CAMPAIGN_FARM_PRIVATE_H
+#define CLAST_CAMPAIGN_FARM_PRIVATE_H
+
+#include <signal.h>
+#include <sys/types.h>
+
+#include "campaign/farm/farm.h"
+#include "campaign/farm/job.h"
+#include "campaign/farm/link.h"
+#include "campaign/farm/pool.h"
+
+#define FARM_HOST_SIZE 64
+
+/* Under MPI nobody can wake a sleeper: look, and when nothing came, sleep twice as long as before. */
+#define FARM_SLEEP_LEAST_NS (50 * INT64_C(1000))
+#define FARM_SLEEP_MOST_NS  (5 * INT64_C(1000000))
+
+struct farm_hello {
+  int32_t slots, frame_version;
+  char host[FARM_HOST_SIZE];
+};
+
+struct farm_end {
+  int64_t status, drop; /* drop: kill what runs */
+};
+
+/* What the manager knows of a rank; [0] is its own pool. */
+struct farm_peer {
+  int slots, started_with;
+  size_t out; /* tasks it has */
+  double mean_wall_s;
+  int64_t heard_ns;
+  bool lost, recalling, bye;
+  double cpu_s;
+  char host[FARM_HOST_SIZE];
+};
+
+struct farm {
+  struct farm_options options;
+  struct farm_pool *pool; /* NULL once dropped */
+  struct farm_link *link; /* NULL: alone */
+  int rank, ranks;
+  struct farm_peer *peers; /* manager: one per rank */
+  struct farm_usage usage;
+  /* Stop signals, taken through a file so that no handler and no global is needed. */
+  int signals;
+  sigset_t mask_before;
+  pid_t launcher; /* parent at the start: when it changes under MPI, mpirun is dead */
+  bool broken;    /* some rank is lost or does not answer: MPI_Finalize would hang */
+  status last;    /* of the last run */
+};
+
+status farm_manage(struct farm *farm, const struct farm_manager *manager, struct error *error);
+status farm_serve(struct farm *farm, struct error *error);
+
+/* The next stop signal that came, 0 = none. Also SIGTERM, once, when the launcher has died. */
+int farm_signal(struct farm *farm);
+
+#endif

@@ -1,0 +1,122 @@
+/* A rank other than 0: its pool works, its main process carries tasks and results between the pool and the manager. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/farm/clock.h"
+#include "campaign/farm/private.h"
+
+#define ALIVE_EVERY_NS (2 * FARM_CLOCK_S)
+
+struct server {
+  struct farm *farm;
+  struct error *error;
+  status failed; /* of a callback that cannot return one */
+  bool ended, drop;
+  status final;
+  struct error final_error;
+  int64_t said_ns;
+};
+
+static void keep(struct server *server, status result) {
+  if (server->failed == STATUS_OK) server->failed = result;
+}
+
+static void say(struct server *server, enum farm_frame_kind kind, uint64_t handle, int parts,
+                const struct iovec *part) {
+  keep(server, farm_link_send(server->farm->link, 0, kind, handle, parts, part, server->error));
+  server->said_ns = farm_clock_ns();
+}
+
+static void job_ended(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
+                      const char *message, size_t message_size) {
+  struct server *server = context;
+  say(server, FARM_FRAME_RESULT, job->handle, 3,
+      (struct iovec[]){
+          {(void *)result, sizeof *result}, {(void *)bytes, result->size}, {(void *)message, message_size}});
+  free(job);
+}
+
+static status take(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                   struct error *error) {
+  struct server *server = context;
+  (void)rank;
+  if (frame->kind == FARM_FRAME_TASK) {
+    struct farm_job *job = farm_job_new(frame->handle, payload, frame->size);
+    if (!job) return status_fail(error, STATUS_MEMORY, "no memory for a task of %zu bytes", (size_t)frame->size);
+    farm_pool_submit(server->farm->pool, job);
+  } else if (frame->kind == FARM_FRAME_RECALL) {
+    struct farm_job_queue back = {0};
+    farm_pool_withdraw(server->farm->pool, frame->handle, &back);
+    for (struct farm_job *job; (job = farm_job_pop(&back)); free(job))
+      say(server, FARM_FRAME_RETURNED, job->handle, 0, NULL);
+    say(server, FARM_FRAME_RECALLED, 0, 0, NULL);
+  } else if (frame->kind == FARM_FRAME_END) {
+    struct farm_end end;
+    if (frame->size < sizeof end) return status_fail(error, STATUS_INTERNAL, "the manager's last word is torn");
+    memcpy(&end, payload, sizeof end);
+    server->ended = true;
+    server->drop = end.drop != 0;
+    server->final = (status)end.status;
+    if (end.status != STATUS_OK)
+      status_fail(&server->final_error, server->final, "%.*s", (int)(frame->size - sizeof end),
+                  (const char *)payload + sizeof end);
+  } else {
+    return status_fail(error, STATUS_INTERNAL, "the manager sent a message of unknown kind %d", frame->kind);
+  }
+  return STATUS_OK;
+}
+
+/* Between two signals or after the launcher's death the manager may be gone for good: then leave alone. */
+static bool leave_alone(struct server *server, int64_t *leave_ns) {
+  const int number = farm_signal(server->farm);
+  if (number) say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
+  if (server->farm->broken && *leave_ns == 0) *leave_ns = farm_clock_ns() + 2 * FARM_CLOCK_S;
+  return *leave_ns != 0 && farm_clock_ns() > *leave_ns;
+}
+
+status farm_serve(struct farm *farm, struct error *error) {
+  struct server server = {.farm = farm, .error = error, .said_ns = farm_clock_ns()};
+  const double cpu = farm_clock_cpu_s();
+  int64_t sleep_ns = FARM_SLEEP_LEAST_NS, leave_ns = 0, looked_ns = 0;
+  farm_pool_sink_to(farm->pool, (struct farm_pool_sink){&server, job_ended});
+  bool empty_said = false;
+  while (!server.ended) {
+    int count = 0;
+    const bool heard = farm_pool_wait(farm->pool, farm->signals, sleep_ns);
+    keep(&server, farm_link_drain(farm->link, take, &server, &count, error));
+    farm_pool_dispatch(farm->pool);
+    const int64_t now = farm_clock_ns();
+    if (now - looked_ns > 50 * FARM_CLOCK_MS || heard) {
+      looked_ns = now;
+      if (leave_alone(&server, &leave_ns)) {
+        keep(&server, status_fail(error, STATUS_STOPPED, "the launcher of this rank has died"));
+        break;
+      }
+    }
+    const int slots = farm_pool_slots(farm->pool);
+    if (now - server.said_ns > ALIVE_EVERY_NS || (slots == 0 && !empty_said)) {
+      empty_said = slots == 0;
+      say(&server, FARM_FRAME_ALIVE, (uint64_t)slots, 0, NULL);
+    }
+    keep(&server, farm_link_flush(farm->link, error));
+    if (server.failed != STATUS_OK) {
+      farm->broken = true;
+      return server.failed;
+    }
+    sleep_ns = heard || count > 0                  ? FARM_SLEEP_LEAST_NS
+               : sleep_ns * 2 < FARM_SLEEP_MOST_NS ? sleep_ns * 2
+                                                   : FARM_SLEEP_MOST_NS;
+  }
+  if (!server.ended) return server.failed;
+  if (server.drop) {
+    farm_pool_end(farm->pool);
+    farm->pool = NULL;
+  }
+  const double used = farm_clock_cpu_s() - cpu;
+  farm->usage.waiting_cpu_s = used;
+  say(&server, FARM_FRAME_BYE, 0, 1, &(struct iovec){(void *)&used, sizeof used});
+  keep(&server, farm_link_flush(farm->link, error));
+  if (server.failed != STATUS_OK) return server.failed;
+  if (server.final != STATUS_OK && error) *error = server.final_error;
+  return server.final;
+}

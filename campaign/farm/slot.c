@@ -1,0 +1,145 @@
+#include "campaign/farm/slot.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "campaign/farm/clock.h"
+#include "campaign/farm/isolate.h"
+
+/* Results of short tasks are sent together: when this old, this many, or when there is nothing else to do. */
+#define FLUSH_AFTER_NS (200 * FARM_CLOCK_MS / 1000)
+#define FLUSH_AT_BYTES 32768
+
+void farm_slot_die_with(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(STATUS_OK);
+}
+
+static void flush(int channel, struct farm_bytes *out) {
+  while (out->begin < out->end) {
+    const ssize_t n = send(channel, out->data + out->begin, out->end - out->begin, MSG_NOSIGNAL);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) _exit(STATUS_OK); /* the main process is gone */
+    out->begin += (size_t)n;
+  }
+  farm_frame_trim(out);
+}
+
+/* Peak memory in process is the high-water mark of the slot. It is put back after a task that raised it (where the
+ * kernel lets us), so that a task does not inherit a larger predecessor's. */
+static int64_t peak_memory(int64_t *floor) {
+  struct rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  const int64_t peak = (int64_t)usage.ru_maxrss * 1024;
+  if (*floor == 0) { /* the slot before its first task */
+    *floor = peak;
+    return peak;
+  }
+  if (peak > *floor + (1 << 20)) {
+    const int file = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
+    if (file >= 0) {
+      if (write(file, "5", 1) != 1) *floor = peak;
+      close(file);
+    }
+  }
+  return peak;
+}
+
+static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t handle, const uint8_t *task, size_t size,
+                     int64_t *floor, struct farm_bytes *out) {
+  uint8_t *result = NULL;
+  size_t result_size = 0;
+  struct error error = {0};
+  const size_t memory_limit = setup->options.memory_limit;
+  if (memory_limit) farm_isolate_limit_memory(memory_limit);
+  const int64_t start = farm_clock_ns();
+  const double cpu = farm_clock_cpu_s();
+  const status verdict = setup->work(task, size, &result, &result_size, &error);
+  struct farm_result head = {.slot = slot,
+                             .cpu_s = farm_clock_cpu_s() - cpu,
+                             .wall_s = 1e-9 * (double)(farm_clock_ns() - start),
+                             .exit_code = verdict,
+                             .peak_memory = peak_memory(floor)};
+  if (memory_limit) farm_isolate_limit_memory(0);
+  struct iovec part[2] = {{&head, sizeof head}, {result, result_size}};
+  head.size = result_size;
+  if (verdict != STATUS_OK) {
+    head.ending = verdict == STATUS_MEMORY && memory_limit ? FARM_MEMORY_LIMIT : FARM_FAILED;
+    head.size = 0;
+    part[1] = (struct iovec){error.message, strlen(error.message)};
+  }
+  bool written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
+  if (!written) {
+    head.ending = FARM_FAILED;
+    head.exit_code = STATUS_MEMORY;
+    head.size = 0;
+    char text[128];
+    const int n = snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", result_size);
+    part[1] = (struct iovec){text, (size_t)n};
+    written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
+  }
+  free(result);
+  return written;
+}
+
+static bool claim(struct farm_slot_record *record, const struct farm_frame *frame) {
+  uint64_t expected = frame->handle;
+  /* `running` first: a death between the two lines blames a task that main then finds still offered, and runs again. */
+  atomic_store(&record->started_ns, farm_clock_ns());
+  atomic_store(&record->running, frame->handle);
+  if (frame->ticket < FARM_SLOT_TICKETS && atomic_compare_exchange_strong(&record->ticket[frame->ticket], &expected, 0))
+    return true;
+  atomic_store(&record->running, 0);
+  return false;
+}
+
+_Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, int channel, pid_t parent) {
+  farm_slot_die_with(parent);
+  /* If the machine runs out of memory, a run is to be ended, not the manager. Raising is allowed to everybody. */
+  const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (score >= 0) {
+    if (write(score, "500", 3) != 3) errno = 0;
+    close(score);
+  }
+  struct farm_slot_record *const record = &setup->records[slot];
+  struct farm_bytes in = {0}, out = {0};
+  struct farm_isolate isolate;
+  int64_t memory_floor = 0, flushed = farm_clock_ns();
+  peak_memory(&memory_floor);
+  if (!setup->options.in_process && !farm_isolate_open(&isolate, channel)) _exit(STATUS_MEMORY);
+  for (;;) {
+    struct farm_frame frame;
+    const uint8_t *payload;
+    int got;
+    while ((got = farm_frame_next(&in, &frame, &payload)) == 1) {
+      if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame)) continue;
+      const bool written = setup->options.in_process
+                               ? run_here(setup, slot, frame.handle, payload, frame.size, &memory_floor, &out)
+                               : farm_isolate_run(&isolate, setup, slot, frame.handle, payload, frame.size, &out);
+      if (!written) _exit(STATUS_MEMORY);
+      atomic_store(&record->running, 0);
+      const int64_t now = farm_clock_ns();
+      if (now - flushed > FLUSH_AFTER_NS || out.end - out.begin > FLUSH_AT_BYTES) {
+        flush(channel, &out);
+        flushed = now;
+      }
+    }
+    if (got < 0) _exit(STATUS_INTERNAL);
+    flush(channel, &out);
+    if (in.begin == in.end) farm_frame_trim(&in);
+    if (!farm_frame_reserve(&in, farm_frame_missing(&in, 4096))) _exit(STATUS_MEMORY);
+    const ssize_t n = recv(channel, in.data + in.end, in.capacity - in.end, 0);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) _exit(STATUS_OK);
+    in.end += (size_t)n;
+    flushed = farm_clock_ns();
+  }
+}

@@ -1,0 +1,147 @@
+#include "campaign/point.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct point *point_create(const struct campaign *campaign, struct scene *scene) {
+  struct point *point = calloc(1, sizeof *point);
+  if (!point) {
+    scene_free(scene);
+    return NULL;
+  }
+  point->scene = scene;
+  point->rule = (struct design_stopping){.minimum = campaign_replicates_least(campaign),
+                                         .maximum = campaign_replicates_most(campaign),
+                                         .batch = campaign->until_batch,
+                                         .half_width = campaign->until_half_width,
+                                         .level = campaign->until_level};
+  point->rule.fixed = campaign->per_point > 0;
+  point->prefix = point->rule.minimum;
+  point->cost.work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+  if (!point_reserve(point, 0)) {
+    point_free(point);
+    return NULL;
+  }
+  return point;
+}
+
+void point_free(struct point *point) {
+  if (!point)
+    return;
+  scene_free(point->scene);
+  free(point->replicates);
+  free(point->values);
+  free(point);
+}
+
+bool point_reserve(struct point *point, int64_t replicate) {
+  if (replicate < point->capacity)
+    return true;
+  int64_t capacity = point->capacity ? point->capacity : 16;
+  while (capacity <= replicate)
+    capacity *= 2;
+  struct point_replicate *replicates = realloc(point->replicates, (size_t)capacity * sizeof *replicates);
+  if (replicates)
+    point->replicates = replicates;
+  double *values = realloc(point->values, (size_t)capacity * sizeof *values);
+  if (values)
+    point->values = values;
+  if (!replicates || !values)
+    return false;
+  for (int64_t r = point->capacity; r < capacity; r++) {
+    replicates[r] = (struct point_replicate){.state = POINT_WANTED};
+    values[r] = NAN;
+  }
+  point->capacity = capacity;
+  return true;
+}
+
+void point_finish_replicate(struct point *point, int64_t replicate, enum point_state state, double value) {
+  point->replicates[replicate].state = (unsigned char)state;
+  point->values[replicate] = value;
+}
+
+void point_want_again(struct point *point, int64_t replicate) {
+  point->replicates[replicate].state = POINT_WANTED;
+  if (replicate < point->wanted_from)
+    point->wanted_from = replicate;
+}
+
+static bool is_complete(const struct point *point, int64_t r) {
+  return r < point->capacity && (point->replicates[r].state == POINT_DONE || point->replicates[r].state == POINT_FAILED);
+}
+
+bool point_judge(struct point *point) {
+  bool changed = false;
+  while (!point->decided) {
+    while (point->complete < point->prefix && is_complete(point, point->complete))
+      point->complete++;
+    if (point->complete < point->prefix)
+      break;
+    point->verdict = design_stopping_judge(&point->rule, point->values, &point->prefix);
+    point->decided = point->verdict != DESIGN_GROW;
+    changed = true;
+  }
+  return changed;
+}
+
+int64_t point_next(struct point *point, bool ahead) {
+  if (point->decided)
+    return -1;
+  int64_t end = point->prefix;
+  if (ahead)
+    end = point->rule.batch < point->rule.maximum - end ? end + point->rule.batch : point->rule.maximum;
+  for (; point->wanted_from < end; point->wanted_from++) {
+    if (!point_reserve(point, point->wanted_from))
+      return -1;
+    if (point->replicates[point->wanted_from].state == POINT_WANTED)
+      return point->wanted_from;
+  }
+  return -1;
+}
+
+static void want(struct point *point, int64_t r) {
+  struct point_replicate *replicate = &point->replicates[r];
+  if (replicate->state == POINT_DONE && !replicate->fields && !replicate->replay && !replicate->replaying) {
+    replicate->replay = true;
+    point->replays++;
+  }
+}
+
+void point_want_fields(struct point *point, const struct campaign *campaign) {
+  int64_t least = -1, most = -1;
+  switch (campaign->keep) {
+  case CAMPAIGN_KEEP_ALL:
+  case CAMPAIGN_KEEP_FIRST:
+    for (int64_t r = 0; r < point->prefix; r++)
+      if (campaign->keep == CAMPAIGN_KEEP_ALL || r < campaign->keep_first)
+        want(point, r);
+    break;
+  case CAMPAIGN_KEEP_EXTREMES: /* ties go to the lower replicate, so that the choice depends on the results alone */
+    for (int64_t r = 0; r < point->prefix; r++) {
+      double value = point->values[r];
+      if (isnan(value))
+        continue;
+      if (least < 0 || value < point->values[least])
+        least = r;
+      if (most < 0 || value > point->values[most])
+        most = r;
+    }
+    if (least >= 0) {
+      want(point, least);
+      want(point, most);
+    }
+    break;
+  default:
+    break;
+  }
+}
+
+bool point_over(const struct point *point) { return point->decided && point->out == 0 && point->replays == 0; }
+
+int64_t point_missing(const struct point *point) {
+  int64_t missing = 0;
+  for (int64_t r = point->complete; r < point->prefix; r++)
+    missing += !is_complete(point, r);
+  return missing;
+}

@@ -1,0 +1,56 @@
+/* One point of a campaign under way: which of its replicates are wanted, out, done; its prefix; what it costs. For the
+ * driver only. */
+#ifndef CLAST_CAMPAIGN_POINT_H
+#define CLAST_CAMPAIGN_POINT_H
+
+#include "campaign/campaign.h"
+#include "campaign/cost.h"
+#include "campaign/design/stopping.h"
+
+enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED };
+
+struct point_replicate {
+  unsigned char state;   /* enum point_state */
+  bool counted;          /* stored, and not surplus */
+  bool surplus;          /* stored with surplus = 1 */
+  bool fields;           /* its HDF5 file is there */
+  bool replay, replaying; /* its HDF5 file is wanted, and under way */
+};
+
+struct point {
+  struct scene *scene; /* owned */
+  int64_t id;          /* in the store */
+  struct design_stopping rule;
+  int64_t prefix;      /* replicates that are to be complete */
+  int64_t complete;    /* replicates below this are done or failed */
+  int64_t wanted_from; /* none below this is wanted */
+  bool decided;
+  enum design_verdict verdict;
+  int64_t capacity;    /* of the arrays */
+  struct point_replicate *replicates;
+  double *values;      /* main quantity; NaN = failed or not there */
+  int64_t out;         /* runs and replays on slots */
+  int64_t replays;     /* wanted and not under way */
+  struct cost_point cost;
+};
+
+/* Takes the scene. NULL when memory is out (the scene is freed). */
+struct point *point_create(const struct campaign *campaign, struct scene *scene);
+void point_free(struct point *point); /* NULL is fine */
+
+/* Room for replicate r: false when memory is out. */
+bool point_reserve(struct point *point, int64_t replicate);
+void point_want_again(struct point *point, int64_t replicate); /* a failed attempt that may be repeated */
+void point_finish_replicate(struct point *point, int64_t replicate, enum point_state state, double value);
+/* Judges complete prefixes until one is not, or the point is decided. True when the prefix or the decision changed. */
+bool point_judge(struct point *point);
+/* The lowest replicate to send out now, -1 for none. `ahead`: also beyond the prefix, one batch at most. */
+int64_t point_next(struct point *point, bool ahead);
+/* After the decision: marks which replicates' fields are to be computed again. */
+void point_want_fields(struct point *point, const struct campaign *campaign);
+/* Nothing more to send out and nothing out. */
+bool point_over(const struct point *point);
+/* Runs of the prefix that are neither done nor failed. */
+int64_t point_missing(const struct point *point);
+
+#endif

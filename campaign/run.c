@@ -1,0 +1,264 @@
+#include "campaign/run.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* Both encodings begin so. All ranks of a farm run one binary; the mark and the sizes catch anything else. */
+#define TASK_MARK "clast task 1"
+#define RESULT_MARK "clast result 1"
+
+void run_result_clear(struct run_result *result) {
+  free(result->result);
+  free(result->fragments);
+  *result = (struct run_result){0};
+}
+
+/* The folder of a fields file is made by whoever writes first. */
+static status write_fields(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
+  const char *slash = strrchr(path, '/');
+  if (slash && slash != path) {
+    char *folder = strndup(path, (size_t)(slash - path));
+    int failed = !folder || (mkdir(folder, 0777) != 0 && errno != EEXIST);
+    if (failed)
+      status_fail(error, STATUS_IO, "cannot make the folder '%s' for fields: %s", folder ? folder : "", strerror(errno));
+    free(folder);
+    if (failed)
+      return STATUS_IO;
+  }
+  return kind->write_fields(run, path, error);
+}
+
+static status invalid(const struct engine_kind *kind, struct run_result *result, const struct error *why,
+                      struct error *error) {
+  field_defaults(&outcome_table, &result->outcome);
+  result->outcome.state = OUTCOME_INVALID;
+  snprintf(result->outcome.message, sizeof result->outcome.message, "%.*s", FIELD_TEXT_SIZE - 1, why->message);
+  result->result = calloc(1, kind->results->size);
+  if (!result->result)
+    return status_fail(error, STATUS_MEMORY, "no memory for the result");
+  field_defaults(kind->results, result->result);
+  return STATUS_OK;
+}
+
+status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
+                    struct run_result *result, struct error *error) {
+  const struct engine_kind *kind = request->kind;
+  struct error why = {0};
+  void *run = NULL;
+  *result = (struct run_result){0};
+  status code = kind->prepare(request->inputs, request->seed, &run, &why);
+  if (code == STATUS_CONTENT)
+    return invalid(kind, result, &why, error);
+  if (code != STATUS_OK)
+    return status_fail(error, code, "%s", why.message);
+  for (bool finished = false; code == STATUS_OK && !finished;) {
+    code = kind->step(run, watch ? block : UINT64_C(1) << 62, &finished, error);
+    if (code == STATUS_OK && watch)
+      code = watch(context, kind, run, error);
+  }
+  if (code != STATUS_OK)
+    goto cleanup;
+  result->result = calloc(1, kind->results->size);
+  if (!result->result) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the result");
+    goto cleanup;
+  }
+  code = kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error);
+  if (code == STATUS_OK && result->fragment_count > 0) {
+    code = estimates_make(result->fragment_count, result->fragments, result->estimates, error);
+    result->estimate_count = ESTIMATES_COUNT;
+  }
+  if (code == STATUS_OK && request->fields_path)
+    code = write_fields(kind, run, request->fields_path, error);
+cleanup:
+  kind->free(run);
+  if (code != STATUS_OK)
+    run_result_clear(result);
+  return code;
+}
+
+/* Bytes out: a first pass with bytes = NULL counts, a second writes. */
+struct writer {
+  uint8_t *bytes;
+  size_t size;
+};
+static void put(struct writer *writer, const void *data, size_t size) {
+  if (writer->bytes && size)
+    memcpy(writer->bytes + writer->size, data, size);
+  writer->size += size;
+}
+static void put_count(struct writer *writer, uint64_t count) { put(writer, &count, sizeof count); }
+static void put_text(struct writer *writer, const char *text) {
+  put_count(writer, strlen(text));
+  put(writer, text, strlen(text));
+}
+static void put_object(struct writer *writer, const struct field_table *table, const void *object) {
+  size_t size = field_encoded_size(table, object);
+  put_count(writer, size);
+  if (writer->bytes)
+    field_encode(table, object, writer->bytes + writer->size);
+  writer->size += size;
+}
+
+/* Bytes in; any shortfall or surprise turns `good` off, and everything after it reads as nothing. */
+struct reader {
+  const uint8_t *bytes;
+  size_t left;
+  bool good;
+};
+static const uint8_t *take(struct reader *reader, uint64_t size) {
+  if (!reader->good || size > reader->left) {
+    reader->good = false;
+    return NULL;
+  }
+  const uint8_t *here = reader->bytes;
+  reader->bytes += size;
+  reader->left -= (size_t)size;
+  return here;
+}
+static uint64_t take_count(struct reader *reader) {
+  uint64_t count = 0;
+  const uint8_t *bytes = take(reader, sizeof count);
+  if (bytes)
+    memcpy(&count, bytes, sizeof count);
+  return count;
+}
+static bool take_text(struct reader *reader, char *text, size_t size) {
+  uint64_t length = take_count(reader);
+  const uint8_t *bytes = take(reader, length);
+  if (!bytes || length >= size)
+    return reader->good = false;
+  memcpy(text, bytes, (size_t)length);
+  text[length] = '\0';
+  return true;
+}
+static void take_mark(struct reader *reader, const char *mark) {
+  char text[32];
+  if (!take_text(reader, text, sizeof text) || strcmp(text, mark) != 0)
+    reader->good = false;
+}
+static void take_object(struct reader *reader, const struct field_table *table, void *object) {
+  uint64_t size = take_count(reader);
+  const uint8_t *bytes = take(reader, size);
+  if (bytes && (!object || field_decode(table, bytes, (size_t)size, object) != size))
+    reader->good = false;
+}
+
+static void write_task(struct writer *writer, const struct run_request *request) {
+  put_text(writer, TASK_MARK);
+  put_text(writer, request->kind->name);
+  put_count(writer, request->seed);
+  put_text(writer, request->fields_path ? request->fields_path : "");
+  put_object(writer, request->kind->inputs, request->inputs);
+}
+
+uint8_t *run_encode_task(const struct run_request *request, size_t *size) {
+  struct writer writer = {0};
+  write_task(&writer, request);
+  writer = (struct writer){.bytes = malloc(writer.size)};
+  if (writer.bytes)
+    write_task(&writer, request);
+  *size = writer.size;
+  return writer.bytes;
+}
+
+static void write_result(struct writer *writer, const struct engine_kind *kind, const struct run_result *result) {
+  put_text(writer, RESULT_MARK);
+  put_object(writer, &outcome_table, &result->outcome);
+  put_object(writer, kind->results, result->result);
+  put_count(writer, sizeof(struct fragment));
+  put_count(writer, result->fragment_count);
+  put(writer, result->fragments, result->fragment_count * sizeof(struct fragment));
+  put_count(writer, result->estimate_count);
+  for (size_t i = 0; i < result->estimate_count; i++)
+    put_object(writer, &estimates_table, &result->estimates[i]);
+}
+
+uint8_t *run_encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
+  struct writer writer = {0};
+  write_result(&writer, kind, result);
+  writer = (struct writer){.bytes = malloc(writer.size)};
+  if (writer.bytes)
+    write_result(&writer, kind, result);
+  *size = writer.size;
+  return writer.bytes;
+}
+
+status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
+                         struct error *error) {
+  struct reader reader = {bytes, size, true};
+  *result = (struct run_result){0};
+  result->result = calloc(1, kind->results->size);
+  if (!result->result)
+    return status_fail(error, STATUS_MEMORY, "no memory for a result");
+  take_mark(&reader, RESULT_MARK);
+  take_object(&reader, &outcome_table, &result->outcome);
+  take_object(&reader, kind->results, result->result);
+  if (take_count(&reader) != sizeof(struct fragment))
+    reader.good = false;
+  uint64_t count = take_count(&reader);
+  const uint8_t *fragments = count <= reader.left / sizeof(struct fragment)
+                                 ? take(&reader, count * sizeof(struct fragment))
+                                 : take(&reader, UINT64_MAX);
+  if (fragments && count > 0) {
+    result->fragments = malloc((size_t)count * sizeof(struct fragment));
+    if (!result->fragments) {
+      run_result_clear(result);
+      return status_fail(error, STATUS_MEMORY, "no memory for a result");
+    }
+    memcpy(result->fragments, fragments, (size_t)count * sizeof(struct fragment));
+    result->fragment_count = (size_t)count;
+  }
+  uint64_t estimates = take_count(&reader);
+  if (estimates > ESTIMATES_COUNT)
+    reader.good = false;
+  for (uint64_t i = 0; reader.good && i < estimates; i++)
+    take_object(&reader, &estimates_table, &result->estimates[i]);
+  if (!reader.good || reader.left) {
+    run_result_clear(result);
+    return status_fail(error, STATUS_INTERNAL,
+                       "a worker's answer cannot be read: it was damaged, or comes from another version of clast");
+  }
+  result->estimate_count = (size_t)estimates;
+  return STATUS_OK;
+}
+
+status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
+                   struct error *error) {
+  struct reader reader = {task, task_size, true};
+  char name[64], fields_path[4096];
+  *result = NULL;
+  *result_size = 0;
+  take_mark(&reader, TASK_MARK);
+  take_text(&reader, name, sizeof name);
+  uint64_t seed = take_count(&reader);
+  take_text(&reader, fields_path, sizeof fields_path);
+  const struct engine_kind *kind = reader.good ? find(name, error) : NULL;
+  if (reader.good && !kind)
+    return STATUS_INTERNAL;
+  void *inputs = kind ? calloc(1, kind->inputs->size) : NULL;
+  if (kind && !inputs)
+    return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+  if (kind)
+    take_object(&reader, kind->inputs, inputs);
+  status code = STATUS_OK;
+  if (!reader.good || reader.left)
+    code = status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");
+  struct run_result values = {0};
+  if (code == STATUS_OK) {
+    struct run_request request = {kind, inputs, seed, fields_path[0] ? fields_path : NULL};
+    code = run_simulate(&request, NULL, NULL, 0, &values, error);
+  }
+  if (code == STATUS_OK && !(*result = run_encode_result(kind, &values, result_size)))
+    code = status_fail(error, STATUS_MEMORY, "no memory for the result");
+  run_result_clear(&values);
+  free(inputs);
+  return code;
+}
+
+status run_work(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size, struct error *error) {
+  return run_execute(engine_find, task, task_size, result, result_size, error);
+}

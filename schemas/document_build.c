@@ -1,0 +1,369 @@
+#include <libfyaml.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/document_tree.h"
+
+enum { PATH_SIZE = 200 };
+
+struct anchor {
+  const char *name; /* in the text, not terminated */
+  size_t length;
+  document_node *node;
+};
+
+struct builder {
+  struct document *document;
+  document_node *open[DOCUMENT_DEEPEST]; /* collections being filled, outermost first */
+  document_node *key[DOCUMENT_DEEPEST];  /* the key that waits for its value, per level */
+  size_t depth;
+  struct anchor *anchors;
+  size_t anchor_count;
+  bool failed; /* out of memory or a limit: stop */
+};
+
+static document_node *create(struct builder *b, enum document_kind kind, const char *text, size_t length, size_t start,
+                             size_t end) {
+  struct document *document = b->document;
+  if (document->node_count >= DOCUMENT_MOST_NODES) {
+    if (!b->failed)
+      document_report_at(document, start, end, NULL, "more than %d values, aliases counted as often as used; use less",
+                         DOCUMENT_MOST_NODES);
+    b->failed = true;
+    return NULL;
+  }
+  document_node *node = calloc(1, sizeof *node + length + 1);
+  if (!node) {
+    b->failed = true;
+    return NULL;
+  }
+  node->document = document;
+  node->kind = kind;
+  node->start = start;
+  node->end = end > start ? end : start + 1;
+  if (length) memcpy(node->text, text, length);
+  node->next = document->nodes;
+  document->nodes = node;
+  document->node_count++;
+  return node;
+}
+
+static void append(struct builder *b, document_node *to, document_node *key, document_node *value) {
+  if (to->count == to->capacity) {
+    size_t capacity = to->capacity ? 2 * to->capacity : 4;
+    struct document_pair *pairs = realloc(to->pairs, capacity * sizeof *pairs);
+    if (!pairs) {
+      b->failed = true;
+      return;
+    }
+    to->pairs = pairs;
+    to->capacity = capacity;
+  }
+  to->pairs[to->count++] = (struct document_pair){.key = key, .value = value};
+}
+
+/* The path of what is being read now, such as "vary.grain.density[2]". */
+static const char *where(const struct builder *b, char path[PATH_SIZE]) {
+  size_t used = 0;
+  *path = 0;
+  for (size_t i = 0; i < b->depth && used < PATH_SIZE; i++) {
+    int n = 0;
+    if (b->open[i]->kind == DOCUMENT_SEQUENCE)
+      n = snprintf(path + used, PATH_SIZE - used, "[%zu]", b->open[i]->count);
+    else if (b->key[i])
+      n = snprintf(path + used, PATH_SIZE - used, "%s%s", used ? "." : "", b->key[i]->text);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  return path;
+}
+
+/* Put a finished node where it belongs: root, item, key or value. */
+static void attach(struct builder *b, document_node *node) {
+  if (!node) return;
+  if (b->depth == 0) {
+    b->document->root = node;
+    return;
+  }
+  document_node *parent = b->open[b->depth - 1], **key = &b->key[b->depth - 1];
+  if (parent->kind == DOCUMENT_SEQUENCE) {
+    append(b, parent, NULL, node);
+  } else if (!*key) {
+    if (node->kind != DOCUMENT_SCALAR && !node->faulty) {
+      document_report(node, where(b, (char[PATH_SIZE]){0}), "expected a word as key, got %s",
+                      document_value_what(node));
+      node->faulty = true;
+    }
+    *key = node;
+  } else {
+    if (node->end == node->start + 1 && node->plain && !node->text[0]) { /* nothing: point at its key */
+      node->start = (*key)->start;
+      node->end = (*key)->end;
+    }
+    append(b, parent, *key, node);
+    *key = NULL;
+  }
+}
+
+static document_node *copy(struct builder *b, const document_node *from, size_t depth) {
+  if (depth >= DOCUMENT_DEEPEST) {
+    document_report_at(b->document, from->start, from->end, NULL, "nested more than %d deep", DOCUMENT_DEEPEST);
+    b->failed = true;
+    return NULL;
+  }
+  document_node *node = create(b, from->kind, from->text, strlen(from->text), from->start, from->end);
+  if (!node) return NULL;
+  node->plain = from->plain;
+  node->faulty = from->faulty;
+  for (size_t i = 0; i < from->count && !b->failed; i++) {
+    document_node *key = from->pairs[i].key ? copy(b, from->pairs[i].key, depth + 1) : NULL;
+    document_node *value = copy(b, from->pairs[i].value, depth + 1);
+    if (value && (key || !from->pairs[i].key)) append(b, node, key, value);
+  }
+  return node;
+}
+
+static void remember(struct builder *b, struct fy_token *token, document_node *node) {
+  if (!token || !node) return;
+  size_t length = 0;
+  const char *name = fy_token_get_text(token, &length);
+  const struct fy_mark *mark = fy_token_start_mark(token);
+  if (!name) return;
+  if (b->anchor_count == DOCUMENT_MOST_ANCHORS) {
+    document_report_at(b->document, mark ? mark->input_pos : 0, 0, NULL, "more than %d anchors", DOCUMENT_MOST_ANCHORS);
+    b->failed = true;
+    return;
+  }
+  char *kept = malloc(length + 1);
+  if (!kept) {
+    b->failed = true;
+    return;
+  }
+  memcpy(kept, name, length);
+  kept[length] = 0;
+  b->anchors[b->anchor_count++] = (struct anchor){kept, length, node};
+}
+
+static document_node *alias(struct builder *b, struct fy_token *token, size_t start, size_t end) {
+  size_t length = 0;
+  const char *name = fy_token_get_text(token, &length);
+  const document_node *target = NULL;
+  for (size_t i = b->anchor_count; name && i-- > 0 && !target;)
+    if (b->anchors[i].length == length && memcmp(b->anchors[i].name, name, length) == 0) target = b->anchors[i].node;
+  bool open = false;
+  for (size_t i = 0; i < b->depth; i++)
+    open = open || b->open[i] == target;
+  if (target && !open) return copy(b, target, b->depth);
+  char path[PATH_SIZE];
+  int shown = length < 60 ? (int)length : 60;
+  if (target)
+    document_report_at(b->document, start, end, where(b, path), "alias '*%.*s' stands inside what it refers to", shown,
+                       name);
+  else
+    document_report_at(b->document, start, end, where(b, path), "alias '*%.*s' has no anchor '&%.*s' before it", shown,
+                       name ? name : "", shown, name ? name : "");
+  document_node *node = create(b, DOCUMENT_SCALAR, "", 0, start, end);
+  if (node) node->faulty = true;
+  return node;
+}
+
+static document_node *scalar(struct builder *b, struct fy_token *token, size_t start, size_t end) {
+  size_t length = 0;
+  const char *text = token ? fy_token_get_text(token, &length) : "";
+  if (!text) text = "", length = 0;
+  size_t bad = document_guard_text(text, length);
+  document_node *node = create(b, DOCUMENT_SCALAR, text, bad, start, end);
+  if (!node) return NULL;
+  node->plain = !token || fy_token_scalar_style(token) == FYSS_PLAIN;
+  if (bad < length) {
+    document_report(node, where(b, (char[PATH_SIZE]){0}), "text with an escaped control character (0x%02x); remove it",
+                    (unsigned char)text[bad]);
+    node->faulty = true;
+  }
+  return node;
+}
+
+static int by_text(const void *a, const void *b) {
+  const document_node *const *left = a, *const *right = b;
+  int order = strcmp((*left)->text, (*right)->text);
+  if (order) return order;
+  return (*left)->start < (*right)->start ? -1 : (*left)->start > (*right)->start;
+}
+
+/* Sorted, not pairwise: a file of a hundred thousand keys must not take minutes. */
+static void report_duplicates(struct builder *b, document_node *mapping) {
+  document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
+  if (!keys) {
+    b->failed = true;
+    return;
+  }
+  for (size_t i = 0; i < mapping->count; i++)
+    keys[i] = mapping->pairs[i].key;
+  qsort(keys, mapping->count, sizeof *keys, by_text);
+  for (size_t i = 1, first = 0; i < mapping->count; i++) {
+    if (strcmp(keys[first]->text, keys[i]->text) != 0 || keys[i]->faulty || keys[first]->faulty)
+      first = i;
+    else if (b->document->error_count < DOCUMENT_MOST_ERRORS) {
+      char path[PATH_SIZE], whole[2 * PATH_SIZE];
+      where(b, path);
+      snprintf(whole, sizeof whole, "%s%s%.150s", path, *path ? "." : "", keys[i]->text);
+      document_report(keys[i], whole, "given twice; the first is in line %zu; remove one",
+                      document_report_line(b->document, keys[first]->start));
+    } else
+      b->document->error_count++;
+  }
+  free(keys);
+}
+
+static void open_collection(struct builder *b, document_node *node) {
+  if (!node) return;
+  if (b->depth == DOCUMENT_DEEPEST) {
+    document_report(node, NULL, "nested more than %d deep", DOCUMENT_DEEPEST);
+    b->failed = true;
+    return;
+  }
+  b->open[b->depth] = node;
+  b->key[b->depth++] = NULL;
+}
+
+static void close_collection(struct builder *b, size_t end) {
+  if (b->depth == 0) return;
+  document_node *node = b->open[--b->depth];
+  if (end > node->start) node->end = end;
+  if (node->kind == DOCUMENT_MAPPING && node->count > 1) report_duplicates(b, node);
+  attach(b, node);
+}
+
+static void report_tag(struct builder *b, document_node *node) {
+  char path[PATH_SIZE];
+  if (node) document_report(node, where(b, path), "a tag; write the value without '!'");
+}
+
+/* One event into the tree. False: the document's end. */
+static bool take(struct builder *b, struct fy_event *event, size_t *documents) {
+  const struct fy_mark *from = fy_event_start_mark(event), *to = fy_event_end_mark(event);
+  size_t start = from ? from->input_pos : 0, end = to ? to->input_pos : start;
+  const char *text = b->document->text;
+  if (start && end >= start && end < b->document->size && (text[start - 1] == '"' || text[start - 1] == '\'') &&
+      text[end] == text[start - 1] && event->type == FYET_SCALAR)
+    start--, end++; /* libfyaml's marks leave out the quotes, and the star of an alias */
+  if (event->type == FYET_ALIAS && start && text[start - 1] == '*') start--;
+  switch (event->type) {
+  case FYET_STREAM_END:
+    return false;
+  case FYET_DOCUMENT_START:
+    if (++*documents > 1) {
+      document_report_at(b->document, start, end, NULL, "a second document starts here; one file holds one document");
+      b->failed = true;
+      return false;
+    }
+    if (fy_document_state_version_explicit(event->document_start.document_state)) {
+      const struct fy_version *version = fy_document_state_version(event->document_start.document_state);
+      if (version && (version->major != 1 || version->minor != 2))
+        document_report_at(b->document, 0, 0, NULL, "expected YAML 1.2, got a %%YAML %d.%d line; remove it",
+                           version->major, version->minor);
+    }
+    return true;
+  case FYET_MAPPING_START:
+  case FYET_SEQUENCE_START: {
+    bool mapping = event->type == FYET_MAPPING_START;
+    document_node *node = create(b, mapping ? DOCUMENT_MAPPING : DOCUMENT_SEQUENCE, "", 0, start, end);
+    remember(b, mapping ? event->mapping_start.anchor : event->sequence_start.anchor, node);
+    if (mapping ? event->mapping_start.tag : event->sequence_start.tag) report_tag(b, node);
+    open_collection(b, node);
+    return true;
+  }
+  case FYET_MAPPING_END:
+  case FYET_SEQUENCE_END:
+    close_collection(b, end);
+    return true;
+  case FYET_SCALAR: {
+    document_node *node = scalar(b, event->scalar.value, start, end);
+    remember(b, event->scalar.anchor, node);
+    if (event->scalar.tag && node) {
+      report_tag(b, node);
+      node->faulty = true; /* what it is meant to be is not known: readers pass over it */
+    }
+    attach(b, node);
+    return true;
+  }
+  case FYET_ALIAS:
+    attach(b, alias(b, event->alias.anchor, start, end));
+    return true;
+  default:
+    return true;
+  }
+  return true;
+}
+
+static void silence(struct fy_diag *diag, void *user, const char *text, size_t length) {
+  (void)diag, (void)user, (void)text, (void)length; /* libfyaml would write to stderr */
+}
+
+/* libfyaml's own words on the first thing it could not read. */
+static void report_syntax(struct document *document, struct fy_diag *diag) {
+  void *previous = NULL;
+  const struct fy_diag_error *error = fy_diag_errors_iterate(diag, &previous);
+  if (!error) {
+    document_report_at(document, 0, 0, NULL, "no valid YAML");
+    return;
+  }
+  size_t offset = 0;
+  for (int line = 1; line < error->line && offset < document->size; offset++)
+    line += document->text[offset] == '\n';
+  for (int column = 1; column < error->column && offset < document->size && document->text[offset] != '\n'; column++)
+    do
+      offset++;
+    while (offset < document->size && ((unsigned char)document->text[offset] & 0xC0) == 0x80);
+  document_report_at(document, offset, 0, NULL, "no valid YAML: %s", error->msg);
+}
+
+status document_build(struct document *document) {
+  status code = STATUS_CONTENT;
+  struct builder b = {.document = document};
+  struct fy_parser *parser = NULL;
+  struct fy_diag_cfg words;
+  fy_diag_cfg_default(&words);
+  words.fp = NULL;
+  words.output_fn = silence;
+  struct fy_diag *diag = fy_diag_create(&words);
+  b.anchors = calloc(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
+  if (diag) {
+    fy_diag_set_collect_errors(diag, true);
+    parser = fy_parser_create(&(struct fy_parse_cfg){
+        .flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_1_2, .diag = diag});
+  }
+  if (!parser || !b.anchors || fy_parser_set_string(parser, document->text, document->size) != 0) {
+    code = STATUS_MEMORY;
+    goto cleanup;
+  }
+  size_t documents = 0;
+  bool more = true;
+  while (more && !b.failed) {
+    struct fy_event *event = fy_parser_parse(parser);
+    if (!event) {
+      report_syntax(document, diag);
+      goto cleanup;
+    }
+    more = take(&b, event, &documents);
+    fy_parser_event_free(parser, event);
+  }
+  if (b.failed) {
+    if (document->error_count == 0) code = STATUS_MEMORY;
+    goto cleanup;
+  }
+  const document_node *root = document->root;
+  if (!root || (root->kind == DOCUMENT_SCALAR && root->plain && !root->text[0]))
+    document_report_at(document, 0, 0, NULL, "the document is empty; expected keys and values, such as 'name: first'");
+  else if (root->kind != DOCUMENT_MAPPING)
+    document_report_at(document, root->start, root->end, NULL,
+                       "expected keys and values, such as 'name: first', got %s", document_value_what(root));
+  else
+    code = STATUS_OK;
+cleanup:
+  for (size_t i = 0; i < b.anchor_count; i++)
+    free((char *)(uintptr_t)b.anchors[i].name);
+  free(b.anchors);
+  fy_parser_destroy(parser);
+  fy_diag_destroy(diag);
+  return code;
+}

@@ -1,0 +1,299 @@
+#include "schemas/json_schema.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A decimal number, and perhaps a unit behind it. Which units suit, and what the number is in SI, a schema cannot know:
+ * the reader judges that. The last part keeps `$` from matching before a line end. */
+#define NUMBER_AND_UNIT                                                                                                \
+  "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?( *| *[^-+0-9. ,_][^,_]*| +1/[^,_]+)$(?!\\\\n)"
+
+static void margin(int indent, FILE *out) {
+  fprintf(out, "\n%*s", 2 * indent, "");
+}
+
+static void number(double value, FILE *out) {
+  char text[32];
+  field_print_number(value, text);
+  fputs(text, out);
+}
+
+static void range(const struct field *row, FILE *out) {
+  if (row->minimum > -HUGE_VAL) {
+    fprintf(out, ", \"%s\": ", row->flags & FIELD_ABOVE_MINIMUM ? "exclusiveMinimum" : "minimum");
+    number(row->minimum, out);
+  }
+  if (row->maximum < HUGE_VAL) {
+    fprintf(out, ", \"%s\": ", row->flags & FIELD_BELOW_MAXIMUM ? "exclusiveMaximum" : "maximum");
+    number(row->maximum, out);
+  }
+}
+
+static void type(const struct field *row, FILE *out) {
+  switch (row->kind) {
+  case FIELD_REAL:
+    fputs("\"anyOf\": [{\"type\": \"number\"", out);
+    range(row, out);
+    fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}", out);
+    if (row->flags & FIELD_MAY_BE_OFF) fputs(", {\"const\": \"off\"}", out);
+    fputc(']', out);
+    break;
+  case FIELD_INTEGER:
+    if (row->unit && strcmp(row->unit, "1")) fputs("\"anyOf\": [{", out);
+    fputs("\"type\": \"integer\"", out);
+    range(row, out);
+    if (row->unit && strcmp(row->unit, "1"))
+      fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}]", out);
+    break;
+  case FIELD_BOOLEAN:
+    fputs("\"type\": \"boolean\"", out);
+    break;
+  case FIELD_CHOICE:
+    fputs("\"enum\": [", out);
+    for (size_t i = 0; row->choices[i]; i++) {
+      if (i) fputs(", ", out);
+      field_json_string(row->choices[i], out);
+    }
+    fputc(']', out);
+    break;
+  case FIELD_TEXT: /* a plain 12 or true is text as it stands */
+    fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d", FIELD_TEXT_SIZE - 1);
+    break;
+  }
+}
+
+/* What an editor shows: the row's doc, unit, choices, condition and source as one text. */
+static void description(const struct field *row, FILE *out) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *words = open_memstream(&text, &size);
+  if (!words) return;
+  if (row->doc) fputs(row->doc, words);
+  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER) {
+    if (row->unit && strcmp(row->unit, "1")) fprintf(words, " In %s, unless another unit is written.", row->unit);
+    if (row->flags & FIELD_MAY_BE_OFF) fputs(" Or `off`.", words);
+  }
+  const char *doc = row->kind == FIELD_CHOICE ? row->choice_docs : NULL;
+  for (size_t i = 0; doc && row->choices[i]; i++) {
+    size_t length = strcspn(doc, "\n");
+    fprintf(words, " `%s`: %.*s.", row->choices[i], (int)length, doc);
+    doc += length + (doc[length] == '\n');
+  }
+  if (row->when) {
+    fprintf(words, " Only when %.*s is ", (int)strcspn(row->when, "="), row->when);
+    for (const char *at = strchr(row->when, '='); at && *++at;) {
+      if (*at == '|')
+        fputs(" or ", words);
+      else
+        fputc(*at, words);
+    }
+    fputc('.', words);
+  }
+  if (row->source) fprintf(words, " Source: %s.", row->source);
+  if (fclose(words) == 0) field_json_string(*text == ' ' ? text + 1 : text, out);
+  free(text);
+}
+
+static void default_value(const struct field *row, FILE *out) {
+  struct field_value value = {.kind = row->kind, .number = row->number};
+  if (row->flags & FIELD_REQUIRED) return;
+  if (row->kind == FIELD_INTEGER) value.integer = (int64_t)row->number;
+  if (row->kind == FIELD_TEXT && row->text) memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
+  if (row->kind == FIELD_CHOICE) snprintf(value.text, sizeof value.text, "%s", row->choices[(size_t)row->number]);
+  fputs(", \"default\": ", out);
+  field_json_value(row, &value, out);
+}
+
+static bool same_start(const char *a, const char *b, size_t length) {
+  return strncmp(a, b, length) == 0;
+}
+
+/* The words of one level that lead to a row that must be given whatever else is. */
+static int required(const struct field_table *table, const char *prefix, size_t length, FILE *out) {
+  int count = 0;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    if (!(row->flags & FIELD_REQUIRED) || row->when || !same_start(row->path, prefix, length)) continue;
+    size_t word = strcspn(row->path + length, ".");
+    bool seen = false;
+    for (size_t j = 0; j < i && !seen; j++)
+      seen = table->rows[j].flags & FIELD_REQUIRED && !table->rows[j].when &&
+             same_start(table->rows[j].path, row->path, length + word) &&
+             strchr(".", table->rows[j].path[length + word]);
+    if (seen) continue;
+    fprintf(out, "%s\"%.*s\"", count++ ? ", " : "", (int)word, row->path + length);
+  }
+  return count;
+}
+
+int json_schema_required(const struct field_table *table, FILE *out) {
+  return required(table, "", 0, out);
+}
+
+static bool requires(const struct field_table *table, const char *prefix, size_t length) {
+  for (size_t i = 0; i < table->count; i++)
+    if (table->rows[i].flags & FIELD_REQUIRED && !table->rows[i].when &&
+        same_start(table->rows[i].path, prefix, length))
+      return true;
+  return false;
+}
+
+static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out) {
+  bool first = true;
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    if (!same_start(row->path, prefix, length)) continue;
+    size_t word = strcspn(row->path + length, "."), whole = length + word + 1;
+    bool section = row->path[length + word] == '.', seen = false;
+    for (size_t j = 0; section && j < i && !seen; j++)
+      seen = same_start(table->rows[j].path, row->path, whole);
+    if (seen) continue;
+    if (!first) fputc(',', out);
+    first = false;
+    margin(indent, out);
+    fprintf(out, "\"%.*s\": {", (int)word, row->path + length);
+    if (section) {
+      fputs("\"type\": \"object\", \"additionalProperties\": false,", out);
+      margin(indent + 1, out);
+      if (requires(table, row->path, whole)) {
+        fputs("\"required\": [", out);
+        required(table, row->path, whole, out);
+        fputs("],", out);
+        margin(indent + 1, out);
+      }
+      fputs("\"properties\": {", out);
+      properties(table, row->path, whole, indent + 2, out);
+      margin(indent + 1, out);
+      fputs("}}", out);
+    } else {
+      type(row, out);
+      default_value(row, out);
+      fputc(',', out);
+      margin(indent + 1, out);
+      fputs("\"description\": ", out);
+      description(row, out);
+      fputc('}', out);
+    }
+  }
+}
+
+void json_schema_properties(const struct field_table *table, int indent, FILE *out) {
+  properties(table, "", 0, indent, out);
+}
+
+/* ---- conditions ---- */
+
+static const struct field *controller(const struct field_table *table, const char *when) {
+  size_t length = strcspn(when, "=");
+  for (size_t i = 0; i < table->count; i++)
+    if (same_start(table->rows[i].path, when, length) && !table->rows[i].path[length]) return &table->rows[i];
+  return NULL;
+}
+
+/* Whether the row rests on the condition, itself or through what its own condition rests on. */
+static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
+  for (size_t links = 0; row && row->when && links <= table->count; links++) {
+    if (strcmp(row->when, when) == 0) return true;
+    row = controller(table, row->when);
+  }
+  return false;
+}
+
+/* {"required": ["a"], "properties": {"a": {"required": ["b"], "properties": {"b": LEAF}}}} with `opened` braces to
+ * close. */
+static int descend(const char *path, bool must, FILE *out) {
+  int opened = 0;
+  for (;;) {
+    size_t word = strcspn(path, ".");
+    if (must)
+      fprintf(out, "{\"required\": [\"%.*s\"], \"properties\": {\"%.*s\": ", (int)word, path, (int)word, path);
+    else
+      fprintf(out, "{\"properties\": {\"%.*s\": ", (int)word, path);
+    opened += 2;
+    if (!path[word]) return opened;
+    path += word + 1;
+  }
+}
+
+static void close_braces(int opened, FILE *out) {
+  while (opened-- > 0)
+    fputc('}', out);
+}
+
+static void values(const struct field *row, const char *list, bool excluded, FILE *out) {
+  fputs(excluded ? "{\"not\": {\"enum\": [" : "{\"enum\": [", out);
+  for (const char *at = list;;) {
+    size_t length = strcspn(at, "|");
+    bool word = row->kind == FIELD_CHOICE || row->kind == FIELD_TEXT || strncmp(at, "off", 3) == 0;
+    fprintf(out, "%s%s%.*s%s", at == list ? "" : ", ", word ? "\"" : "", (int)length, at, word ? "\"" : "");
+    if (!at[length]) break;
+    at += length + 1;
+  }
+  fputs(excluded ? "]}}" : "]}", out);
+}
+
+/* The condition holds when nothing is written. */
+static bool holds_by_default(const struct field_table *table, const struct field *row, const char *when) {
+  void *object = calloc(1, table->size);
+  if (!object) return false;
+  field_defaults(table, object);
+  struct field probe = {.path = "", .when = when};
+  /* Only this link counts here: an ancestor's condition has its own clause. */
+  struct field alone = *row;
+  alone.when = NULL;
+  const struct field_table small = {.rows = &alone, .count = 1, .size = table->size};
+  bool holds = field_is_active(&small, &probe, object);
+  free(object);
+  return holds;
+}
+
+int json_schema_conditions(const struct field_table *table, int indent, FILE *out) {
+  int count = 0;
+  for (size_t i = 0; i < table->count; i++) {
+    const char *when = table->rows[i].when;
+    const struct field *control = when ? controller(table, when) : NULL;
+    bool seen = false;
+    for (size_t j = 0; when && j < i && !seen; j++)
+      seen = table->rows[j].when && strcmp(table->rows[j].when, when) == 0;
+    if (!control || seen) continue;
+    bool holds = holds_by_default(table, control, when);
+    if (count++) fputc(',', out);
+    margin(indent, out);
+    fputs("{\"if\": ", out);
+    int opened = descend(control->path, true, out);
+    values(control, strchr(when, '=') + 1, holds, out);
+    close_braces(opened, out);
+    fprintf(out, ", \"%s\": {\"allOf\": [", holds ? "then" : "else");
+    bool first = true;
+    for (size_t k = 0; k < table->count; k++) {
+      if (!rests_on(table, &table->rows[k], when)) continue;
+      if (!first) fputc(',', out);
+      first = false;
+      margin(indent + 1, out);
+      opened = descend(table->rows[k].path, false, out);
+      fputs("false", out);
+      close_braces(opened, out);
+    }
+    fputs("]}}", out);
+  }
+  return count;
+}
+
+void json_schema_write(const struct field_table *table, const char *title, const char *extra,
+                       const char *extra_required, FILE *out) {
+  fputs("{\n  \"$schema\": \"http://json-schema.org/draft-07/schema#\",\n  \"title\": ", out);
+  field_json_string(title, out);
+  fputs(",\n  \"description\": ", out);
+  field_json_string(table->doc ? table->doc : table->name, out);
+  fputs(",\n  \"type\": \"object\",\n  \"additionalProperties\": false,\n  \"required\": [", out);
+  if (extra_required) field_json_string(extra_required, out);
+  if (extra_required && requires(table, "", 0)) fputs(", ", out);
+  json_schema_required(table, out);
+  fputs("],\n  \"properties\": {", out);
+  if (extra) fprintf(out, "\n    %s,", extra);
+  json_schema_properties(table, 2, out);
+  fputs("\n  },\n  \"allOf\": [", out);
+  if (json_schema_conditions(table, 2, out) == 0) fputs("\n    true", out);
+  fputs("\n  ]\n}\n", out);
+}

@@ -1,0 +1,281 @@
+/* The farm on one machine: every way a task can end, in both modes, exactly once each. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <stdatomic.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include "campaign/farm/clock.h"
+#include "tests/farm_tasks.h"
+
+static struct farm *start(struct farm_options options) {
+  struct farm *farm = NULL;
+  struct error error = {0};
+  if (farm_start(&options, task_work, &farm, &error) != STATUS_OK) fail_msg("%s", error.message);
+  return farm;
+}
+
+static status run_list(struct farm_options options, struct task_list *list, struct error *error) {
+  struct farm *farm = start(options);
+  const struct farm_manager manager = task_list_manager(list);
+  const status result = farm_run(farm, &manager, error);
+  farm_stop(farm, NULL);
+  return result;
+}
+
+static void assert_each_once(const struct task_list *list) {
+  for (size_t i = 0; i < list->count; i++)
+    assert_int_equal(list->reports[i], 1);
+  assert_int_equal(list->wrong, 0);
+}
+
+static void same_answers_whatever_the_slots(void **state) {
+  (void)state;
+  uint64_t expected = 0;
+  for (uint64_t id = 0; id < 500; id++)
+    expected += task_value(id);
+  for (int mode = 0; mode < 2; mode++) {
+    for (int slots = 1; slots <= 5; slots += 2) {
+      struct task_list list;
+      struct error error = {0};
+      task_list_new(&list, 500);
+      assert_int_equal(run_list((struct farm_options){.slots = slots, .in_process = mode}, &list, &error), STATUS_OK);
+      assert_each_once(&list);
+      assert_true(list.sum == expected);
+      task_list_free(&list);
+    }
+  }
+}
+
+static void no_tasks_and_fewer_than_slots(void **state) {
+  (void)state;
+  for (size_t count = 0; count < 3; count++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, count);
+    assert_int_equal(run_list((struct farm_options){.slots = 4}, &list, &error), STATUS_OK);
+    assert_each_once(&list);
+    task_list_free(&list);
+  }
+}
+
+static void every_ending(void **state) {
+  (void)state;
+  for (int mode = 0; mode < 2; mode++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, 40);
+    list.tasks[3].kind = TASK_SEGV;
+    list.tasks[7].kind = TASK_ABORT;
+    list.tasks[11] = (struct task){.id = 11, .kind = TASK_EXIT, .number = 3};
+    list.tasks[15].kind = TASK_HANG;
+    list.tasks[19] = (struct task){.id = 19, .kind = TASK_FAIL, .number = STATUS_CONTENT};
+    list.tasks[23] = (struct task){.id = 23, .kind = TASK_ALLOC, .amount = 3e8};
+    list.tasks[27] = (struct task){.id = 27, .kind = TASK_EXIT, .number = 0};
+    list.tasks[31].kind = TASK_WILD;
+    const struct farm_options options = {
+        .slots = 2, .in_process = mode, .time_limit_s = 0.4, .memory_limit = (size_t)1 << 27};
+    assert_int_equal(run_list(options, &list, &error), STATUS_OK);
+    assert_each_once(&list);
+    assert_int_equal(list.endings[3], FARM_CRASHED);
+    assert_int_equal(list.signals[3], SIGSEGV);
+    assert_int_equal(list.endings[7], FARM_CRASHED);
+    assert_int_equal(list.signals[7], SIGABRT);
+    assert_non_null(strstr(list.messages[7], "signal 6"));
+    assert_int_equal(list.endings[11], FARM_CRASHED);
+    assert_int_equal(list.exit_codes[11], 3);
+    assert_int_equal(list.endings[15], FARM_TIME_LIMIT);
+    assert_true(list.walls[15] >= 0.39 && list.walls[15] < 3);
+    assert_int_equal(list.endings[19], FARM_FAILED);
+    assert_int_equal(list.exit_codes[19], STATUS_CONTENT);
+    assert_string_equal(list.messages[19], "task 19 cannot");
+    assert_int_equal(list.endings[23], FARM_MEMORY_LIMIT);
+    assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
+    assert_int_equal(list.endings[31], FARM_CRASHED);
+    for (size_t i = 0; i < list.count; i++)
+      if (list.tasks[i].kind == TASK_ECHO) assert_int_equal(list.endings[i], FARM_DONE);
+    task_list_free(&list);
+  }
+}
+
+static void large_results(void **state) {
+  (void)state;
+  for (int mode = 0; mode < 2; mode++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, 40);
+    for (size_t i = 0; i < list.count; i++)
+      list.tasks[i] = (struct task){.id = i, .kind = TASK_BIG, .amount = i == 5 ? 2e7 : (double)(i * i * 977)};
+    assert_int_equal(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error), STATUS_OK);
+    assert_each_once(&list);
+    for (size_t i = 0; i < list.count; i++)
+      assert_int_equal(list.endings[i], FARM_DONE);
+    task_list_free(&list);
+  }
+}
+
+/* CPU and memory are the task's own, not the slot's history. */
+static void costs_are_the_tasks_own(void **state) {
+  (void)state;
+  for (int mode = 0; mode < 2; mode++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, 3);
+    list.tasks[0] = (struct task){.id = 0, .kind = TASK_ALLOC, .amount = 1e8};
+    list.tasks[1] = (struct task){.id = 1, .kind = TASK_BURN, .amount = 0.1};
+    list.tasks[2] = (struct task){.id = 2, .kind = TASK_SLEEP, .amount = 0.1};
+    assert_int_equal(run_list((struct farm_options){.slots = 1, .in_process = mode}, &list, &error), STATUS_OK);
+    assert_each_once(&list);
+    assert_true(list.peaks[0] > 90000000);
+    assert_true(list.peaks[1] < 90000000); /* in process only where /proc/self/clear_refs may be written */
+    assert_true(list.cpus[1] > 0.099 && list.cpus[1] < 0.2); /* above: 0.1 burnt + fork and exit on a loaded machine */
+    assert_true(list.cpus[2] < 0.05);
+    assert_true(list.walls[2] > 0.099);
+    task_list_free(&list);
+  }
+}
+
+static void the_caller_can_stop(void **state) {
+  (void)state;
+  const status reasons[] = {STATUS_STOPPED, STATUS_IO};
+  for (int reason = 0; reason < 2; reason++) {
+    for (int mode = 0; mode < 2; mode++) {
+      struct task_list list;
+      struct error error = {0};
+      task_list_new(&list, 1000);
+      for (size_t i = 0; i < list.count; i++)
+        list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = 0.002};
+      list.stop_after = 20;
+      list.stop_with = reasons[reason];
+      const status ended = run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error);
+      assert_int_equal(ended, reasons[reason]);
+      assert_string_equal(error.message, "the caller has enough");
+      for (size_t i = 0; i < list.count; i++)
+        assert_in_range(list.reports[i], 0, 1);
+      if (reasons[reason] == STATUS_IO)
+        assert_int_equal(list.reported, 20); /* it asked for no more */
+      else
+        assert_in_range(list.reported, 20, 26); /* what ran is reported: two slots, a few sent ahead */
+      task_list_free(&list);
+    }
+  }
+}
+
+static void runs_again_after_a_run(void **state) {
+  (void)state;
+  struct farm *farm = start((struct farm_options){.slots = 2});
+  for (int round = 0; round < 3; round++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, 50);
+    list.tasks[10].kind = TASK_SEGV;
+    const struct farm_manager manager = task_list_manager(&list);
+    assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+    assert_each_once(&list);
+    task_list_free(&list);
+  }
+  farm_stop(farm, NULL);
+}
+
+/* The last short tasks do not wait behind a long one that was begun before them. */
+static void nobody_waits_behind_a_long_task(void **state) {
+  (void)state;
+  for (int mode = 0; mode < 2; mode++) {
+    struct task_list list;
+    struct error error = {0};
+    task_list_new(&list, 6);
+    for (size_t i = 0; i < list.count; i++)
+      list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 1.0 : 0.02};
+    const int64_t start_ns = farm_clock_ns();
+    assert_int_equal(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error), STATUS_OK);
+    const double wall = 1e-9 * (double)(farm_clock_ns() - start_ns);
+    assert_each_once(&list);
+    for (size_t i = 1; i < list.count; i++)
+      assert_true(list.slots[i] != list.slots[0]);
+    assert_true(wall <
+                1.5); /* 1 s of the long one, the rest is room for a loaded machine; behind it: 1.02 s and more */
+    task_list_free(&list);
+  }
+}
+
+static int open_files(void) {
+  int count = 0;
+  DIR *directory = opendir("/proc/self/fd");
+  while (directory && readdir(directory))
+    count++;
+  if (directory) closedir(directory);
+  return count;
+}
+
+static void leaks_nothing(void **state) {
+  (void)state;
+  const bool full = getenv("CLAST_FULL") != NULL;
+  for (int mode = 0; mode < 2; mode++) {
+    const size_t count = mode ? 100000 : full ? 100000 : 3000;
+    const int before = open_files();
+    struct farm *farm = start((struct farm_options){.slots = 2, .in_process = mode});
+    struct rusage usage[2];
+    int files[2];
+    for (int round = 0; round < 2; round++) { /* the first fills what stays allocated, the second must not add */
+      struct task_list list;
+      struct error error = {0};
+      task_list_new(&list, count);
+      for (size_t i = 0; i < count; i += 500)
+        list.tasks[i].kind = TASK_SEGV;
+      const struct farm_manager manager = task_list_manager(&list);
+      assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+      assert_each_once(&list);
+      files[round] = open_files();
+      task_list_free(&list);
+      getrusage(RUSAGE_SELF, &usage[round]);
+    }
+    farm_stop(farm, NULL);
+    assert_int_equal(files[0], files[1]);
+    assert_int_equal(open_files(), before);
+#ifndef __SANITIZE_ADDRESS__ /* its quarantine keeps freed memory */
+    /* 100 bytes per task would be 10 MB; the margin is for the allocator's fragments. */
+    assert_true(usage[1].ru_maxrss - usage[0].ru_maxrss < 4096);
+#endif
+  }
+}
+
+static void asleep_while_tasks_sleep(void **state) {
+  (void)state;
+  struct task_list list;
+  struct error error = {0};
+  task_list_new(&list, 2);
+  for (size_t i = 0; i < 2; i++)
+    list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = 2};
+  struct farm *farm = start((struct farm_options){.slots = 2});
+  const struct farm_manager manager = task_list_manager(&list);
+  assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+  const struct farm_usage usage = farm_usage(farm);
+  farm_stop(farm, NULL);
+  assert_true(usage.wall_s >= 2);
+  assert_true(usage.manager_cpu_s < 0.005 * usage.wall_s); /* half a percent of a core; a busy wait would be 100 % */
+  assert_in_range(list.ticks, 10, 21);                     /* every 100 ms at most, and not much less often */
+  task_list_free(&list);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(same_answers_whatever_the_slots),
+      cmocka_unit_test(no_tasks_and_fewer_than_slots),
+      cmocka_unit_test(every_ending),
+      cmocka_unit_test(large_results),
+      cmocka_unit_test(costs_are_the_tasks_own),
+      cmocka_unit_test(the_caller_can_stop),
+      cmocka_unit_test(runs_again_after_a_run),
+      cmocka_unit_test(nobody_waits_behind_a_long_task),
+      cmocka_unit_test(leaks_nothing),
+      cmocka_unit_test(asleep_while_tasks_sleep),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

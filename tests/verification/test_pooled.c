@@ -1,0 +1,178 @@
+/* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every run
+ * too; the interval from resampling runs covers; cut-offs are found when there, and not when not. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "analysis/analysis.h"
+#include "analysis/pooled.h"
+#include "engine/random.h"
+
+enum { RUNS = 30, MOST = 101 };
+
+struct made {
+  size_t first[RUNS + 1];
+  double masses[RUNS * MOST];
+};
+
+static int descending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x < y) - (x > y);
+}
+
+/* Runs of differing length (20 to 100) from a law of exponent 2, perhaps cut off, perhaps with a giant on top. */
+static struct pooled_runs make(struct made *made, uint64_t ensemble, double cutoff, bool giant) {
+  size_t at = 0;
+  for (uint64_t r = 0; r < RUNS; r++) {
+    made->first[r] = at;
+    size_t n = 20 + (size_t)(80 * random_draw(40, ensemble, r, 0));
+    uint64_t number = 0;
+    for (size_t i = 0; i < n; i++) {
+      do {
+        made->masses[at] = 1 / (1 - random_draw(41, ensemble, r, number++));
+      } while (random_draw(42, ensemble, r, number++) > exp(-made->masses[at] / cutoff));
+      at++;
+    }
+    if (giant) made->masses[at++] = 3e4 * (1 + random_draw(43, ensemble, r, 0));
+    qsort(made->masses + made->first[r], at - made->first[r], sizeof(double), descending);
+  }
+  made->first[RUNS] = at;
+  return (struct pooled_runs){RUNS, made->first, made->masses};
+}
+
+static void true_exponent_with_an_interval(void **state) {
+  (void)state;
+  enum { ENSEMBLES = 100 };
+  static struct made made;
+  for (int giant = 0; giant < 2; giant++) {
+    const enum exponent_method methods[] = {EXPONENT_MASSES, EXPONENT_BINNED};
+    for (int m = 0; m < 2; m++) {
+      double mean = 0, squares = 0, quoted = 0, resampled = 0;
+      int held = 0;
+      for (uint64_t e = 0; e < ENSEMBLES; e++) {
+        struct pooled_runs runs = make(&made, e, HUGE_VAL, giant);
+        struct pooled_exponent out;
+        assert_int_equal(pooled_exponent(&runs, methods[m], 1, 100, 0.95, e, &out, NULL), STATUS_OK);
+        if (methods[m] == EXPONENT_MASSES) assert_int_equal(out.fit.n, made.first[RUNS] - RUNS); /* all but the largest */
+        mean += out.fit.beta / ENSEMBLES;
+        squares += out.fit.beta * out.fit.beta / ENSEMBLES;
+        quoted += out.fit.standard_error / ENSEMBLES;
+        resampled += out.interval.standard_error / ENSEMBLES;
+        held += out.interval.lower <= 2 && 2 <= out.interval.upper;
+      }
+      double deviation = sqrt(squares - mean * mean), error = deviation / sqrt(ENSEMBLES);
+      printf("  %s%s: %.4f +- %.4f, quoted %.4f, over runs %.4f, covers %d %%\n", exponent_method_names[methods[m]],
+             giant ? " with giants" : "", mean, deviation, quoted, resampled, held);
+      /* n is about 1800: the bias 1/n is below the Monte-Carlo error. */
+      assert_true(fabs(mean - 2) < 4 * error + 1.0 / 1500);
+      assert_true(fabs(quoted / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
+      assert_true(fabs(resampled / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES) + 1.0 / RUNS /* (n-1)/n of the variance */);
+      assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* percentile intervals at 30 runs */
+    }
+  }
+}
+
+static void other_methods_pool_too(void **state) {
+  (void)state;
+  static struct made made;
+  struct pooled_runs runs = make(&made, 7, HUGE_VAL, true);
+  struct pooled_exponent ls, ks, masses;
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_LEAST_SQUARES, 1, 50, 0.95, 1, &ls, NULL), STATUS_OK);
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_KS, 1, 20, 0.95, 1, &ks, NULL), STATUS_OK);
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 1, 50, 0.95, 1, &masses, NULL), STATUS_OK);
+  assert_true(ls.fit.beta > 1.5 && ls.fit.beta < masses.fit.beta); /* its bias, also on the pooled bins */
+  assert_true(fabs(ks.fit.beta - 2) < 5 * ks.interval.standard_error && ks.fit.lower >= 1);
+  assert_true(ls.interval.standard_error > 0 && ks.interval.standard_error > 0.8 * masses.interval.standard_error);
+  struct pooled_exponent again;
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 1, 50, 0.95, 1, &again, NULL), STATUS_OK);
+  assert_true(again.interval.lower == masses.interval.lower && again.interval.upper == masses.interval.upper);
+}
+
+static void cutoffs_are_told_apart(void **state) {
+  (void)state;
+  enum { ENSEMBLES = 60 };
+  static struct made made;
+  double mean = 0, squares = 0;
+  int needed = 0, alarms = 0, lognormal = 0;
+  for (uint64_t e = 0; e < ENSEMBLES; e++) {
+    struct pooled_rivals rivals;
+    struct pooled_runs runs = make(&made, 1000 + e, 30, true);
+    assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+    needed += rivals.cutoff_p < 0.05;
+    mean += rivals.cutoff_beta / ENSEMBLES;
+    squares += rivals.cutoff_beta * rivals.cutoff_beta / ENSEMBLES;
+    runs = make(&made, e, HUGE_VAL, true);
+    assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+    alarms += rivals.cutoff_p < 0.05;
+    lognormal += rivals.lognormal_p < 0.05;
+  }
+  double deviation = sqrt(squares - mean * mean);
+  printf("  cut-off found in %d of %d, false alarms %d and %d (lognormal); beta %.3f +- %.3f\n", needed, ENSEMBLES, alarms,
+         lognormal, mean, deviation);
+  assert_int_equal(needed, ENSEMBLES);
+  /* nominal 5 % of 60 = 3 +- 1.7 */
+  assert_true(alarms <= 3 + 4 * 1.7 && lognormal <= 3 + 4 * 1.7);
+  assert_true(fabs(mean - 2) < 4 * deviation / sqrt(ENSEMBLES));
+}
+
+static void spectrum_density_and_error(void **state) {
+  (void)state;
+  /* Two runs: bin [1, 1.26) holds 3 and 1, bin [10, 12.6) 1 and 1 (the largest of each), NaN and 0 nowhere. */
+  const size_t first[3] = {0, 5, 8};
+  const double masses[8] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN};
+  struct pooled_runs runs = {2, first, masses};
+  struct pooled_bin *bins;
+  size_t count;
+  assert_int_equal(pooled_spectrum(&runs, true, 1, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(count, 2);
+  double width = pow(10, 0.1) - 1;
+  assert_int_equal(bins[0].count, 4);
+  assert_true(fabs(bins[0].density * width - 2) < 1e-13);
+  assert_true(fabs(bins[0].standard_error * width - 1) < 1e-13); /* counts 3 and 1: s.d. sqrt 2, over sqrt 2 */
+  assert_true(bins[1].count == 2 && bins[1].standard_error == 0);
+  free(bins);
+  assert_int_equal(pooled_spectrum(&runs, false, 23, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(count, 1);
+  assert_true(fabs(bins[0].density * width / 23 - 2) < 1e-13);
+  free(bins);
+  runs.count = 0;
+  assert_int_equal(pooled_spectrum(&runs, true, 1, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(count, 0);
+  free(bins);
+}
+
+static void empty_and_bad(void **state) {
+  (void)state;
+  const size_t first[4] = {0, 0, 1, 1};
+  const double masses[1] = {3};
+  struct pooled_runs runs = {3, first, masses}, none = {0, first, masses};
+  for (int method = 0; method < EXPONENT_METHODS; method++) {
+    struct pooled_exponent out;
+    assert_int_equal(pooled_exponent(&runs, (enum exponent_method)method, 1, 10, 0.95, 1, &out, NULL), STATUS_OK);
+    assert_true(isnan(out.fit.beta) && isnan(out.interval.lower) && out.fit.n == 0);
+    assert_int_equal(pooled_exponent(&none, (enum exponent_method)method, 1, 10, 0.95, 1, &out, NULL), STATUS_OK);
+    assert_true(isnan(out.fit.beta));
+    assert_int_equal(pooled_exponent(&runs, (enum exponent_method)method, 0, 10, 0.95, 1, &out, NULL), STATUS_USAGE);
+  }
+  struct pooled_exponent out;
+  struct pooled_rivals rivals;
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_METHODS, 1, 10, 0.95, 1, &out, NULL), STATUS_USAGE);
+  assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
+  assert_true(isnan(rivals.cutoff_p));
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(true_exponent_with_an_interval), cmocka_unit_test(other_methods_pool_too),
+      cmocka_unit_test(cutoffs_are_told_apart),         cmocka_unit_test(spectrum_density_and_error),
+      cmocka_unit_test(empty_and_bad),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
