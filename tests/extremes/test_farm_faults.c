@@ -1,0 +1,143 @@
+/* Faults and signals on one machine: kill -9 of anything at any instant leaves no process behind and ends clearly. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/farm_process.h"
+
+static const char *program;
+
+#define ALONE .slots = 2, .special = -1
+
+/* Who dies: depth under the program. In isolation: program - server - slot - child. */
+enum { MANAGER = -1, SERVER = 0, SLOT = 1, CHILD = 2 };
+
+static void kill_anything(void **state) {
+  (void)state;
+  const bool full = getenv("CLAST_FULL") != NULL;
+  const int rounds = full ? 20 : 2;
+  for (int in_process = 0; in_process < 2; in_process++) {
+    for (int who = MANAGER; who <= (in_process ? SLOT : CHILD); who++) {
+      for (int round = 0; round < rounds; round++) {
+        struct outcome_of out;
+        const struct running it = launch(program, (struct launch){ALONE, .in_process = in_process, .count = 100,
+                                                                  .kind = TASK_SLEEP, .amount = 0.01});
+        assert_true(await_journal(&it, 3));
+        task_sleep(1e-3 * (double)((round * 37 + who * 11 + 13) % 40)); /* an instant that differs each time */
+        const pid_t victim = who == MANAGER ? it.pid : await_descendant(&it, it.pid, who, round % 2 && who == SLOT);
+        assert_true(victim > 0);
+        kill(victim, SIGKILL);
+        assert_true(ended(&it, 20, &out));
+        const int lines = journal_lines(&it);
+        assert_int_equal(orphans(&it, 2), 0);
+        if (who == MANAGER) {
+          assert_int_equal(out.signal, SIGKILL);
+        } else if (who == SERVER) {
+          assert_int_equal(out.exit_code, STATUS_STOPPED);
+          assert_int_equal(out.twice, 0);
+        } else {
+          /* One run at most is hurt (the victim may have ended by itself just before); all are reported. */
+          assert_int_equal(out.exit_code, STATUS_OK);
+          assert_int_equal(out.reported, 100);
+          assert_int_equal(lines, 100);
+          assert_int_equal(out.twice + out.wrong, 0);
+          assert_in_range(out.done, 99, 100);
+        }
+      }
+    }
+  }
+}
+
+static void signals_drain(void **state) {
+  (void)state;
+  const int signals[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
+  for (int i = 0; i < 4; i++) {
+    struct outcome_of out;
+    const struct running it =
+        launch(program, (struct launch){ALONE, .in_process = i % 2, .count = 1000, .kind = TASK_SLEEP, .amount = 0.05});
+    assert_true(await_journal(&it, 4));
+    killpg(it.pid, signals[i]); /* as a terminal does: to slots and children too, who must not mind */
+    assert_true(ended(&it, 5, &out));
+    assert_int_equal(orphans(&it, 1), 0);
+    assert_int_equal(out.exit_code, STATUS_STOPPED);
+    assert_int_equal(out.stopping, 1);
+    assert_true(out.reported < 100);
+    assert_int_equal(out.twice + out.wrong, 0);
+    /* SIGTERM and SIGHUP end isolated children, as they have no handler of their own: lost, not crashed. */
+    assert_int_equal(out.done + out.lost, out.reported);
+    if (signals[i] == SIGUSR1 || signals[i] == SIGINT) assert_int_equal(out.lost, 0);
+  }
+}
+
+/* What does not end within the grace is dropped; a second signal does not wait for the grace. */
+static void long_runs_are_dropped(void **state) {
+  (void)state;
+  for (int second = 0; second < 2; second++) {
+    struct outcome_of out;
+    const struct running it = launch(program, (struct launch){ALONE, .count = 10, .kind = TASK_SLEEP, .amount = 30});
+    assert_true(await_descendant(&it, it.pid, CHILD, 1) > 0);
+    const int64_t start = farm_clock_ns();
+    kill(it.pid, second ? SIGUSR1 : SIGTERM); /* a drain would take two minutes, the grace two seconds */
+    if (second) {
+      task_sleep(0.3);
+      kill(it.pid, SIGTERM);
+    }
+    assert_true(ended(&it, 10, &out));
+    const double took = 1e-9 * (double)(farm_clock_ns() - start);
+    assert_int_equal(orphans(&it, 1), 0);
+    assert_int_equal(out.exit_code, STATUS_STOPPED);
+    assert_int_equal(out.reported, 0);
+    if (second)
+      assert_true(took < 1.9); /* less than the grace of 2 s */
+    else
+      assert_true(took > 1.9);
+  }
+}
+
+/* Slots that a crash storm kills again and again come back; the storm ends. */
+static void crash_storm(void **state) {
+  (void)state;
+  for (int in_process = 0; in_process < 2; in_process++) {
+    struct outcome_of out;
+    const struct running it =
+        launch(program, (struct launch){ALONE, .in_process = in_process, .count = 300, .kind = TASK_SEGV});
+    assert_true(ended(&it, 30, &out));
+    assert_int_equal(orphans(&it, 1), 0);
+    assert_int_equal(out.exit_code, STATUS_OK);
+    assert_int_equal(out.reported, 300);
+    assert_int_equal(out.done + out.twice, 0);
+  }
+}
+
+static void stdout_stays_clean(void **state) {
+  (void)state;
+  char path[] = "/tmp/clast_farm_stdout_XXXXXX", text[64] = "";
+  const int file = mkstemp(path), saved = dup(STDOUT_FILENO);
+  fflush(stdout);
+  dup2(file, STDOUT_FILENO);
+  struct outcome_of out;
+  const struct running it = launch(program, (struct launch){ALONE, .count = 20, .kind = TASK_PRINT});
+  const bool came = ended(&it, 10, &out);
+  dup2(saved, STDOUT_FILENO);
+  close(saved);
+  assert_true(came);
+  assert_int_equal(orphans(&it, 1), 0);
+  assert_int_equal(out.done, 20);
+  assert_int_equal(pread(file, text, sizeof text, 0), 0);
+  close(file);
+  unlink(path);
+}
+
+int main(int argc, char **argv) {
+  if (argc > 2 && strcmp(argv[1], "work") == 0) return program_work(argv);
+  char path[4096] = "";
+  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0) return 1;
+  program = path;
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything), cmocka_unit_test(signals_drain),
+                                     cmocka_unit_test(long_runs_are_dropped), cmocka_unit_test(crash_storm),
+                                     cmocka_unit_test(stdout_stays_clean)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,167 @@
+/* The farm over MPI ranks, started by mpirun as a user does: same answers, no busy wait, and every way to die. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/farm_process.h"
+
+static const char *program;
+
+static uint64_t expected_sum(int count) {
+  uint64_t sum = 0;
+  for (int i = 0; i < count; i++)
+    sum += task_value((uint64_t)i);
+  return sum;
+}
+
+static void same_answers_whatever_the_ranks(void **state) {
+  (void)state;
+  const struct launch launches[] = {
+      {.ranks = 0, .slots = 2, .count = 300, .special = -1},
+      {.ranks = 1, .slots = 1, .count = 300, .special = -1},
+      {.ranks = 2, .slots = 1, .count = 300, .special = -1, .in_process = 1},
+      {.ranks = 3, .slots = 1, .count = 300, .special = -1},
+      {.ranks = 2, .slots = 2, .count = 300, .special = -1},
+      {.ranks = 3, .slots = 1, .count = 20000, .special = -1, .in_process = 1},
+      {.ranks = 3, .slots = 0, .count = 1, .special = -1},
+      {.ranks = 3, .slots = 1, .count = 0, .special = -1},
+      {.ranks = 3, .slots = 1, .count = 40, .special = -1, .kind = TASK_BIG, .amount = 3e6},
+  };
+  for (size_t i = 0; i < sizeof launches / sizeof *launches; i++) {
+    struct outcome_of out;
+    const struct running it = launch(program, launches[i]);
+    assert_true(ended(&it, 30, &out));
+    assert_int_equal(orphans(&it, 2), 0);
+    assert_int_equal(out.exit_code, STATUS_OK);
+    assert_int_equal(out.done, launches[i].count);
+    assert_int_equal(out.reported, launches[i].count);
+    assert_int_equal(out.twice + out.wrong + out.stopping, 0);
+    assert_true(out.sum == expected_sum(launches[i].count));
+    const int ranks = launches[i].ranks ? launches[i].ranks : 1, slots = launches[i].slots ? launches[i].slots : 1;
+    assert_int_equal(out.slots_total, ranks * slots);
+  }
+}
+
+static void a_crash_costs_one_run(void **state) {
+  (void)state;
+  const int kinds[] = {TASK_SEGV, TASK_HANG};
+  for (int i = 0; i < 2; i++) {
+    struct outcome_of out;
+    const struct running it = launch(program, (struct launch){.ranks = 3,
+                                                              .slots = 1,
+                                                              .in_process = i,
+                                                              .count = 100,
+                                                              .special = 33,
+                                                              .special_kind = kinds[i],
+                                                              .time_limit_s = 0.5});
+    assert_true(ended(&it, 20, &out));
+    assert_int_equal(orphans(&it, 2), 0);
+    assert_int_equal(out.exit_code, STATUS_OK);
+    assert_int_equal(out.reported, 100);
+    assert_int_equal(out.done, 99);
+    assert_int_equal(out.twice + out.lost, 0);
+  }
+}
+
+/* One task of 2 s on one rank: the manager and the ranks with nothing to do sleep. */
+static void idle_ranks_sleep(void **state) {
+  (void)state;
+  struct outcome_of out;
+  const struct running it = launch(
+      program, (struct launch){.ranks = 3, .slots = 1, .count = 1, .kind = TASK_SLEEP, .amount = 2, .special = -1});
+  assert_true(ended(&it, 20, &out));
+  assert_int_equal(orphans(&it, 2), 0);
+  assert_int_equal(out.exit_code, STATUS_OK);
+  /* Half a percent of a core each; waiting in MPI_Recv it would be 100 %, with yield 100 % of what is free. */
+  assert_true(out.manager_cpu_s < 0.005 * out.wall_s + 0.002);
+  assert_true(out.waiting_cpu_s / 2 < 0.005 * out.wall_s + 0.002);
+}
+
+/* A dead rank ends the job in Open MPI 4.1. The manager hears SIGTERM and is called to commit; nothing is left over. */
+static void a_killed_rank_ends_the_job(void **state) {
+  (void)state;
+  const int rounds = getenv("CLAST_FULL") ? 10 : 1;
+  for (int victim = 0; victim < 3; victim++) { /* rank 0, rank 1, mpirun */
+    for (int round = 0; round < rounds; round++) {
+      struct outcome_of out;
+      const struct running it = launch(
+          program,
+          (struct launch){.ranks = 3, .slots = 1, .count = 2000, .kind = TASK_SLEEP, .amount = 0.01, .special = -1});
+      assert_true(await_journal(&it, 10));
+      task_sleep(1e-3 * (double)((round * 37 + victim * 11) % 40));
+      const pid_t pid = victim == 2 ? it.pid : await_descendant(&it, it.pid, 0, victim);
+      assert_true(pid > 0);
+      kill(pid, SIGKILL);
+      assert_true(ended(&it, 10, &out));
+      assert_int_equal(orphans(&it, 5), 0);
+      assert_true(out.exit_code != 0); /* whatever mpirun says, it is no success */
+    }
+  }
+}
+
+static void signals_to_mpirun(void **state) {
+  (void)state;
+  const int signals[] = {SIGUSR1, SIGTERM, SIGINT};
+  for (int i = 0; i < 3; i++) {
+    struct outcome_of out;
+    const struct running it = launch(
+        program,
+        (struct launch){.ranks = 3, .slots = 1, .count = 2000, .kind = TASK_SLEEP, .amount = 0.05, .special = -1});
+    assert_true(await_journal(&it, 10));
+    kill(it.pid, signals[i]);
+    assert_true(ended(&it, 10, &out));
+    assert_int_equal(orphans(&it, 3), 0);
+    assert_true(out.summary); /* the manager came to its end in time */
+    assert_int_equal(out.status, STATUS_STOPPED);
+    assert_int_equal(out.stopping, 1);
+    assert_int_equal(out.twice + out.wrong, 0);
+    if (signals[i] == SIGUSR1) {
+      assert_int_equal(out.exit_code, STATUS_STOPPED);
+      assert_int_equal(out.lost, 0);
+    } else {
+      assert_true(out.exit_code != 0); /* mpirun returns 1 whatever the ranks do: the store tells */
+    }
+  }
+}
+
+/* A rank that freezes is noticed; its run is lost, the others finish, and the end is MPI_Abort, as Finalize would hang.
+ */
+static void a_frozen_rank_is_left_behind(void **state) {
+  (void)state;
+  struct outcome_of out;
+  const struct running it = launch(
+      program,
+      (struct launch){
+          .ranks = 3, .slots = 1, .count = 60, .kind = TASK_SLEEP, .amount = 0.05, .lost_after_s = 3, .special = -1});
+  assert_true(await_journal(&it, 6));
+  const pid_t victim = await_descendant(&it, it.pid, 0, 2);
+  assert_true(victim > 0);
+  kill(victim, SIGSTOP);
+  assert_true(ended(&it, 20, &out));
+  assert_int_equal(orphans(&it, 5), 0);
+  assert_true(out.summary);
+  assert_int_equal(out.status, STATUS_OK);
+  assert_int_equal(out.reported, 60);
+  assert_int_equal(out.twice, 0);
+  assert_int_equal(out.done, 59);
+  assert_int_equal(out.lost, 1); /* the one it was computing; what it held ahead went to the others */
+}
+
+int main(int argc, char **argv) {
+  if (argc > 2 && strcmp(argv[1], "work") == 0) return program_work(argv);
+  char path[4096] = "";
+  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0) return 1;
+  program = path;
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(same_answers_whatever_the_ranks),
+      cmocka_unit_test(a_crash_costs_one_run),
+      cmocka_unit_test(idle_ranks_sleep),
+      cmocka_unit_test(a_killed_rank_ends_the_job),
+      cmocka_unit_test(signals_to_mpirun),
+      cmocka_unit_test(a_frozen_rank_is_left_behind),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
