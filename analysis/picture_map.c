@@ -1,0 +1,121 @@
+/* A quantity over two axes of a sweep: one tile per point, a colour bar, the number in the tile where it fits. */
+#include <math.h>
+#include <stdio.h>
+
+#include "analysis/picture.h"
+#include "analysis/picture_canvas.h"
+
+/* From dark blue to pale yellow: lightness rises evenly, so that it also reads in grey and for the colour-blind. */
+static void ramp(cairo_t *cairo, double share) {
+  picture_canvas_colour(cairo, 0.28 + 0.64 * share, 0.10 + 0.05 * sin(M_PI * share), 285 - 185 * share, 1);
+}
+
+static double tick_step(double span) {
+  double step = picture_canvas_round_length(span / 3);
+  return step;
+}
+
+static bool bad_axis(const struct picture_axis *axis) {
+  if (axis->count == 0) return true;
+  for (size_t i = 0; i < axis->count; i++)
+    if (!isfinite(axis->values[i]) || (axis->log && axis->values[i] <= 0)) return true;
+  return false;
+}
+
+static void colour_bar(cairo_t *cairo, double x, double y, double width, double height, double font, double low, double high,
+                       const char *quantity) {
+  enum { STEPS = 128 };
+  for (int i = 0; i < STEPS; i++) {
+    ramp(cairo, (i + 0.5) / STEPS);
+    cairo_rectangle(cairo, x, y + height * (STEPS - 1 - i) / STEPS, width, height / STEPS + 0.5);
+    cairo_fill(cairo);
+  }
+  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+  cairo_set_line_width(cairo, 0.07 * font);
+  cairo_rectangle(cairo, x, y, width, height);
+  cairo_stroke(cairo);
+  double step = high > low ? tick_step(high - low) : 1;
+  for (double tick = ceil(low / step) * step; tick <= high + 1e-9 * step; tick += step) {
+    char text[32];
+    double place = high > low ? y + height * (high - tick) / (high - low) : y + height / 2;
+    snprintf(text, sizeof text, "%.4g", fabs(tick) < 1e-9 * step ? 0 : tick);
+    cairo_move_to(cairo, x + width, place);
+    cairo_rel_line_to(cairo, 0.4 * font, 0);
+    cairo_stroke(cairo);
+    picture_canvas_text(cairo, x + width + 0.6 * font, place + 0.35 * font, 0.9 * font, PICTURE_LEFT, false, text);
+  }
+  cairo_save(cairo);
+  cairo_translate(cairo, x + width + 5 * font, y + height / 2);
+  cairo_rotate(cairo, -M_PI / 2);
+  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, quantity);
+  cairo_restore(cairo);
+}
+
+status picture_map(const char *path, double width, const char *title, const char *quantity, const struct picture_axis *x,
+                   const struct picture_axis *y, const double *value, struct error *error) {
+  if (bad_axis(x) || bad_axis(y)) return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", path);
+  double font = width / 46, height = 0.72 * width, low = HUGE_VAL, high = -HUGE_VAL;
+  double left = 6 * font, top = (title ? 3 : 1) * font, wide = width - left - 8 * font, tall = height - top - 3.8 * font;
+  size_t columns = x->count, lines = y->count;
+  for (size_t i = 0; i < columns * lines; i++) {
+    if (!isfinite(value[i])) continue;
+    low = fmin(low, value[i]);
+    high = fmax(high, value[i]);
+  }
+  if (!(high >= low)) return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", path);
+  struct picture_canvas canvas;
+  status code = picture_canvas_open(&canvas, path, width, height, error);
+  if (code) return code;
+  cairo_t *cairo = canvas.cairo;
+  double tile_x = wide / (double)columns, tile_y = tall / (double)lines, digits = fmin(0.85 * font, 0.24 * tile_x);
+  for (size_t j = 0; j < lines; j++) {
+    for (size_t i = 0; i < columns; i++) {
+      double v = value[j * columns + i], at_x = left + tile_x * (double)i, at_y = top + tall - tile_y * (double)(j + 1);
+      if (!isfinite(v)) {
+        cairo_set_source_rgb(cairo, 0.75, 0.75, 0.75);
+        cairo_set_line_width(cairo, 0.06 * font);
+        cairo_move_to(cairo, at_x, at_y);
+        cairo_rel_line_to(cairo, tile_x, tile_y);
+        cairo_move_to(cairo, at_x + tile_x, at_y);
+        cairo_rel_line_to(cairo, -tile_x, tile_y);
+        cairo_stroke(cairo);
+        continue;
+      }
+      double share = high > low ? (v - low) / (high - low) : 0.5;
+      ramp(cairo, share);
+      cairo_rectangle(cairo, at_x, at_y, tile_x + 0.4, tile_y + 0.4);
+      cairo_fill(cairo);
+      if (digits < 0.4 * font || tile_y < 1.3 * digits) continue;
+      char text[32];
+      snprintf(text, sizeof text, "%.3g", v);
+      if (share > 0.55) cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+      else cairo_set_source_rgb(cairo, 1, 1, 1);
+      picture_canvas_text(cairo, at_x + tile_x / 2, at_y + tile_y / 2 + 0.35 * digits, digits, PICTURE_CENTRE, false, text);
+    }
+  }
+  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+  cairo_set_line_width(cairo, 0.08 * font);
+  cairo_rectangle(cairo, left, top, wide, tall);
+  cairo_stroke(cairo);
+  char text[64];
+  size_t every_x = (size_t)fmax(ceil(3.4 * font / tile_x), 1), every_y = (size_t)fmax(ceil(1.3 * font / tile_y), 1);
+  for (size_t i = 0; i < columns; i += every_x) {
+    snprintf(text, sizeof text, "%.4g", x->values[i]);
+    picture_canvas_text(cairo, left + tile_x * ((double)i + 0.5), top + tall + 1.4 * font, 0.95 * font, PICTURE_CENTRE, false, text);
+  }
+  for (size_t j = 0; j < lines; j += every_y) {
+    snprintf(text, sizeof text, "%.4g", y->values[j]);
+    picture_canvas_text(cairo, left - 0.5 * font, top + tall - tile_y * ((double)j + 0.5) + 0.35 * font, 0.95 * font,
+                        PICTURE_RIGHT, false, text);
+  }
+  colour_bar(cairo, left + wide + 1.2 * font, top, 1.1 * font, tall, font, low, high, quantity);
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  if (title) picture_canvas_text(cairo, left, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
+  picture_canvas_text(cairo, left + wide / 2, height - 0.8 * font, 1.05 * font, PICTURE_CENTRE, false, x->label);
+  cairo_save(cairo);
+  cairo_translate(cairo, 1.5 * font, top + tall / 2);
+  cairo_rotate(cairo, -M_PI / 2);
+  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, y->label);
+  cairo_restore(cairo);
+  return picture_canvas_close(&canvas, STATUS_OK, error);
+}

@@ -1,0 +1,222 @@
+/* Pictures are whole files of the right kind with ink where it belongs; errors leave nothing behind. With a folder as
+ * argument the pictures stay there, to be looked at. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <cairo.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "analysis/analysis.h"
+#include "analysis/picture.h"
+#include "engine/random.h"
+
+static char folder[256];
+static const char *at(const char *name) {
+  static char path[512];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+enum { SIDE = 36, MOST = SIDE * SIDE };
+
+/* A disc of jittered squares, broken round random centres and thrown outwards, with dust at the rim. */
+struct example {
+  size_t cells;
+  uint32_t first[MOST + 1], fragment[MOST], crack[8][2];
+  double vertex[4 * MOST][2];
+};
+
+static double jitter(int i, int j, int axis) { return 0.35 * (random_draw(8, (uint64_t)axis, (uint64_t)i, (uint64_t)j) - 0.5); }
+
+static void make_example(struct example *e, double spread) {
+  enum { CENTRES = 40 };
+  double cx[CENTRES], cy[CENTRES];
+  for (uint64_t c = 0; c < CENTRES; c++) {
+    double r = 0.97 * sqrt(random_draw(9, 0, c, 0)), angle = 2 * M_PI * random_draw(9, 1, c, 0);
+    cx[c] = r * cos(angle);
+    cy[c] = r * sin(angle);
+  }
+  *e = (struct example){0};
+  uint32_t dust = CENTRES;
+  for (int j = 0; j < SIDE; j++) {
+    for (int i = 0; i < SIDE; i++) {
+      double x = (i + 0.5) / SIDE * 2 - 1, y = (j + 0.5) / SIDE * 2 - 1;
+      if (hypot(x, y) > 1) continue;
+      uint32_t label = 0;
+      for (uint32_t c = 1; c < CENTRES; c++)
+        if (hypot(x - cx[c], y - cy[c]) < hypot(x - cx[label], y - cy[label])) label = c;
+      bool alone = hypot(x, y) > 0.95 || random_draw(9, 2, (uint64_t)i, (uint64_t)j) < 0.03;
+      double ox = alone ? x : cx[label], oy = alone ? y : cy[label];
+      size_t n = e->cells++;
+      e->fragment[n] = alone ? dust++ : label;
+      e->first[n + 1] = (uint32_t)(4 * (n + 1));
+      const int corner[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+      for (int v = 0; v < 4; v++) {
+        int p = i + corner[v][0], q = j + corner[v][1];
+        e->vertex[4 * n + (size_t)v][0] = 0.1 * ((p + jitter(p, q, 0)) / SIDE * 2 - 1 + spread * ox);
+        e->vertex[4 * n + (size_t)v][1] = 0.1 * ((q + jitter(p, q, 1)) / SIDE * 2 - 1 + spread * oy);
+      }
+    }
+  }
+  uint32_t seen[MOST] = {0}, next = 0, number[MOST]; /* labels without gaps */
+  for (size_t n = 0; n < e->cells; n++) {
+    if (!seen[e->fragment[n]]++) number[e->fragment[n]] = next++;
+    e->fragment[n] = number[e->fragment[n]];
+  }
+  for (int k = 0; k < 8; k++) {
+    e->crack[k][0] = (uint32_t)e->cells / 2 + (uint32_t)k;
+    e->crack[k][1] = e->crack[k][0] + 1;
+  }
+}
+
+static struct picture_body body_of(const struct example *e) {
+  return (struct picture_body){.cells = e->cells, .first_vertex = e->first, .vertex = e->vertex, .fragment = e->fragment,
+                               .cracks = 8, .crack = e->crack};
+}
+
+/* Share of pixels that are not white, and of coloured ones. */
+static void ink(const char *path, double *dark, double *coloured, int *width, int *height) {
+  cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
+  assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
+  *width = cairo_image_surface_get_width(surface);
+  *height = cairo_image_surface_get_height(surface);
+  const unsigned char *data = cairo_image_surface_get_data(surface);
+  int stride = cairo_image_surface_get_stride(surface), not_white = 0, hued = 0;
+  for (int y = 0; y < *height; y++) {
+    for (int x = 0; x < *width; x++) {
+      const unsigned char *p = data + y * stride + 4 * x;
+      int low = p[0] < p[1] ? p[0] : p[1], high = p[0] > p[1] ? p[0] : p[1];
+      low = p[2] < low ? p[2] : low;
+      high = p[2] > high ? p[2] : high;
+      not_white += low < 250;
+      hued += high - low > 40;
+    }
+  }
+  *dark = (double)not_white / (*width * *height);
+  *coloured = (double)hued / (*width * *height);
+  cairo_surface_destroy(surface);
+}
+
+static void fragments_are_drawn(void **state) {
+  (void)state;
+  static struct example before, after;
+  make_example(&before, 0);
+  make_example(&after, 0.25);
+  struct picture_panel panels[2] = {{.body = body_of(&before), .caption = "before"}, {.body = body_of(&after), .caption = "after 10 ms"}};
+  assert_int_equal(picture_fragments(at("one.png"), 900, "An example of a broken disc", "40 pieces and dust", 1, panels + 1, NULL), STATUS_OK);
+  assert_int_equal(picture_fragments(at("two.png"), 1400, "An example of a broken disc", "40 pieces and dust", 2, panels, NULL), STATUS_OK);
+  assert_int_equal(picture_fragments(at("two.svg"), 900, NULL, NULL, 2, panels, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("one.png"), &dark, &coloured, &width, &height);
+  assert_int_equal(width, 900);
+  assert_true(coloured > 0.25 && dark < 0.8); /* a disc fills pi/4 of its square, gaps and titles take the rest */
+  FILE *svg = fopen(at("two.svg"), "r");
+  assert_non_null(svg);
+  char head[128] = "";
+  assert_true(fread(head, 1, sizeof head - 1, svg) > 0 && strstr(head, "<?xml"));
+  fclose(svg);
+}
+
+static void spectra_are_drawn(void **state) {
+  (void)state;
+  enum { RUNS = 40, EACH = 80 };
+  static double masses[2][RUNS * EACH];
+  struct picture_series series[2];
+  struct picture_fit fits[2][2];
+  struct pooled_bin *bins[2];
+  for (size_t s = 0; s < 2; s++) {
+    size_t first[RUNS + 1];
+    for (size_t i = 0; i < RUNS * EACH; i++) masses[s][i] = 0.0057 * pow(1 - random_draw(5, s, i, 0), -1 / (0.8 + 0.5 * (double)s));
+    for (size_t r = 0; r <= RUNS; r++) first[r] = r * EACH;
+    struct pooled_runs runs = {RUNS, first, masses[s]};
+    assert_int_equal(pooled_spectrum(&runs, true, 1, &bins[s], &series[s].count, NULL), STATUS_OK);
+    series[s].bins = bins[s];
+    series[s].label = s ? "threshold 6 %" : "threshold 3 %";
+    series[s].fits = 2;
+    series[s].fit = fits[s];
+    fits[s][0] = (struct picture_fit){s ? "\xce\xb2 = 2.30 \xc2\xb1 0.03 (likelihood)" : "\xce\xb2 = 1.80 \xc2\xb1 0.02 (likelihood)", 1.8 + 0.5 * (double)s, 0.0057, HUGE_VAL, EACH};
+    fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH};
+  }
+  assert_int_equal(picture_spectrum(at("spectrum.png"), 900, "disc-explosion, 40 runs", "kg/m", 2, series, NULL), STATUS_OK);
+  assert_int_equal(picture_spectrum(at("spectrum.svg"), 600, NULL, "kg", 1, series, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("spectrum.png"), &dark, &coloured, &width, &height);
+  assert_true(dark > 0.02 && dark < 0.3 && coloured > 0.003);
+  series[0].count = 0;
+  struct error error;
+  assert_int_equal(picture_spectrum(at("none.png"), 600, NULL, "kg", 1, series, &error), STATUS_USAGE);
+  free(bins[0]);
+  free(bins[1]);
+}
+
+static void maps_are_drawn(void **state) {
+  (void)state;
+  double xs[6], ys[4], value[24];
+  for (int i = 0; i < 6; i++) xs[i] = 0.01 * (i + 1);
+  for (int j = 0; j < 4; j++) ys[j] = j + 1;
+  for (int i = 0; i < 24; i++) value[i] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
+  value[7] = NAN;
+  struct picture_axis x = {"beam.threshold.strain", 6, xs, false}, y = {"beam.threshold.angle (deg)", 4, ys, false};
+  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", &x, &y, value, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("map.png"), &dark, &coloured, &width, &height);
+  assert_true(coloured > 0.3);
+  for (int i = 0; i < 24; i++) value[i] = NAN;
+  assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", &x, &y, value, NULL), STATUS_USAGE);
+}
+
+static void errors_leave_nothing(void **state) {
+  (void)state;
+  static struct example e;
+  make_example(&e, 0.1);
+  struct picture_panel panel = {.body = body_of(&e)};
+  struct error error = {0};
+  assert_int_equal(picture_fragments(at("a.jpg"), 600, NULL, NULL, 1, &panel, &error), STATUS_USAGE);
+  assert_non_null(strstr(error.message, ".png"));
+  assert_int_equal(picture_fragments(at("no/such/a.png"), 600, NULL, NULL, 1, &panel, &error), STATUS_IO);
+  assert_int_equal(picture_fragments(at("no/such/a.svg"), 600, NULL, NULL, 1, &panel, &error), STATUS_IO);
+  assert_int_equal(picture_fragments(at("none.png"), 600, NULL, NULL, 0, &panel, &error), STATUS_USAGE);
+  assert_int_equal(picture_fragments(at("none.png"), NAN, NULL, NULL, 1, &panel, &error), STATUS_USAGE);
+  e.fragment[3] = 4000000000u;
+  assert_int_equal(picture_fragments(at("none.png"), 600, NULL, NULL, 1, &panel, &error), STATUS_USAGE);
+  e.fragment[3] = 0;
+  e.vertex[9][0] = NAN;
+  picture_fragments(at("nan.png"), 600, NULL, NULL, 1, &panel, &error); /* must not trap */
+  struct stat found;
+  assert_int_not_equal(stat(at("none.png"), &found), 0);
+  panel.body.cells = 0;
+  assert_int_equal(picture_fragments(at("none.png"), 600, NULL, NULL, 1, &panel, &error), STATUS_USAGE);
+}
+
+int main(int count, char **arguments) {
+  analysis_init();
+  if (count > 1) snprintf(folder, sizeof folder, "%s", arguments[1]);
+  else {
+    snprintf(folder, sizeof folder, "pictures.XXXXXX");
+    if (!mkdtemp(folder)) return 1;
+  }
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(fragments_are_drawn),
+      cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(maps_are_drawn),
+      cmocka_unit_test(errors_leave_nothing),
+  };
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (count < 2) {
+    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "nan.png"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
+    if (rmdir(folder) != 0) failed++; /* something else was left behind */
+  }
+  return failed;
+}
