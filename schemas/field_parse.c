@@ -30,6 +30,8 @@ status field_parse(const struct field *row, const char *text, struct field_value
     break;
   case FIELD_INTEGER:
     came.integer = strtoll(text, &end, 10);
+    /* Digits alone, or with the row's own unit, keep all 64 bits; all else goes through a double. */
+    if (row->unit && *end == ' ' && strcmp(end + 1, row->unit) == 0) end += strlen(end);
     if (end != text && *end == 0 && came.integer != INT64_MAX && came.integer != INT64_MIN && *text != ' ') break;
     came.kind = FIELD_REAL; /* "1e6", "2 GiB" */
     if (unit_read(text, row->unit ? row->unit : "1", &came.number, &inner))

@@ -1,0 +1,422 @@
+/* Field tables: defaults, finding, conditions, setting and parsing with their messages, JSON, identity, bytes. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/field.h"
+
+struct thing {
+  double length, limit, angle;
+  int64_t count, memory;
+  bool broken;
+  int law, mode;
+  char name[FIELD_TEXT_SIZE];
+  double needed;
+};
+
+static const char *const laws[] = {"weak", "strong", "off", NULL};
+static const char *const modes[] = {"plain", "fancy", NULL};
+#define AT(member) .offset = offsetof(struct thing, member)
+static const struct field rows[] = {
+    {.path = "body.length",
+     .kind = FIELD_REAL,
+     .unit = "m",
+     AT(length),
+     .minimum = 0,
+     .maximum = HUGE_VAL,
+     .number = 0.4,
+     .flags = FIELD_ABOVE_MINIMUM,
+     .doc = "How long it is.",
+     .source = "a paper, eq. 3"},
+    {.path = "law",
+     .kind = FIELD_CHOICE,
+     AT(law),
+     .choices = laws,
+     .choice_docs = "soft\nhard\nnone",
+     .number = 1,
+     .doc = "Which law."},
+    {.path = "body.limit",
+     .kind = FIELD_REAL,
+     .unit = "1",
+     AT(limit),
+     .minimum = 0,
+     .maximum = 1,
+     .number = NAN,
+     .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM,
+     .doc = "Limit."},
+    {.path = "body.count",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     AT(count),
+     .minimum = 1,
+     .maximum = 1e6,
+     .number = 7,
+     .doc = "How many."},
+    {.path = "memory",
+     .kind = FIELD_INTEGER,
+     .unit = "B",
+     AT(memory),
+     .minimum = 0,
+     .maximum = HUGE_VAL,
+     .number = 1024,
+     .doc = "Memory."},
+    {.path = "law_of.angle",
+     .kind = FIELD_REAL,
+     .unit = "rad",
+     AT(angle),
+     .minimum = -4,
+     .maximum = 4,
+     .number = 0.5,
+     .when = "law=weak|strong",
+     .doc = "Angle."},
+    {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .doc = "Broken."},
+    {.path = "mode",
+     .kind = FIELD_CHOICE,
+     AT(mode),
+     .choices = modes,
+     .number = 0,
+     .when = "broken=true",
+     .doc = "Mode."},
+    {.path = "name", .kind = FIELD_TEXT, AT(name), .text = "none", .when = "mode=fancy", .doc = "Name."},
+    {.path = "other.length",
+     .kind = FIELD_REAL,
+     .unit = "m",
+     AT(needed),
+     .minimum = -HUGE_VAL,
+     .maximum = HUGE_VAL,
+     .flags = FIELD_REQUIRED,
+     .doc = "Needed."},
+};
+static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "A thing for tests.");
+enum { ROWS = sizeof rows / sizeof rows[0] };
+
+static const struct field *row(const char *path) {
+  const struct field *found = field_find(&table, path, NULL);
+  assert_non_null(found);
+  return found;
+}
+
+static void defaults_fill_everything(void **state) {
+  (void)state;
+  struct thing thing;
+  memset(&thing, 0xAA, sizeof thing);
+  field_defaults(&table, &thing);
+  assert_true(thing.length == 0.4 && field_is_off(thing.limit) && thing.count == 7 && thing.memory == 1024);
+  assert_true(thing.broken && thing.law == 1 && thing.mode == 0 && thing.angle == 0.5);
+  assert_string_equal(thing.name, "none");
+  assert_true(isnan(thing.needed));
+}
+
+static void finds_by_suffix(void **state) {
+  (void)state;
+  struct error error = {0};
+  assert_ptr_equal(field_find(&table, "body.count", &error), &rows[3]);
+  assert_ptr_equal(field_find(&table, "count", &error), &rows[3]);
+  assert_ptr_equal(field_find(&table, "angle", &error), &rows[5]);
+  assert_null(field_find(&table, "length", &error));
+  assert_string_equal(error.message, "'length' is ambiguous in the thing: it may be 'body.length', 'other.length'");
+  assert_null(field_find(&table, "ount", &error)); /* a suffix begins at a dot */
+  assert_null(field_find(&table, "body.cuont", &error));
+  assert_string_equal(error.message, "the thing has no 'body.cuont'; did you mean 'body.count'?");
+  assert_null(field_find(&table, "limt", &error));
+  assert_string_equal(error.message, "the thing has no 'limt'; did you mean 'body.limit'?");
+  assert_null(field_find(&table, "zzzzzz", &error));
+  assert_string_equal(error.message, "the thing has no 'zzzzzz'; 'clast explain' lists what it has");
+  assert_int_equal(error.status, STATUS_CONTENT);
+  assert_null(field_find(&table, "", &error));
+}
+
+static void distances_are_levenshtein(void **state) {
+  (void)state;
+  assert_int_equal(field_distance("kitten", "sitting"), 3);
+  assert_int_equal(field_distance("", "abc"), 3);
+  assert_int_equal(field_distance("abc", "abc"), 0);
+  char lengthy[400];
+  memset(lengthy, 'a', sizeof lengthy);
+  lengthy[399] = 0;
+  assert_true(field_distance(lengthy, "a") == SIZE_MAX);
+}
+
+static void conditions_chain(void **state) {
+  (void)state;
+  struct thing thing;
+  char why[200];
+  field_defaults(&table, &thing);
+  assert_true(field_is_active(&table, row("angle"), &thing));
+  thing.law = 2;
+  assert_false(field_is_active(&table, row("angle"), &thing));
+  field_describe_inactive(&table, row("angle"), &thing, why, sizeof why);
+  assert_string_equal(why, "used only when law is weak or strong; here it is off");
+  assert_false(field_is_active(&table, row("name"), &thing));
+  thing.mode = 1;
+  assert_true(field_is_active(&table, row("name"), &thing));
+  thing.broken = false; /* mode itself is inactive now, whatever it holds */
+  assert_false(field_is_active(&table, row("name"), &thing));
+  field_describe_inactive(&table, row("name"), &thing, why, sizeof why);
+  assert_string_equal(why, "used only when broken is true; here it is false");
+  field_describe_inactive(&table, row("body.count"), &thing, why, sizeof why);
+  assert_string_equal(why, "");
+  static const struct field circular[] = {
+      {.path = "a", .kind = FIELD_BOOLEAN, AT(broken), .when = "b=false"},
+      {.path = "b", .kind = FIELD_BOOLEAN, AT(broken), .when = "a=false"},
+  };
+  const struct field_table round = FIELD_TABLE(circular, struct thing, "round", "");
+  assert_false(field_is_active(&round, &circular[0], &thing)); /* ends */
+}
+
+static void parses_or_says_why(void **state) {
+  (void)state;
+  static const struct {
+    const char *path, *text, *shown, *message; /* one of the last two */
+  } cases[] = {
+      {"body.length", "40 cm", "0.4 m", NULL},
+      {"body.length", "0", NULL, "body.length: expected above 0 m, got 0 m"},
+      {"body.length", "-3 km", NULL, "body.length: expected above 0 m, got -3000 m"},
+      {"body.length", "3 s", NULL, "body.length: expected a length such as m, got a time (s)"},
+      {"body.length", "off", NULL, "body.length: cannot be switched off"},
+      {"body.limit", "off", "off", NULL},
+      {"body.limit", "3 %", "0.03", NULL},
+      {"body.limit", "1", NULL, "body.limit: expected at least 0 and below 1, or off, got 1"},
+      {"body.limit", "no", NULL, "body.limit: expected a number, got 'no' (or off)"},
+      {"body.limit", "nan", NULL, "body.limit: expected a finite number, got 'nan' (or off)"},
+      {"body.count", "12", "12", NULL},
+      {"body.count", "1e3", "1000", NULL},
+      {"body.count", "1.5", NULL, "body.count: expected a whole number, got 1.5"},
+      {"body.count", "0", NULL, "body.count: expected at least 1 and at most 1e6, got 0"},
+      {"body.count", "many", NULL, "body.count: expected a number, got 'many'"},
+      {"body.count", "99999999999999999999", NULL, "body.count: expected a whole number, got 1e20"},
+      {"memory", "2 GiB", "2147483648 B", NULL},
+      {"memory", "9007199254740993", "9007199254740993 B", NULL}, /* beyond 2^53: no double in between */
+      {"memory", "3 m", NULL, "memory: expected an amount of memory such as B, got a length (m)"},
+      {"broken", "true", "true", NULL},
+      {"broken", "yes", NULL, "broken: expected true or false, got 'yes'"},
+      {"law", "weak", "weak", NULL},
+      {"law", "off", "off", NULL},
+      {"law", "strng", NULL, "law: expected weak, strong or off, got 'strng'; did you mean 'strong'?"},
+      {"law", "", NULL, "law: expected weak, strong or off, got ''"},
+      {"name", "Ida", "Ida", NULL},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    struct field_value value;
+    struct error error = {0};
+    char shown[400];
+    status code = field_parse(row(cases[i].path), cases[i].text, &value, &error);
+    if (cases[i].message) {
+      assert_int_equal(code, STATUS_CONTENT);
+      assert_string_equal(error.message, cases[i].message);
+    } else {
+      if (code) fail_msg("%s: %s", cases[i].text, error.message);
+      field_print(row(cases[i].path), &value, shown, sizeof shown);
+      assert_string_equal(shown, cases[i].shown);
+      struct field_value again; /* what is printed reads back the same */
+      assert_int_equal(field_parse(row(cases[i].path), shown, &again, &error), STATUS_OK);
+      assert_memory_equal(&again, &value, sizeof value);
+    }
+  }
+  char lengthy[FIELD_TEXT_SIZE + 1];
+  memset(lengthy, 'x', sizeof lengthy);
+  lengthy[FIELD_TEXT_SIZE] = 0;
+  struct error error;
+  struct field_value value;
+  assert_int_equal(field_parse(row("name"), lengthy, &value, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "name: expected at most 255 bytes of text, got 256");
+  assert_int_equal(field_parse(row("name"), lengthy + 1, &value, &error), STATUS_OK);
+}
+
+static void sets_what_suits(void **state) {
+  (void)state;
+  struct thing thing;
+  struct error error = {0};
+  field_defaults(&table, &thing);
+  struct field_value value = {.kind = FIELD_INTEGER, .integer = 3};
+  assert_int_equal(field_set(row("body.length"), &thing, &value, &error), STATUS_OK);
+  assert_true(thing.length == 3);
+  value = (struct field_value){.kind = FIELD_REAL, .number = 12};
+  assert_int_equal(field_set(row("body.count"), &thing, &value, &error), STATUS_OK);
+  assert_int_equal(thing.count, 12);
+  value.number = 12.5;
+  assert_int_equal(field_set(row("body.count"), &thing, &value, &error), STATUS_CONTENT);
+  assert_int_equal(thing.count, 12);
+  value.number = NAN;
+  assert_int_equal(field_set(row("body.length"), &thing, &value, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "body.length: expected above 0 m, got a number that is not finite");
+  value.number = HUGE_VAL;
+  assert_int_equal(field_set(row("body.length"), &thing, &value, &error), STATUS_CONTENT);
+  assert_int_equal(field_set(row("body.count"), &thing, &value, &error), STATUS_CONTENT);
+  value.number = -0.0;
+  assert_int_equal(field_set(row("law_of.angle"), &thing, &value, &error), STATUS_OK);
+  assert_false(signbit(thing.angle)); /* -0 and 0 are the same input, hence the same run */
+  value = (struct field_value){.kind = FIELD_TEXT, .text = "weak"};
+  assert_int_equal(field_set(row("law"), &thing, &value, &error), STATUS_OK);
+  assert_int_equal(thing.law, 0);
+  value = (struct field_value){.kind = FIELD_CHOICE, .number = 2};
+  assert_int_equal(field_set(row("law"), &thing, &value, &error), STATUS_OK);
+  assert_int_equal(thing.law, 2);
+  value.number = 3;
+  assert_int_equal(field_set(row("law"), &thing, &value, &error), STATUS_CONTENT);
+  value = (struct field_value){.kind = FIELD_TEXT, .text = "5"};
+  assert_int_equal(field_set(row("body.length"), &thing, &value, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "body.length: expected a number, got text");
+}
+
+static void json_and_identity(void **state) {
+  (void)state;
+  struct thing thing;
+  field_defaults(&table, &thing);
+  thing.needed = -1.5e-7;
+  thing.mode = 1;
+  strcpy(thing.name, "a \"b\"\n\\c");
+  char *text = field_json(&table, &thing);
+  assert_string_equal(text,
+                      "{\"body\":{\"length\":0.4,\"limit\":\"off\",\"count\":7},\"law\":\"strong\",\"memory\":1024,"
+                      "\"law_of\":{\"angle\":0.5},\"broken\":true,\"mode\":\"fancy\",\"name\":\"a \\\"b\\\"\\n\\\\c\","
+                      "\"other\":{\"length\":-1.5e-7}}");
+  free(text);
+  text = field_identity(&table, &thing);
+  assert_string_equal(text, "body.count=7\nbody.length=0x1.999999999999ap-2\nbody.limit=off\nbroken=true\nlaw=strong\n"
+                            "law_of.angle=0x1p-1\nmemory=1024\nmode=fancy\nname=a \"b\"\\n\\\\c\n"
+                            "other.length=-0x1.421f5f40d8376p-23\n");
+  free(text);
+  thing.broken = false;
+  thing.law = 2;
+  text = field_identity(&table, &thing); /* what is inactive is not part of it */
+  assert_null(strstr(text, "name="));
+  assert_null(strstr(text, "mode="));
+  assert_null(strstr(text, "angle="));
+  free(text);
+}
+
+static void explains(void **state) {
+  (void)state;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  assert_int_equal(field_explain(&table, "body.length", out), 1);
+  assert_int_equal(field_explain(&table, "law", out), 1); /* a word, not a prefix of letters */
+  assert_int_equal(field_explain(&table, "law_of.angle", out), 1);
+  fclose(out);
+  assert_string_equal(text, "body.length: real in m, above 0 m; default 0.4 m\n"
+                            "    How long it is.\n"
+                            "    Source: a paper, eq. 3\n"
+                            "law: choice; default strong\n"
+                            "    Which law.\n"
+                            "      weak: soft\n"
+                            "      strong: hard\n"
+                            "      off: none\n"
+                            "law_of.angle: real in rad, at least -4 and at most 4 rad; default 0.5 rad\n"
+                            "    Angle.\n"
+                            "    Only when law is weak or strong\n");
+  free(text);
+  out = open_memstream(&text, &size);
+  assert_int_equal(field_explain(&table, "", out), ROWS);
+  assert_int_equal(field_explain(&table, "body", out), 3);
+  assert_int_equal(field_explain(&table, "nothing", out), 0);
+  fclose(out);
+  free(text);
+}
+
+static void random_thing(uint64_t *word, struct thing *thing) {
+  field_defaults(&table, thing);
+  for (size_t i = 0; i < ROWS; i++) {
+    *word ^= *word << 13;
+    *word ^= *word >> 7;
+    *word ^= *word << 17;
+    struct field_value value = {.kind = rows[i].kind, .number = (double)(*word % 2)};
+    memcpy(&value.integer, word, 8);
+    if (rows[i].kind == FIELD_REAL) memcpy(&value.number, word, 8);
+    size_t length = rows[i].kind == FIELD_TEXT ? *word % FIELD_TEXT_SIZE : 0;
+    for (size_t k = 0; k < length; k++)
+      value.text[k] = (char)(1 + (*word >> k % 56) % 255);
+    field_set_unchecked(&rows[i], thing, &value);
+  }
+}
+
+static void bytes_round_trip(void **state) {
+  (void)state;
+  uint64_t word = 88172645463325252u;
+  for (int i = 0; i < 2000; i++) {
+    struct thing thing, back;
+    random_thing(&word, &thing);
+    size_t size = field_encoded_size(&table, &thing);
+    uint8_t *bytes = malloc(size), *again = malloc(size);
+    assert_int_equal(field_encode(&table, &thing, bytes), size);
+    assert_int_equal(field_decode(&table, bytes, size, &back), size);
+    assert_int_equal(field_encoded_size(&table, &back), size);
+    field_encode(&table, &back, again);
+    assert_memory_equal(bytes, again, size);
+    assert_true(memcmp(&thing.length, &back.length, 8) == 0 && thing.count == back.count && thing.law == back.law);
+    assert_string_equal(thing.name, back.name);
+    for (size_t cut = 0; cut < size; cut += 1 + cut / 8)
+      assert_int_equal(field_decode(&table, bytes, cut, &back), 0);
+    free(bytes);
+    free(again);
+  }
+}
+
+static void bytes_are_pinned_and_guarded(void **state) {
+  (void)state;
+  struct pair {
+    double x;
+    int law;
+    bool b;
+    char name[FIELD_TEXT_SIZE];
+  } pair, back;
+  const struct field few[] = {
+      {.path = "x", .kind = FIELD_REAL, .offset = offsetof(struct pair, x)},
+      {.path = "law", .kind = FIELD_CHOICE, .offset = offsetof(struct pair, law), .choices = laws},
+      {.path = "b", .kind = FIELD_BOOLEAN, .offset = offsetof(struct pair, b)},
+      {.path = "name", .kind = FIELD_TEXT, .offset = offsetof(struct pair, name)},
+  };
+  struct field changed[4];
+  struct field_table small = {.rows = few, .count = 4, .size = sizeof pair, .name = "pair"};
+  memset(&pair, 0, sizeof pair);
+  pair.x = -2;
+  pair.law = 2;
+  pair.b = true;
+  strcpy(pair.name, "hi");
+  uint8_t bytes[64];
+  size_t size = field_encode(&small, &pair, bytes);
+  /* FNV-1a 64 of the rows' names, kinds and choices, each closed by 0xff (computed by an independent program). */
+  static const uint8_t expected[] = {0xbb, 0xae, 0x80, 0xc7, 0x0f, 0x69, 0x70, 0x70, /* table */
+                                     0,    0,    0,    0,    0,    0,    0,    0xc0, 2, 0, 1, 2, 'h', 'i'};
+  assert_int_equal(size, sizeof expected);
+  assert_memory_equal(bytes + 8, expected + 8, size - 8);
+  assert_memory_equal(bytes, expected, 8);
+  /* Another name, kind, order or choice: refused. */
+  for (int change = 0; change < 4; change++) {
+    memcpy(changed, few, sizeof few);
+    if (change == 0) changed[0].path = "y";
+    if (change == 1) changed[0].kind = FIELD_INTEGER;
+    if (change == 2) changed[1] = few[2], changed[2] = few[1];
+    if (change == 3) changed[1].choices = modes;
+    struct field_table other = small;
+    other.rows = changed;
+    assert_int_equal(field_decode(&other, bytes, size, &back), 0);
+  }
+  bytes[16] = 3; /* no such choice */
+  assert_int_equal(field_decode(&small, bytes, size, &back), 0);
+  bytes[16] = 2;
+  bytes[18] = 2; /* no such truth */
+  assert_int_equal(field_decode(&small, bytes, size, &back), 0);
+  bytes[18] = 1;
+  assert_int_equal(field_decode(&small, bytes, size, &back), size);
+  assert_string_equal(back.name, "hi");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(defaults_fill_everything),  cmocka_unit_test(finds_by_suffix),
+      cmocka_unit_test(distances_are_levenshtein), cmocka_unit_test(conditions_chain),
+      cmocka_unit_test(parses_or_says_why),        cmocka_unit_test(sets_what_suits),
+      cmocka_unit_test(json_and_identity),         cmocka_unit_test(explains),
+      cmocka_unit_test(bytes_round_trip),          cmocka_unit_test(bytes_are_pinned_and_guarded),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
