@@ -144,9 +144,10 @@ bool document_read(document_node *node, const struct field_table *table, const c
     char why[600];
     if (!judgeable(&r, row)) continue;
     if (field_is_active(table, row, object)) {
-      if (row->flags & FIELD_REQUIRED && !r.places[i].key)
-        document_report(holder(node, row->path), row->path, "is missing and has no default; %s",
-                        row->doc ? row->doc : "give it");
+      if (!(row->flags & FIELD_REQUIRED) || r.places[i].key) continue;
+      size_t at = holder(node, row->path)->start;
+      document_report_at(document, at, at + 1, row->path, "is missing and has no default; %s",
+                         row->doc ? row->doc : "give it");
     } else if (r.places[i].key) {
       field_describe_inactive(table, row, object, why, sizeof why);
       document_report(r.places[i].key, row->path, "has no effect: it is %s; remove one or change the other", why);

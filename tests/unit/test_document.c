@@ -1,0 +1,519 @@
+/* Documents: each kind of error held to its exact text with line, column and caret; several errors of one file in one
+ * report, sorted; limits; files that are none. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "schemas/document.h"
+
+struct thing {
+  double length, limit, speed;
+  int64_t count, memory;
+  bool broken;
+  int law, shape;
+  char name[FIELD_TEXT_SIZE];
+  double needed;
+};
+
+static const char *const laws[] = {"weak", "strong", "off", NULL};
+static const char *const shapes[] = {"disc", "block", NULL};
+#define AT(member) .offset = offsetof(struct thing, member)
+#define FINITE     .minimum = -HUGE_VAL, .maximum = HUGE_VAL
+static const struct field rows[] = {
+    {.path = "shape", .kind = FIELD_CHOICE, AT(shape), .choices = shapes, .doc = "Shape."},
+    {.path = "body.length",
+     .kind = FIELD_REAL,
+     .unit = "m",
+     AT(length),
+     .minimum = 0,
+     .maximum = 10,
+     .number = 1,
+     .doc = "Length."},
+    {.path = "body.limit",
+     .kind = FIELD_REAL,
+     .unit = "1",
+     AT(limit),
+     FINITE,
+     .number = NAN,
+     .flags = FIELD_MAY_BE_OFF,
+     .doc = "Limit."},
+    {.path = "body.count",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     AT(count),
+     .minimum = 1,
+     .maximum = 99,
+     .number = 7,
+     .doc = "Count."},
+    {.path = "memory", .kind = FIELD_INTEGER, .unit = "B", AT(memory), FINITE, .number = 1, .doc = "Memory."},
+    {.path = "broken", .kind = FIELD_BOOLEAN, AT(broken), .number = 1, .doc = "Broken."},
+    {.path = "contact.law", .kind = FIELD_CHOICE, AT(law), .choices = laws, .doc = "Law."},
+    {.path = "contact.speed",
+     .kind = FIELD_REAL,
+     .unit = "m/s",
+     AT(speed),
+     FINITE,
+     .when = "contact.law=weak|strong",
+     .doc = "Speed."},
+    {.path = "name", .kind = FIELD_TEXT, AT(name), .text = "", .doc = "Name."},
+    {.path = "block.height",
+     .kind = FIELD_REAL,
+     .unit = "m",
+     AT(needed),
+     FINITE,
+     .flags = FIELD_REQUIRED,
+     .when = "shape=block",
+     .doc = "Height of the block."},
+};
+static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "A thing for tests.");
+
+/* Read a text; the report (malloc'd) or NULL when it was good. */
+static char *report_of(const char *text, size_t size, struct thing *thing) {
+  struct document *document;
+  struct error error = {0};
+  static const char *const also[] = {"note", NULL};
+  field_defaults(&table, thing);
+  status code = document_parse("a.yaml", text, size, &document, &error);
+  if (code) {
+    assert_int_equal(code, STATUS_CONTENT);
+    assert_null(document);
+    return strdup(error.message);
+  }
+  bool good = document_read(document_root(document), &table, also, thing);
+  const char *report;
+  code = document_finish(document, &report);
+  assert_int_equal(code, report ? STATUS_CONTENT : STATUS_OK);
+  if (!report) assert_true(good);
+  char *copy = report ? strdup(report) : NULL;
+  document_free(document);
+  return copy;
+}
+
+static char *report_text(const char *text, struct thing *thing) {
+  return report_of(text, strlen(text), thing);
+}
+
+static int differs(const char *text, size_t size, const char *expected) {
+  struct thing thing;
+  char *report = report_of(text, size, &thing);
+  int wrong = strcmp(report ? report : "", expected ? expected : "") != 0;
+  if (wrong)
+    print_error("--- of\n%s\n--- came\n%s\n--- expected\n%s\n", text, report ? report : "(no error)",
+                expected ? expected : "(no error)");
+  free(report);
+  return wrong;
+}
+
+static void good_documents_are_read(void **state) {
+  (void)state;
+  struct thing thing;
+  char *report = report_text(
+      "# comment\nshape: block\nblock: {height: 12 mm}\nbody:\n  length: \"30 cm\"\n  limit: off\n  count: 1e1\n"
+      "memory: 2 KiB\nbroken: False\ncontact: {law: off}\nname: 'o''k'\nnote: [any, {thing: 1}]\n",
+      &thing);
+  if (report) print_error("%s\n", report);
+  assert_null(report);
+  assert_true(thing.shape == 1 && thing.needed == 0.012 && thing.length == 0.3 && field_is_off(thing.limit));
+  assert_true(thing.count == 10 && thing.memory == 2048 && !thing.broken && thing.law == 2);
+  assert_string_equal(thing.name, "o'k");
+  report = report_text(
+      "%YAML 1.2\n--- # start\n{\"body\": {\"length\": 1.5, \"limit\": -1e30}, name: 007, broken: true}\n...\n",
+      &thing);
+  if (report) print_error("%s\n", report);
+  assert_null(report);
+  assert_true(thing.length == 1.5 && thing.limit == -1e30);
+  assert_string_equal(thing.name, "007"); /* as written */
+  report = report_text("\xEF\xBB\xBF"
+                       "contact: &c {speed: 3 km/h}\r\nbody: {length: &l 0.1, limit: *l}\r\n",
+                       &thing);
+  if (report) print_error("%s\n", report);
+  assert_null(report);
+  assert_true(thing.limit == 0.1);
+}
+
+static void each_error_says_this(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *report;
+  } cases[] = {
+      {"shape: dics\n", "a.yaml:1:8: error: shape: expected disc or block, got 'dics'; did you mean 'disc'?\n"
+                        "  shape: dics\n"
+                        "         ^~~~"},
+      {"body:\n  lenght: 3\n", "a.yaml:2:3: error: body.lenght: unknown key; did you mean 'length'?\n"
+                               "    lenght: 3\n"
+                               "    ^~~~~~"},
+      {"body:\n  zzzzzz: 3\n", "a.yaml:2:3: error: body.zzzzzz: unknown key; known here are length, limit, count\n"
+                               "    zzzzzz: 3\n"
+                               "    ^~~~~~"},
+      {"bodi: {length: 3}\n", "a.yaml:1:1: error: bodi: unknown key; did you mean 'body'?\n"
+                              "  bodi: {length: 3}\n"
+                              "  ^~~~"},
+      {"length: 3\n", "a.yaml:1:1: error: length: unknown key; did you mean 'body.length'?\n"
+                      "  length: 3\n"
+                      "  ^~~~~~"},
+      {"body.length: 3\n",
+       "a.yaml:1:1: error: body.length: a path with dots; nest it: write 'body:' and the rest indented below it\n"
+       "  body.length: 3\n"
+       "  ^~~~~~~~~~~"},
+      {"<<: {a: 1}\n", "a.yaml:1:1: error: <<: merge keys are not part of YAML 1.2; write the keys out\n"
+                       "  <<: {a: 1}\n"
+                       "  ^~"},
+      {"body: {length: 11 m}\n", "a.yaml:1:16: error: body.length: expected at least 0 and at most 10 m, got 11 m\n"
+                                 "  body: {length: 11 m}\n"
+                                 "                 ^~~~"},
+      {"body: {length: 3 s}\n", "a.yaml:1:16: error: body.length: expected a length such as m, got a time (s)\n"
+                                "  body: {length: 3 s}\n"
+                                "                 ^~~"},
+      {"contact: {speed: 5 kph}\n", "a.yaml:1:18: error: contact.speed: unknown unit 'kph'; did you mean 'km/h'?\n"
+                                    "  contact: {speed: 5 kph}\n"
+                                    "                   ^~~~~"},
+      {"body: {length: .nan}\n",
+       "a.yaml:1:16: error: body.length: expected a finite number in m, such as '5 m', got '.nan'\n"
+       "  body: {length: .nan}\n"
+       "                 ^~~~"},
+      {"body: {length: -.inf}\n",
+       "a.yaml:1:16: error: body.length: expected a finite number in m, such as '5 m', got '-.inf'\n"
+       "  body: {length: -.inf}\n"
+       "                 ^~~~~"},
+      {"body: {length: 0x2}\n", "a.yaml:1:16: error: body.length: expected a decimal number, got '0x2'\n"
+                                "  body: {length: 0x2}\n"
+                                "                 ^~~"},
+      {"body: {length: off}\n", "a.yaml:1:16: error: body.length: cannot be switched off\n"
+                                "  body: {length: off}\n"
+                                "                 ^~~"},
+      {"body: {length: }\n", "a.yaml:1:8: error: body.length: expected at least 0 and at most 10 m, got nothing\n"
+                             "  body: {length: }\n"
+                             "         ^~~~~~"},
+      {"body: {length: [1, 2]}\n", "a.yaml:1:16: error: body.length: expected at least 0 and at most 10 m, got a list\n"
+                                   "  body: {length: [1, 2]}\n"
+                                   "                 ^~~~~~"},
+      {"body: {count: 2.5}\n", "a.yaml:1:15: error: body.count: expected a whole number, got 2.5\n"
+                               "  body: {count: 2.5}\n"
+                               "                ^~~"},
+      {"body: {count: \"2\"}\n",
+       "a.yaml:1:15: error: body.count: expected a whole number, got a text in quotes; remove the quotes\n"
+       "  body: {count: \"2\"}\n"
+       "                ^~~"},
+      {"broken: yes\n", "a.yaml:1:9: error: broken: expected true or false, got 'yes'\n"
+                        "  broken: yes\n"
+                        "          ^~~"},
+      {"broken: 'true'\n",
+       "a.yaml:1:9: error: broken: expected true or false, got a text in quotes; remove the quotes\n"
+       "  broken: 'true'\n"
+       "          ^~~~~~"},
+      {"name: ~\n", "a.yaml:1:7: error: name: expected text, got nothing\n"
+                    "  name: ~\n"
+                    "        ^"},
+      {"body: 3\n", "a.yaml:1:7: error: body: expected keys and values below it, got a single value\n"
+                    "  body: 3\n"
+                    "        ^"},
+      {"body:\nname: x\n", "a.yaml:1:1: error: body: expected keys and values below it, got nothing\n"
+                           "  body:\n"
+                           "  ^~~~"},
+      {"shape: block\n", "a.yaml:1:1: error: block.height: is missing and has no default; Height of the block.\n"
+                         "  shape: block\n"
+                         "  ^"},
+      {"name: a\nshape: block\nblock: {}\n",
+       "a.yaml:3:8: error: block.height: is missing and has no default; Height of the block.\n"
+       "  block: {}\n"
+       "         ^"},
+      {"block: {height: 3 m}\n", "a.yaml:1:9: error: block.height: has no effect: it is used only when shape is block; "
+                                 "here it is disc; remove one or change the other\n"
+                                 "  block: {height: 3 m}\n"
+                                 "          ^~~~~~"},
+      /* No word about height: whether it has an effect is not known while the shape is wrong. */
+      {"shape: blokc\nblock: {height: 3 m}\n",
+       "a.yaml:1:8: error: shape: expected disc or block, got 'blokc'; did you mean 'block'?\n"
+       "  shape: blokc\n"
+       "         ^~~~~"},
+      {"name: a\nname: b\n", "a.yaml:2:1: error: name: given twice; the first is in line 1; remove one\n"
+                             "  name: b\n"
+                             "  ^~~~"},
+      {"body: {count: 3, \"count\": 4}\n",
+       "a.yaml:1:18: error: body.count: given twice; the first is in line 1; remove one\n"
+       "  body: {count: 3, \"count\": 4}\n"
+       "                   ^~~~~~~"},
+      {"name: a\n---\nname: b\n", "a.yaml:2:1: error: a second document starts here; one file holds one document\n"
+                                  "  ---\n"
+                                  "  ^~~"},
+      {"body:\n\tlength: 3\n", "a.yaml:2:1: error: a tab as indentation; YAML wants spaces\n"
+                               "  \tlength: 3\n"
+                               "  ^"},
+      {"name: \x01\n", "a.yaml:1:7: error: a control character (first byte 0x01); remove it\n"
+                       "  name: ?\n"
+                       "        ^"},
+      {"name: \"\\e[31m\"\n", "a.yaml:1:7: error: name: text with an escaped control character (0x1b); remove it\n"
+                              "  name: \"\\e[31m\"\n"
+                              "        ^~~~~~~~"},
+      {"name: \"a\\0b\"\n", "a.yaml:1:7: error: name: text with an escaped control character (0x00); remove it\n"
+                            "  name: \"a\\0b\"\n"
+                            "        ^~~~~~"},
+      {"name: caf\xE9\n", "a.yaml:1:10: error: invalid UTF-8 (byte 0xe9); save the file as UTF-8\n"
+                          "  name: caf\xE9\n"
+                          "           ^"},
+      {"name: *nowhere\n", "a.yaml:1:7: error: name: alias '*nowhere' has no anchor '&nowhere' before it\n"
+                           "  name: *nowhere\n"
+                           "        ^~~~~~~~"},
+      {"note: &a [1, *a]\n", "a.yaml:1:14: error: note[1]: alias '*a' stands inside what it refers to\n"
+                             "  note: &a [1, *a]\n"
+                             "               ^~"},
+      {"name: !!str x\n", "a.yaml:1:13: error: name: a tag; write the value without '!'\n"
+                          "  name: !!str x\n"
+                          "              ^"},
+      {"%YAML 1.1\n---\nname: x\n", "a.yaml:1:1: error: expected YAML 1.2, got a %YAML 1.1 line; remove it\n"
+                                    "  %YAML 1.1\n"
+                                    "  ^"},
+      {"? [a, b]\n: c\n", "a.yaml:1:3: error: expected a word as key, got a list\n"
+                          "  ? [a, b]\n"
+                          "    ^~~~~~"},
+      {"- a\n- b\n", "a.yaml:1:1: error: expected keys and values, such as 'name: first', got a list\n"
+                     "  - a\n"
+                     "  ^~~"},
+      {"just words\n", "a.yaml:1:1: error: expected keys and values, such as 'name: first', got a single value\n"
+                       "  just words\n"
+                       "  ^~~~~~~~~~"},
+      {"", "a.yaml:1:1: error: the document is empty; expected keys and values, such as 'name: first'"},
+      {"# only a comment\n",
+       "a.yaml:1:1: error: the document is empty; expected keys and values, such as 'name: first'\n"
+       "  # only a comment\n"
+       "  ^"},
+      {"a: [1, 2\n", "a.yaml:2:1: error: no valid YAML: flow sequence without a closing bracket"},
+      {"a: b: c\n", "a.yaml:1:5: error: no valid YAML: invalid nested block mapping on the same line\n"
+                    "  a: b: c\n"
+                    "      ^"},
+      {"name: \"abc\n", "a.yaml:1:8: error: no valid YAML: double-quoted scalar without closing quote\n"
+                        "  name: \"abc\n"
+                        "         ^"},
+      {"a: 'b' c\n", "a.yaml:1:8: error: no valid YAML: invalid trailing content after single-quoted scalar\n"
+                     "  a: 'b' c\n"
+                     "         ^"},
+      {"a: @b\n", "a.yaml:1:4: error: no valid YAML: plain scalar cannot start with '@'\n"
+                  "  a: @b\n"
+                  "     ^"},
+      /* Columns count characters, not bytes; tabs inside a line stay tabs above the caret. */
+      {"'\xC3\xA9\xC3\xA9': 1\nname:\t[\xC3\xA9]\n", "a.yaml:1:1: error: \xC3\xA9\xC3\xA9: unknown key; known here are "
+                                                     "shape, body, memory, broken, contact, name, block, note\n"
+                                                     "  '\xC3\xA9\xC3\xA9': 1\n"
+                                                     "  ^~~~\n"
+                                                     "a.yaml:2:7: error: name: expected text, got a list\n"
+                                                     "  name:\t[\xC3\xA9]\n"
+                                                     "       \t^~~"},
+  };
+  int wrong = 0;
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+    wrong += differs(cases[i].text, strlen(cases[i].text), cases[i].report);
+  wrong += differs("name: a\0b\n", 10,
+                   "a.yaml:1:8: error: a NUL byte: this is not text; save the file as UTF-8\n"
+                   "  name: a?b\n"
+                   "         ^");
+  assert_int_equal(wrong, 0);
+}
+
+/* Every error of the file, in the order of its lines, whoever found it and when. */
+static void all_errors_in_one_go(void **state) {
+  (void)state;
+  const char *text = "shape: dsic\nbody:\n  length: 3 kg\n  cuont: 3\n  limit: \"12 %\"\nbroken: no\nbroken: "
+                     "off\ncontact: {law: off, speed: 3 m/s}\nnmae: x\n";
+  assert_int_equal(differs(text, strlen(text),
+                           "a.yaml:1:8: error: shape: expected disc or block, got 'dsic'; did you mean 'disc'?\n"
+                           "  shape: dsic\n"
+                           "         ^~~~\n"
+                           "a.yaml:3:11: error: body.length: expected a length such as m, got a mass (kg)\n"
+                           "    length: 3 kg\n"
+                           "            ^~~~\n"
+                           "a.yaml:4:3: error: body.cuont: unknown key; did you mean 'count'?\n"
+                           "    cuont: 3\n"
+                           "    ^~~~~\n"
+                           "a.yaml:6:9: error: broken: expected true or false, got 'no'\n"
+                           "  broken: no\n"
+                           "          ^~\n"
+                           "a.yaml:7:1: error: broken: given twice; the first is in line 6; remove one\n"
+                           "  broken: off\n"
+                           "  ^~~~~~\n"
+                           "a.yaml:8:21: error: contact.speed: has no effect: it is used only when contact.law is weak "
+                           "or strong; here it is off; remove one or change the other\n"
+                           "  contact: {law: off, speed: 3 m/s}\n"
+                           "                      ^~~~~\n"
+                           "a.yaml:9:1: error: nmae: unknown key; did you mean 'name'?\n"
+                           "  nmae: x\n"
+                           "  ^~~~"),
+                   0);
+}
+
+static void long_lines_and_many_errors_stay_readable(void **state) {
+  (void)state;
+  char text[6000] = "name: x\n";
+  struct thing thing;
+  size_t used = strlen(text);
+  for (int i = 0; i < 300; i++)
+    used += (size_t)sprintf(text + used, "wrong_%d: 1\n", i);
+  char *report = report_of(text, used, &thing);
+  struct error whole;
+  assert_true(strlen(report) < sizeof whole.message); /* nothing is cut when it becomes an error's message */
+  assert_non_null(strstr(report, "a.yaml:2:1: error: wrong_0: unknown key"));
+  const char *last = strrchr(report, '\n');
+  int more = 0, shown = 0;
+  assert_int_equal(sscanf(last, "\na.yaml: error: and %d more; correct the ones above first", &more), 1);
+  for (const char *at = report; (at = strstr(at, "unknown key")); at++)
+    shown++;
+  assert_int_equal(shown + more, 300);
+  assert_true(shown > 20);
+  free(report);
+  used = (size_t)sprintf(text, "note: [");
+  for (int i = 0; i < 500; i++)
+    used += (size_t)sprintf(text + used, "%d, ", i);
+  used += (size_t)sprintf(text + used, "*gone");
+  for (int i = 0; i < 500; i++)
+    used += (size_t)sprintf(text + used, ", %d", i);
+  sprintf(text + used, "]\n");
+  report = report_of(text, strlen(text), &thing);
+  assert_string_equal(
+      report,
+      "a.yaml:1:2398: error: note[500]: alias '*gone' has no anchor '&gone' before it\n"
+      "  ...486, 487, 488, 489, 490, 491, 492, 493, 494, 495, 496, 497, 498, 499, *gone, 0, 1, 2, 3, 4, 5, 6, 7, "
+      "8, 9, 10, 11, 12, 1...\n"
+      "                                                                           ^~~~~");
+  free(report);
+}
+
+static double seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Adversarial sizes end in a message, and soon. */
+static void limits_hold(void **state) {
+  (void)state;
+  struct thing thing;
+  double start = seconds();
+  size_t size = (4 << 20) + 1;
+  char *text = malloc(size + 1);
+  memset(text, ' ', size);
+  text[size] = 0;
+  char *report = report_of(text, size, &thing);
+  assert_string_equal(report, "a.yaml: error: larger than 4 MiB, which no input of clast is");
+  free(report);
+  memcpy(text, "note: ", 6);
+  memset(text + 6, '[', size - 7);
+  report = report_of(text, size - 1, &thing);
+  assert_non_null(strstr(report, "a.yaml:1:38: error: nested more than 32 deep\n"));
+  free(report);
+  size_t used = 0; /* a mapping that is nested by indentation */
+  for (size_t i = 0; i < 100; i++) {
+    memset(text + used, ' ', i);
+    used += i + (size_t)sprintf(text + used + i, "k:\n");
+  }
+  report = report_of(text, used, &thing);
+  assert_non_null(strstr(report, "a.yaml:33:33: error: nested more than 32 deep\n"));
+  free(report);
+  used = (size_t)sprintf(text, "note:\n- &a0 [x]\n");
+  for (int i = 1; i < 25; i++)
+    used += (size_t)sprintf(text + used, "- &a%d [*a%d, *a%d]\n", i, i - 1, i - 1);
+  report = report_of(text, used, &thing);
+  assert_non_null(strstr(report, "more than 1048576 values, aliases counted as often as used; use less"));
+  free(report);
+  used = (size_t)sprintf(text, "note:\n");
+  for (int i = 0; i < 1001; i++)
+    used += (size_t)sprintf(text + used, "- &a%d x\n", i);
+  report = report_of(text, used, &thing);
+  assert_non_null(strstr(report, "a.yaml:1002:4: error: more than 1000 anchors\n"));
+  free(report);
+  used = 0; /* the same key again and again; many different unknown ones */
+  while (used < size - 40)
+    used += (size_t)sprintf(text + used, used % 2 ? "k: 1\n" : "k%zu: 1\n", used);
+  report = report_of(text, used, &thing);
+  assert_non_null(strstr(report, "more; correct the ones above first"));
+  free(report);
+  free(text);
+  /* About 1 s of CPU without sanitizers, 5 s with: 60 s tell a quadratic search (hours) from a busy machine. */
+  assert_true(seconds() - start < 60);
+}
+
+static void files_that_are_none(void **state) {
+  (void)state;
+  struct document *document = (struct document *)&document;
+  struct error error;
+  assert_int_equal(document_open("no_such_file.yaml", &document, &error), STATUS_MISSING);
+  assert_null(document);
+  assert_string_equal(error.message, "no_such_file.yaml: there is no such file");
+  assert_int_equal(document_open(".", &document, &error), STATUS_IO);
+  assert_string_equal(error.message, ".: is a folder; name a file in it");
+  assert_int_equal(document_open("/dev/zero", &document, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "/dev/zero: error: larger than 4 MiB, which no input of clast is");
+  char path[] = "test_document_XXXXXX";
+  int file = mkstemp(path);
+  assert_true(file >= 0);
+  assert_int_equal(write(file, "name: x\nbody: {length: 3 s}\n", 28), 28);
+  close(file);
+  assert_int_equal(document_open(path, &document, &error), STATUS_OK);
+  assert_string_equal(document_name(document), path);
+  assert_string_equal(document_text(document), "name: x\nbody: {length: 3 s}\n");
+  document_free(document);
+  if (geteuid() != 0) { /* root reads everything */
+    chmod(path, 0);
+    assert_int_equal(document_open(path, &document, &error), STATUS_IO);
+  }
+  unlink(path);
+  document_free(NULL);
+}
+
+static void trees_are_walked(void **state) {
+  (void)state;
+  struct document *document;
+  const char *text = "vary:\n  a.b: [1, 2 m]\n  c: {from: 1, too: 2}\nset: 3\nextra: 4\n", *key, *report;
+  assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, NULL), STATUS_OK);
+  document_node *root = document_root(document), *vary = document_key(root, "vary");
+  assert_int_equal(document_kind(root), DOCUMENT_MAPPING);
+  assert_int_equal(document_count(vary), 2);
+  document_node *list = document_item(vary, 0, &key);
+  assert_string_equal(key, "a.b");
+  assert_int_equal(document_kind(list), DOCUMENT_SEQUENCE);
+  assert_null(document_scalar(list));
+  assert_string_equal(document_scalar(document_item(list, 1, &key)), "2 m");
+  assert_null(key);
+  assert_null(document_item(list, 2, NULL));
+  assert_null(document_key(root, "nothing"));
+  assert_null(document_key(list, "nothing"));
+  document_node *range = document_item(vary, 1, NULL);
+  document_key(range, "from");
+  document_unknown_keys(range, "vary.c", (const char *const[]){"from", "to", NULL});
+  document_key(root, "set");
+  document_unknown_keys(root, "", (const char *const[]){"vary", "set", NULL});
+  document_report(document_key(root, "set"), "set", "is %d", 3);
+  assert_int_equal(document_finish(document, &report), STATUS_CONTENT);
+  assert_string_equal(report, "a.yaml:3:16: error: vary.c.too: unknown key; did you mean 'to'?\n"
+                              "    c: {from: 1, too: 2}\n"
+                              "                 ^~~\n"
+                              "a.yaml:4:6: error: set: is 3\n"
+                              "  set: 3\n"
+                              "       ^\n"
+                              "a.yaml:5:1: error: extra: unknown key; known here are vary, set\n"
+                              "  extra: 4\n"
+                              "  ^~~~~");
+  document_free(document);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(good_documents_are_read),
+      cmocka_unit_test(each_error_says_this),
+      cmocka_unit_test(all_errors_in_one_go),
+      cmocka_unit_test(long_lines_and_many_errors_stay_readable),
+      cmocka_unit_test(limits_hold),
+      cmocka_unit_test(files_that_are_none),
+      cmocka_unit_test(trees_are_walked),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
