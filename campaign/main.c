@@ -1,5 +1,6 @@
 /* The program: finds the command, parses its options, runs it, and is the only place that prints errors and exits.
  * Nothing here starts a thread, MPI or HDF5: `clast run` must fork its slots before any of them. */
+#include <fcntl.h>
 #include <signal.h>
 #include <stdalign.h>
 #include <stdio.h>
@@ -59,7 +60,17 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   return command->run(&line, error);
 }
 
+/* With stdin, stdout or stderr closed, the first file opened (the store!) would get their number and be printed into. */
+static void keep_standard_files(void) {
+  int file = open("/dev/null", O_RDWR);
+  while (file >= 0 && file <= STDERR_FILENO)
+    file = open("/dev/null", O_RDWR);
+  if (file > STDERR_FILENO)
+    close(file);
+}
+
 int main(int argc, char **argv) {
+  keep_standard_files();
   signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) is no reason to die in the middle of a commit */
   analysis_init();
   struct error error = {.status = STATUS_OK};

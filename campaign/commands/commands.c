@@ -3,8 +3,15 @@
 #include <string.h>
 
 static const struct command *const all[] = {
+    &simulate_command,
     &explain_command,
     &scenes_command,
+    &status_command,
+    &estimates_command,
+    &spectrum_command,
+    &picture_command,
+    &export_command,
+    &replay_command,
     &cite_command,
     &help_command,
     &version_command,

@@ -1,11 +1,23 @@
-/* What a campaign found, read from its store: the table `clast run` ends with. */
+/* What a campaign found, read from its store: the table `clast run` ends with and `clast estimates` prints again. */
 #ifndef CLAST_CAMPAIGN_COMMANDS_ESTIMATES_H
 #define CLAST_CAMPAIGN_COMMANDS_ESTIMATES_H
 
 #include "campaign/commands/table.h"
+#include "db/store.h"
 
-/* Per point of the campaign (0: of the whole store) the share of the largest fragment and the exponents, methods by
- * windows, pooled over seeds, with their errors. */
-status estimates_print(const char *store, int64_t campaign_id, enum table_format format, FILE *out, struct error *error);
+/* Which points: 0 = all. resamples: of the runs, for the errors of the exponents; 0 = none. */
+struct estimates_choice {
+  int64_t campaign, point;
+  int64_t resamples;
+};
+
+/* One row per point and window: the point's varied inputs, its runs, M_1/M with the half width of its 95 % interval, and
+ * the exponents by each method with their errors from resampling runs. Only runs that count, of the newest
+ * results_version of the point. */
+status estimates_rows(struct store *store, const struct estimates_choice *choice, enum table_format format, FILE *out,
+                      struct error *error);
+
+/* Points that estimates_rows would print. */
+status estimates_points(struct store *store, const struct estimates_choice *choice, int64_t *points, struct error *error);
 
 #endif

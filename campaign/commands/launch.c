@@ -11,6 +11,8 @@
 #include "campaign/provenance.h"
 #include "campaign/run.h"
 
+enum { MANY_POINTS = 64 }; /* more are not printed at the end of a run unless asked for by --json or --csv */
+
 struct notes {
   struct progress *progress;
   bool quiet;
@@ -50,6 +52,22 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
+/* The store's verdict, not the driver's: what is printed is what any later reader will find. */
+static status print_estimates(const char *path, int64_t campaign, enum table_format format, struct error *error) {
+  struct store *store = NULL;
+  int64_t points = 0;
+  struct estimates_choice choice = {.campaign = campaign, .resamples = 400};
+  status code = store_open_reader(path, &store, error);
+  if (!code)
+    code = estimates_points(store, &choice, &points, error);
+  if (!code && format == TABLE_TEXT && points > MANY_POINTS)
+    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path, campaign);
+  else if (!code)
+    code = estimates_rows(store, &choice, format, stdout, error);
+  store_close(store, NULL);
+  return code;
+}
+
 static status manage(const struct campaign *campaign, const char *store, const struct launch_options *options,
                      struct farm *farm, enum table_format format, const struct command_line *line, struct error *error) {
   bool manager = farm_rank(farm) == 0;
@@ -78,7 +96,7 @@ static status manage(const struct campaign *campaign, const char *store, const s
   if (ended && !options->quiet)
     print_summary(&summary, store, wall_s, code);
   if (code == STATUS_OK || code == STATUS_FAILED_RUNS) {
-    status printed = estimates_print(store, summary.campaign_id, format, stdout, code ? NULL : error);
+    status printed = print_estimates(store, summary.campaign_id, format, code ? NULL : error);
     code = printed ? printed : code;
   }
   return code;

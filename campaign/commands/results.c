@@ -56,8 +56,8 @@ static void heading(struct table *table, const struct field *row) {
   table_column(table, name, row->unit);
 }
 
-static status print_wide(const struct engine_kind *kind, int64_t seed, const struct run_result *result, size_t count,
-                         const struct estimate *estimates, enum table_format format, struct error *error) {
+static status print_wide(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
+                         enum table_format format, struct error *error) {
   const struct field_table *tables[] = {&outcome_table, kind->results};
   const void *objects[] = {&result->outcome, result->result};
   struct table *table = table_new(format, stdout);
@@ -66,10 +66,10 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
       heading(table, &tables[t]->rows[i]);
-  for (size_t i = 0; i < count; i++) {
+  for (size_t i = 0; i < result->estimate_count; i++) {
     char name[128];
-    const char *method = exponent_method_names[estimates[i].fit.method];
-    const char *window = estimates_window_names[estimates[i].window];
+    const char *method = exponent_method_names[result->estimates[i].fit.method];
+    const char *window = estimates_window_names[result->estimates[i].window];
     snprintf(name, sizeof name, "beta_%s_%s", method, window);
     table_column(table, name, NULL);
     snprintf(name, sizeof name, "beta_%s_%s_error", method, window);
@@ -80,15 +80,14 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
       value_cell(table, &tables[t]->rows[i], objects[t]);
-  for (size_t i = 0; i < count; i++) {
-    table_real(table, estimates[i].fit.beta);
-    table_real(table, estimates[i].fit.standard_error);
+  for (size_t i = 0; i < result->estimate_count; i++) {
+    table_real(table, result->estimates[i].fit.beta);
+    table_real(table, result->estimates[i].fit.standard_error);
   }
   return table_end(table, error);
 }
 
-static status print_long(const struct engine_kind *kind, const struct run_result *result, size_t count,
-                         const struct estimate *estimates, struct error *error) {
+static status print_long(const struct engine_kind *kind, const struct run_result *result, struct error *error) {
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_column(table, "result", NULL);
   table_column(table, "value", NULL);
@@ -106,22 +105,17 @@ static status print_long(const struct engine_kind *kind, const struct run_result
   table_column(table, "fragments", NULL);
   table_column(table, "beta", NULL);
   table_column(table, "error", NULL);
-  for (size_t i = 0; i < count; i++) {
-    table_text(table, exponent_method_names[estimates[i].fit.method]);
-    table_text(table, estimates_window_names[estimates[i].window]);
-    table_integer(table, estimates[i].fit.n);
-    table_real(table, estimates[i].fit.beta);
-    table_real(table, estimates[i].fit.standard_error);
+  for (size_t i = 0; i < result->estimate_count; i++) {
+    table_text(table, exponent_method_names[result->estimates[i].fit.method]);
+    table_text(table, estimates_window_names[result->estimates[i].window]);
+    table_integer(table, result->estimates[i].fit.n);
+    table_real(table, result->estimates[i].fit.beta);
+    table_real(table, result->estimates[i].fit.standard_error);
   }
   return table_end(table, error);
 }
 
 status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
                      enum table_format format, struct error *error) {
-  struct estimate estimates[ESTIMATES_COUNT];
-  status code = estimates_make(result->fragment_count, result->fragments, estimates, error);
-  if (code)
-    return code;
-  return format == TABLE_TEXT ? print_long(kind, result, ESTIMATES_COUNT, estimates, error)
-                              : print_wide(kind, seed, result, ESTIMATES_COUNT, estimates, format, error);
+  return format == TABLE_TEXT ? print_long(kind, result, error) : print_wide(kind, seed, result, format, error);
 }

@@ -8,6 +8,7 @@
 #include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
+#include "campaign/commands/picture.h"
 #include "campaign/commands/results.h"
 #include "campaign/run.h"
 
@@ -16,7 +17,7 @@ enum { BLOCK = 200 }; /* steps between looks at progress: about a tenth of a sec
 struct options {
   int64_t seed, snapshots;
   struct option_list set;
-  const char *fields;
+  const char *fields, *picture;
   bool quiet;
   struct table_options table;
 };
@@ -49,14 +50,27 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
 
 static status simulate(const struct scene *scene, const struct options *options, enum table_format format,
                        struct error *error) {
+  char temporary[FIELD_TEXT_SIZE] = "";
+  const char *fields = options->fields;
+  if (options->picture && !fields) { /* the picture is drawn from a fields file */
+    snprintf(temporary, sizeof temporary, "%s.%ld.h5", options->picture, (long)getpid());
+    fields = temporary;
+  }
   struct watch watch = {.options = options, .name = scene->name, .percent = -1,
                         .terminal = !options->quiet && isatty(STDERR_FILENO)};
   struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)options->seed,
-                                .fields_path = options->fields};
+                                .fields_path = fields};
   struct run_result result = {0};
   status code = run_simulate(&request, look, &watch, BLOCK, &result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
+  if (!code && options->picture) {
+    char caption[FIELD_TEXT_SIZE + 64];
+    snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
+    code = picture_draw(fields, options->picture, caption, error);
+  }
+  if (*temporary)
+    remove(temporary);
   if (!code)
     code = results_print(scene->kind, options->seed, &result, format, error);
   if (!code && !campaign_usable(&result.outcome))
@@ -86,6 +100,8 @@ static const struct option_row rows[] = {
     {"seed", 0, OPTION_INTEGER, "N", offsetof(struct options, seed), 0, INT64_MAX, "1",
      "Seed of the run: the same seed gives the same bits."},
     EXPLAIN_SET(struct options, set),
+    {"picture", 'p', OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
+     "Draw the body at the end, fragments in colours."},
     {"fields", 0, OPTION_TEXT, "FILE.h5", offsetof(struct options, fields), 0, 0, NULL,
      "Write grains, beams and the break log at the end as an HDF5 file."},
     {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
@@ -101,7 +117,7 @@ const struct command simulate_command = {
     .summary = "one run of a scene, with pictures and fields",
     .doc = "Runs one simulation of a SCENE (a built-in name or a file) and prints its results: fragments, largest\n"
            "fraction, energies, exponents of the fragment spectrum. Nothing is stored but the files asked for.",
-    .examples = "clast simulate disc-explosion --seed 7 --fields disc.h5\n"
+    .examples = "clast simulate disc-explosion --seed 7 --picture disc.png\n"
                 "clast simulate disc-explosion --set threshold.strain=5% --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -283,7 +283,9 @@ void table_boolean(struct table *table, bool value) {
     cell(table, 't', value ? "true" : "false", value ? "yes" : "no");
 }
 
-void table_real(struct table *table, double number) {
+void table_real(struct table *table, double number) { table_fixed(table, number, -1); }
+
+void table_fixed(struct table *table, double number, int decimals) {
   if (isnan(number)) {
     table_missing(table);
     return;
@@ -300,7 +302,10 @@ void table_real(struct table *table, double number) {
     if (strtod(digits, NULL) == number)
       break;
   }
-  snprintf(shown, sizeof shown, "%.5g", number);
+  if (decimals < 0 || fabs(number) > 1e6)
+    snprintf(shown, sizeof shown, "%.5g", number);
+  else
+    snprintf(shown, sizeof shown, "%.*f", decimals, number);
   cell(table, 'n', digits, shown);
 }
 

@@ -25,6 +25,8 @@ void table_column(struct table *table, const char *name, const char *unit);
 
 void table_text(struct table *table, const char *text); /* NULL: missing */
 void table_real(struct table *table, double number);
+/* The same with so many decimals in the aligned table. */
+void table_fixed(struct table *table, double number, int decimals);
 void table_integer(struct table *table, int64_t number);
 void table_boolean(struct table *table, bool value);
 void table_missing(struct table *table);

@@ -1,0 +1,270 @@
+/* `clast estimates STORE`: the share of the largest fragment and the exponents of every point, pooled over seeds.
+ * Made from the masses in the store each time, so that they are of the runs that are there now. */
+#include "campaign/commands/estimates.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/estimates.h"
+#include "analysis/pooled.h"
+#include "campaign/commands/commands.h"
+#include "campaign/commands/rows.h"
+
+enum { AXES_MAXIMUM = 16, RESAMPLE_SEED = 1 };
+static const double level = 0.95;
+static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
+enum { METHODS = sizeof methods / sizeof methods[0] };
+
+struct options {
+  int64_t campaign, point, resamples;
+  struct table_options table;
+};
+
+struct printing {
+  struct store *store;
+  const struct estimates_choice *choice;
+  enum table_format format;
+  struct table *table;
+  size_t axes;
+  char axis[AXES_MAXIMUM][FIELD_TEXT_SIZE]; /* column names */
+  char unit[AXES_MAXIMUM][64];
+};
+
+/* --- the masses of one point's runs ------------------------------------------------------------------------------- */
+
+struct masses {
+  struct pooled_runs runs;
+  double *masses;
+  size_t *first;
+  size_t capacity, run_capacity;
+};
+
+static status take_masses(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct masses *pool = context;
+  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % 8)
+    return status_fail(error, STATUS_CONTENT, "the fragment masses of a run are damaged; `clast check` tells more");
+  size_t n = values[0].size / 8, have = pool->first ? pool->first[pool->runs.count] : 0;
+  if (have + n > pool->capacity) {
+    size_t capacity = 2 * (have + n);
+    double *grown = realloc(pool->masses, capacity * sizeof *grown);
+    if (!grown)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    pool->masses = grown;
+    pool->capacity = capacity;
+  }
+  if (pool->runs.count + 2 > pool->run_capacity) {
+    size_t capacity = 2 * pool->run_capacity + 32;
+    size_t *grown = realloc(pool->first, capacity * sizeof *grown);
+    if (!grown)
+      return status_fail(error, STATUS_MEMORY, "out of memory");
+    if (!pool->first)
+      grown[0] = 0;
+    pool->first = grown;
+    pool->run_capacity = capacity;
+  }
+  memcpy(pool->masses + have, values[0].blob, values[0].size); /* blob and machine are both little-endian */
+  pool->first[++pool->runs.count] = have + n;
+  pool->runs.masses = pool->masses;
+  pool->runs.first = pool->first;
+  return STATUS_OK;
+}
+
+/* --- rows ------------------------------------------------------------------------------------------------------------ */
+
+static void value_cell(struct table *table, const struct query_value *value, bool blank) {
+  if (blank)
+    table_text(table, "");
+  else if (value->kind == QUERY_TEXT)
+    table_text(table, value->text);
+  else if (value->kind == QUERY_INTEGER)
+    table_integer(table, value->integer);
+  else if (value->kind == QUERY_REAL)
+    table_real(table, value->real);
+  else
+    table_missing(table);
+}
+
+/* Column order of the query: point_id, results_version, n, failed, mean, half width, then the axes. */
+static status point_row(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct printing *printing = context;
+  struct masses pool = {0};
+  char id[32], version[32];
+  snprintf(id, sizeof id, "%lld", (long long)values[0].integer);
+  snprintf(version, sizeof version, "%lld", (long long)values[1].integer);
+  struct query_parameter parameters[] = {{"point", id}, {"version", version}, {"window", NULL}};
+  struct query_sink sink = {&pool, NULL, take_masses};
+  status code = query_run(printing->store,
+                          "select masses from run join fragment_mass using (run_id) where point_id = :point"
+                          " and results_version = :version and counts = 1 order by replicate, seed",
+                          2, parameters, 0, &sink, error);
+  for (int window = 0; !code && window < ESTIMATES_WINDOWS; window++) {
+    double lower = NAN;
+    parameters[2].value = estimates_window_names[window];
+    /* the windows of single runs start at so many mean grain masses; a point's at their mean */
+    code = query_number(printing->store,
+                        "select avg(lower) from estimate join run using (run_id) where run.point_id = :point"
+                        " and run.results_version = :version and counts = 1 and method = 'masses' and window = :window",
+                        3, parameters, &lower, error);
+    struct pooled_exponent fits[METHODS];
+    int64_t fragments = 0;
+    for (int m = 0; m < METHODS; m++) {
+      fits[m] = (struct pooled_exponent){.fit = {.beta = NAN, .standard_error = NAN}, .interval = {.standard_error = NAN}};
+      if (!code && lower > 0 && pool.runs.count > 0)
+        code = pooled_exponent(&pool.runs, methods[m], lower, (size_t)printing->choice->resamples, level, RESAMPLE_SEED,
+                               &fits[m], error);
+      if (methods[m] == EXPONENT_MASSES)
+        fragments = fits[m].fit.n;
+    }
+    if (code)
+      break;
+    bool blank = printing->format == TABLE_TEXT && window > 0; /* people see each point's inputs once */
+    value_cell(printing->table, &values[0], blank);
+    for (size_t i = 6; i < count; i++)
+      value_cell(printing->table, &values[i], blank);
+    for (size_t i = 2; i < 6; i++)
+      value_cell(printing->table, &values[i], blank);
+    table_text(printing->table, estimates_window_names[window]);
+    table_integer(printing->table, fragments);
+    for (int m = 0; m < METHODS; m++) {
+      table_fixed(printing->table, fits[m].fit.beta, 2);
+      table_fixed(printing->table, fits[m].interval.standard_error, 2);
+    }
+  }
+  free(pool.masses);
+  free(pool.first);
+  return code ? code : table_broken(printing->table) ? STATUS_IO : STATUS_OK;
+}
+
+static status take_axis(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)error;
+  struct printing *printing = context;
+  if (count != 2 || values[0].kind != QUERY_TEXT || printing->axes == AXES_MAXIMUM)
+    return STATUS_OK;
+  snprintf(printing->axis[printing->axes], FIELD_TEXT_SIZE, "%s", values[0].text);
+  snprintf(printing->unit[printing->axes], sizeof printing->unit[0], "%s",
+           values[1].kind == QUERY_TEXT ? values[1].text : "");
+  printing->axes++;
+  return STATUS_OK;
+}
+
+static void headings(struct printing *printing) {
+  struct table *table = printing->table;
+  bool people = printing->format == TABLE_TEXT;
+  static const char *const short_names[] = {"least sq.", "binned ML", "ML"};
+  table_column(table, people ? "point" : "point_id", NULL);
+  for (size_t i = 0; i < printing->axes; i++)
+    table_column(table, printing->axis[i], printing->unit[i]);
+  table_column(table, people ? "runs" : "n", NULL);
+  table_column(table, "failed", NULL);
+  table_column(table, people ? "M_1/M" : "largest_fraction_mean", NULL);
+  table_column(table, people ? "+-95%" : "largest_fraction_hw95", NULL);
+  table_column(table, "window", NULL);
+  table_column(table, "fragments", NULL);
+  for (int m = 0; m < METHODS; m++) {
+    char name[64];
+    const char *method = exponent_method_names[methods[m]];
+    snprintf(name, sizeof name, "beta_%s", method);
+    table_column(table, people ? short_names[m] : name, NULL);
+    snprintf(name, sizeof name, "beta_%s_se", method);
+    table_column(table, people ? "+-" : name, NULL);
+  }
+}
+
+#define CHOSEN                                                                                                         \
+  " where (:campaign = 0 or point_id in (select point_id from campaign_point where campaign_id = :campaign))"          \
+  " and (:point = 0 or point_id = :point)"
+
+static void parameters_of(const struct estimates_choice *choice, char text[2][32], struct query_parameter parameters[2]) {
+  snprintf(text[0], 32, "%lld", (long long)choice->campaign);
+  snprintf(text[1], 32, "%lld", (long long)choice->point);
+  parameters[0] = (struct query_parameter){"campaign", text[0]};
+  parameters[1] = (struct query_parameter){"point", text[1]};
+}
+
+status estimates_points(struct store *store, const struct estimates_choice *choice, int64_t *points, struct error *error) {
+  char text[2][32];
+  struct query_parameter parameters[2];
+  double number = 0;
+  parameters_of(choice, text, parameters);
+  status code = query_number(store, "select count(*) from point" CHOSEN, 2, parameters, &number, error);
+  *points = isnan(number) ? 0 : (int64_t)number;
+  return code;
+}
+
+status estimates_rows(struct store *store, const struct estimates_choice *choice, enum table_format format, FILE *out,
+                      struct error *error) {
+  struct printing printing = {.store = store, .choice = choice, .format = format};
+  struct query_sink axes = {&printing, NULL, take_axis}, points = {&printing, NULL, point_row};
+  status code = query_run(store, "select column_name, unit from axis order by path", 0, NULL, 0, &axes, error);
+  if (code)
+    return code;
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *text = open_memstream(&sql, &size);
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  fputs("select point_id, results_version, n, failed, largest_fraction_mean, largest_fraction_hw95", text);
+  for (size_t i = 0; i < printing.axes; i++)
+    fprintf(text, ", \"%s\"", printing.axis[i]);
+  fputs(" from points as newest" CHOSEN " and (results_version is null or results_version ="
+        " (select max(results_version) from point_total as t where t.point_id = newest.point_id)) order by point_id",
+        text);
+  fclose(text);
+  char numbers[2][32];
+  struct query_parameter parameters[2];
+  parameters_of(choice, numbers, parameters);
+  printing.table = table_new(format, out);
+  headings(&printing);
+  code = sql ? query_run(store, sql, 2, parameters, 0, &points, error)
+             : status_fail(error, STATUS_MEMORY, "out of memory");
+  free(sql);
+  if (code && !table_broken(printing.table)) {
+    table_drop(printing.table);
+    return code;
+  }
+  return table_end(printing.table, error);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  struct store *store = NULL;
+  status code = table_choose(&options->table, &format, error);
+  if (!code)
+    code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  struct estimates_choice choice = {options->campaign, options->point, options->resamples};
+  code = estimates_rows(store, &choice, format, stdout, error);
+  store_close(store, NULL);
+  return code;
+}
+
+static const struct option_row rows[] = {
+    {"point", 'p', OPTION_INTEGER, "N", offsetof(struct options, point), 0, INT64_MAX, "0",
+     "Only this point (point_id in the view points); 0 is all."},
+    {"campaign", 0, OPTION_INTEGER, "N", offsetof(struct options, campaign), 0, INT64_MAX, "0",
+     "Only the points of this campaign (`clast status`); 0 is all."},
+    {"resamples", 0, OPTION_INTEGER, "N", offsetof(struct options, resamples), 0, 100000, "1000",
+     "Resamples of the runs for the errors of the exponents; 0 is none."},
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command estimates_command = {
+    .name = "estimates",
+    .group = "results",
+    .arguments = "STORE",
+    .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
+    .doc = "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
+           "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
+           "likelihood on bins and on masses, in three windows (from 2, 5, 10 mean grain masses up, each run's largest\n"
+           "fragment left out). Errors of the exponents come from resampling runs.",
+    .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

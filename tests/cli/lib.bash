@@ -1,0 +1,58 @@
+# What the command-line tests share. Each script is `bash NAME.sh BUILD_FOLDER SOURCE_FOLDER`, works in a folder of its own
+# under the build folder, prints a line per thing it checks, and asserts at its end how many checks it made (`done_after`),
+# so that a script that skipped half of them cannot pass.
+set -euo pipefail
+build=$1 source=$2
+clast=$build/clast
+work=$(mktemp -d "$build/cli-$(basename "$0" .sh)-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+export NO_COLOR=1 TERM=dumb
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+unset CDPATH
+checks=0
+
+fail() {
+  echo "FAILED: $*"
+  [ -f out ] && { echo "--- stdout"; head -c 2000 out; }
+  [ -f err ] && { echo "--- stderr"; head -c 4000 err; }
+  exit 1
+}
+ok() { checks=$((checks + 1)); echo "ok $checks: $*"; }
+
+# expect CODE COMMAND...: runs it (stdout to ./out, stderr to ./err) and compares its exit code.
+expect() {
+  local want=$1 got=0
+  shift
+  timeout 120 "$@" >out 2>err </dev/null || got=$?
+  [ "$got" -eq "$want" ] || fail "exit $got, expected $want: $*"
+  ok "exit $want: $(echo "$*" | sed "s|$build/||; s|$work/||g" | cut -c1-100)"
+}
+says() { grep -qF -- "$1" err || fail "stderr does not say: $1"; }       # on stderr
+prints() { grep -qF -- "$1" out || fail "stdout does not have: $1"; }    # on stdout
+silent() { [ ! -s "$1" ] || fail "$1 should be empty"; }
+# One error, said once: a line that begins like ours, and no second one.
+one_error() { [ "$(grep -c 'error: ' err)" -eq 1 ] || fail "expected one error line"; }
+same() { [ "$1" = "$2" ] || fail "${3:-values}: \"$1\" is not \"$2\""; ok "${3:-same}: $1"; }
+done_after() { [ "$checks" -eq "$1" ] || fail "made $checks checks, expected $1"; echo "$checks checks"; }
+
+python() { /usr/bin/python3 "$@"; }
+
+# A campaign of 4 points and 3 seeds that takes a fraction of a second. tiny NAME [LINE...]: writes NAME.yaml.
+tiny() {
+  local name=$1
+  shift
+  cat >"$name.yaml" <<YAML
+name: $name
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+vary:
+  threshold.strain: [2 %, 5 %]
+  threshold.angle: [2 deg, 6 deg]
+seeds: {per_point: 3}
+store: $name.db
+YAML
+  local line
+  for line in "$@"; do echo "$line" >>"$name.yaml"; done
+}
+number() { "$clast" query "$1" "$2" --csv | tail -n 1 | tr -d '\r'; } # number STORE SQL
