@@ -1,0 +1,10 @@
+/* First derivatives for the Gear integrator: it needs five, and a scene gives one. */
+#ifndef CLAST_ENGINE_DEM_GEAR_START_H
+#define CLAST_ENGINE_DEM_GEAR_START_H
+
+#include "engine/dem/system_layout.h"
+
+/* Fill r_2 .. r_5 from the forces now. */
+bool dem_gear_start(struct dem_system *system);
+
+#endif
