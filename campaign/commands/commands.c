@@ -3,7 +3,10 @@
 #include <string.h>
 
 static const struct command *const all[] = {
+    &run_command,
+    &plan_command,
     &simulate_command,
+    &retry_command,
     &explain_command,
     &scenes_command,
     &status_command,

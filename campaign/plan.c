@@ -1,0 +1,293 @@
+#include "campaign/plan.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "campaign/design/design.h"
+#include "campaign/progress.h"
+#include "campaign/run.h"
+#include "db/query.h"
+#include "db/store.h"
+
+enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
+#define NOTHING ((double)NAN)
+
+/* Bytes of a run's rows beyond its masses: run and result row, eleven estimates, some twenty bins of its spectrum; measured
+ * on stores of thousands of runs, and meant to a factor of 1.5. */
+#define BYTES_PER_RUN 3500.0
+#define BYTES_PER_FRAGMENT 8.0
+
+static double now_s(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+struct looking {
+  double work, work_most;
+  struct scene *dearest; /* owned */
+  uint64_t asked, there; /* runs looked up in the store */
+};
+
+/* Is the store asked for this point's runs, and how many are there? */
+static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store, struct looking *looking) {
+  for (int64_t r = 0; store && r < campaign_replicates_least(campaign) && looking->asked < ASKED; r++) {
+    uint8_t identity[16];
+    scene_identity(scene, campaign_seed(campaign, scene, r), identity);
+    looking->asked++;
+    looking->there += store_has_run(store, identity);
+  }
+}
+
+static status look(const struct campaign *campaign, struct store *store, struct plan *plan, struct looking *looking,
+                   struct error *error) {
+  struct design *design = NULL;
+  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
+  if (!values)
+    return status_fail(error, STATUS_MEMORY, "no memory for the plan");
+  status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                              (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+  plan->points = design_points(design);
+  /* Evenly spread over the design, as far as it can be walked in a moment. */
+  uint64_t walked = plan->points < WALKED ? plan->points : WALKED, stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
+  struct error first = {0};
+  for (uint64_t i = 0; i < walked && design_next(design, values); i++) {
+    struct scene *scene = i % stride ? NULL : campaign_point_scene(campaign, values, &first);
+    if (!scene)
+      continue;
+    double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+    double memory = scene->kind->memory ? (double)scene->kind->memory(scene->inputs) : 0;
+    plan->points_looked_at++;
+    looking->work += work;
+    plan->memory_most = fmax(plan->memory_most, memory);
+    ask(campaign, scene, store, looking);
+    if (!looking->dearest || work > looking->work_most) {
+      looking->work_most = work;
+      scene_free(looking->dearest);
+      looking->dearest = scene;
+    } else {
+      scene_free(scene);
+    }
+  }
+  if (!looking->dearest)
+    code = status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
+cleanup:
+  design_free(design);
+  free(values);
+  return code;
+}
+
+/* Steps the dearest point for a few seconds; on a whole run the answer is a measurement, else it is extrapolated over the
+ * simulated time to the hard end, which a run usually need not reach. */
+static status try_run(const struct scene *scene, uint64_t seed, double seconds, struct plan *plan, size_t *fragments,
+                      struct error *error) {
+  const struct engine_kind *kind = scene->kind;
+  void *run = NULL, *result = NULL;
+  struct fragment *list = NULL;
+  struct outcome outcome;
+  double begin = now_s(), prepared;
+  uint64_t block = 1;
+  bool finished = false;
+  status code = kind->prepare(scene->inputs, seed, &run, error);
+  if (code != STATUS_OK)
+    return code;
+  prepared = now_s();
+  while (code == STATUS_OK && !finished && now_s() - begin < seconds) {
+    double from = now_s();
+    code = kind->step(run, block, &finished, error);
+    if (now_s() - from < 0.02 && block < UINT64_C(1) << 40)
+      block *= 2;
+  }
+  if (code != STATUS_OK)
+    goto cleanup;
+  plan->trial_made = true;
+  plan->trial_finished = finished;
+  plan->trial_progress = finished ? 1 : kind->progress ? kind->progress(run) : NOTHING;
+  double stepped = now_s();
+  result = calloc(1, kind->results->size);
+  if (!result) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the trial's result");
+    goto cleanup;
+  }
+  code = kind->finish(run, &outcome, result, &list, fragments, error);
+  plan->trial_s = now_s() - begin;
+  plan->run_s_most = plan->trial_progress > 0
+                         ? (prepared - begin) + (stepped - prepared) / plan->trial_progress + (now_s() - stepped)
+                         : NOTHING;
+cleanup:
+  free(list);
+  free(result);
+  kind->free(run);
+  return code;
+}
+
+static double kept_runs(const struct campaign *campaign, const struct plan *plan) {
+  double per_point = (double)campaign_replicates_most(campaign);
+  switch (campaign->keep) {
+  case CAMPAIGN_KEEP_ALL:
+    return (double)plan->runs_most;
+  case CAMPAIGN_KEEP_EXTREMES:
+    return (double)plan->points * fmin(per_point, 2);
+  case CAMPAIGN_KEEP_FIRST:
+    return (double)plan->points * fmin(per_point, (double)campaign->keep_first);
+  default:
+    return 0;
+  }
+}
+
+static void add_up(const struct campaign *campaign, const struct plan_options *options, const struct looking *looking,
+                   size_t fragments, struct plan *plan) {
+  double share = looking->asked ? (double)looking->there / (double)looking->asked : 0;
+  double looked = (double)plan->points_looked_at;
+  plan->runs_least = plan->points * (uint64_t)campaign_replicates_least(campaign);
+  plan->runs_most = plan->points * (uint64_t)campaign_replicates_most(campaign);
+  plan->runs_there = (uint64_t)llround(share * (double)plan->runs_least);
+  if (plan->trial_made) {
+    plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most : plan->run_s_most;
+    plan->disk_bytes = (double)plan->runs_most * (BYTES_PER_RUN + BYTES_PER_FRAGMENT * (double)fragments);
+  }
+  plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * plan->run_s_mean;
+  plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * plan->run_s_mean;
+  int slots = options->slots > 0 ? options->slots : 1;
+  /* No sooner than the dearest run alone, however many slots. */
+  plan->wall_s_least = fmax(plan->cpu_s_least / slots, plan->runs_least > plan->runs_there ? plan->run_s_mean : 0);
+  plan->wall_s_most = fmax(plan->cpu_s_most / slots, plan->runs_most > plan->runs_there ? plan->run_s_mean : 0);
+  double kept = kept_runs(campaign, plan);
+  plan->fields_bytes = kept > 0 ? kept * plan->memory_most : 0;
+}
+
+status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,
+                 struct error *error) {
+  *plan = (struct plan){.run_s_mean = NOTHING, .run_s_most = NOTHING, .disk_bytes = NOTHING};
+  struct looking looking = {0};
+  struct store *store = NULL;
+  struct error ignored = {0};
+  size_t fragments = 0;
+  const char *path = options->store_path ? options->store_path : campaign->store;
+  status code = store_open_reader(path, &store, error);
+  plan->store_exists = code == STATUS_OK;
+  if (code == STATUS_MISSING)
+    code = STATUS_OK;
+  if (code == STATUS_OK)
+    code = look(campaign, store, plan, &looking, error);
+  if (code == STATUS_OK && !options->no_trial)
+    code = try_run(looking.dearest, campaign_seed(campaign, looking.dearest, 0), options->trial_s > 0 ? options->trial_s : 5,
+                   plan, &fragments, error);
+  if (code == STATUS_OK && options->no_trial && store) {
+    query_number(store, "select avg(wall_s) from run", 0, NULL, &plan->run_s_mean, &ignored);
+    query_number(store, "select max(wall_s) from run", 0, NULL, &plan->run_s_most, &ignored);
+  }
+  if (code == STATUS_OK && looking.dearest->kind->describe)
+    plan->model = looking.dearest->kind->describe(looking.dearest->inputs);
+  if (code == STATUS_OK)
+    add_up(campaign, options, &looking, fragments, plan);
+  scene_free(looking.dearest);
+  store_close(store, &ignored);
+  if (code != STATUS_OK)
+    plan_clear(plan);
+  return code;
+}
+
+void plan_clear(struct plan *plan) {
+  free(plan->model);
+  plan->model = NULL;
+}
+
+static const char *bytes(double count, char *buffer, size_t size) {
+  static const char *const units[] = {"B", "kB", "MB", "GB", "TB", "PB"};
+  int unit = 0;
+  if (isnan(count))
+    return "?";
+  for (; count >= 999.5 && unit < 5; unit++)
+    count /= 1000;
+  snprintf(buffer, size, unit ? "%.3g %s" : "%.0f %s", count, units[unit]);
+  return buffer;
+}
+
+void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
+  static const char *const designs[] = {"grid", "list", "random", "latin hypercube", "Sobol"};
+  char a[64], b[64];
+  bool range = plan->runs_most != plan->runs_least;
+  fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
+  fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
+          plan->points == 1 ? "" : "s");
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    fprintf(out, "%s%s", i ? ", " : " over ", campaign->axes[i].row->path);
+  fprintf(out, "\nruns      %llu", (unsigned long long)plan->runs_least);
+  if (range)
+    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
+            campaign->until_half_width);
+  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
+          plan->store_exists ? "" : " (there is none yet)");
+  progress_duration(plan->run_s_mean, a, sizeof a);
+  progress_duration(plan->run_s_most, b, sizeof b);
+  fprintf(out, "a run     %s%s on the mean, %s the dearest%s\n", plan->trial_made && !plan->trial_finished ? "at most " : "", a, b,
+          !plan->trial_made      ? isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)"
+          : plan->trial_finished ? " (one whole run timed)"
+                                 : " (extrapolated to the hard end; runs stop earlier when fracture has ceased)");
+  progress_duration(plan->wall_s_least, a, sizeof a);
+  progress_duration(plan->wall_s_most, b, sizeof b);
+  fprintf(out, "time      %s", a);
+  if (range)
+    fprintf(out, " to %s", b);
+  progress_duration(plan->cpu_s_most, a, sizeof a);
+  fprintf(out, " on %d slot%s (%s of processor time)\n", slots, slots == 1 ? "" : "s", a);
+  fprintf(out, "memory    %s per run", bytes(plan->memory_most, a, sizeof a));
+  fprintf(out, ", %s on all slots\n", bytes(plan->memory_most * slots, a, sizeof a));
+  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), campaign->store);
+  if (campaign->keep != CAMPAIGN_KEEP_NONE)
+    fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
+  fputc('\n', out);
+  if (plan->points_looked_at < plan->points)
+    fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
+  if (plan->model)
+    fprintf(out, "\n%s%s", plan->model, plan->model[0] && plan->model[strlen(plan->model) - 1] == '\n' ? "" : "\n");
+}
+
+static void number(FILE *out, const char *name, double value) {
+  if (isfinite(value))
+    fprintf(out, ", \"%s\": %.17g", name, value);
+  else
+    fprintf(out, ", \"%s\": null", name);
+}
+
+char *plan_json(const struct campaign *campaign, const struct plan *plan, int slots) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  fputs("{\"campaign\": ", out);
+  field_json_string(campaign->name, out);
+  fputs(", \"scene\": ", out);
+  field_json_string(campaign->scene_reference, out);
+  fputs(", \"store\": ", out);
+  field_json_string(campaign->store, out);
+  fprintf(out, ", \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": %llu",
+          (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at, (unsigned long long)plan->runs_least,
+          (unsigned long long)plan->runs_most, (unsigned long long)plan->runs_there);
+  fprintf(out, ", \"store_exists\": %s, \"trial_made\": %s, \"trial_finished\": %s, \"slots\": %d",
+          plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false", plan->trial_finished ? "true" : "false",
+          slots);
+  number(out, "run_s_mean", plan->run_s_mean);
+  number(out, "run_s_most", plan->run_s_most);
+  number(out, "cpu_s_least", plan->cpu_s_least);
+  number(out, "cpu_s_most", plan->cpu_s_most);
+  number(out, "wall_s_least", plan->wall_s_least);
+  number(out, "wall_s_most", plan->wall_s_most);
+  number(out, "memory_most_bytes", plan->memory_most);
+  number(out, "disk_bytes", plan->disk_bytes);
+  number(out, "fields_bytes", plan->fields_bytes);
+  fputs(", \"model\": ", out);
+  field_json_string(plan->model ? plan->model : "", out);
+  fputs("}\n", out);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

@@ -1,0 +1,96 @@
+#include "campaign/provenance.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/utsname.h>
+
+#include "campaign/build_facts.h"
+#include "engine/engine.h"
+#include "schemas/field.h"
+
+/* The levels of the x86-64 psABI; a level is named only when all of its instructions are there. */
+const char *provenance_cpu_class(void) {
+#if defined(__x86_64__)
+  __builtin_cpu_init();
+  bool v2 = __builtin_cpu_supports("sse3") && __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.1") &&
+            __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+  bool v3 = v2 && __builtin_cpu_supports("avx") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+            __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  return v4 ? "x86-64-v4" : v3 ? "x86-64-v3" : v2 ? "x86-64-v2" : "x86-64";
+#else
+  return "unknown";
+#endif
+}
+
+static void cpu_model(char *model, size_t size) {
+  char line[512];
+  snprintf(model, size, "unknown");
+  FILE *file = fopen("/proc/cpuinfo", "r");
+  while (file && fgets(line, sizeof line, file)) {
+    char *colon = strchr(line, ':');
+    if (strncmp(line, "model name", 10) != 0 || !colon)
+      continue;
+    line[strcspn(line, "\n")] = '\0';
+    snprintf(model, size, "%s", colon + 1 + strspn(colon + 1, " \t"));
+    break;
+  }
+  if (file)
+    fclose(file);
+}
+
+static void member(FILE *out, const char *name, const char *value) {
+  fprintf(out, ", \"%s\": ", name);
+  field_json_string(value, out);
+}
+
+char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
+  char *text = NULL, model[256];
+  size_t size = 0;
+  struct utsname host;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  cpu_model(model, sizeof model);
+  fputs("{\"version\": ", out);
+  field_json_string(BUILD_VERSION, out);
+  member(out, "commit", BUILD_COMMIT);
+  fprintf(out, ", \"dirty\": %s", BUILD_DIRTY ? "true" : "false");
+  member(out, "commit_date", BUILD_DATE);
+  member(out, "compiler", BUILD_COMPILER);
+  member(out, "build_type", BUILD_TYPE);
+  member(out, "flags", BUILD_FLAGS);
+  fputs(", \"libraries\": {\"fyaml\": ", out);
+  field_json_string(BUILD_FYAML, out);
+  member(out, "hdf5", BUILD_HDF5);
+  member(out, "sqlite", BUILD_SQLITE);
+  member(out, "gsl", BUILD_GSL);
+  member(out, "plfit", BUILD_PLFIT);
+  member(out, "cairo", BUILD_CAIRO);
+  member(out, "mpi", BUILD_MPI);
+  fputs("}, \"results_versions\": {", out);
+  for (size_t i = 0; i < engine_count(); i++)
+    fprintf(out, "%s\"%s\": %d", i ? ", " : "", engine_at(i)->name, engine_at(i)->results_version);
+  fputc('}', out);
+  member(out, "cpu_model", model);
+  member(out, "cpu_class", provenance_cpu_class());
+  if (uname(&host) == 0) {
+    member(out, "host", host.nodename);
+    member(out, "system", host.release);
+  }
+  const char *threads = getenv("OMP_NUM_THREADS");
+  member(out, "omp_num_threads", threads ? threads : "");
+  fprintf(out, ", \"ranks\": %d, \"slots\": %d, \"command\": [", ranks, slots);
+  for (int i = 0; argv && i < argc; i++) {
+    fputs(i ? ", " : "", out);
+    field_json_string(argv[i], out);
+  }
+  fputs("]}", out);
+  if (fclose(out) != 0) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}
