@@ -40,7 +40,7 @@ static document_node *create(struct builder *b, enum document_kind kind, const c
   node->document = document;
   node->kind = kind;
   node->start = start;
-  node->end = end > start ? end : start + 1;
+  node->end = kind == DOCUMENT_SCALAR && end > start ? end : start + 1;
   if (length) memcpy(node->text, text, length);
   node->next = document->nodes;
   document->nodes = node;
@@ -228,7 +228,8 @@ static void open_collection(struct builder *b, document_node *node) {
 static void close_collection(struct builder *b, size_t end) {
   if (b->depth == 0) return;
   document_node *node = b->open[--b->depth];
-  if (end > node->start) node->end = end;
+  char first = b->document->text[node->start];
+  if (end > node->start && (first == '{' || first == '[')) node->end = end; /* others: their first character will do */
   if (node->kind == DOCUMENT_MAPPING && node->count > 1) report_duplicates(b, node);
   attach(b, node);
 }

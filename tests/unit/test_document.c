@@ -279,7 +279,7 @@ static void each_error_says_this(void **state) {
                           "    ^~~~~~"},
       {"- a\n- b\n", "a.yaml:1:1: error: expected keys and values, such as 'name: first', got a list\n"
                      "  - a\n"
-                     "  ^~~"},
+                     "  ^"},
       {"just words\n", "a.yaml:1:1: error: expected keys and values, such as 'name: first', got a single value\n"
                        "  just words\n"
                        "  ^~~~~~~~~~"},
