@@ -1,0 +1,146 @@
+#include "analysis/point.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/picture.h"
+#include "db/query.h"
+
+enum { RESAMPLE_SEED = 1 };
+
+struct growing {
+  struct point_data *point;
+  size_t mass_capacity, run_capacity;
+};
+
+/* Blobs are little-endian float64, the machine's own order on everything that this program is built for. */
+static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct growing *growing = context;
+  struct point_data *point = growing->point;
+  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
+    return status_fail(error, STATUS_CONTENT, "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
+                       (long long)point->point_id);
+  size_t n = values[0].size / sizeof(double), have = point->first[point->runs.count];
+  if (have + n > growing->mass_capacity) {
+    size_t capacity = 2 * (have + n);
+    double *grown = realloc(point->masses, capacity * sizeof *grown);
+    if (!grown) return status_fail(error, STATUS_MEMORY, "no memory for the masses of point %lld", (long long)point->point_id);
+    point->masses = grown;
+    growing->mass_capacity = capacity;
+  }
+  if (point->runs.count + 2 > growing->run_capacity) {
+    size_t capacity = 2 * growing->run_capacity;
+    size_t *grown = realloc(point->first, capacity * sizeof *grown);
+    if (!grown) return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
+    point->first = grown;
+    growing->run_capacity = capacity;
+  }
+  if (n > 0) memcpy(point->masses + have, values[0].blob, n * sizeof(double));
+  point->first[++point->runs.count] = have + n;
+  return STATUS_OK;
+}
+
+status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
+                  struct error *error) {
+  *out = (struct point_data){.point_id = point_id, .results_version = results_version, .grain_mass = NAN};
+  char id[32], version[32];
+  snprintf(id, sizeof id, "%lld", (long long)point_id);
+  struct query_parameter parameters[2] = {{"point", id}, {"version", version}};
+  status code = STATUS_OK;
+  if (results_version == 0) {
+    double newest = NAN;
+    code = query_number(store, "SELECT max(results_version) FROM run WHERE point_id = :point AND counts = 1", 1, parameters,
+                        &newest, error);
+    if (code) return code;
+    out->results_version = isnan(newest) ? 0 : (int64_t)newest;
+  }
+  snprintf(version, sizeof version, "%lld", (long long)out->results_version);
+  struct growing growing = {.point = out, .run_capacity = 32};
+  out->first = calloc(growing.run_capacity, sizeof *out->first);
+  if (!out->first) return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point_id);
+  struct query_sink sink = {.context = &growing, .row = take_run};
+  code = query_run(store,
+                   "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
+                   "results_version = :version AND counts = 1 ORDER BY replicate, seed",
+                   2, parameters, 0, &sink, error);
+  /* Every run's window from_2 begins at two of its mean grain masses. */
+  if (!code)
+    code = query_number(store,
+                        "SELECT avg(lower) / 2 FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
+                        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
+                        2, parameters, &out->grain_mass, error);
+  if (code) {
+    point_release(out);
+    return code;
+  }
+  out->runs.first = out->first;
+  out->runs.masses = out->masses;
+  return STATUS_OK;
+}
+
+void point_release(struct point_data *point) {
+  free(point->first);
+  free(point->masses);
+  point->first = NULL;
+  point->masses = NULL;
+  point->runs = (struct pooled_runs){0};
+}
+
+double point_window(const struct point_data *point, enum estimates_window window) {
+  return estimates_window_grains(window) * point->grain_mass;
+}
+
+status point_estimates(const struct point_data *point, size_t resamples, double level,
+                       struct point_estimate rows[POINT_ESTIMATES], struct error *error) {
+  static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
+  status code = STATUS_OK;
+  for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
+    rows[i] = (struct point_estimate){.window = (enum estimates_window)(i % ESTIMATES_WINDOWS)};
+    struct pooled_exponent *exponent = &rows[i].exponent;
+    double lower = point_window(point, rows[i].window);
+    if (lower > 0) {
+      code = pooled_exponent(&point->runs, methods[i / ESTIMATES_WINDOWS], lower, resamples, level, RESAMPLE_SEED, exponent,
+                             error);
+    } else { /* no runs, or none with estimates: no grain mass */
+      exponent->fit.method = (int)methods[i / ESTIMATES_WINDOWS];
+      exponent->fit.lower = exponent->fit.upper = exponent->fit.beta = exponent->fit.standard_error = NAN;
+      exponent->fit.cutoff_mass = exponent->fit.ks_distance = exponent->fit.log_likelihood = NAN;
+      exponent->interval = (struct sample_interval){NAN, NAN, NAN, NAN, 0};
+    }
+  }
+  return code;
+}
+
+enum { MOST_POINTS = 8 };
+
+status point_picture(const char *path, double width, const char *title, const char *mass_unit, size_t count,
+                     const struct point_data *points, const char *const *labels, struct error *error) {
+  struct picture_series series[MOST_POINTS] = {0};
+  struct picture_fit fits[MOST_POINTS] = {0};
+  struct pooled_bin *bins[MOST_POINTS] = {0};
+  char texts[MOST_POINTS][96];
+  status code = STATUS_OK;
+  if (count < 1 || count > MOST_POINTS)
+    return status_fail(error, STATUS_USAGE, "%s: one to %d points in a picture, not %zu", path, MOST_POINTS, count);
+  for (size_t i = 0; i < count && !code; i++) {
+    code = pooled_spectrum(&points[i].runs, true, 1, &bins[i], &series[i].count, error);
+    series[i].bins = bins[i];
+    series[i].label = labels ? labels[i] : NULL;
+    double lower = point_window(&points[i], (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
+    if (code || !(lower > 0)) continue;
+    struct pooled_exponent headline;
+    code = pooled_exponent(&points[i].runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, RESAMPLE_SEED, &headline, error);
+    if (code || !isfinite(headline.fit.beta)) continue;
+    snprintf(texts[i], sizeof texts[i], "\xce\xb2 = %.2f \xc2\xb1 %.2f, %zu runs", headline.fit.beta,
+             headline.interval.standard_error, points[i].runs.count);
+    fits[i] = (struct picture_fit){texts[i], headline.fit.beta, headline.fit.lower, headline.fit.upper,
+                                   (double)headline.fit.n / (double)points[i].runs.count};
+    series[i].fit = &fits[i];
+    series[i].fits = 1;
+  }
+  if (!code) code = picture_spectrum(path, width, title, mass_unit, count, series, error);
+  for (size_t i = 0; i < count; i++) free(bins[i]);
+  return code;
+}

@@ -1,0 +1,73 @@
+/* Text plots: points stand in their decade's column, bars on both sides, lines fit the terminal. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/text_plot.h"
+
+static char *plot(int columns, bool unicode, const struct picture_series *series) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  assert_non_null(out);
+  text_plot_spectrum(out, columns, unicode, "kg/m", series);
+  fclose(out);
+  return text;
+}
+
+static void rows_and_columns(void **state) {
+  (void)state;
+  struct pooled_bin bins[5];
+  for (int i = 0; i < 5; i++) { /* a slope of -2: densities 1e8, 1e6 ... */
+    double edge = pow(10, i - 4);
+    bins[i] = (struct pooled_bin){10 * (i - 4), edge, edge * 1.2589, 1000 >> (2 * i), pow(10, 8 - 2 * i), 0.3 * pow(10, 8 - 2 * i)};
+  }
+  bins[4].standard_error = bins[4].density; /* reaches down to zero */
+  struct picture_fit fit = {"beta 2.00 +- 0.01", 2, 1e-4, HUGE_VAL, 1e4};
+  struct picture_series series = {"all", 5, bins, 1, &fit};
+  char *text = plot(100, false, &series), *line = strtok(text, "\n");
+  int last = 1000, rows = 0;
+  assert_non_null(strstr(line, "from kg/m"));
+  assert_non_null(strstr(line, "1e8"));
+  long column_of_1e8 = strstr(line, "1e8") - line;
+  while ((line = strtok(NULL, "\n")) && line[0] != ':') {
+    assert_true(strlen(line) <= 100);
+    int at = (int)(strchr(line, '*') - line);
+    assert_true(at < last); /* falling */
+    if (rows == 0) assert_int_equal(at, column_of_1e8);
+    if (rows < 4) assert_true(strchr(line, '[') < strchr(line, '*') && strchr(line, '*') <= strchr(line, ']'));
+    last = at;
+    rows++;
+  }
+  assert_int_equal(rows, 5);
+  assert_string_equal(line, ": beta 2.00 +- 0.01");
+  free(text);
+  text = plot(10, true, &series);
+  assert_non_null(strstr(text, "\xe2\x97\x8f"));
+  free(text);
+  series.count = 0;
+  text = plot(80, true, &series);
+  assert_string_equal(text, "");
+  free(text);
+}
+
+static void sparklines(void **state) {
+  (void)state;
+  const double values[5] = {0, 0.5, 1, NAN, 7};
+  char text[3 * 5 + 1];
+  text_plot_sparkline(5, values, 0, 1, false, text);
+  assert_string_equal(text, "037 7");
+  text_plot_sparkline(5, values, 0, 1, true, text);
+  assert_string_equal(text, "\xe2\x96\x81\xe2\x96\x84\xe2\x96\x88 \xe2\x96\x88");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rows_and_columns), cmocka_unit_test(sparklines)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
