@@ -1,0 +1,95 @@
+/* A point read from a store: its runs in order, those that do not count left out, its estimates and picture. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "analysis/analysis.h"
+#include "analysis/point.h"
+#include "tests/store_fixture.h"
+
+static struct error error;
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+  } while (0)
+
+enum { RUNS = 8, FAILED = 3 };
+
+static struct store *fill(char path[64], int64_t *point) {
+  struct store *store;
+  OK(store_open_writer(fixture_path(path, "point"), &estimates_table, &store, NULL, 0, &error));
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 9, 1e33);
+  int64_t campaign, session;
+  OK(store_add_campaign(store, "c", "text", "{}", &campaign, &error));
+  OK(store_begin_session(store, "{}", &session, &error));
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, point, &error));
+  for (int64_t r = RUNS - 1; r >= 0; r--) { /* added in another order than that of replicates */
+    struct fixture_run f;
+    struct estimate estimates[ESTIMATES_COUNT];
+    fixture_fill(&f, &scene, *point, session, r, FIXTURE_FRAGMENTS);
+    for (int i = 0; i < FIXTURE_FRAGMENTS; i++) f.fragments[i].count = (uint32_t)(1 + f.fragments[i].mass / 4e-4);
+    OK(estimates_make(FIXTURE_FRAGMENTS, f.fragments, estimates, &error));
+    f.run.estimates = estimates;
+    f.run.estimate_count = ESTIMATES_COUNT;
+    if (r == FAILED) f.outcome.state = OUTCOME_NOT_FINITE;
+    OK(store_add_run(store, &f.run, &error));
+  }
+  OK(store_flush(store, &error));
+  return store;
+}
+
+static void runs_that_count_in_order(void **state) {
+  (void)state;
+  char path[64];
+  int64_t id;
+  struct store *store = fill(path, &id);
+  struct point_data point;
+  OK(point_read(store, id, 0, &point, &error));
+  assert_int_equal(point.results_version, 3);
+  assert_int_equal(point.runs.count, RUNS - 1);
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 9, 1e33);
+  for (size_t k = 0; k < RUNS - 1; k++) {
+    struct fixture_run f;
+    fixture_fill(&f, &scene, id, 1, (int64_t)(k < FAILED ? k : k + 1), FIXTURE_FRAGMENTS);
+    assert_int_equal(point.runs.first[k + 1] - point.runs.first[k], FIXTURE_FRAGMENTS);
+    for (int i = 0; i < FIXTURE_FRAGMENTS; i++)
+      assert_true(point.runs.masses[point.runs.first[k] + (size_t)i] == f.fragments[i].mass);
+  }
+  /* counts above are floor(m/4e-4) + 1: the mean grain is lighter than 4e-4, heavier than half of it */
+  assert_true(point.grain_mass > 2e-4 && point.grain_mass < 4e-4);
+  assert_near(point_window(&point, ESTIMATES_FROM_5), 5 * point.grain_mass, 0);
+
+  struct point_estimate rows[POINT_ESTIMATES], again[POINT_ESTIMATES];
+  OK(point_estimates(&point, 100, 0.95, rows, &error));
+  OK(point_estimates(&point, 100, 0.95, again, &error));
+  for (int i = 0; i < POINT_ESTIMATES; i++) {
+    assert_true(isfinite(rows[i].exponent.fit.beta) && rows[i].exponent.interval.standard_error > 0);
+    assert_true(rows[i].exponent.interval.lower == again[i].exponent.interval.lower);
+    /* log m is uniform over three decades: beta is 1, and least squares is biased low by far less than 0.3 there */
+    assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
+  }
+  OK(point_picture("test-point.png", 600, "a point", "kg", 1, &point, NULL, &error));
+  assert_int_equal(unlink("test-point.png"), 0);
+  assert_int_equal(point_picture("test-point.png", 600, "a point", "kg", 0, &point, NULL, &error), STATUS_USAGE);
+  point_release(&point);
+
+  OK(point_read(store, id + 7, 0, &point, &error)); /* no such point */
+  assert_int_equal(point.runs.count, 0);
+  OK(point_estimates(&point, 10, 0.95, rows, &error));
+  for (int i = 0; i < POINT_ESTIMATES; i++) assert_true(isnan(rows[i].exponent.fit.beta));
+  assert_int_equal(point_picture("test-point.png", 600, "a point", "kg", 1, &point, NULL, &error), STATUS_USAGE);
+  assert_int_not_equal(access("test-point.png", F_OK), 0);
+  point_release(&point);
+  OK(store_close(store, &error));
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
