@@ -1,57 +1,10 @@
-#include "campaign/driver.h"
+#include "campaign/driver_private.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#include "campaign/cost.h"
-#include "campaign/design/design.h"
-#include "campaign/point.h"
 #include "campaign/run.h"
-
-/* Points looked at together: "dearest first" is exact for campaigns of up to this many points, and a window for larger
- * ones, whose points are made as they are needed. Filling it may take this long before the first run starts. */
-enum { WINDOW = 1024 };
-#define FILL_S 0.2
-#define NOTHING ((double)NAN)
-
-struct flight { /* a task on a slot */
-  struct point *point; /* NULL: this place is free */
-  int64_t replicate;
-  int attempt;
-  bool replay;         /* only for its fields */
-  uint8_t identity[16];
-  uint64_t seed;
-};
-
-struct driver {
-  const struct campaign *campaign;
-  struct store *store;
-  struct driver_options options;
-  struct driver_summary summary;
-  struct design *design;
-  struct field_value *values; /* of one design point */
-  const char **paths;         /* of the axes, for the store */
-  const struct field *row;    /* main quantity */
-  bool row_of_outcome;
-  struct point **points;      /* the window */
-  size_t point_count;
-  uint64_t expanded;          /* design points taken */
-  struct flight *flights;
-  size_t flight_count;
-  int64_t *seen;              /* ids of points met: open addressing, 0 = free */
-  size_t seen_size, seen_count;
-  uint8_t *task;              /* bytes of the last task given out */
-  struct cost_model cost;
-  double mean, squares;       /* running moments of the main quantity (Welford) */
-  int64_t counted;
-  int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
-  int64_t started_done;       /* runs finished now, for the rate */
-  double begin, last_left, seconds_left;
-  int64_t wanted;             /* runs to complete in points met */
-  struct error error;         /* of a callback that cannot return one */
-};
 
 static double now_s(void) {
   struct timespec t;
@@ -59,7 +12,7 @@ static double now_s(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void note(struct driver *driver, const char *text) {
+void driver_note(struct driver *driver, const char *text) {
   if (driver->options.note)
     driver->options.note(driver->options.note_context, text);
 }
@@ -82,7 +35,7 @@ status driver_open(const struct campaign *campaign, struct store *store, const s
   driver->seconds_left = NAN;
   driver->values = calloc(campaign->axis_count + 1, sizeof *driver->values);
   driver->paths = calloc(campaign->axis_count + 1, sizeof *driver->paths);
-  driver->points = calloc(WINDOW, sizeof *driver->points);
+  driver->points = calloc(DRIVER_WINDOW, sizeof *driver->points);
   driver->seen_size = 1024;
   driver->seen = calloc(driver->seen_size, sizeof *driver->seen);
   status code = STATUS_OK;
@@ -127,155 +80,6 @@ void driver_free(struct driver *driver) {
   free(driver->flights);
   free(driver->task);
   free(driver);
-}
-
-/* True when the id was not there. */
-static bool remember(struct driver *driver, int64_t id) {
-  if (2 * (driver->seen_count + 1) > driver->seen_size) {
-    int64_t *larger = calloc(2 * driver->seen_size, sizeof *larger);
-    if (!larger)
-      return true; /* at worst a duplicate is looked at twice */
-    for (size_t i = 0; i < driver->seen_size; i++)
-      if (driver->seen[i]) {
-        size_t at = (size_t)driver->seen[i] * 0x9E3779B97F4A7C15u % (2 * driver->seen_size);
-        while (larger[at])
-          at = (at + 1) % (2 * driver->seen_size);
-        larger[at] = driver->seen[i];
-      }
-    free(driver->seen);
-    driver->seen = larger;
-    driver->seen_size *= 2;
-  }
-  size_t at = (size_t)id * 0x9E3779B97F4A7C15u % driver->seen_size;
-  while (driver->seen[at] && driver->seen[at] != id)
-    at = (at + 1) % driver->seen_size;
-  bool fresh = driver->seen[at] != id;
-  driver->seen[at] = id;
-  driver->seen_count += fresh;
-  return fresh;
-}
-
-static void count_value(struct driver *driver, double value) {
-  if (isnan(value))
-    return;
-  double from = value - driver->mean;
-  driver->mean += from / (double)++driver->counted;
-  driver->squares += from * (value - driver->mean);
-}
-
-struct resuming {
-  struct driver *driver;
-  struct point *point;
-  bool out_of_memory;
-};
-
-/* A run that the store has: ours if its identity is what our replicate's would be. */
-static void take_stored(void *context, const struct store_point_run *run) {
-  struct resuming *resuming = context;
-  struct point *point = resuming->point;
-  struct driver *driver = resuming->driver;
-  const struct campaign *campaign = driver->campaign;
-  int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
-  if (r < 0 || r >= campaign_replicates_most(campaign) || campaign_seed(campaign, point->scene, r) != run->seed)
-    return;
-  uint8_t identity[16];
-  scene_identity(point->scene, run->seed, identity);
-  if (memcmp(identity, run->identity, sizeof identity) != 0)
-    return; /* of an older results_version */
-  if (!point_reserve(point, r)) {
-    resuming->out_of_memory = true;
-    return;
-  }
-  bool usable = run->state == OUTCOME_COMPLETED || run->state == OUTCOME_END_TIME;
-  point_finish_replicate(point, r, POINT_DONE, usable ? run->value : NOTHING);
-  point->replicates[r].surplus = run->surplus;
-  point->replicates[r].fields = run->fields_path != NULL;
-  cost_learn(&driver->cost, &point->cost, run->wall_s);
-  driver->summary.runs_reused++;
-  driver->summary.runs_failed += !usable;
-  driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
-  count_value(driver, usable ? run->value : NOTHING);
-}
-
-/* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out again,
- * so that a point shared with another campaign keeps what that one decided. */
-static status admit(struct driver *driver, struct point *point, struct error *error) {
-  bool any = false;
-  int64_t prefix = point->prefix;
-  for (int64_t r = 0; r < point->capacity; r++) {
-    struct point_replicate *replicate = &point->replicates[r];
-    if (replicate->state != POINT_DONE)
-      continue;
-    if (r < point->prefix && replicate->surplus) {
-      any = true;
-      replicate->surplus = false;
-    } else if (r >= prefix && !replicate->surplus) {
-      prefix = r + 1;
-    }
-  }
-  return any ? store_set_prefix(driver->store, point->id, prefix, error) : STATUS_OK;
-}
-
-static status judge(struct driver *driver, struct point *point, struct error *error) {
-  int64_t before = point->prefix;
-  if (!point_judge(point))
-    return STATUS_OK;
-  driver->wanted += point->prefix - before;
-  if (point->decided) {
-    driver->summary.points_done++;
-    driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
-    driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
-    point_want_fields(point, driver->campaign);
-  }
-  return admit(driver, point, error);
-}
-
-/* Takes the next design point into the window. False: the design has no more, or an error (see *code). */
-static bool expand(struct driver *driver, status *code, struct error *error) {
-  if (driver->point_count == WINDOW || !design_next(driver->design, driver->values))
-    return false;
-  driver->expanded++;
-  struct error why = {0};
-  struct scene *scene = campaign_point_scene(driver->campaign, driver->values, &why);
-  if (!scene) {
-    if (++driver->summary.points_invalid <= 5) {
-      char text[sizeof why.message + 80];
-      snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
-               why.message);
-      note(driver, text);
-    }
-    return true;
-  }
-  int64_t id = 0;
-  *code = store_add_point(driver->store, driver->summary.campaign_id, scene, driver->campaign->axis_count, driver->paths,
-                          &id, error);
-  if (*code != STATUS_OK || !remember(driver, id)) {
-    scene_free(scene);
-    return *code == STATUS_OK;
-  }
-  struct point *point = point_create(driver->campaign, scene);
-  if (!point) {
-    *code = status_fail(error, STATUS_MEMORY, "no memory for a point");
-    return false;
-  }
-  point->id = id;
-  driver->summary.points++;
-  driver->wanted += point->prefix;
-  struct resuming resuming = {driver, point, false};
-  *code = store_point_runs(driver->store, id, point->scene->kind, driver->row, driver->row_of_outcome, take_stored,
-                           &resuming, error);
-  if (*code == STATUS_OK && resuming.out_of_memory)
-    *code = status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
-  if (*code == STATUS_OK)
-    *code = judge(driver, point, error);
-  if (*code == STATUS_OK)
-    *code = admit(driver, point, error); /* a fixed number may cover what an older rule left out */
-  if (*code != STATUS_OK || point_over(point)) {
-    point_free(point);
-    return *code == STATUS_OK;
-  }
-  driver->points[driver->point_count++] = point;
-  return true;
 }
 
 /* The dearest point that has something to send out: its own runs first, then, so that no slot idles, runs ahead of the
@@ -343,17 +147,6 @@ static struct flight *free_flight(struct driver *driver) {
   return fresh;
 }
 
-static void drop_point(struct driver *driver, struct point *point) {
-  for (size_t i = 0; i < driver->point_count; i++)
-    if (driver->points[i] == point) {
-      /* Order is kept: equal costs go in design order. */
-      memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
-      driver->point_count--;
-      break;
-    }
-  point_free(point);
-}
-
 static void give_up(struct driver *driver, struct point *point, int64_t r) {
   point_finish_replicate(point, r, POINT_FAILED, NAN);
   driver->summary.runs_failed++;
@@ -361,15 +154,15 @@ static void give_up(struct driver *driver, struct point *point, int64_t r) {
 
 /* Fills the window; then the dearest run that nobody has given up on before. NULL: nothing (or an error). */
 static struct point *next_run(struct driver *driver, struct flight *flight, status *code) {
-  double deadline = now_s() + FILL_S;
+  double deadline = now_s() + DRIVER_FILL_S;
   while (*code == STATUS_OK) {
-    while (*code == STATUS_OK && driver->point_count < WINDOW && now_s() < deadline && expand(driver, code, &driver->error))
+    while (*code == STATUS_OK && driver->point_count < DRIVER_WINDOW && now_s() < deadline && driver_window_expand(driver, code, &driver->error))
       ;
     if (*code != STATUS_OK)
       return NULL;
     struct point *point = choose(driver, false, &flight->replicate);
     if (!point) { /* nothing in the window: go on in the design before anything is computed ahead */
-      if (driver->point_count < WINDOW && expand(driver, code, &driver->error))
+      if (driver->point_count < DRIVER_WINDOW && driver_window_expand(driver, code, &driver->error))
         continue;
       if (*code != STATUS_OK)
         return NULL;
@@ -393,9 +186,9 @@ static struct point *next_run(struct driver *driver, struct flight *flight, stat
     if (failed < driver->campaign->attempts)
       return point;
     give_up(driver, point, flight->replicate); /* in an earlier invocation, or now */
-    *code = judge(driver, point, &driver->error);
+    *code = driver_window_judge(driver, point, &driver->error);
     if (*code == STATUS_OK && point_over(point))
-      drop_point(driver, point);
+      driver_window_drop(driver, point);
   }
   return NULL;
 }
@@ -542,7 +335,7 @@ static status finish_run(struct driver *driver, const struct flight *flight, con
     double value = campaign_value(driver->row, driver->row_of_outcome, &result.outcome, result.result);
     point_finish_replicate(point, flight->replicate, POINT_DONE, value);
     cost_learn(&driver->cost, &point->cost, report->wall_s);
-    count_value(driver, value);
+    driver_window_count(driver, value);
     driver->summary.runs_done++;
     driver->summary.runs_failed += !usable;
     driver->summary.runs_censored += result.outcome.state == OUTCOME_END_TIME;
@@ -562,7 +355,7 @@ static status finish_replay(struct driver *driver, const struct flight *flight, 
   if (report->ending != FARM_DONE) {
     snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)flight->seed, path,
              report->message && report->message[0] ? report->message : "the replay did not end well");
-    note(driver, text);
+    driver_note(driver, text);
     return STATUS_OK;
   }
   replicate->fields = true;
@@ -579,9 +372,9 @@ static status report(void *context, const struct farm_report *report, struct err
   flight.point->out--;
   status code = flight.replay ? finish_replay(driver, &flight, report, error) : finish_run(driver, &flight, report, error);
   driver->started_done += !flight.replay;
-  status judged = code == STATUS_OK || code == STATUS_FAILED_RUNS ? judge(driver, flight.point, code ? NULL : error) : code;
+  status judged = code == STATUS_OK || code == STATUS_FAILED_RUNS ? driver_window_judge(driver, flight.point, code ? NULL : error) : code;
   if (point_over(flight.point))
-    drop_point(driver, flight.point);
+    driver_window_drop(driver, flight.point);
   return code != STATUS_OK ? code : judged;
 }
 
@@ -612,13 +405,13 @@ static void show(struct driver *driver, int running, bool last) {
       .running = running,
       .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),
       .total_is_minimum = driver->campaign->per_point == 0 && driver->summary.points_done < driver->summary.points,
-      .rate = elapsed > 0 && driver->started_done > 0 ? (double)driver->started_done / elapsed : NOTHING,
-      .seconds_left = last ? NOTHING : time_left(driver, now),
+      .rate = elapsed > 0 && driver->started_done > 0 ? (double)driver->started_done / elapsed : DRIVER_NOTHING,
+      .seconds_left = last ? DRIVER_NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
-      .mean = driver->counted > 0 ? driver->mean : NOTHING,
+      .mean = driver->counted > 0 ? driver->mean : DRIVER_NOTHING,
       .half_width = driver->counted > 1
                         ? 1.96 * sqrt(driver->squares / (double)(driver->counted - 1) / (double)driver->counted)
-                        : NOTHING,
+                        : DRIVER_NOTHING,
   };
   progress_update(driver->options.progress, &state, now, last);
 }
@@ -634,8 +427,16 @@ static status tick(void *context, int running, struct error *error) {
   return store_tick(driver->store, error);
 }
 
+/* mpirun may kill in a second: what is there is committed first. */
+static void stopping(void *context, int signal_number) {
+  struct driver *driver = context;
+  (void)signal_number;
+  store_flush(driver->store, NULL);
+  driver_note(driver, "stopping: no new runs, those that end in a moment are kept; the same command goes on from here");
+}
+
 struct farm_manager driver_manager(struct driver *driver) {
-  return (struct farm_manager){.context = driver, .next = next, .report = report, .tick = tick};
+  return (struct farm_manager){.context = driver, .next = next, .report = report, .tick = tick, .stopping = stopping};
 }
 
 status driver_end(struct driver *driver, struct error *error) {

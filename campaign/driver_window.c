@@ -1,0 +1,163 @@
+#include "campaign/driver_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* True when the id was not there. */
+static bool remember(struct driver *driver, int64_t id) {
+  if (2 * (driver->seen_count + 1) > driver->seen_size) {
+    int64_t *larger = calloc(2 * driver->seen_size, sizeof *larger);
+    if (!larger)
+      return true; /* at worst a duplicate is looked at twice */
+    for (size_t i = 0; i < driver->seen_size; i++)
+      if (driver->seen[i]) {
+        size_t at = (size_t)driver->seen[i] * 0x9E3779B97F4A7C15u % (2 * driver->seen_size);
+        while (larger[at])
+          at = (at + 1) % (2 * driver->seen_size);
+        larger[at] = driver->seen[i];
+      }
+    free(driver->seen);
+    driver->seen = larger;
+    driver->seen_size *= 2;
+  }
+  size_t at = (size_t)id * 0x9E3779B97F4A7C15u % driver->seen_size;
+  while (driver->seen[at] && driver->seen[at] != id)
+    at = (at + 1) % driver->seen_size;
+  bool fresh = driver->seen[at] != id;
+  driver->seen[at] = id;
+  driver->seen_count += fresh;
+  return fresh;
+}
+
+void driver_window_count(struct driver *driver, double value) {
+  if (isnan(value))
+    return;
+  double from = value - driver->mean;
+  driver->mean += from / (double)++driver->counted;
+  driver->squares += from * (value - driver->mean);
+}
+
+struct resuming {
+  struct driver *driver;
+  struct point *point;
+  bool out_of_memory;
+};
+
+/* A run that the store has: ours if its identity is what our replicate's would be. */
+static void take_stored(void *context, const struct store_point_run *run) {
+  struct resuming *resuming = context;
+  struct point *point = resuming->point;
+  struct driver *driver = resuming->driver;
+  const struct campaign *campaign = driver->campaign;
+  int64_t r = campaign->independent ? run->replicate : (int64_t)(run->seed - (uint64_t)campaign->first_seed);
+  if (r < 0 || r >= campaign_replicates_most(campaign) || campaign_seed(campaign, point->scene, r) != run->seed)
+    return;
+  uint8_t identity[16];
+  scene_identity(point->scene, run->seed, identity);
+  if (memcmp(identity, run->identity, sizeof identity) != 0)
+    return; /* of an older results_version */
+  if (!point_reserve(point, r)) {
+    resuming->out_of_memory = true;
+    return;
+  }
+  bool usable = run->state == OUTCOME_COMPLETED || run->state == OUTCOME_END_TIME;
+  point_finish_replicate(point, r, POINT_DONE, usable ? run->value : DRIVER_NOTHING);
+  point->replicates[r].surplus = run->surplus;
+  point->replicates[r].fields = run->fields_path != NULL;
+  cost_learn(&driver->cost, &point->cost, run->wall_s);
+  driver->summary.runs_reused++;
+  driver->summary.runs_failed += !usable;
+  driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
+  driver_window_count(driver, usable ? run->value : DRIVER_NOTHING);
+}
+
+/* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out again,
+ * so that a point shared with another campaign keeps what that one decided. */
+static status admit(struct driver *driver, struct point *point, struct error *error) {
+  bool any = false;
+  int64_t prefix = point->prefix;
+  for (int64_t r = 0; r < point->capacity; r++) {
+    struct point_replicate *replicate = &point->replicates[r];
+    if (replicate->state != POINT_DONE)
+      continue;
+    if (r < point->prefix && replicate->surplus) {
+      any = true;
+      replicate->surplus = false;
+    } else if (r >= prefix && !replicate->surplus) {
+      prefix = r + 1;
+    }
+  }
+  return any ? store_set_prefix(driver->store, point->id, prefix, error) : STATUS_OK;
+}
+
+status driver_window_judge(struct driver *driver, struct point *point, struct error *error) {
+  int64_t before = point->prefix;
+  if (!point_judge(point))
+    return STATUS_OK;
+  driver->wanted += point->prefix - before;
+  if (point->decided) {
+    driver->summary.points_done++;
+    driver->summary.points_interval_met += point->verdict == DESIGN_INTERVAL_MET;
+    driver->summary.points_cap_reached += point->verdict == DESIGN_CAP_REACHED;
+    point_want_fields(point, driver->campaign);
+  }
+  return admit(driver, point, error);
+}
+
+bool driver_window_expand(struct driver *driver, status *code, struct error *error) {
+  if (driver->point_count == DRIVER_WINDOW || !design_next(driver->design, driver->values))
+    return false;
+  driver->expanded++;
+  struct error why = {0};
+  struct scene *scene = campaign_point_scene(driver->campaign, driver->values, &why);
+  if (!scene) {
+    if (++driver->summary.points_invalid <= 5) {
+      char text[sizeof why.message + 80];
+      snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
+               why.message);
+      driver_note(driver, text);
+    }
+    return true;
+  }
+  int64_t id = 0;
+  *code = store_add_point(driver->store, driver->summary.campaign_id, scene, driver->campaign->axis_count, driver->paths,
+                          &id, error);
+  if (*code != STATUS_OK || !remember(driver, id)) {
+    scene_free(scene);
+    return *code == STATUS_OK;
+  }
+  struct point *point = point_create(driver->campaign, scene);
+  if (!point) {
+    *code = status_fail(error, STATUS_MEMORY, "no memory for a point");
+    return false;
+  }
+  point->id = id;
+  driver->summary.points++;
+  driver->wanted += point->prefix;
+  struct resuming resuming = {driver, point, false};
+  *code = store_point_runs(driver->store, id, point->scene->kind, driver->row, driver->row_of_outcome, take_stored,
+                           &resuming, error);
+  if (*code == STATUS_OK && resuming.out_of_memory)
+    *code = status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
+  if (*code == STATUS_OK)
+    *code = driver_window_judge(driver, point, error);
+  if (*code == STATUS_OK)
+    *code = admit(driver, point, error); /* a fixed number may cover what an older rule left out */
+  if (*code != STATUS_OK || point_over(point)) {
+    point_free(point);
+    return *code == STATUS_OK;
+  }
+  driver->points[driver->point_count++] = point;
+  return true;
+}
+
+void driver_window_drop(struct driver *driver, struct point *point) {
+  for (size_t i = 0; i < driver->point_count; i++)
+    if (driver->points[i] == point) {
+      /* Order is kept: equal costs go in design order. */
+      memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
+      driver->point_count--;
+      break;
+    }
+  point_free(point);
+}

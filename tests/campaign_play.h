@@ -1,0 +1,247 @@
+/* A farm played by the test: tasks are taken from a driver, computed by a small stand-in for engine `dem` (its tables, no
+ * physics: fragments drawn from inputs and seed) and reported in an order of the test's choosing. */
+#ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
+#define CLAST_TESTS_CAMPAIGN_PLAY_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/estimates.h"
+#include "campaign/driver.h"
+#include "campaign/run.h"
+#include "db/query.h"
+#include "engine/dem/inputs.h"
+#include "engine/dem/results.h"
+#include "engine/random.h"
+
+struct play_run {
+  struct dem_inputs inputs;
+  uint64_t seed;
+};
+
+static status play_prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
+  struct play_run *mine = malloc(sizeof *mine);
+  if (!mine)
+    return status_fail(error, STATUS_MEMORY, "no memory");
+  *mine = (struct play_run){*(const struct dem_inputs *)inputs, seed};
+  if (seed == 13) { /* an unlucky number: inputs that cannot be run together */
+    free(mine);
+    return status_fail(error, STATUS_CONTENT, "seed 13 is not run here");
+  }
+  *run = mine;
+  return STATUS_OK;
+}
+static status play_step(void *run, uint64_t most, bool *finished, struct error *error) {
+  (void)run, (void)most, (void)error;
+  *finished = true;
+  return STATUS_OK;
+}
+static double play_progress(const void *run) {
+  (void)run;
+  return 1;
+}
+static double play_work(const void *inputs) { return 1 / ((const struct dem_inputs *)inputs)->threshold.strain; }
+static size_t play_memory(const void *inputs) {
+  (void)inputs;
+  return 1000000;
+}
+static status play_finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments, size_t *count,
+                          struct error *error) {
+  const struct play_run *mine = run;
+  struct dem_results *results = result;
+  size_t n = 20 + (size_t)(mine->seed % 7);
+  *fragments = calloc(n, sizeof **fragments);
+  if (!*fragments)
+    return status_fail(error, STATUS_MEMORY, "no memory");
+  for (size_t k = 0; k < n; k++) {
+    double u = random_draw(mine->seed, RANDOM_LATTICE, k, 0);
+    (*fragments)[k].mass = (k == 0 ? 5 : 0) + 10 * mine->inputs.threshold.strain / (1 + (double)k + u);
+    (*fragments)[k].count = k + 5 < n ? 10 : 1;
+    (*fragments)[k].first = (uint32_t)k;
+  }
+  for (size_t k = 1; k < n; k++) /* descending */
+    for (size_t j = k; j > 0 && (*fragments)[j].mass > (*fragments)[j - 1].mass; j--) {
+      struct fragment swap = (*fragments)[j];
+      (*fragments)[j] = (*fragments)[j - 1];
+      (*fragments)[j - 1] = swap;
+    }
+  *count = n;
+  field_defaults(&outcome_table, outcome);
+  field_defaults(&dem_results, results);
+  outcome_fragments(outcome, n, *fragments);
+  outcome->state = mine->seed % 50 == 49 ? OUTCOME_NOT_FINITE : mine->seed % 10 == 9 ? OUTCOME_END_TIME : OUTCOME_COMPLETED;
+  outcome->steps = 7;
+  outcome->time_step = outcome->time = 1e-6;
+  results->grains = (int64_t)n;
+  return STATUS_OK;
+}
+static status play_write_fields(void *run, const char *path, struct error *error) {
+  FILE *file = fopen(path, "w");
+  if (!file)
+    return status_fail(error, STATUS_IO, "cannot write %s", path);
+  fprintf(file, "%llu\n", (unsigned long long)((struct play_run *)run)->seed);
+  fclose(file);
+  return STATUS_OK;
+}
+static void play_free(void *run) { free(run); }
+
+static const struct engine_kind play_kind = {
+    .name = "dem", .doc = "stand-in", .results_version = 1, .inputs = &dem_inputs, .results = &dem_results,
+    .memory = play_memory, .work = play_work, .prepare = play_prepare, .step = play_step, .progress = play_progress,
+    .finish = play_finish, .write_fields = play_write_fields, .free = play_free};
+static const struct engine_kind *play_find(const char *name, struct error *error) {
+  (void)error;
+  return strcmp(name, "dem") == 0 ? &play_kind : NULL;
+}
+
+static inline struct field_value play_real(double x) { return (struct field_value){.kind = FIELD_REAL, .number = x}; }
+
+/* strain x angle, as a document would give it. */
+static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per_point) {
+  struct error error;
+  struct campaign *campaign = calloc(1, sizeof *campaign);
+  field_defaults(&campaign_table, campaign);
+  snprintf(campaign->name, sizeof campaign->name, "play");
+  campaign->text = strdup("name: play\n");
+  campaign->per_point = per_point;
+  snprintf(campaign->until_quantity, sizeof campaign->until_quantity, "largest_fraction");
+  campaign->scene = calloc(1, sizeof *campaign->scene);
+  campaign->scene->kind = &play_kind;
+  campaign->scene->inputs = calloc(1, dem_inputs.size);
+  campaign->scene->given = calloc(dem_inputs.count, sizeof *campaign->scene->given);
+  field_defaults(&dem_inputs, campaign->scene->inputs);
+  campaign->axis_count = 2;
+  campaign->axes = calloc(2, sizeof *campaign->axes);
+  for (int a = 0; a < 2; a++) {
+    size_t n = a ? angles : strains;
+    campaign->axes[a] = (struct design_axis){.row = field_find(&dem_inputs, a ? "threshold.angle" : "threshold.strain", &error),
+                                             .kind = DESIGN_AXIS_LEVELS, .level_count = n, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+    campaign->axes[a].levels = calloc(n, sizeof *campaign->axes[a].levels);
+    for (size_t i = 0; i < n; i++)
+      campaign->axes[a].levels[i] = play_real(0.01 * (double)(i + 1));
+  }
+  return campaign;
+}
+
+enum play_fate { PLAY_RUN, PLAY_CRASH, PLAY_SLOW, PLAY_STOP };
+struct play {
+  int slots;
+  uint64_t order;      /* seed of the order in which runs finish; 0 = as they were given out */
+  int stop_after;      /* reports, then everything out is dropped; 0 = never */
+  enum play_fate (*fate)(uint64_t seed, int attempt); /* NULL: all run */
+  int reports;
+  char *says;          /* message of the status that ended it, malloc'd */
+};
+
+static status play_farm(struct play *play, struct driver *driver, struct error *error) {
+  struct { struct farm_task task; uint8_t *bytes; } out[64];
+  struct farm_manager manager = driver_manager(driver);
+  int count = 0;
+  status code = STATUS_OK;
+  for (uint64_t turn = 0; code == STATUS_OK; turn++) {
+    while (count < play->slots && manager.next(manager.context, &out[count].task)) {
+      out[count].bytes = malloc(out[count].task.size);
+      memcpy(out[count].bytes, out[count].task.bytes, out[count].task.size);
+      count++;
+    }
+    code = manager.tick(manager.context, count, error);
+    if (count == 0 || code != STATUS_OK)
+      break;
+    if (play->stop_after && play->reports >= play->stop_after) {
+      code = STATUS_STOPPED;
+      break;
+    }
+    int pick = play->order ? (int)(random_draw(play->order, RANDOM_RESAMPLE, turn, 0) * count) : 0;
+    uint64_t seed = 0;
+    /* mark, name, seed: see run.c */
+    memcpy(&seed, out[pick].bytes + 8 + 12 + 8 + 3, sizeof seed);
+    enum play_fate fate = play->fate ? play->fate(seed, 0) : PLAY_RUN;
+    struct farm_report report = {.id = out[pick].task.id, .ending = FARM_DONE, .wall_s = 0.01, .cpu_s = 0.01,
+                                 .host = "here", .message = ""};
+    uint8_t *bytes = NULL;
+    if (fate == PLAY_CRASH) {
+      report.ending = FARM_CRASHED;
+      report.signal = 11;
+      report.message = "killed by signal 11";
+    } else if (fate == PLAY_SLOW) {
+      report.ending = FARM_TIME_LIMIT;
+      report.message = "ended at its time limit";
+    } else {
+      code = run_execute(play_find, out[pick].bytes, out[pick].task.size, &bytes, &report.size, error);
+      report.bytes = bytes;
+    }
+    free(out[pick].bytes);
+    out[pick] = out[--count];
+    if (code == STATUS_OK)
+      code = manager.report(manager.context, &report, error);
+    play->reports++;
+    free(bytes);
+  }
+  while (count > 0)
+    free(out[--count].bytes);
+  return code;
+}
+
+/* One invocation of `clast run`. */
+static status play_once(struct play *play, const struct campaign *campaign, const char *path, struct driver_summary *summary) {
+  struct error error = {0};
+  struct store *store = NULL;
+  struct driver *driver = NULL;
+  struct driver_options options = {.store_path = path, .facts = "{}", .slots = play->slots};
+  status code = store_open_writer(path, &estimates_table, &store, NULL, 0, &error);
+  if (code == STATUS_OK)
+    code = driver_open(campaign, store, &options, &driver, &error);
+  if (code == STATUS_OK) {
+    code = play_farm(play, driver, &error);
+    status ended = driver_end(driver, code == STATUS_OK ? &error : NULL);
+    code = code != STATUS_OK ? code : ended;
+    driver_summarise(driver, summary);
+  }
+  driver_free(driver);
+  status closed = store_close(store, code == STATUS_OK ? &error : NULL);
+  code = code != STATUS_OK ? code : closed;
+  if (code != STATUS_OK && code != STATUS_STOPPED && code != STATUS_FAILED_RUNS)
+    fprintf(stderr, "play: %s: %s\n", status_name(code), error.message);
+  free(play->says);
+  play->says = strdup(error.message);
+  return code;
+}
+
+static status play_row(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)error;
+  for (size_t i = 0; i < count; i++)
+    fprintf(context, "%s ", values[i].kind == QUERY_TEXT ? values[i].text : "?");
+  fputc('\n', context);
+  return STATUS_OK;
+}
+
+/* What counts in a store, as text; malloc'd. */
+static char *play_dump(const char *path) {
+  struct error error = {0};
+  struct store *store = NULL;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  struct query_sink sink = {out, NULL, play_row};
+  if (store_open_reader(path, &store, &error) != STATUS_OK ||
+      query_run(store, "select printf('%s %d %d %s %.17g %d', hex(identity), replicate, seed, state, largest_fraction, "
+                       "fragment_count) from run where surplus = 0 order by identity", 0, NULL, 0, &sink, &error) != STATUS_OK)
+    fprintf(stderr, "dump: %s\n", error.message);
+  store_close(store, NULL);
+  fclose(out);
+  return text;
+}
+
+static void play_remove(const char *path) {
+  char other[512];
+  unlink(path);
+  for (int i = 0; i < 3; i++) {
+    snprintf(other, sizeof other, "%s%s", path, i == 0 ? "-wal" : i == 1 ? "-shm" : "-journal");
+    unlink(other);
+  }
+}
+
+#endif

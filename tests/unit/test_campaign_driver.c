@@ -1,0 +1,326 @@
+/* The driver against a real store, with a farm played by the test: same bits whatever the slots, the order and the
+ * interruptions; resume, growth, attempts, the failure limit, surplus, fields. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <signal.h>
+#include <sys/wait.h>
+
+#include "analysis/analysis.h"
+#include "tests/campaign_play.h"
+
+static char folder[64];
+static const char *in(const char *name) {
+  static char paths[4][128];
+  static int turn;
+  turn = (turn + 1) % 4;
+  snprintf(paths[turn], sizeof paths[turn], "%s/%s", folder, name);
+  play_remove(paths[turn]);
+  return paths[turn];
+}
+
+static char *complete(const struct campaign *campaign, const char *path, int slots, uint64_t order) {
+  struct driver_summary summary;
+  struct play play = {.slots = slots, .order = order};
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  free(play.says);
+  return play_dump(path);
+}
+
+static void same_bits_whatever_the_slots(void **state) {
+  (void)state;
+  struct campaign *campaign = play_campaign(3, 2, 5);
+  char *one = complete(campaign, in("one.db"), 1, 0), *three = complete(campaign, in("three.db"), 3, 1);
+  char *many = complete(campaign, in("many.db"), 20, 2);
+  assert_true(strlen(one) > 1000);
+  assert_string_equal(one, three);
+  assert_string_equal(one, many);
+  /* Interrupted again and again. */
+  const char *path = in("stopped.db");
+  struct driver_summary summary;
+  int invocations = 0;
+  int64_t done = 0;
+  for (status code = STATUS_STOPPED; code == STATUS_STOPPED; invocations++) {
+    struct play play = {.slots = 4, .order = 9 + (uint64_t)invocations, .stop_after = 1 + invocations % 5};
+    code = play_once(&play, campaign, path, &summary);
+    assert_true(code == STATUS_STOPPED || code == STATUS_OK);
+    assert_int_equal(summary.runs_reused, done); /* nothing that was reported is lost or done twice */
+    done += summary.runs_done;
+    free(play.says);
+  }
+  assert_true(invocations > 6);
+  assert_int_equal(done, 30);
+  char *pieces = play_dump(path);
+  assert_string_equal(one, pieces);
+  struct play again = {.slots = 3};
+  assert_int_equal(play_once(&again, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0);
+  assert_int_equal(summary.runs_reused, 30);
+  assert_int_equal(summary.points_done, 6);
+  free(again.says), free(pieces), free(one), free(three), free(many);
+  campaign_free(campaign);
+}
+
+static void killed_at_random_instants(void **state) {
+  (void)state;
+  struct campaign *campaign = play_campaign(2, 2, 40);
+  char *whole = complete(campaign, in("whole.db"), 2, 0);
+  const char *path = in("killed.db");
+  for (uint64_t k = 0; k < 6; k++) {
+    pid_t child = fork();
+    if (child == 0) {
+      struct driver_summary summary;
+      struct play play = {.slots = 4, .order = k + 1};
+      play_once(&play, campaign, path, &summary);
+      _exit(0);
+    }
+    usleep((useconds_t)(1000 + 12000 * random_draw(77, RANDOM_RESAMPLE, k, 0)));
+    kill(child, SIGKILL);
+    assert_int_equal(waitpid(child, NULL, 0), child);
+  }
+  char *mended = complete(campaign, path, 3, 5);
+  assert_string_equal(whole, mended);
+  free(whole), free(mended);
+  campaign_free(campaign);
+}
+
+static void growing_campaigns_repeat_nothing(void **state) {
+  (void)state;
+  const char *path = in("grown.db");
+  struct driver_summary summary;
+  struct play play = {.slots = 3};
+  struct campaign *small = play_campaign(2, 2, 4), *deeper = play_campaign(2, 2, 7), *wider = play_campaign(3, 2, 7);
+  assert_int_equal(play_once(&play, small, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 16);
+  assert_int_equal(play_once(&play, deeper, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 12);
+  assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 14);
+  assert_int_equal(summary.runs_reused, 28);
+  wider->first_seed = 4; /* seeds 4..10 of which 4..7 are there, as other replicates */
+  assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_reused, 6 * 4);
+  assert_int_equal(summary.runs_done, 6 * 3);
+  wider->first_seed = 1;
+  wider->independent = true;
+  assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 42);
+  assert_int_equal(play_once(&play, wider, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0);
+  free(play.says);
+  campaign_free(small), campaign_free(deeper), campaign_free(wider);
+}
+
+static void a_rule_gives_the_same_prefix_whatever_the_slots(void **state) {
+  (void)state;
+  struct campaign *campaign = play_campaign(2, 1, 0);
+  campaign->until_half_width = 0.003;
+  campaign->maximum = 120;
+  const char *one = in("until-one.db"), *many = in("until-many.db");
+  struct driver_summary few = {0}, lots = {0}, again = {0};
+  struct play serial = {.slots = 1}, wide = {.slots = 40, .order = 3};
+  assert_int_equal(play_once(&serial, campaign, one, &few), STATUS_OK);
+  assert_int_equal(play_once(&wide, campaign, many, &lots), STATUS_OK);
+  assert_int_equal(few.runs_surplus, 0);
+  assert_true(lots.runs_surplus > 0);
+  assert_int_equal(few.points_interval_met + few.points_cap_reached, 2);
+  char *a = play_dump(one), *b = play_dump(many);
+  assert_string_equal(a, b); /* surplus left out */
+  assert_int_equal(play_once(&wide, campaign, many, &again), STATUS_OK);
+  assert_int_equal(again.runs_done, 0);
+  free(a), free(b);
+  /* A fixed number takes in what was computed ahead. */
+  campaign->per_point = 120;
+  char *c = complete(campaign, many, 5, 4), *d = complete(campaign, one, 1, 0);
+  assert_string_equal(c, d);
+  free(c), free(d), free(serial.says), free(wide.says);
+  campaign_free(campaign);
+}
+
+static enum play_fate crash_three(uint64_t seed, int attempt) {
+  (void)attempt;
+  return seed == 3 ? PLAY_CRASH : PLAY_RUN;
+}
+static enum play_fate slow_four(uint64_t seed, int attempt) {
+  (void)attempt;
+  return seed == 4 ? PLAY_SLOW : PLAY_RUN;
+}
+static enum play_fate crash_all(uint64_t seed, int attempt) {
+  (void)seed, (void)attempt;
+  return PLAY_CRASH;
+}
+
+static void attempts_are_kept_and_repeated_up_to_the_limit(void **state) {
+  (void)state;
+  const char *path = in("attempts.db");
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(2, 1, 6);
+  struct play crashing = {.slots = 2, .fate = crash_three}, good = {.slots = 2};
+  assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.attempts_failed, 4); /* two points, two attempts */
+  assert_int_equal(summary.runs_failed, 2);
+  assert_int_equal(summary.runs_done, 10);
+  assert_int_equal(summary.points_done, 2);
+  assert_int_equal(play_once(&good, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0); /* given up */
+  assert_int_equal(summary.runs_failed, 2);
+  campaign->attempts = 3;
+  assert_int_equal(play_once(&good, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 2);
+  assert_int_equal(summary.runs_failed, 0);
+
+  const char *slow = in("slow.db");
+  struct play slowly = {.slots = 2, .fate = slow_four};
+  campaign->attempts = 1;
+  campaign->time_limit = 10;
+  assert_int_equal(play_once(&slowly, campaign, slow, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_failed, 2);
+  assert_int_equal(play_once(&good, campaign, slow, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0);
+  campaign->time_limit = 20; /* a raised limit is a new chance */
+  assert_int_equal(play_once(&good, campaign, slow, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 2);
+  free(crashing.says), free(good.says), free(slowly.says);
+  campaign_free(campaign);
+}
+
+static void stops_when_too_many_of_the_first_fail(void **state) {
+  (void)state;
+  const char *path = in("failing.db");
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(3, 3, 10);
+  struct play crashing = {.slots = 2, .fate = crash_all};
+  assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_FAILED_RUNS);
+  assert_int_equal(summary.runs_failed, 20);
+  assert_non_null(strstr(crashing.says, "20 of the first 20 runs failed"));
+  campaign->failures = 0;
+  assert_int_equal(play_once(&crashing, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_failed, 90);
+  free(crashing.says);
+  campaign_free(campaign);
+}
+
+static void failed_states_are_results(void **state) {
+  (void)state;
+  const char *path = in("states.db");
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(1, 1, 60); /* seeds 1..60: 49 not finite, 13 invalid, 9 19 29 39 59 at end time */
+  struct play play = {.slots = 2};
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 60);
+  assert_int_equal(summary.runs_failed, 2);
+  assert_int_equal(summary.runs_censored, 5);
+  assert_int_equal(summary.attempts_failed, 0);
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0);
+  assert_int_equal(summary.runs_failed, 2);
+  free(play.says);
+  campaign_free(campaign);
+}
+
+static int files_in(const char *path) {
+  char command[256];
+  int count = 0;
+  snprintf(command, sizeof command, "ls %s 2>/dev/null | wc -l", path);
+  FILE *pipe = popen(command, "r");
+  assert_int_equal(fscanf(pipe, "%d", &count), 1);
+  pclose(pipe);
+  return count;
+}
+
+static void fields_are_kept_as_asked(void **state) {
+  (void)state;
+  const char *path = in("fields.db");
+  char kept[128];
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(2, 1, 8);
+  struct play play = {.slots = 3, .order = 4};
+  snprintf(kept, sizeof kept, "%s/fields-fields", folder);
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(files_in(kept), 0);
+  campaign->keep = CAMPAIGN_KEEP_EXTREMES; /* asked for later: replayed */
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 0);
+  assert_int_equal(summary.fields_written, 4);
+  assert_int_equal(files_in(kept), 4);
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.fields_written, 0);
+  campaign->keep = CAMPAIGN_KEEP_ALL;
+  campaign->per_point = 9;
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(files_in(kept), 18);
+  free(play.says);
+  campaign_free(campaign);
+}
+
+static void equal_points_are_computed_once(void **state) {
+  (void)state;
+  const char *path = in("equal.db");
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(3, 2, 2);
+  struct play play = {.slots = 3};
+  campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_RANDOM, .points = 200, .seed = 5};
+  assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.points, 6);
+  assert_int_equal(summary.runs_done, 12);
+  free(play.says);
+  campaign_free(campaign);
+}
+
+static void broken_answers_are_refused(void **state) {
+  (void)state;
+  struct campaign *campaign = play_campaign(1, 1, 1);
+  struct run_request request = {&play_kind, campaign->scene->inputs, 5, NULL};
+  struct run_result result;
+  struct error error = {0};
+  size_t task_size, size;
+  uint8_t *task = run_encode_task(&request, &task_size), *bytes = NULL;
+  assert_int_equal(run_execute(play_find, task, task_size, &bytes, &size, &error), STATUS_OK);
+  assert_int_equal(run_decode_result(&play_kind, bytes, size, &result, &error), STATUS_OK);
+  assert_int_equal(result.fragment_count, 25);
+  assert_int_equal(result.estimate_count, ESTIMATES_COUNT);
+  run_result_clear(&result);
+  for (size_t cut = 0; cut < size; cut += cut < 200 ? 1 : 97) {
+    uint8_t *part = malloc(cut + 1); /* an exact copy, so that a sanitizer sees any reading beyond it */
+    memcpy(part, bytes, cut);
+    part = realloc(part, cut ? cut : 1);
+    assert_int_equal(run_decode_result(&play_kind, part, cut, &result, &error), STATUS_INTERNAL);
+    free(part);
+  }
+  for (size_t cut = 0; cut < task_size; cut++) {
+    uint8_t *answer = NULL;
+    size_t answer_size;
+    uint8_t *part = malloc(cut ? cut : 1);
+    memcpy(part, task, cut);
+    assert_int_equal(run_execute(play_find, part, cut, &answer, &answer_size, &error), STATUS_INTERNAL);
+    free(part);
+  }
+  free(task), free(bytes);
+  campaign_free(campaign);
+}
+
+int main(void) {
+  analysis_init();
+  snprintf(folder, sizeof folder, "driver-test-XXXXXX");
+  if (!mkdtemp(folder))
+    return 1;
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(same_bits_whatever_the_slots),
+      cmocka_unit_test(killed_at_random_instants),
+      cmocka_unit_test(growing_campaigns_repeat_nothing),
+      cmocka_unit_test(a_rule_gives_the_same_prefix_whatever_the_slots),
+      cmocka_unit_test(attempts_are_kept_and_repeated_up_to_the_limit),
+      cmocka_unit_test(stops_when_too_many_of_the_first_fail),
+      cmocka_unit_test(failed_states_are_results),
+      cmocka_unit_test(fields_are_kept_as_asked),
+      cmocka_unit_test(equal_points_are_computed_once),
+      cmocka_unit_test(broken_answers_are_refused),
+  };
+  int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  char command[128];
+  snprintf(command, sizeof command, "rm -rf %s", folder);
+  return system(command) == 0 ? failed : 1;
+}
