@@ -3,22 +3,11 @@
 #include <string.h>
 
 static const struct command *const all[] = {
-    &run_command,
-    &plan_command,
-    &simulate_command,
-    &retry_command,
-    &explain_command,
-    &scenes_command,
-    &status_command,
-    &estimates_command,
-    &spectrum_command,
-    &picture_command,
-    &export_command,
-    &replay_command,
-    &cite_command,
-    &help_command,
-    &version_command,
-    &completion_command,
+    &run_command,      &plan_command,    &simulate_command, &retry_command, /* running */
+    &scenes_command,   &explain_command, &schema_command,   &cite_command,  /* scenes and inputs */
+    &status_command,   &estimates_command, &spectrum_command, &picture_command, /* results */
+    &export_command,  &replay_command, /* the store */
+    &help_command,     &version_command, &completion_command,
 };
 
 size_t commands_count(void) { return sizeof all / sizeof all[0]; }

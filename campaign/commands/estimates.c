@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "analysis/estimates.h"
-#include "analysis/pooled.h"
 #include "campaign/commands/commands.h"
+#include "campaign/commands/pool.h"
 #include "campaign/commands/rows.h"
 
 enum { AXES_MAXIMUM = 16, RESAMPLE_SEED = 1 };
@@ -31,47 +31,6 @@ struct printing {
   char unit[AXES_MAXIMUM][64];
 };
 
-/* --- the masses of one point's runs ------------------------------------------------------------------------------- */
-
-struct masses {
-  struct pooled_runs runs;
-  double *masses;
-  size_t *first;
-  size_t capacity, run_capacity;
-};
-
-static status take_masses(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct masses *pool = context;
-  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % 8)
-    return status_fail(error, STATUS_CONTENT, "the fragment masses of a run are damaged; `clast check` tells more");
-  size_t n = values[0].size / 8, have = pool->first ? pool->first[pool->runs.count] : 0;
-  if (have + n > pool->capacity) {
-    size_t capacity = 2 * (have + n);
-    double *grown = realloc(pool->masses, capacity * sizeof *grown);
-    if (!grown)
-      return status_fail(error, STATUS_MEMORY, "out of memory");
-    pool->masses = grown;
-    pool->capacity = capacity;
-  }
-  if (pool->runs.count + 2 > pool->run_capacity) {
-    size_t capacity = 2 * pool->run_capacity + 32;
-    size_t *grown = realloc(pool->first, capacity * sizeof *grown);
-    if (!grown)
-      return status_fail(error, STATUS_MEMORY, "out of memory");
-    if (!pool->first)
-      grown[0] = 0;
-    pool->first = grown;
-    pool->run_capacity = capacity;
-  }
-  memcpy(pool->masses + have, values[0].blob, values[0].size); /* blob and machine are both little-endian */
-  pool->first[++pool->runs.count] = have + n;
-  pool->runs.masses = pool->masses;
-  pool->runs.first = pool->first;
-  return STATUS_OK;
-}
-
-/* --- rows ------------------------------------------------------------------------------------------------------------ */
-
 static void value_cell(struct table *table, const struct query_value *value, bool blank) {
   if (blank)
     table_text(table, "");
@@ -88,24 +47,11 @@ static void value_cell(struct table *table, const struct query_value *value, boo
 /* Column order of the query: point_id, results_version, n, failed, mean, half width, then the axes. */
 static status point_row(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct printing *printing = context;
-  struct masses pool = {0};
-  char id[32], version[32];
-  snprintf(id, sizeof id, "%lld", (long long)values[0].integer);
-  snprintf(version, sizeof version, "%lld", (long long)values[1].integer);
-  struct query_parameter parameters[] = {{"point", id}, {"version", version}, {"window", NULL}};
-  struct query_sink sink = {&pool, NULL, take_masses};
-  status code = query_run(printing->store,
-                          "select masses from run join fragment_mass using (run_id) where point_id = :point"
-                          " and results_version = :version and counts = 1 order by replicate, seed",
-                          2, parameters, 0, &sink, error);
+  struct pool pool;
+  status code = pool_read(printing->store, values[0].integer, values[1].integer, &pool, error);
   for (int window = 0; !code && window < ESTIMATES_WINDOWS; window++) {
     double lower = NAN;
-    parameters[2].value = estimates_window_names[window];
-    /* the windows of single runs start at so many mean grain masses; a point's at their mean */
-    code = query_number(printing->store,
-                        "select avg(lower) from estimate join run using (run_id) where run.point_id = :point"
-                        " and run.results_version = :version and counts = 1 and method = 'masses' and window = :window",
-                        3, parameters, &lower, error);
+    code = pool_window(printing->store, &pool, (enum estimates_window)window, &lower, error);
     struct pooled_exponent fits[METHODS];
     int64_t fragments = 0;
     for (int m = 0; m < METHODS; m++) {
@@ -131,8 +77,7 @@ static status point_row(void *context, size_t count, const struct query_value *v
       table_fixed(printing->table, fits[m].interval.standard_error, 2);
     }
   }
-  free(pool.masses);
-  free(pool.first);
+  pool_clear(&pool);
   return code ? code : table_broken(printing->table) ? STATUS_IO : STATUS_OK;
 }
 
