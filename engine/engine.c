@@ -2,8 +2,11 @@
 
 #include <string.h>
 
+#include "engine/dem/dem.h"
+
 /* The registry: one line per engine, closed by NULL. */
 static const struct engine_kind *const kinds[] = {
+    &dem_engine,
     NULL,
 };
 

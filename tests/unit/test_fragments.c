@@ -75,11 +75,12 @@ static void near(double a, double b) {
 
 static void dumbbell(void **state) {
   (void)state;
-  /* masses 1 and 3 at distance 4, turning as one body at 2 rad/s about their centre of mass, which moves at (5, -1);
-   * a third grain apart. Reduced mass 0.75: I = 12 + own moments. */
+  /* masses 1 and 3 turning as one body at 2 rad/s about their centre of mass, which moves at (5, -1); a third grain apart.
+   * Reduced mass 0.75 at distance sqrt(20): I = 15 + own moments. */
   const struct fragment_member members[3] = {
-      {.mass = 1, .position = {-3, 0, 0}, .velocity = {5, -1 - 6, 0}, .spin = 2, .moment_of_inertia = 0.25},
-      {.mass = 3, .position = {1, 0, 0}, .velocity = {5, -1 + 2, 0}, .spin = 2, .moment_of_inertia = 0.5},
+      /* v = (5, -1) + 2 x (-y, x) at (-3, 1.5) and (1, -0.5): distances sqrt(11.25), sqrt(1.25) */
+      {.mass = 1, .position = {-3, 1.5, 0}, .velocity = {5 - 3, -1 - 6, 0}, .spin = 2, .moment_of_inertia = 0.25},
+      {.mass = 3, .position = {1, -0.5, 0}, .velocity = {5 + 1, -1 + 2, 0}, .spin = 2, .moment_of_inertia = 0.5},
       {.mass = 0.5, .position = {9, 9, 0}, .velocity = {1, 0, 0}, .spin = -7, .moment_of_inertia = 0.125}};
   const uint32_t links[1][2] = {{1, 0}};
   struct fragment *f;
@@ -90,9 +91,9 @@ static void dumbbell(void **state) {
   near(f[0].position[0], 0);
   near(f[0].velocity[0], 5);
   near(f[0].velocity[1], -1);
-  near(f[0].moment_of_inertia, 12.75);
+  near(f[0].moment_of_inertia, 15.75);
   near(f[0].spin[2], 2);
-  near(f[0].kinetic_energy, 0.5 * 4 * 26 + 0.5 * 12.75 * 4);
+  near(f[0].kinetic_energy, 0.5 * 4 * 26 + 0.5 * 15.75 * 4);
   assert_int_equal(f[0].count, 2);
   assert_int_equal(f[0].first, 0);
   near(f[1].spin[2], -7);

@@ -1,0 +1,83 @@
+#include "engine/dem/dem.h"
+
+#include <math.h>
+
+#include "engine/dem/run.h"
+
+/* Measured by tests/unit/test_dem_engine.c on the built-in scenes; without that, a body's bytes per grain: outlines, beams
+ * and contacts of the moving system, its tessellation, and what fragments need at the end. */
+enum { BYTES_PER_GRAIN = 4000, BYTES_ANYWAY = 1 << 20 };
+
+static status check(const void *inputs, struct error *error) { return dem_inputs_check(inputs, error); }
+
+static char *describe(const void *inputs) { return dem_describe_scene(inputs); }
+
+static size_t memory(const void *inputs) {
+  return (size_t)(dem_inputs_grains(inputs) * BYTES_PER_GRAIN) + BYTES_ANYWAY;
+}
+
+static double work(const void *inputs) {
+  const struct dem_inputs *in = inputs;
+  return dem_inputs_grains(in) * dem_inputs_end_time(in) / in->fidelity.time_step;
+}
+
+static status prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
+  struct dem_run *made;
+  status code = dem_run_create(inputs, seed, &made, error);
+  *run = made;
+  return code;
+}
+
+static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
+  (void)error;
+  dem_run_advance(run, max_steps);
+  *finished = ((struct dem_run *)run)->state.finished;
+  return STATUS_OK;
+}
+
+static double progress(const void *run) {
+  const struct dem_run *r = run;
+  return r->state.finished ? 1 : fmin(dem_system_time(r->system) / dem_inputs_end_time(&r->inputs), 1);
+}
+
+static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
+                     size_t *fragment_count, struct error *error) {
+  return dem_report_finish(run, outcome, result, fragments, fragment_count, error);
+}
+
+static status write_fields(void *run, const char *path, struct error *error) {
+  return dem_fields_write(run, path, error);
+}
+
+static status save(void *run, const char *path, struct error *error) { return dem_restart_save(run, path, error); }
+
+static status restore(const void *inputs, const char *path, void **run, struct error *error) {
+  struct dem_run *made;
+  status code = dem_restart_load(inputs, path, &made, error);
+  *run = made;
+  return code;
+}
+
+static void release(void *run) { dem_run_free(run); }
+
+const struct engine_kind dem_engine = {
+    .name = "dem",
+    .doc = "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
+           "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
+           "names at each input.",
+    .results_version = 1,
+    .inputs = &dem_inputs,
+    .results = &dem_results,
+    .check = check,
+    .describe = describe,
+    .memory = memory,
+    .work = work,
+    .prepare = prepare,
+    .step = step,
+    .progress = progress,
+    .finish = finish,
+    .write_fields = write_fields,
+    .save = save,
+    .restore = restore,
+    .free = release,
+};

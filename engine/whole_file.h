@@ -1,0 +1,15 @@
+/* Files that are there whole or not at all: written to a temporary name beside the target, flushed to the disk, renamed. */
+#ifndef CLAST_ENGINE_WHOLE_FILE_H
+#define CLAST_ENGINE_WHOLE_FILE_H
+
+#include <stddef.h>
+
+#include "schemas/status.h"
+
+/* STATUS_IO with the system's reason (full disk, no permission, no such folder); nothing is left behind then. `what`
+ * names the file's purpose in the message ("restart file"). */
+status whole_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error);
+/* *bytes is malloc'd. STATUS_MISSING, STATUS_IO, STATUS_MEMORY. */
+status whole_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error);
+
+#endif

@@ -1,0 +1,280 @@
+/* Engine dem as its callers see it: tables, built-in scenes, refusals, stop rules, chunks that do not matter. */
+#include "tests/dem_case.h"
+
+#include "engine/dem/run.h"
+
+static const char *const scenes[] = {"disc-explosion", "block-impact", "uniaxial", "compression", "disc-collision"};
+
+static void check_table(const struct field_table *table) {
+  for (size_t i = 0; i < table->count; i++) {
+    const struct field *row = &table->rows[i];
+    assert_non_null(row->doc);
+    assert_true(strlen(row->doc) > 10);
+    assert_true(row->offset < table->size);
+    if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
+      assert_non_null(row->unit);
+    for (size_t j = 0; j < i; j++) { /* no row twice, neither by name nor by place */
+      assert_string_not_equal(row->path, table->rows[j].path);
+      assert_true(row->offset != table->rows[j].offset);
+    }
+  }
+}
+
+static void tables_are_whole(void **state) {
+  (void)state;
+  check_table(&dem_inputs);
+  check_table(&dem_results);
+  check_table(&outcome_table);
+  struct dem_inputs inputs;
+  field_defaults(&dem_inputs, &inputs);
+  for (size_t i = 0; i < dem_inputs.count; i++) { /* every default is in its own range */
+    struct field_value value;
+    struct error error = {0};
+    field_get(&dem_inputs.rows[i], &inputs, &value);
+    if (!(dem_inputs.rows[i].flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) &&
+        field_set(&dem_inputs.rows[i], &inputs, &value, &error))
+      fail_msg("%s", error.message);
+  }
+  assert_int_equal(dem_inputs_check(&inputs, NULL), STATUS_OK);
+}
+
+static void builtin_scenes_say_what_they_model(void **state) {
+  (void)state;
+  for (size_t k = 0; k < sizeof scenes / sizeof scenes[0]; k++) {
+    struct dem_inputs inputs = DEM_CASE(scenes[k], NULL);
+    assert_int_equal(inputs.kind, (int)k); /* listed in the order of enum dem_kind */
+    char *text = dem_engine.describe(&inputs);
+    assert_non_null(strstr(text, scenes[k]));
+    assert_non_null(strstr(text, "stability limit"));
+    assert_null(strstr(text, "cannot be run"));
+    free(text);
+    struct error error = {0};
+    void *run;
+    assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_OK);
+    size_t bytes = dem_system_bytes(((struct dem_run *)run)->system);
+    if (!(bytes < dem_engine.memory(&inputs)))
+      fail_msg("%s: %zu bytes promised, the system alone has %zu", scenes[k], dem_engine.memory(&inputs), bytes);
+    double expected = dem_inputs_grains(&inputs), grains = (double)((struct dem_run *)run)->tessellation->cell_count;
+    assert_true(fabs(grains / expected - 1) < 0.06); /* discs: the boundary scatters, most for the small ones */
+    dem_engine.free(run);
+  }
+}
+
+/* K99 table 1 in SI: the scene and the defaults must say the same. */
+static void explosion_starts_as_the_paper_says(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL), defaults;
+  field_defaults(&dem_inputs, &defaults);
+  for (size_t i = 0; i < dem_inputs.count; i++) {
+    struct field_value a, b;
+    field_get(&dem_inputs.rows[i], &inputs, &a);
+    field_get(&dem_inputs.rows[i], &defaults, &b);
+    if (dem_inputs.rows[i].kind == FIELD_REAL && field_is_active(&dem_inputs, &dem_inputs.rows[i], &inputs) &&
+        !(fabs(a.number - b.number) <= 1e-12 * fabs(b.number)) && !(isnan(a.number) && isnan(b.number)))
+      fail_msg("%s: scene %g, default %g", dem_inputs.rows[i].path, a.number, b.number);
+  }
+  for (uint64_t seed = 0; seed < 20; seed++) {
+    struct dem_run *run;
+    struct error error = {0};
+    if (dem_run_create(&inputs, seed, &run, &error))
+      fail_msg("%s", error.message);
+    double momentum[2], magnitude, speed = 0;
+    dem_run_momentum(run, momentum, &magnitude);
+    assert_true(magnitude > 0);
+    assert_true(hypot(momentum[0], momentum[1]) < 1e-10 * magnitude); /* asked for; rounding gives some 1e-14 */
+    assert_true(fabs(run->state.energy_input / 5e4 - 1) < 1e-12);
+    assert_false(dem_system_grain(run->system, run->charge).present);
+    size_t n = run->tessellation->cell_count, moving = 0;
+    for (uint32_t i = 0; i < n; i++) {
+      struct dem_grain g = dem_system_grain(run->system, i);
+      double v = hypot(g.vx, g.vy), radius = hypot(g.x, g.y);
+      if (!g.present || v == 0)
+        continue;
+      moving++;
+      speed += v;
+      assert_true(radius < 3.5 * inputs.grain.spacing); /* neighbours of the centre */
+      assert_true(g.x * g.vx + g.y * g.vy > -v * inputs.grain.spacing); /* outwards, but for a lopsided centre */
+    }
+    assert_in_range(moving, 3, 14);
+    assert_true(speed / (double)moving > 100 && speed / (double)moving < 300); /* table 1: about 200 m/s */
+    assert_in_range(n, 1060, 1140);                                           /* table 1: about 1100 */
+    dem_run_free(run);
+  }
+}
+
+static void impact_and_collision_start(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("block-impact", "impact.angle=30 deg");
+  struct dem_run *run;
+  assert_int_equal(dem_run_create(&inputs, 1, &run, NULL), STATUS_OK);
+  size_t moving = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    if (g.vx == 0 && g.vy == 0)
+      continue;
+    moving++;
+    assert_true(fabs(g.vx - 200) < 1e-10 && fabs(g.vy - 400 * cos(3.14159265358979 / 6)) < 1e-10);
+    assert_true(g.y < 0.015 && fabs(g.x - 0.205) < 0.015); /* the middle of the lower side of 40 cm x 20 cm */
+  }
+  assert_int_equal(moving, 1);
+  dem_run_free(run);
+  for (int k = 0; k < 2; k++) {
+    inputs = DEM_CASE("disc-collision", k ? "collision.impact_parameter=0.95" : "collision.impact_parameter=0");
+    assert_int_equal(dem_run_create(&inputs, 1, &run, NULL), STATUS_OK);
+    double momentum[2], magnitude, count[2] = {0}, least = HUGE_VAL;
+    dem_run_momentum(run, momentum, &magnitude);
+    size_t n = run->tessellation->cell_count;
+    for (uint32_t i = 0; i < n; i++) {
+      struct dem_grain g = dem_system_grain(run->system, i);
+      assert_true(fabs(g.vx) == 100 && g.vy == 0);
+      count[g.vx > 0] += g.mass;
+      for (uint32_t j = 0; j < n; j++) {
+        struct dem_grain h = dem_system_grain(run->system, j);
+        if (g.vx * h.vx < 0)
+          least = fmin(least, hypot(g.x - h.x, g.y - h.y));
+      }
+    }
+    assert_true(fabs(count[0] / count[1] - 1) < 0.1);
+    assert_true(least > 1.0 * inputs.grain.spacing && least < 5 * inputs.grain.spacing); /* near, and not touching */
+    dem_run_free(run);
+  }
+}
+
+static void refuse(struct dem_inputs inputs, const char *word) {
+  struct error error = {0};
+  void *run = &run;
+  assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_CONTENT);
+  assert_null(run);
+  if (!strstr(error.message, word))
+    fail_msg("no '%s' in: %s", word, error.message);
+}
+
+static void what_cannot_run_is_refused(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL);
+  inputs.fidelity.time_step = 1e-4;
+  refuse(inputs, "fidelity.time_step");
+  inputs = DEM_CASE("disc-explosion", NULL);
+  inputs.beam.young_modulus = 1e12;
+  refuse(inputs, "unstable above");
+  inputs = DEM_CASE("disc-explosion", NULL);
+  inputs.body.diameter = 0.03;
+  refuse(inputs, "grain.spacing");
+  inputs = DEM_CASE("disc-explosion", NULL);
+  inputs.grain.spacing = 1e-6;
+  refuse(inputs, "too large");
+  inputs = DEM_CASE("compression", NULL);
+  inputs.loading.ramp = 1;
+  refuse(inputs, "loading.ramp");
+  inputs = DEM_CASE("compression", NULL);
+  inputs.body.rows = 3;
+  refuse(inputs, "rows");
+  inputs = DEM_CASE("block-impact", NULL);
+  inputs.stop.end_time = 1e-9;
+  refuse(inputs, "first time step");
+  struct scene *scene;
+  struct error error = {0};
+  assert_int_equal(scene_load("block-impact", NULL, &scene, &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "charge.energy", "1 J/m", &error), STATUS_OK);
+  assert_int_equal(scene_check(scene, &error), STATUS_CONTENT); /* an input that does nothing here */
+  assert_non_null(strstr(error.message, "charge.energy"));
+  scene_free(scene);
+}
+
+/* A small disc that is over soon. */
+static struct dem_inputs small(void) {
+  return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=2 ms");
+}
+
+static void chunks_do_not_matter(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small();
+  struct dem_ran whole = dem_case_run(&inputs, 3);
+  void *run;
+  bool finished = false;
+  assert_int_equal(dem_engine.prepare(&inputs, 3, &run, NULL), STATUS_OK);
+  for (uint64_t k = 1; !finished; k = k * 7 % 23 + 1)
+    assert_int_equal(dem_engine.step(run, k, &finished, NULL), STATUS_OK);
+  struct dem_ran parts = {0};
+  assert_int_equal(dem_engine.finish(run, &parts.outcome, &parts.results, &parts.fragments, &parts.count, NULL), STATUS_OK);
+  dem_engine.free(run);
+  assert_memory_equal(&whole.outcome, &parts.outcome, sizeof whole.outcome);
+  assert_memory_equal(&whole.results, &parts.results, sizeof whole.results);
+  assert_int_equal(whole.count, parts.count);
+  assert_memory_equal(whole.fragments, parts.fragments, whole.count * sizeof *whole.fragments);
+  free(whole.fragments);
+  free(parts.fragments);
+}
+
+static void stop_rules(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small();
+  struct dem_ran ran = dem_case_run(&inputs, 3);
+  assert_true(ran.results.broken > 10);
+  assert_int_equal(ran.results.broken, ran.results.broken_stretch + ran.results.broken_bend);
+  if (ran.outcome.state == OUTCOME_COMPLETED) {
+    assert_int_equal(ran.results.stop_reason, DEM_STOP_QUIET);
+    assert_true(fabs(ran.outcome.time - ran.results.last_break - inputs.stop.quiet_time) < 1.5 * inputs.fidelity.time_step);
+  } else
+    assert_int_equal(ran.results.stop_reason, DEM_STOP_END_TIME);
+  assert_true(ran.outcome.energy_error < 0.02); /* Verlet at 1 us with breaking; physics: 0.1 % unbroken */
+  assert_true(ran.outcome.momentum_error < 1e-10);
+  double mass = 0;
+  uint64_t grains = 0;
+  for (size_t k = 0; k < ran.count; k++) {
+    mass += ran.fragments[k].mass;
+    grains += ran.fragments[k].count;
+    assert_true(k == 0 || ran.fragments[k].mass <= ran.fragments[k - 1].mass);
+  }
+  assert_int_equal(grains, ran.results.grains);
+  assert_true(fabs(mass / ran.outcome.total_mass - 1) < 1e-12);
+  free(ran.fragments);
+
+  inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
+  ran = dem_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
+  assert_non_null(strstr(ran.outcome.message, "end_time"));
+  assert_int_equal(ran.outcome.steps, 2000);
+  free(ran.fragments);
+
+  inputs = small(); /* too little to break anything: one fragment, complete at the end */
+  inputs.charge.energy = 1e-3;
+  ran = dem_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+  assert_int_equal(ran.results.stop_reason, DEM_STOP_END_TIME);
+  assert_int_equal(ran.count, 1);
+  assert_true(isnan(ran.results.last_break));
+  free(ran.fragments);
+
+  inputs = small(); /* breaking at the least strain: dust, and still finite */
+  inputs.threshold.strain = inputs.threshold.angle = 1e-9;
+  ran = dem_case_run(&inputs, 3);
+  assert_true(ran.outcome.dust_fraction > 0.5);
+  free(ran.fragments);
+}
+
+static void energy_bound_ends_a_run(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small();
+  inputs.fidelity.energy_bound = 1e-9;
+  struct dem_ran ran = dem_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
+  assert_int_equal(ran.results.stop_reason, DEM_STOP_FAULT);
+  assert_non_null(strstr(ran.outcome.message, "time step"));
+  free(ran.fragments);
+  inputs.charge.energy = 1e18; /* grains faster than anything */
+  inputs.fidelity.energy_bound = NAN;
+  ran = dem_case_run(&inputs, 3);
+  assert_true(ran.outcome.state == OUTCOME_NOT_FINITE || ran.outcome.state == OUTCOME_COMPLETED ||
+              ran.outcome.state == OUTCOME_END_TIME);
+  free(ran.fragments);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tables_are_whole),           cmocka_unit_test(builtin_scenes_say_what_they_model),
+      cmocka_unit_test(explosion_starts_as_the_paper_says), cmocka_unit_test(impact_and_collision_start),
+      cmocka_unit_test(what_cannot_run_is_refused), cmocka_unit_test(chunks_do_not_matter),
+      cmocka_unit_test(stop_rules),                 cmocka_unit_test(energy_bound_ends_a_run)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

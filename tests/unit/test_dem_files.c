@@ -1,0 +1,239 @@
+/* Restart files give the same bits; fields files say what they hold; both are whole or not there. */
+#include "tests/dem_case.h"
+
+#include <hdf5.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "engine/dem/run.h"
+
+static char folder[] = "/tmp/clast_dem_files_XXXXXX";
+
+static const char *in_folder(const char *name) {
+  static char path[200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder); /* fails when a test or a failed write left anything behind */
+}
+
+static struct dem_inputs small(bool gear) {
+  return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",
+                  "contact.normal_damping=1e3 1/s", "contact.tangential_damping=1e3 1/s", "contact.friction=0.5",
+                  gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet", "threshold.modulus=10");
+}
+
+static void restart_continues_with_the_same_bits(void **state) {
+  (void)state;
+  struct dem_inputs cases[3] = {small(false), small(true),
+                                DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s", "loading.ramp=0.5 ms",
+                                         "loading.strain_end=3 %")};
+  for (int c = 0; c < 3; c++) {
+    struct dem_ran straight = dem_case_run(&cases[c], 11), resumed = {0};
+    void *run, *again;
+    bool finished = false;
+    struct error error = {0};
+    assert_int_equal(dem_engine.prepare(&cases[c], 11, &run, &error), STATUS_OK);
+    uint64_t half = (uint64_t)straight.outcome.steps / 2 + 1;
+    assert_int_equal(dem_engine.step(run, half, &finished, &error), STATUS_OK);
+    assert_false(finished);
+    if (dem_engine.save(run, in_folder("run.restart"), &error))
+      fail_msg("%s", error.message);
+    dem_engine.free(run);
+    if (dem_engine.restore(&cases[c], in_folder("run.restart"), &again, &error))
+      fail_msg("%s", error.message);
+    while (!finished)
+      assert_int_equal(dem_engine.step(again, 100, &finished, &error), STATUS_OK);
+    assert_int_equal(dem_engine.finish(again, &resumed.outcome, &resumed.results, &resumed.fragments, &resumed.count, &error), STATUS_OK);
+    dem_engine.free(again);
+    assert_memory_equal(&straight.outcome, &resumed.outcome, sizeof straight.outcome);
+    assert_memory_equal(&straight.results, &resumed.results, sizeof straight.results);
+    assert_int_equal(straight.count, resumed.count);
+    assert_memory_equal(straight.fragments, resumed.fragments, straight.count * sizeof *straight.fragments);
+    free(straight.fragments);
+    free(resumed.fragments);
+    unlink(in_folder("run.restart"));
+  }
+}
+
+static void damaged_or_foreign_restart_is_refused(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small(false), other = inputs;
+  void *run;
+  struct error error = {0};
+  char path[200];
+  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
+  assert_int_equal(dem_engine.prepare(&inputs, 1, &run, NULL), STATUS_OK);
+  assert_int_equal(dem_engine.save(run, path, NULL), STATUS_OK);
+  dem_engine.free(run);
+  other.threshold.strain *= 1 + 1e-15;
+  assert_int_equal(dem_engine.restore(&other, path, &run, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "another scene"));
+  assert_null(run);
+  struct stat info;
+  assert_int_equal(stat(path, &info), 0);
+  for (int k = 0; k < 40; k++) { /* one byte changed anywhere; cut anywhere */
+    off_t at = info.st_size * k / 40;
+    FILE *file = fopen(path, "r+b");
+    fseek(file, at, SEEK_SET);
+    int byte = fgetc(file);
+    fseek(file, at, SEEK_SET);
+    fputc(byte ^ 0x40, file);
+    fclose(file);
+    assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
+    file = fopen(path, "r+b");
+    fseek(file, at, SEEK_SET);
+    fputc(byte, file);
+    fclose(file);
+  }
+  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_OK);
+  dem_engine.free(run);
+  assert_int_equal(truncate(path, info.st_size / 2), 0);
+  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
+  assert_int_equal(truncate(path, 0), 0);
+  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
+  unlink(path);
+  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_MISSING);
+}
+
+static double scalar(hid_t file, const char *name) {
+  double value = NAN;
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  assert_true(set >= 0);
+  assert_true(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &value) >= 0);
+  H5Dclose(set);
+  return value;
+}
+
+static size_t rows(hid_t file, const char *name) {
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  assert_true(set >= 0);
+  hid_t space = H5Dget_space(set);
+  hsize_t size[2] = {0, 0};
+  H5Sget_simple_extent_dims(space, size, NULL);
+  H5Sclose(space);
+  H5Dclose(set);
+  return size[0];
+}
+
+static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void *count) {
+  if (info->type != H5O_TYPE_DATASET || strncmp(name, "VTKHDF", 6) == 0)
+    return 0;
+  hid_t set = H5Dopen2(at, name, H5P_DEFAULT);
+  if (H5Aexists(set, "long_name") <= 0)
+    fail_msg("/%s has no long_name", name);
+  hid_t type = H5Dget_type(set);
+  if (H5Tget_class(type) != H5T_STRING && H5Aexists(set, "units") <= 0)
+    fail_msg("/%s has no units", name);
+  H5Tclose(type);
+  H5Dclose(set);
+  ++*(size_t *)count;
+  return 0;
+}
+
+static void fields_describe_themselves(void **state) {
+  (void)state;
+  struct dem_inputs cases[2] = {small(false), DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
+                                                       "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
+  for (int c = 0; c < 2; c++) {
+    void *run;
+    bool finished = false;
+    struct error error = {0};
+    struct dem_ran ran = {0};
+    char path[200];
+    snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
+    assert_int_equal(dem_engine.prepare(&cases[c], 5, &run, NULL), STATUS_OK);
+    while (!finished)
+      dem_engine.step(run, 1000, &finished, NULL);
+    assert_int_equal(dem_engine.finish(run, &ran.outcome, &ran.results, &ran.fragments, &ran.count, NULL), STATUS_OK);
+    if (dem_engine.write_fields(run, path, &error))
+      fail_msg("%s", error.message);
+    size_t n = ((struct dem_run *)run)->tessellation->cell_count, beams = ((struct dem_run *)run)->tessellation->pair_count;
+    hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    assert_true(file >= 0);
+    assert_int_equal(rows(file, "grains/position"), n);
+    assert_int_equal(rows(file, "beams/strain"), beams);
+    assert_int_equal(rows(file, "breaks/time"), ran.results.broken);
+    assert_int_equal(rows(file, "fragments/mass"), ran.count);
+    assert_int_equal(rows(file, "VTKHDF/Offsets"), ran.results.grains + 1);
+    assert_int_equal(rows(file, "VTKHDF/Types"), ran.results.grains);
+    assert_true(H5Lexists(file, "curve", H5P_DEFAULT) == (c == 1));
+    assert_true(scalar(file, "outcome/time") == ran.outcome.time);
+    assert_true(scalar(file, "results/broken_share") == ran.results.broken_share);
+    assert_true(scalar(file, "inputs/grain.density") == 5000);
+    size_t datasets = 0;
+    assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
+    assert_true(datasets > dem_results.count + outcome_table.count);
+    /* outlines: their areas are the grains' masses over the density */
+    double *point = malloc(3 * rows(file, "VTKHDF/Points") * sizeof *point), *mass = malloc(n * sizeof *mass);
+    int64_t *offset = malloc((n + 1) * sizeof *offset);
+    hid_t set = H5Dopen2(file, "VTKHDF/Points", H5P_DEFAULT);
+    H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, point);
+    H5Dclose(set);
+    set = H5Dopen2(file, "VTKHDF/Offsets", H5P_DEFAULT);
+    H5Dread(set, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, offset);
+    H5Dclose(set);
+    set = H5Dopen2(file, "VTKHDF/CellData/mass", H5P_DEFAULT);
+    H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, mass);
+    H5Dclose(set);
+    for (int64_t k = 0; k < ran.results.grains; k++) {
+      double area = 0;
+      for (int64_t p = offset[k]; p < offset[k + 1]; p++) {
+        int64_t q = p + 1 < offset[k + 1] ? p + 1 : offset[k];
+        area += 0.5 * (point[3 * p] * point[3 * q + 1] - point[3 * q] * point[3 * p + 1]);
+      }
+      assert_true(fabs(area * 5000 / mass[k] - 1) < 1e-9); /* cross products of coordinates up to metres: 1e-16 / 1e-4 */
+    }
+    free(point);
+    free(mass);
+    free(offset);
+    free(ran.fragments);
+    H5Fclose(file);
+    unlink(path);
+    dem_engine.free(run);
+  }
+}
+
+static void failed_writes_are_one_error_and_leave_nothing(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small(false);
+  void *run;
+  struct error error = {0};
+  assert_int_equal(dem_engine.prepare(&inputs, 5, &run, NULL), STATUS_OK);
+  assert_int_equal(dem_engine.write_fields(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "No such file"));
+  assert_int_equal(dem_engine.save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
+  assert_int_equal(dem_engine.write_fields(run, "/dev/full/fields.hdf", &error), STATUS_IO);
+
+  /* A disk that fills up in the middle: a limit on file size gives the same error at the same place. */
+  signal(SIGXFSZ, SIG_IGN);
+  struct rlimit before, limit;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  limit = before;
+  limit.rlim_cur = 10000;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  status fields = dem_engine.write_fields(run, in_folder("full.hdf"), &error);
+  status restart = dem_engine.save(run, in_folder("full.restart"), &error);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+  assert_int_equal(fields, STATUS_IO);
+  assert_int_equal(restart, STATUS_IO);
+  assert_non_null(strstr(error.message, "too large"));
+  dem_engine.free(run); /* that nothing is left in the folder, remove_folder sees */
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(restart_continues_with_the_same_bits), cmocka_unit_test(damaged_or_foreign_restart_is_refused),
+      cmocka_unit_test(fields_describe_themselves), cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing)};
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
