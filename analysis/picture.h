@@ -23,7 +23,7 @@ struct picture_body {
 struct picture_panel {
   struct picture_body body;
   const char *caption;           /* under the panel, may be NULL */
-  double view[4];                /* x0, y0, x1, y1 in m; all zero: around the 96 % of the cells nearest to the middle */
+  double view[4];                /* x0, y0, x1, y1 in m; all zero: everything, but for far-flung dust */
 };
 /* One to three panels side by side on one scale each, with a scale bar. title and subtitle may be NULL. width: pixels
  * (PNG) or points (SVG), 200 to 8000. */

@@ -49,11 +49,29 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Bounds of the cells but for the outermost 2 % on each side, and a margin: flying dust does not shrink the picture. */
+static void cover(double view[4], const double point[2]) {
+  for (int axis = 0; axis < 2; axis++) {
+    view[axis] = fmin(view[axis], point[axis]);
+    view[axis + 2] = fmax(view[axis + 2], point[axis]);
+  }
+}
+
+/* Everything, unless far-flung bits would shrink the picture: then all large fragments and 96 % of the cells. */
 static status choose_view(const struct picture_body *body, double view[4]) {
   double *along = malloc((body->cells + 1) * sizeof *along);
-  if (!along) return STATUS_MEMORY;
-  for (int axis = 0; axis < 2; axis++) {
+  struct grouping grouping;
+  status code = group(body, &grouping);
+  if (!code && !along) code = STATUS_MEMORY;
+  double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, bulk[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < body->cells && !code; i++) {
+    uint32_t f = body->fragment[i];
+    bool large = grouping.start[f + 1] - grouping.start[f] >= LARGE;
+    for (uint32_t v = body->first_vertex[i]; v < body->first_vertex[i + 1]; v++) {
+      cover(all, body->vertex[v]);
+      if (large) cover(bulk, body->vertex[v]);
+    }
+  }
+  for (int axis = 0; axis < 2 && !code; axis++) {
     for (size_t i = 0; i < body->cells; i++) {
       double centre[2];
       centre_of(body, i, centre);
@@ -61,11 +79,15 @@ static status choose_view(const struct picture_body *body, double view[4]) {
     }
     qsort(along, body->cells, sizeof *along, ascending);
     size_t out = body->cells / 50;
-    view[axis] = along[out];
-    view[axis + 2] = along[body->cells - 1 - out];
+    bulk[axis] = fmin(bulk[axis], along[out]);
+    bulk[axis + 2] = fmax(bulk[axis + 2], along[body->cells - 1 - out]);
   }
   free(along);
-  double margin = 0.06 * fmax(view[2] - view[0], view[3] - view[1]);
+  grouping_free(&grouping);
+  if (code) return code;
+  bool near = all[2] - all[0] <= 1.25 * (bulk[2] - bulk[0]) && all[3] - all[1] <= 1.25 * (bulk[3] - bulk[1]);
+  memcpy(view, near ? all : bulk, 4 * sizeof *view);
+  double margin = 0.02 * fmax(view[2] - view[0], view[3] - view[1]);
   if (!(margin > 0)) margin = 1;
   for (int axis = 0; axis < 2; axis++) {
     view[axis] -= margin;
@@ -183,6 +205,11 @@ cleanup:
   return code;
 }
 
+static status fail(const char *path, status code, struct error *error) {
+  return status_fail(error, code, "%s: %s", path,
+                     code == STATUS_MEMORY ? "no memory for the picture" : "fragment numbers beyond the number of cells");
+}
+
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error) {
   double view[3][4], tallest = 0, font = width / (panels > 1 ? 62 : 46);
@@ -192,8 +219,8 @@ status picture_fragments(const char *path, double width, const char *title, cons
     const struct picture_body *body = &panel[p].body;
     if (body->cells == 0) return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
     memcpy(view[p], panel[p].view, sizeof view[p]);
-    if (!(view[p][2] > view[p][0]) && choose_view(body, view[p]))
-      return status_fail(error, STATUS_MEMORY, "%s: no memory for the picture", path);
+    status code = view[p][2] > view[p][0] ? STATUS_OK : choose_view(body, view[p]);
+    if (code) return fail(path, code, error);
     double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
     if (!isfinite(tall)) return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);
     tallest = fmax(tallest, tall);
@@ -211,7 +238,7 @@ status picture_fragments(const char *path, double width, const char *title, cons
   if (subtitle) picture_canvas_text(canvas.cairo, gap, line, font, PICTURE_LEFT, false, subtitle);
   for (size_t p = 0; p < panels && !code; p++) {
     code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
-    if (code) status_fail(error, code, "%s: %s", path, code == STATUS_MEMORY ? "no memory for the picture" : "fragment numbers beyond the number of cells");
+    if (code) fail(path, code, error);
   }
   return picture_canvas_close(&canvas, code, error);
 }
