@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/picture.h"
 #include "db/query.h"
 
 enum { RESAMPLE_SEED = 1 };
@@ -113,34 +112,36 @@ status point_estimates(const struct point_data *point, size_t resamples, double 
   return code;
 }
 
-enum { MOST_POINTS = 8 };
-
-status point_picture(const char *path, double width, const char *title, const char *mass_unit, size_t count,
-                     const struct point_data *points, const char *const *labels, struct error *error) {
-  struct picture_series series[MOST_POINTS] = {0};
-  struct picture_fit fits[MOST_POINTS] = {0};
-  struct pooled_bin *bins[MOST_POINTS] = {0};
-  char texts[MOST_POINTS][96];
-  status code = STATUS_OK;
-  if (count < 1 || count > MOST_POINTS)
-    return status_fail(error, STATUS_USAGE, "%s: one to %d points in a picture, not %zu", path, MOST_POINTS, count);
-  for (size_t i = 0; i < count && !code; i++) {
-    code = pooled_spectrum(&points[i].runs, true, 1, &bins[i], &series[i].count, error);
-    series[i].bins = bins[i];
-    series[i].label = labels ? labels[i] : NULL;
-    double lower = point_window(&points[i], (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
-    if (code || !(lower > 0)) continue;
-    struct pooled_exponent headline;
-    code = pooled_exponent(&points[i].runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, RESAMPLE_SEED, &headline, error);
-    if (code || !isfinite(headline.fit.beta)) continue;
-    snprintf(texts[i], sizeof texts[i], "\xce\xb2 = %.2f \xc2\xb1 %.2f, %zu runs", headline.fit.beta,
-             headline.interval.standard_error, points[i].runs.count);
-    fits[i] = (struct picture_fit){texts[i], headline.fit.beta, headline.fit.lower, headline.fit.upper,
-                                   (double)headline.fit.n / (double)points[i].runs.count};
-    series[i].fit = &fits[i];
-    series[i].fits = 1;
+status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out, struct error *error) {
+  *out = (struct point_curve){.runs = point->runs.count, .fit = {.beta = NAN}};
+  if (label) snprintf(out->label, sizeof out->label, "%s", label);
+  else snprintf(out->label, sizeof out->label, "point %lld, %zu runs", (long long)point->point_id, out->runs);
+  status code = pooled_spectrum(&point->runs, true, 1, &out->bins, &out->count, error);
+  double lower = point_window(point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
+  if (code || !(lower > 0)) return code;
+  struct pooled_exponent headline;
+  code = pooled_exponent(&point->runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, RESAMPLE_SEED,
+                         &headline, error);
+  if (code) {
+    point_curve_release(out);
+    return code;
   }
-  if (!code) code = picture_spectrum(path, width, title, mass_unit, count, series, error);
-  for (size_t i = 0; i < count; i++) free(bins[i]);
-  return code;
+  if (!isfinite(headline.fit.beta)) return STATUS_OK;
+  snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f \xc2\xb1 %.2f", headline.fit.beta,
+           headline.interval.standard_error);
+  out->fit = (struct picture_fit){NULL, headline.fit.beta, headline.fit.lower, headline.fit.upper,
+                                  (double)headline.fit.n / (double)out->runs};
+  return STATUS_OK;
+}
+
+void point_curve_release(struct point_curve *curve) {
+  free(curve->bins);
+  curve->bins = NULL;
+  curve->count = 0;
+}
+
+struct picture_series point_curve_series(struct point_curve *curve) {
+  curve->fit.label = curve->fit_label;
+  return (struct picture_series){.label = curve->label, .count = curve->count, .bins = curve->bins,
+                                 .fits = isfinite(curve->fit.beta) ? 1u : 0u, .fit = &curve->fit};
 }

@@ -3,7 +3,7 @@
 #define CLAST_ANALYSIS_POINT_H
 
 #include "analysis/estimates.h"
-#include "analysis/pooled.h"
+#include "analysis/picture.h"
 #include "db/store.h"
 
 struct point_data {
@@ -33,8 +33,16 @@ enum { POINT_ESTIMATES = 3 * ESTIMATES_WINDOWS }; /* least_squares, binned, mass
 status point_estimates(const struct point_data *point, size_t resamples, double level,
                        struct point_estimate rows[POINT_ESTIMATES], struct error *error);
 
-/* The pooled spectra of some points as a picture (.png or .svg), each with its headline fit. labels[i] may be NULL. */
-status point_picture(const char *path, double width, const char *title, const char *mass_unit, size_t count,
-                     const struct point_data *points, const char *const *labels, struct error *error);
+/* A point's pooled spectrum with its headline fit, ready to be drawn (picture_spectrum, text_plot_spectrum). */
+struct point_curve {
+  char label[128], fit_label[96];
+  struct pooled_bin *bins; /* owned */
+  size_t count, runs;
+  struct picture_fit fit;  /* its label is filled in by point_curve_series; beta = NaN: no fit */
+};
+/* label: NULL for "point 3, 40 runs". */
+status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out, struct error *error);
+void point_curve_release(struct point_curve *curve);               /* a zeroed one is fine */
+struct picture_series point_curve_series(struct point_curve *curve); /* borrows the curve, which must not move */
 
 #endif

@@ -75,6 +75,15 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit)
   fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-", line);
 }
 
+/* The two signs that labels use, spelt out where only ASCII may be printed. */
+static void write_label(FILE *out, const char *label, bool unicode) {
+  for (const char *c = label; *c; c++) {
+    if (!unicode && strncmp(c, "\xce\xb2", 2) == 0) fputs("beta", out), c++;
+    else if (!unicode && strncmp(c, "\xc2\xb1", 2) == 0) fputs("+-", out), c++;
+    else if (unicode || (unsigned char)*c < 0x80) fputc(*c, out);
+  }
+}
+
 void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit, const struct picture_series *series) {
   struct scale scale = {HUGE_VAL, -HUGE_VAL, 0};
   for (size_t b = 0; b < series->count; b++) {
@@ -90,7 +99,10 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_u
   heading(out, &scale, mass_unit);
   for (size_t b = 0; b < series->count; b++)
     if (series->bins[b].density > 0) row(out, &scale, unicode, &series->bins[b], series->fits ? &series->fit[0] : NULL);
-  if (series->fits && series->fit[0].label) fprintf(out, "%s %s\n", glyph(FIT, unicode), series->fit[0].label);
+  if (!series->fits || !series->fit[0].label) return;
+  fprintf(out, "%s ", glyph(FIT, unicode));
+  write_label(out, series->fit[0].label, unicode);
+  fputc('\n', out);
 }
 
 void text_plot_sparkline(size_t n, const double *values, double low, double high, bool unicode, char *text) {

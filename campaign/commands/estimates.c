@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/estimates.h"
+#include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/pool.h"
 #include "campaign/commands/rows.h"
 
 enum { AXES_MAXIMUM = 16, RESAMPLE_SEED = 1 };
@@ -47,17 +46,16 @@ static void value_cell(struct table *table, const struct query_value *value, boo
 /* Column order of the query: point_id, results_version, n, failed, mean, half width, then the axes. */
 static status point_row(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct printing *printing = context;
-  struct pool pool;
-  status code = pool_read(printing->store, values[0].integer, values[1].integer, &pool, error);
+  struct point_data point;
+  status code = point_read(printing->store, values[0].integer, values[1].integer, &point, error);
   for (int window = 0; !code && window < ESTIMATES_WINDOWS; window++) {
-    double lower = NAN;
-    code = pool_window(printing->store, &pool, (enum estimates_window)window, &lower, error);
+    double lower = point_window(&point, (enum estimates_window)window);
     struct pooled_exponent fits[METHODS];
     int64_t fragments = 0;
     for (int m = 0; m < METHODS; m++) {
       fits[m] = (struct pooled_exponent){.fit = {.beta = NAN, .standard_error = NAN}, .interval = {.standard_error = NAN}};
-      if (!code && lower > 0 && pool.runs.count > 0)
-        code = pooled_exponent(&pool.runs, methods[m], lower, (size_t)printing->choice->resamples, level, RESAMPLE_SEED,
+      if (!code && lower > 0 && point.runs.count > 0)
+        code = pooled_exponent(&point.runs, methods[m], lower, (size_t)printing->choice->resamples, level, RESAMPLE_SEED,
                                &fits[m], error);
       if (methods[m] == EXPONENT_MASSES)
         fragments = fits[m].fit.n;
@@ -77,7 +75,7 @@ static status point_row(void *context, size_t count, const struct query_value *v
       table_fixed(printing->table, fits[m].interval.standard_error, 2);
     }
   }
-  pool_clear(&pool);
+  point_release(&point);
   return code ? code : table_broken(printing->table) ? STATUS_IO : STATUS_OK;
 }
 

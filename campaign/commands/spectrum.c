@@ -2,14 +2,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "analysis/picture.h"
+#include "analysis/point.h"
+#include "analysis/text_plot.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/pool.h"
 #include "campaign/commands/rows.h"
 
 struct options {
   int64_t point;
   const char *where, *picture;
+  bool plot, ascii;
   struct table_options table;
 };
 
@@ -29,68 +30,48 @@ static const char sql_start[] =
         "   pooled.mass / total.mass as mass_share"
         " from pooled join total using (point_id) join bin using (bin) order by point_id, bin";
 
-enum { SERIES_MAXIMUM = 8, WIDTH = 900 }; /* more curves in one picture cannot be told apart */
+enum { POINTS_MAXIMUM = 8, WIDTH = 900, COLUMNS = 100 }; /* more curves in one picture cannot be told apart */
 
-struct series {
-  int64_t points[SERIES_MAXIMUM];
+struct chosen {
+  int64_t points[POINTS_MAXIMUM];
   size_t count;
 };
 
 static status take_point(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
-  struct series *series = context;
-  if (series->count < SERIES_MAXIMUM)
-    series->points[series->count++] = values[0].integer;
+  struct chosen *chosen = context;
+  if (chosen->count < POINTS_MAXIMUM)
+    chosen->points[chosen->count++] = values[0].integer;
   return STATUS_OK;
 }
 
-/* One point's bins, and its headline exponent with the error from resampling runs. */
-static status make_series(struct store *store, int64_t point, struct picture_series *series, struct picture_fit *fit,
-                          char label[2][96], struct error *error) {
-  struct pool pool;
-  struct pooled_bin *bins = NULL;
-  struct pooled_exponent exponent = {.fit = {.beta = NAN}};
-  double lower = NAN;
-  size_t count = 0;
-  status code = pool_read(store, point, 0, &pool, error);
-  if (!code)
-    code = pooled_spectrum(&pool.runs, true, 1, &bins, &count, error);
-  if (!code)
-    code = pool_window(store, &pool, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW, &lower, error);
-  if (!code && lower > 0)
-    code = pooled_exponent(&pool.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, 1, &exponent, error);
-  if (!code) {
-    snprintf(label[0], 96, "point %lld, %zu runs", (long long)point, pool.runs.count);
-    snprintf(label[1], 96, "beta %.2f +- %.2f", exponent.fit.beta, exponent.interval.standard_error);
-    *fit = (struct picture_fit){label[1], exponent.fit.beta, exponent.fit.lower, exponent.fit.upper,
-                                pool.runs.count ? (double)exponent.fit.n / (double)pool.runs.count : 0};
-    *series = (struct picture_series){.label = label[0], .count = count, .bins = bins,
-                                      .fits = isnan(exponent.fit.beta) ? 0u : 1u, .fit = fit};
-    bins = NULL;
-  }
-  free(bins);
-  pool_clear(&pool);
-  return code;
-}
-
 static status draw(struct store *store, const struct options *options, struct error *error) {
-  struct series chosen = {.points = {options->point}, .count = options->point ? 1 : 0};
+  struct chosen chosen = {.points = {options->point}, .count = options->point ? 1 : 0};
   struct query_sink sink = {&chosen, NULL, take_point};
-  struct picture_series series[SERIES_MAXIMUM] = {0};
-  struct picture_fit fits[SERIES_MAXIMUM];
-  char labels[SERIES_MAXIMUM][2][96];
+  struct point_curve curves[POINTS_MAXIMUM] = {0};
+  struct picture_series series[POINTS_MAXIMUM];
   status code = STATUS_OK;
   if (!options->point)
     code = query_run(store, "select point_id from point_total where runs > 0 group by point_id order by point_id", 0, NULL, 0, &sink,
                      error);
-  for (size_t i = 0; !code && i < chosen.count; i++)
-    code = make_series(store, chosen.points[i], &series[i], &fits[i], labels[i], error);
+  for (size_t i = 0; !code && i < chosen.count; i++) {
+    struct point_data point;
+    code = point_read(store, chosen.points[i], 0, &point, error);
+    if (!code)
+      code = point_curve_make(&point, NULL, &curves[i], error);
+    point_release(&point);
+    series[i] = point_curve_series(&curves[i]);
+  }
   if (!code && chosen.count == 0)
     code = status_fail(error, STATUS_USAGE, "the store has no finished runs to draw");
-  if (!code)
+  if (!code && options->picture)
     code = picture_spectrum(options->picture, WIDTH, "fragment mass spectrum", "kg", chosen.count, series, error);
+  for (size_t i = 0; !code && options->plot && i < chosen.count; i++) {
+    printf("%s%s\n", i ? "\n" : "", series[i].label);
+    text_plot_spectrum(stdout, COLUMNS, !options->ascii, "kg", &series[i]);
+  }
   for (size_t i = 0; i < chosen.count; i++)
-    free((void *)series[i].bins);
+    point_curve_release(&curves[i]);
   return code;
 }
 
@@ -105,7 +86,7 @@ static status run(const struct command_line *line, struct error *error) {
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  FILE *text = open_memstream(&sql, &size);
+  FILE *text = options->plot ? NULL : open_memstream(&sql, &size);
   if (text) {
     fputs(sql_start, text);
     if (options->point)
@@ -115,10 +96,11 @@ static status run(const struct command_line *line, struct error *error) {
     fputs(sql_end, text);
     fclose(text);
   }
-  code = sql ? rows_print(store, sql, 0, NULL, format, stdout, error)
-             : status_fail(error, STATUS_MEMORY, "out of memory");
+  if (!options->plot)
+    code = sql ? rows_print(store, sql, 0, NULL, format, stdout, error)
+               : status_fail(error, STATUS_MEMORY, "out of memory");
   free(sql);
-  if (!code && options->picture)
+  if (!code && (options->picture || options->plot))
     code = draw(store, options, error);
   store_close(store, NULL);
   return code;
@@ -131,6 +113,9 @@ static const struct option_row rows[] = {
      "Only runs for which this holds, on the view runs: \"threshold_strain > 0.02\"."},
     {"picture", 0, OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
      "Draw F(m) with the fitted power law too: of --point, or of the first eight points. PNG or SVG by the ending."},
+    {"plot", 0, OPTION_FLAG, NULL, offsetof(struct options, plot), 0, 0, NULL,
+     "Plot F(m) as text instead of the table: of --point, or of the first eight points."},
+    {"ascii", 0, OPTION_FLAG, NULL, offsetof(struct options, ascii), 0, 0, NULL, "The plot in ASCII characters only."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -142,7 +127,7 @@ const struct command spectrum_command = {
     .doc = "Prints for each point and each mass bin that holds something the fragments of all runs that count, the\n"
            "density F(m) (fragments per kg and run) with its standard error from the scatter between runs, and the share\n"
            "of the mass. F(m) is differential: a power law m^-beta has this slope on it, N(>m) has beta - 1.",
-    .examples = "clast spectrum out.db --point 1\nclast spectrum out.db --csv --picture spectrum.svg",
+    .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --csv --picture spectrum.svg",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .options = rows,

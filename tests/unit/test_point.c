@@ -73,17 +73,28 @@ static void runs_that_count_in_order(void **state) {
     /* log m is uniform over three decades: beta is 1, and least squares is biased low by far less than 0.3 there */
     assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
   }
-  OK(point_picture("test-point.png", 600, "a point", "kg", 1, &point, NULL, &error));
+  struct point_curve curve;
+  OK(point_curve_make(&point, NULL, &curve, &error));
+  struct picture_series series = point_curve_series(&curve);
+  assert_string_equal(series.label, "point 1, 7 runs");
+  assert_int_equal(series.fits, 1);
+  assert_near(series.fit->beta, rows[POINT_ESTIMATES - 1].exponent.fit.beta, 0); /* masses, from 10 */
+  assert_near(series.fit->fragments_per_run * (RUNS - 1), (double)rows[POINT_ESTIMATES - 1].exponent.fit.n, 1e-9);
+  OK(picture_spectrum("test-point.png", 600, "a point", "kg", 1, &series, &error));
   assert_int_equal(unlink("test-point.png"), 0);
-  assert_int_equal(point_picture("test-point.png", 600, "a point", "kg", 0, &point, NULL, &error), STATUS_USAGE);
+  point_curve_release(&curve);
   point_release(&point);
 
   OK(point_read(store, id + 7, 0, &point, &error)); /* no such point */
   assert_int_equal(point.runs.count, 0);
   OK(point_estimates(&point, 10, 0.95, rows, &error));
   for (int i = 0; i < POINT_ESTIMATES; i++) assert_true(isnan(rows[i].exponent.fit.beta));
-  assert_int_equal(point_picture("test-point.png", 600, "a point", "kg", 1, &point, NULL, &error), STATUS_USAGE);
+  OK(point_curve_make(&point, "none", &curve, &error));
+  series = point_curve_series(&curve);
+  assert_true(series.count == 0 && series.fits == 0);
+  assert_int_equal(picture_spectrum("test-point.png", 600, "a point", "kg", 1, &series, &error), STATUS_USAGE);
   assert_int_not_equal(access("test-point.png", F_OK), 0);
+  point_curve_release(&curve);
   point_release(&point);
   OK(store_close(store, &error));
 }
