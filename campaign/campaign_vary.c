@@ -119,21 +119,26 @@ static bool read_truncation(struct reading *r, bool positive) {
   document_node *node = document_key(r->node, "truncated");
   if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
     return false;
-  /* What the law can reach must be within what the input can take. */
-  const struct field *row = r->axis->row;
-  double lower = positive ? fmax(r->axis->lower, 0) : r->axis->lower;
-  if (lower < row->minimum || r->axis->upper > row->maximum) {
+  /* Position in standard deviations from the middle of the law. */
+  struct design_axis *axis = r->axis;
+  const struct field *row = axis->row;
+#define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x) - axis->a) / axis->b)
+  double from = DEVIATIONS(axis->lower), to = DEVIATIONS(axis->upper);
+  double least = DEVIATIONS(row->minimum), most = DEVIATIONS(row->maximum);
+#undef DEVIATIONS
+  /* Beyond 37 standard deviations a normal law's mass is no double any more. */
+  if (from > 37 || to < -37)
+    return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
+  /* What the law reaches must be within what the input can take. Six deviations away (one draw in 1e9) it is cut without a
+   * word. */
+  if ((from < least && least > -6) || (to > most && most < 6)) {
     document_report(r->node, r->path,
                     "the law reaches values that this input cannot take (%g to %g); cut it: {..., truncated: [a, b]}",
                     row->minimum, row->maximum);
     return false;
   }
-  /* Beyond 37 standard deviations a normal law's mass is no double any more. */
-  const struct design_axis *axis = r->axis;
-  double from = positive ? log(fmax(axis->lower, 0) / axis->a) / axis->b : (axis->lower - axis->a) / axis->b;
-  double to = positive ? log(axis->upper / axis->a) / axis->b : (axis->upper - axis->a) / axis->b;
-  if (from > 37 || to < -37)
-    return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
+  axis->lower = fmax(axis->lower, row->minimum);
+  axis->upper = fmin(axis->upper, row->maximum);
   return true;
 }
 
@@ -218,8 +223,10 @@ static bool read_form(struct reading *r) {
                  "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
                  "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
   const char *known[5] = {NULL};
-  for (int k = 0; k < 4 && keys[form][k]; k++)
+  for (int k = 0; k < 4 && keys[form][k]; k++) {
     known[k] = keys[form][k];
+    document_key(r->node, known[k]); /* seen, wherever the reading below may end */
+  }
   document_unknown_keys(r->node, r->path, known);
   if (form != 6 && !is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");

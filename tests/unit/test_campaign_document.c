@@ -1,0 +1,228 @@
+/* Campaign documents: what good ones mean, what bad ones are told. Every bad one with the line, the path and the remedy. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/campaign.h"
+#include "campaign/plan.h"
+
+#define HEAD "name: t\nscene: disc-explosion\n"
+
+static status parse(const char *text, struct campaign **campaign, struct error *error) {
+  return campaign_parse("t.yaml", text, strlen(text), NULL, campaign, error);
+}
+
+static struct campaign *good(const char *text) {
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  if (parse(text, &campaign, &error) != STATUS_OK)
+    fail_msg("refused:\n%s\n%s", text, error.message);
+  return campaign;
+}
+
+/* `first` opens the report; the others, separated by '|', stand in it somewhere. */
+static void bad(const char *text, const char *expected) {
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  assert_int_equal(parse(text, &campaign, &error), STATUS_CONTENT);
+  assert_null(campaign);
+  char *copy = strdup(expected), *rest = NULL;
+  for (char *part = strtok_r(copy, "|", &rest); part; part = strtok_r(NULL, "|", &rest))
+    if (!strstr(error.message, part))
+      fail_msg("not said: '%s'\nin the report on\n%s\n%s", part, text, error.message);
+  free(copy);
+}
+
+static void defaults_and_units(void **state) {
+  (void)state;
+  struct campaign *campaign = good(HEAD "vary: {strain: [1 %, 3 %]}\nset: {contact.friction: 0.2}\n"
+                                        "limits: {time: 10 min, memory: 2 GiB}\n");
+  assert_string_equal(campaign->store, "t.db");
+  assert_string_equal(campaign->quantity, "largest_fraction");
+  assert_int_equal(campaign->per_point, 20);
+  assert_int_equal(campaign->attempts, 2);
+  assert_int_equal(campaign->failures, 20);
+  assert_true(campaign->time_limit == 600 && campaign->memory_limit == 2147483648.0);
+  assert_string_equal(campaign->axes[0].row->path, "threshold.strain");
+  assert_true(campaign->axes[0].levels[0].number == 0.01 && campaign->axes[0].levels[1].number == 0.03);
+  assert_int_equal(campaign_points(campaign), 2);
+  assert_int_equal(campaign_seed(campaign, campaign->scene, 4), 5);
+  campaign_free(campaign);
+  campaign = good(HEAD "seeds: {until: {half_width: 1 %}, max: 90}\nlimits: {time: off}\nkeep: {fields: first 3}\n");
+  assert_int_equal(campaign->per_point, 0);
+  assert_string_equal(campaign->until_quantity, "largest_fraction");
+  assert_true(campaign->until_half_width == 0.01 && isnan(campaign->time_limit));
+  assert_int_equal(campaign_replicates_least(campaign), 30);
+  assert_int_equal(campaign_replicates_most(campaign), 90);
+  assert_int_equal(campaign->keep, CAMPAIGN_KEEP_FIRST);
+  assert_int_equal(campaign->keep_first, 3);
+  campaign_free(campaign);
+}
+
+static void every_kind_of_axis(void **state) {
+  (void)state;
+  struct campaign *campaign =
+      good(HEAD "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
+                "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
+                "  threshold.angle: {normal: {mean: 4 deg, sd: 1 deg}, truncated: [1 deg, 7 deg]}\n"
+                "  grain.young_modulus: {lognormal: {median: 1 GPa, sigma: 0.1}}\n"
+                "  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5, offset: 1 MPa}\n"
+                "  contact.friction: {uniform: [0, 0.8]}\n"
+                "  contact.tangential_damping: {log_uniform: [1e3 1/s, 1e5 1/s]}\n"
+                "  contact.law: [conservative, printed]\n"
+                "  grain.disorder: {from: 0, to: 1, n: 5}\n"
+                "  contact.bonded: {linked: contact.law, values: [true, false]}\n");
+  assert_int_equal(campaign->axis_count, 9);
+  assert_int_equal(campaign_points(campaign), 16);
+  assert_int_equal(campaign->axes[0].level_count, 4);
+  assert_true(fabs(campaign->axes[0].levels[1].number / 0.02 - 1) < 1e-13);
+  assert_int_equal(campaign->axes[1].kind, DESIGN_AXIS_NORMAL);
+  assert_int_equal(campaign->axes[3].kind, DESIGN_AXIS_LINKED);
+  assert_int_equal(campaign->axes[3].linked, 2);
+  assert_true(campaign->axes[3].b == 1e6);
+  assert_int_equal(campaign->axes[8].level_count, 2);
+  campaign_free(campaign);
+}
+
+static void independent_seeds_follow_the_point(void **state) {
+  (void)state;
+  struct campaign *campaign = good(HEAD "seeds: {first: 10, independent: true}\nvary: {strain: [1 %, 3 %]}\n");
+  struct error error;
+  struct scene *a = campaign_point_scene(campaign, &campaign->axes[0].levels[0], &error);
+  struct scene *b = campaign_point_scene(campaign, &campaign->axes[0].levels[1], &error);
+  assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, b, 0));
+  assert_true(campaign_seed(campaign, a, 0) != campaign_seed(campaign, a, 1));
+  assert_true(campaign_seed(campaign, a, 3) == campaign_seed(campaign, a, 3));
+  assert_true(campaign_seed(campaign, a, 0) >> 63 == 0);
+  scene_free(a), scene_free(b);
+  campaign_free(campaign);
+}
+
+static void bad_documents_are_told_what_to_do(void **state) {
+  (void)state;
+  bad("scene: disc-explosion\n", "name");
+  bad("name: t\n", "scene");
+  bad("name: t\nscene: disc-explosoin\n", "t.yaml:2:8: error: scene|disc-explosion");
+  bad(HEAD "nmae: x\n", "t.yaml:3:1: error:|nmae|name");
+  bad(HEAD "vary: {threshold.strian: [1, 2]}\n", "t.yaml:3:|vary.threshold.strian|threshold.strain");
+  bad(HEAD "vary: {threshold.strain: 3 %}\n", "t.yaml:3:|a single value belongs in `set`");
+  bad(HEAD "vary: {threshold.strain: []}\n", "expected one value at least");
+  bad(HEAD "vary: {threshold.strain: [1 m]}\n", "t.yaml:3:|vary.threshold.strain|m");
+  bad(HEAD "vary: {threshold.strain: [-1 %]}\n", "t.yaml:3:|vary.threshold.strain");
+  bad(HEAD "vary: {threshold.strain: [.nan, 1 %]}\n", "t.yaml:3:|vary.threshold.strain");
+  bad(HEAD "vary: {threshold.strain: {log: [0.01, 0.06]}}\n", "'n', the number of values, is missing");
+  bad(HEAD "vary: {threshold.strain: {log: [0.06, 0.01], n: 3}}\n", "the smaller value first");
+  bad(HEAD "vary: {contact.friction: {log: [0, 1], n: 3}}\n", "both ends above zero");
+  bad(HEAD "vary: {threshold.strain: {from: 1 %, n: 3}}\n", "'to' is missing");
+  bad(HEAD "vary: {threshold.strain: {from: 1 %, to: 2 %, n: 1}}\n", "t.yaml:3:|vary.threshold.strain");
+  bad(HEAD "vary: {threshold.strain: {from: 1 %, to: 2 %, n: 3, step: 4}}\n", "step");
+  bad(HEAD "vary: {threshold.strain: {evenly: [1, 2]}}\n", "expected one of {from, to, n}");
+  bad(HEAD "vary: {threshold.strain: {uniform: [1 %, 2 %]}}\n", "a distribution has no grid");
+  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {normal: {mean: 3 %, sd: 1 %}}}\n",
+      "cannot take|truncated: [a, b]");
+  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {normal: {mean: 3 %}}}\n", "'sd' is missing");
+  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {lognormal: {median: 3 %, sigma: 0}}}\n", "sigma|0");
+  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {contact.law: {uniform: [1, 2]}}\n", "this input is no number");
+  bad(HEAD "design: sobol\nvary: {threshold.strain: {uniform: [1 %, 2 %]}}\n", "say how many points");
+  bad(HEAD "design: {kind: grid, points: 5}\nvary: {threshold.strain: [1 %]}\n", "t.yaml:3:|points");
+  bad(HEAD "design: hexagonal\n", "t.yaml:3:9: error:|hexagonal|latin_hypercube");
+  bad(HEAD "design: list\nvary: {threshold.strain: [1 %, 2 %], threshold.angle: [1 deg]}\n", "equally long");
+  bad(HEAD "vary: {threshold.strain: [1 %], strain: [2 %]}\n", "the same input as vary.threshold.strain");
+  bad(HEAD "vary: {threshold.strain: [1 %]}\nset: {strain: 2 %}\n", "t.yaml:4:|varied in `vary`");
+  bad(HEAD "vary: {beam.young_modulus: {linked: grain.young_modulus}}\n", "is not varied");
+  bad(HEAD "vary: {beam.young_modulus: {linked: beam.young_modulus}}\n", "is not varied");
+  bad(HEAD "vary: {beam.young_modulus: {linked: grain.young_modulus}, grain.young_modulus: {linked: beam.young_modulus}}\n",
+      "linked itself");
+  bad(HEAD "vary: {beam.young_modulus: {linked: strain, values: [1 GPa]}, strain: [1 %, 2 %]}\n", "as many as");
+  bad(HEAD "set: {contact.friction: [1, 2]}\n", "several values belong in `vary`");
+  bad(HEAD "set: {contact.friction: 5 m}\n", "t.yaml:3:|set.contact.friction");
+  bad(HEAD "set: {impact.speed: 5 m/s}\n", "impact.speed"); /* does nothing in an explosion */
+  bad(HEAD "seeds: {per_point: 0}\n", "t.yaml:3:|seeds.per_point");
+  bad(HEAD "seeds: {per_point: 3.5}\n", "t.yaml:3:|seeds.per_point");
+  bad(HEAD "seeds: {per_point: 3, until: {half_width: 0.1}}\n", "exclude each other");
+  bad(HEAD "seeds: {max: 100}\n", "only `until` has a maximum");
+  bad(HEAD "seeds: {until: {quantity: largest_fraction}}\n", "'half_width' is missing");
+  bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n", "20 replicates at most, but the first decision comes after 30");
+  bad(HEAD "seeds: {until: {half_width: 0.1, quantity: largest_fractoin}}\n", "did you mean 'largest_fraction'?");
+  bad(HEAD "quantity: message\n", "no number");
+  bad(HEAD "keep: {fields: last 3}\n", "expected {fields: none | all | extremes | first N}, got 'last 3'");
+  bad(HEAD "keep: {fields: first 0}\n", "expected {fields:");
+  bad(HEAD "keep: all\n", "expected {fields:");
+  bad(HEAD "limits: {time: 10 m}\n", "t.yaml:3:|limits.time");
+  bad(HEAD "limits: {memory: 2 kg}\n", "limits.memory");
+  bad(HEAD "limits: {attempts: 0}\n", "limits.attempts");
+  bad(HEAD "limits: {failures: 51}\n", "limits.failures");
+  bad(HEAD "store: {a: b}\n", "store");
+}
+
+static void all_errors_come_at_once(void **state) {
+  (void)state;
+  bad("name: t\nscene: disc-explosion\nvary:\n  threshold.strain: [1 kg]\nset:\n  contact.friction: many\n"
+      "seeds: {per_point: none}\nlimits: {time: -1 s}\nkepe: {fields: all}\n",
+      "t.yaml:4:|t.yaml:6:|t.yaml:7:|t.yaml:8:|t.yaml:9:");
+}
+
+static void odd_bytes_are_refused(void **state) {
+  (void)state;
+  struct campaign *campaign;
+  struct error error;
+  const struct { const char *text; size_t size; } odd[] = {
+      {"", 0}, {"\0\0\0", 3}, {"name: \xff\xfe", 9}, {"[1, 2]", 6}, {"just text", 9}, {"name: t\n---\nname: u\n", 20},
+      {"{", 1}, {"name: 't", 8}, {"\x7f" "ELF\x02\x01\x01\0\0\0\0", 11}};
+  for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
+    assert_int_equal(campaign_parse("odd", odd[i].text, odd[i].size, NULL, &campaign, &error), STATUS_CONTENT);
+    assert_true(strlen(error.message) > 10);
+  }
+  assert_int_equal(campaign_load("no/such/campaign.yaml", &campaign, &error), STATUS_MISSING);
+  assert_int_equal(campaign_load(".", &campaign, &error), STATUS_IO);
+}
+
+static void examples_are_ready_to_run(void **state) {
+  (void)state;
+  DIR *folder = opendir(CLAST_SOURCE_DIR "/campaign/examples");
+  int seen = 0;
+  assert_non_null(folder);
+  for (struct dirent *entry; (entry = readdir(folder));) {
+    if (!strstr(entry->d_name, ".yaml"))
+      continue;
+    char path[1024];
+    struct campaign *campaign = NULL;
+    struct plan plan;
+    struct error error = {0};
+    snprintf(path, sizeof path, CLAST_SOURCE_DIR "/campaign/examples/%s", entry->d_name);
+    if (campaign_load(path, &campaign, &error) != STATUS_OK)
+      fail_msg("%s", error.message);
+    struct plan_options options = {.no_trial = true, .slots = 2, .store_path = "no-such-store.db"};
+    if (plan_make(campaign, &options, &plan, &error) != STATUS_OK)
+      fail_msg("%s: %s", path, error.message);
+    assert_int_equal(plan.points, campaign_points(campaign));
+    assert_true(plan.points >= 3 && plan.runs_least >= 60 && plan.memory_most > 1e5 && !plan.store_exists);
+    assert_int_equal(plan.runs_there, 0);
+    assert_true(isnan(plan.run_s_mean));
+    char *json = plan_json(campaign, &plan, 2);
+    assert_non_null(strstr(json, "\"run_s_mean\": null"));
+    free(json);
+    plan_clear(&plan);
+    campaign_free(campaign);
+    seen++;
+  }
+  closedir(folder);
+  assert_int_equal(seen, 5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(defaults_and_units),        cmocka_unit_test(every_kind_of_axis),
+      cmocka_unit_test(independent_seeds_follow_the_point), cmocka_unit_test(bad_documents_are_told_what_to_do),
+      cmocka_unit_test(all_errors_come_at_once),   cmocka_unit_test(odd_bytes_are_refused),
+      cmocka_unit_test(examples_are_ready_to_run),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
