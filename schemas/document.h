@@ -43,7 +43,8 @@ bool document_read(document_node *node, const struct field_table *table, const c
 
 /* Add a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
 void document_report(document_node *node, const char *path, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/* Report every key of the mapping that no call above has marked as seen. */
+/* Report every key of the mapping that is not among `known` (NULL-terminated, may be NULL) and that no call above has
+ * marked as seen. */
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);
 
 /* STATUS_OK when nothing was reported; else STATUS_CONTENT with the whole report in *report (owned by the document). */

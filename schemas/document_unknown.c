@@ -40,7 +40,10 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
 }
 
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known) {
-  if (mapping->kind != DOCUMENT_MAPPING) return;
-  for (size_t i = 0; i < mapping->count; i++)
-    if (!mapping->pairs[i].seen) document_unknown_key(mapping->pairs[i].key, path, known, NULL);
+  for (size_t i = 0; mapping->kind == DOCUMENT_MAPPING && i < mapping->count; i++) {
+    bool listed = mapping->pairs[i].seen;
+    for (size_t k = 0; known && known[k] && !listed; k++)
+      listed = strcmp(known[k], mapping->pairs[i].key->text) == 0;
+    if (!listed) document_unknown_key(mapping->pairs[i].key, path, known, NULL);
+  }
 }

@@ -7,7 +7,8 @@
 /* A decimal number, and perhaps a unit behind it. Which units suit, and what the number is in SI, a schema cannot know:
  * the reader judges that. The last part keeps `$` from matching before a line end. */
 #define NUMBER_AND_UNIT                                                                                                \
-  "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?( *| *[^-+0-9. ,_][^,_]*| +1/[^,_]+)$(?!\\\\n)"
+  "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?( *| *[^-+0-9. ,_\\\\n][^,_\\\\n]*| "                     \
+  "+1/[^,_\\\\n]+)$(?!\\\\n)"
 
 static void margin(int indent, FILE *out) {
   fprintf(out, "\n%*s", 2 * indent, "");

@@ -1,0 +1,179 @@
+/* The C reader's side of schema_corpus.sh, and on its own a test that the corpus is judged as its folders say.
+ *
+ *     test_schema_corpus                              every document of corpus/<kind>/{good,bad,reader}
+ *     test_schema_corpus schema scene|campaign        the schema that schemas/ holds a copy of
+ *     test_schema_corpus judge scene|campaign FILE... lines "good FILE" or "bad FILE"
+ *     test_schema_corpus generated                    documents made from the table of engine dem, one row after
+ * another, with the reader's verdict: "good" or "bad", text, "%%" */
+#include <dirent.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/dem/inputs.h"
+
+/* Documents are read with the table alone, so that this needs no engine to run. */
+#define engine_find corpus_engine
+#include "engine/scene.c" /* with engine_find replaced */
+#undef engine_find
+
+#include "campaign/campaign.h"
+#include "campaign/campaign_schema.h"
+
+static const struct engine_kind dem = {
+    .name = "dem", .results_version = 1, .inputs = &dem_inputs, .results = &outcome_table};
+
+const struct engine_kind *corpus_engine(const char *name, struct error *error) {
+  if (strcmp(name, "dem") == 0) return &dem;
+  status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: dem", name);
+  return NULL;
+}
+
+static bool judge(bool scene_kind, const char *path, bool show) {
+  struct error error = {.status = STATUS_OK};
+  status code;
+  if (scene_kind) {
+    struct scene *scene = NULL;
+    code = scene_load(path, NULL, &scene, &error);
+    scene_free(scene);
+  } else {
+    struct campaign *campaign = NULL;
+    code = campaign_load(path, &campaign, &error);
+    campaign_free(campaign);
+  }
+  if (show && code) fprintf(stderr, "%s\n", error.message);
+  return code == STATUS_OK;
+}
+
+static int judge_folder(bool scene_kind, const char *folder, bool good, int *count) {
+  char whole[512], path[1024];
+  int wrong = 0;
+  snprintf(whole, sizeof whole, "%s/tests/unit/corpus/%s/%s", CLAST_SOURCE_DIR, scene_kind ? "scene" : "campaign",
+           folder);
+  DIR *list = opendir(whole);
+  for (const struct dirent *entry; list && (entry = readdir(list));) {
+    if (!strstr(entry->d_name, ".yaml") && !strstr(entry->d_name, ".json")) continue;
+    snprintf(path, sizeof path, "%s/%.200s", whole, entry->d_name);
+    ++*count;
+    if (judge(scene_kind, path, good) == good) continue;
+    fprintf(stderr, "%s should be %s\n", path, good ? "accepted" : "refused");
+    wrong++;
+  }
+  if (list) closedir(list);
+  return wrong;
+}
+
+/* Nested block mapping of one or two paths, the second's common words written once. */
+static void write_document(const char *first, const char *first_text, const char *second, const char *second_text,
+                           FILE *out) {
+  fputs("engine: dem\n", out);
+  int level = 0;
+  const char *paths[2] = {first, second}, *texts[2] = {first_text, second_text};
+  for (int p = 0; p < 2; p++) {
+    const char *at = paths[p];
+    if (!at) continue;
+    size_t common = 0;
+    level = 0;
+    if (p == 1 && first)
+      for (size_t i = 0; first[i] && first[i] == second[i]; i++)
+        if (first[i] == '.') common = i + 1, level++;
+    at += common;
+    for (;; level++) {
+      size_t length = strcspn(at, ".");
+      fprintf(out, "%*s%.*s:", 2 * level, "", (int)length, at);
+      if (!at[length]) break;
+      fputc('\n', out);
+      at += length + 1;
+    }
+    fprintf(out, " %s\n", texts[p]);
+  }
+}
+
+static void emit(const char *first, const char *first_text, const char *second, const char *second_text) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out) return;
+  write_document(first, first_text, second, second_text, out);
+  fclose(out);
+  struct scene *scene = NULL;
+  bool good = scene_parse("generated", text, &scene, NULL) == STATUS_OK;
+  scene_free(scene);
+  printf("%s\n%s%%%%\n", good ? "good" : "bad", text);
+  free(text);
+}
+
+/* One row with one text, under every state of what it depends on. */
+static void emit_row(const struct field *row, const char *text) {
+  emit(NULL, NULL, row->path, text);
+  if (!row->when) return;
+  char path[128];
+  snprintf(path, sizeof path, "%.*s", (int)strcspn(row->when, "="), row->when);
+  const struct field *control = field_find(&dem_inputs, path, NULL);
+  for (size_t i = 0; control && control->kind == FIELD_CHOICE && control->choices[i]; i++)
+    emit(control->path, control->choices[i], row->path, text);
+  if (control && control->kind == FIELD_BOOLEAN) {
+    emit(control->path, "true", row->path, text);
+    emit(control->path, "false", row->path, text);
+  }
+}
+
+static void generate(void) {
+  static const char *const texts[] = {"3",       "3.5",  "-3",       "0",   "true",   "False", "words", "off",
+                                      "null",    "~",    "",         "[1]", "{a: 1}", "yes",   "no",    "1e3",
+                                      "5.0",     "1e30", "-1e30",    "007", "+1",     ".5",    "5.",    "''",
+                                      "'3 x,y'", "3 _",  "\"true\"", "3 4",     "1,5",   "- 3"};
+  for (size_t i = 0; i < dem_inputs.count; i++) {
+    const struct field *row = &dem_inputs.rows[i];
+    for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
+      emit_row(row, texts[k]);
+    const double edges[] = {row->minimum,
+                            row->maximum,
+                            nextafter(row->minimum, -HUGE_VAL),
+                            nextafter(row->maximum, HUGE_VAL),
+                            nextafter(row->minimum, HUGE_VAL),
+                            row->number};
+    for (size_t k = 0; k < 6 && (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER); k++) {
+      char text[32];
+      if (!isfinite(edges[k])) continue;
+      field_print_number(edges[k], text);
+      emit_row(row, text);
+    }
+    for (size_t c = 0; row->kind == FIELD_CHOICE && row->choices[c]; c++)
+      emit_row(row, row->choices[c]);
+    char unknown[140];
+    snprintf(unknown, sizeof unknown, "%sx", row->path);
+    emit(NULL, NULL, unknown, "3");
+    snprintf(unknown, sizeof unknown, "%s.x", row->path);
+    emit(NULL, NULL, unknown, "3");
+  }
+}
+
+int main(int count, char **arguments) {
+  bool scene_kind = count > 2 && strcmp(arguments[2], "scene") == 0;
+  if (count > 2 && strcmp(arguments[1], "schema") == 0) {
+    if (scene_kind)
+      scene_schema(&dem, stdout);
+    else
+      campaign_schema_write(stdout);
+    return 0;
+  }
+  if (count > 3 && strcmp(arguments[1], "judge") == 0) {
+    for (int i = 3; i < count; i++)
+      printf("%s %s\n", judge(scene_kind, arguments[i], false) ? "good" : "bad", arguments[i]);
+    return 0;
+  }
+  if (count == 2 && strcmp(arguments[1], "generated") == 0) {
+    generate();
+    return 0;
+  }
+  int wrong = 0;
+  for (int kind = 0; kind < 2; kind++) {
+    int good = 0, bad = 0;
+    wrong += judge_folder(kind == 0, "good", true, &good);
+    wrong += judge_folder(kind == 0, "bad", false, &bad) + judge_folder(kind == 0, "reader", false, &bad);
+    fprintf(stderr, "%s: %d good and %d bad documents\n", kind == 0 ? "scene" : "campaign", good, bad);
+    wrong += good < 3 || bad < 10;
+  }
+  return wrong != 0;
+}
