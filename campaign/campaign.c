@@ -270,13 +270,14 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
 
 static status from_document(struct document *document, const char *folder, struct campaign **out, struct error *error) {
   struct campaign *campaign = calloc(1, sizeof *campaign);
-  if (campaign)
-    campaign->text = strdup(document_text(document));
-  if (!campaign || !campaign->text) {
+  if (!campaign)
+    return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
+  read_all(document_root(document), folder, campaign); /* its defaults clear the whole struct */
+  campaign->text = strdup(document_text(document));
+  if (!campaign->text) {
     campaign_free(campaign);
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   }
-  read_all(document_root(document), folder, campaign);
   const char *report = NULL;
   status code = document_finish(document, &report);
   if (code != STATUS_OK) {

@@ -94,7 +94,7 @@ static status take_axis(void *context, size_t count, const struct query_value *v
 static void headings(struct printing *printing) {
   struct table *table = printing->table;
   bool people = printing->format == TABLE_TEXT;
-  static const char *const short_names[] = {"least sq.", "binned ML", "ML"};
+  static const char *const short_names[] = {"beta LSQ", "beta binned", "beta ML"};
   table_column(table, people ? "point" : "point_id", NULL);
   for (size_t i = 0; i < printing->axes; i++)
     table_column(table, printing->axis[i], printing->unit[i]);
@@ -134,6 +134,11 @@ status estimates_points(struct store *store, const struct estimates_choice *choi
   *points = isnan(number) ? 0 : (int64_t)number;
   return code;
 }
+
+const char *const estimates_legend =
+    "beta: exponent of F(m) ~ m^-beta (differential), pooled over the runs of a point, each run's largest fragment left out.\n"
+    "LSQ: least squares on log bins, the paper's way, biased; binned, ML: maximum likelihood on bins and on masses.\n"
+    "Windows start at 2, 5, 10 mean grain masses. Errors: one standard error, from resampling runs.\n";
 
 status estimates_rows(struct store *store, const struct estimates_choice *choice, enum table_format format, FILE *out,
                       struct error *error) {
@@ -180,6 +185,8 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   struct estimates_choice choice = {options->campaign, options->point, options->resamples};
   code = estimates_rows(store, &choice, format, stdout, error);
+  if (!code && format == TABLE_TEXT)
+    fputs(estimates_legend, stderr);
   store_close(store, NULL);
   return code;
 }

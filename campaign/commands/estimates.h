@@ -20,4 +20,6 @@ status estimates_rows(struct store *store, const struct estimates_choice *choice
 /* Points that estimates_rows would print. */
 status estimates_points(struct store *store, const struct estimates_choice *choice, int64_t *points, struct error *error);
 
+extern const char *const estimates_legend; /* what the columns of the aligned table mean */
+
 #endif

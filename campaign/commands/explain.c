@@ -55,7 +55,7 @@ static status explain_path(const char *path, struct error *error) {
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
 }
 
-static void first_sentence(const char *doc, char *text, size_t size) {
+void explain_sentence(const char *doc, char *text, size_t size) {
   size_t length = 0;
   while (doc[length] && !(doc[length] == '.' && (doc[length + 1] == ' ' || doc[length + 1] == '\0')))
     length++;
@@ -92,7 +92,7 @@ static status list_paths(const struct explain_options *options, struct error *er
       }
       table_text(table, object && input && *text ? text : NULL);
       free(object);
-      first_sentence(row->doc, text, sizeof text);
+      explain_sentence(row->doc, text, sizeof text);
       table_text(table, text);
     }
   return table_end(table, error);
@@ -107,8 +107,12 @@ void explain_inputs(const struct scene *scene, FILE *out) {
     struct field_value value;
     char text[FIELD_TEXT_SIZE], doc[FIELD_TEXT_SIZE];
     field_get(row, scene->inputs, &value);
-    field_print(row, &value, text, sizeof text);
-    first_sentence(row->doc, doc, sizeof doc);
+    if (row->kind == FIELD_REAL && !field_is_off(value.number)) /* six digits are enough for the eye */
+      snprintf(text, sizeof text, "%.6g%s%s", value.number, strcmp(row->unit, "1") == 0 ? "" : " ",
+               strcmp(row->unit, "1") == 0 ? "" : row->unit);
+    else
+      field_print(row, &value, text, sizeof text);
+    explain_sentence(row->doc, doc, sizeof doc);
     fprintf(out, "  %-28s %-20s %s\n", row->path, text, doc);
   }
 }

@@ -53,7 +53,7 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 }
 
 /* The store's verdict, not the driver's: what is printed is what any later reader will find. */
-static status print_estimates(const char *path, int64_t campaign, enum table_format format, struct error *error) {
+static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet, struct error *error) {
   struct store *store = NULL;
   int64_t points = 0;
   struct estimates_choice choice = {.campaign = campaign, .resamples = 400};
@@ -64,6 +64,10 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path, campaign);
   else if (!code)
     code = estimates_rows(store, &choice, format, stdout, error);
+  if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
+    fflush(stdout); /* the legend comes below the table */
+    fputs(estimates_legend, stderr);
+  }
   store_close(store, NULL);
   return code;
 }
@@ -96,7 +100,7 @@ static status manage(const struct campaign *campaign, const char *store, const s
   if (ended && !options->quiet)
     print_summary(&summary, store, wall_s, code);
   if (code == STATUS_OK || code == STATUS_FAILED_RUNS) {
-    status printed = print_estimates(store, summary.campaign_id, format, code ? NULL : error);
+    status printed = print_estimates(store, summary.campaign_id, format, options->quiet, code ? NULL : error);
     code = printed ? printed : code;
   }
   return code;

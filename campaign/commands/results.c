@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "analysis/estimates.h"
+#include "campaign/commands/explain.h"
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
@@ -28,20 +29,19 @@ static void value_cell(struct table *table, const struct field *row, const void 
 static bool empty(const struct field *row, const void *object) {
   struct field_value value;
   field_get(row, object, &value);
-  return (row->kind == FIELD_REAL && isnan(value.number)) || (row->kind == FIELD_TEXT && !*value.text);
+  return row->kind == FIELD_REAL && isnan(value.number);
 }
 
 static void list(struct table *table, const struct field_table *fields, const void *object) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
-    if (empty(row, object)) /* does not apply to this scene, or nothing to say */
+    if (empty(row, object) || row->kind == FIELD_TEXT) /* does not apply to this scene; the message goes to stderr */
       continue;
     table_text(table, row->path);
     value_cell(table, row, object);
     table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
-    char meaning[128];
-    size_t length = strcspn(row->doc, ".;:");
-    snprintf(meaning, sizeof meaning, "%.*s", (int)(length < 90 ? length : 90), row->doc);
+    char meaning[FIELD_TEXT_SIZE];
+    explain_sentence(row->doc, meaning, sizeof meaning);
     table_text(table, meaning);
   }
 }

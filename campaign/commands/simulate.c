@@ -75,6 +75,8 @@ static status simulate(const struct scene *scene, const struct options *options,
     code = results_print(scene->kind, options->seed, &result, format, error);
   if (!code && !campaign_usable(&result.outcome))
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
+  else if (!code && *result.outcome.message && !options->quiet)
+    fprintf(stderr, "clast: %s\n", result.outcome.message);
   run_result_clear(&result);
   return code;
 }

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# One run and the scenes: simulate, explain, scenes, cite, schema, picture.
+. "$(dirname "$0")/lib.bash"
+
+expect 0 "$clast" scenes --json
+scenes=$(python -c "import json; print(*[s['name'] for s in json.load(open('out'))])")
+same "$(echo "$scenes" | wc -w)" 5 "built-in scenes"
+for scene in $scenes; do
+  expect 0 "$clast" scenes "$scene"
+  cp out "./$scene.yaml"
+  expect 0 "$clast" explain "./$scene.yaml"
+  expect 0 "$clast" cite "$scene"
+  prints "K99"
+done
+expect 66 "$clast" scenes disc-explosoin
+says "disc-explosion"
+expect 0 "$clast" explain threshold.strain
+prints "default"
+expect 0 "$clast" explain contact
+prints "contact.friction"
+expect 65 "$clast" explain threshold.strian
+says "threshold.strain"
+expect 0 "$clast" explain --json
+python -c "import json; assert len(json.load(open('out'))) > 60"
+expect 0 "$clast" explain disc-explosion --set threshold.strain=5%
+prints "0.05"
+
+small=(--set "body.diameter=8 cm" --set "charge.energy=2 kJ/m" --set "stop.end_time=1 ms")
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --json
+cp out first.json
+expect 0 "$clast" simulate ./disc-explosion.yaml --seed 7 "${small[@]}" --json
+cmp -s out first.json || fail "a built-in scene and its own document differ"
+ok "the built-in scene and its document give the same bits"
+expect 0 "$clast" simulate disc-explosion --seed 8 "${small[@]}" --json
+if cmp -s out first.json; then fail "another seed gives the same result"; fi
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields end.h5 --snapshots 3 --picture end.png
+prints "largest_fraction"; prints "beta"
+for file in end.h5 disc-explosion_000000.h5 disc-explosion_000002.h5; do [ -s "$file" ] || fail "no $file"; done
+[ ! -e disc-explosion_000003.h5 ] || fail "too many snapshots"
+python - <<'PY'
+data = open('end.png', 'rb').read()
+assert data[:8] == b'\x89PNG\r\n\x1a\n' and len(data) > 5000, len(data)
+PY
+ok "snapshots, fields and picture"
+expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion, seed 7"
+cmp -s end.png again.png || fail "the picture of the same fields differs"
+expect 66 "$clast" picture missing.h5 x.png
+head -c 5000 /dev/urandom >noise.h5
+expect 65 "$clast" picture noise.h5 x.png
+expect 74 "$clast" simulate disc-explosion "${small[@]}" --fields none/such/folder/end.h5
+one_error
+
+for what in scene campaign; do
+  expect 0 "$clast" schema $what
+  python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
+done
+expect 64 "$clast" schema elephant
+done_after 36
