@@ -2,6 +2,7 @@
 #ifndef CLAST_TESTS_FARM_TASKS_H
 #define CLAST_TESTS_FARM_TASKS_H
 
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,7 +35,19 @@ struct task {
 
 struct task_answer {
   uint64_t id, value;
+  double kept_waiting_s; /* burning tasks: ready to run, but the machine ran something else */
 };
+
+/* Seconds this process has been ready and not running (Linux: second number of schedstat). */
+static inline double task_kept_waiting(void) {
+  char text[128] = "";
+  unsigned long long ran = 0, waited = 0;
+  const int file = open("/proc/self/schedstat", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  if (read(file, text, sizeof text - 1) > 0) sscanf(text, "%llu %llu", &ran, &waited);
+  close(file);
+  return 1e-9 * (double)waited;
+}
 
 static inline uint64_t task_value(uint64_t id) {
   return (id + 1) * UINT64_C(0x9e3779b97f4a7c15);
@@ -66,9 +79,11 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   if (size < sizeof task) return status_fail(error, STATUS_CONTENT, "a task of %zu bytes", size);
   memcpy(&task, bytes, sizeof task);
   size_t big = 0;
+  double waited = task.kind == TASK_BURN ? task_kept_waiting() : 0;
   switch (task.kind) {
   case TASK_BURN:
     task_burn(task.amount);
+    waited = task_kept_waiting() - waited;
     break;
   case TASK_SLEEP:
     task_sleep(task.amount);
@@ -114,7 +129,7 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
   *result = malloc(*result_size);
   if (!*result) return status_fail(error, STATUS_MEMORY, "no memory");
   memset(*result, (int)(task.id & 0xff), *result_size);
-  memcpy(*result, &(struct task_answer){task.id, task_value(task.id)}, sizeof(struct task_answer));
+  memcpy(*result, &(struct task_answer){task.id, task_value(task.id), waited}, sizeof(struct task_answer));
   return STATUS_OK;
 }
 
@@ -128,6 +143,7 @@ struct task_list {
   double *walls, *cpus;
   int64_t *peaks;
   char (*messages)[160];
+  double kept_waiting_s;
   uint64_t sum; /* of the answers of those done: independent of order */
   size_t reported, wrong;
   size_t stop_after; /* report() says `stop_with` after so many, 0 = never */
@@ -191,6 +207,7 @@ static inline status task_list_report(void *context, const struct farm_report *r
       memcpy(&answer, report->bytes, sizeof answer);
       if (answer.id != id || answer.value != task_value(id)) list->wrong++;
       list->sum += answer.value;
+      list->kept_waiting_s += answer.kept_waiting_s;
       for (size_t i = sizeof answer; i < report->size; i += 509)
         list->wrong += report->bytes[i] != (id & 0xff);
     }
