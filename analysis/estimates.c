@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
-static const char *const window_docs = "from 2 mean grain masses up: all resolved fragments but the largest\n"
-                                       "from 5 mean grain masses up, the largest left out\n"
-                                       "from 10 mean grain masses up, the largest left out";
+static const char *const window_docs = "fragments of 2 grains and more (from 1.5 mean grain masses), the largest left out\n"
+                                       "of 5 grains and more (from 4.5 mean grain masses), the largest left out\n"
+                                       "of 10 grains and more (from 9.5 mean grain masses), the largest left out";
 static const char *const method_docs =
     "unweighted least squares of log density on non-empty log bins: the paper's way, biased low\n"
     "maximum likelihood on the stored bins\n"
@@ -25,7 +25,7 @@ static const struct field rows_of_table[] = {
     {.path = "method", .kind = FIELD_CHOICE, .offset = AT(fit.method), .choices = exponent_method_names,
      .choice_docs = method_docs, .minimum = 0, .maximum = EXPONENT_METHODS - 1, .doc = "How the exponent was estimated."},
     {.path = "headline", .kind = FIELD_BOOLEAN, .offset = AT(headline), .minimum = 0, .maximum = 1,
-     .doc = "The estimate that is called beta: maximum likelihood on masses from 10 mean grains up, the largest fragment "
+     .doc = "The estimate that is called beta: maximum likelihood on masses of 10 grains and more, the largest fragment "
             "left out."},
     REAL("lower", "kg", fit.lower, 0, "Lower end of the window really used (2D: kg per metre of thickness).", NULL),
     REAL("upper", "kg", fit.upper, 0, "Upper end, itself outside: the mass of the largest fragment, or a bin edge.", NULL),
@@ -51,9 +51,9 @@ const struct field_table estimates_table =
 
 double estimates_window_grains(enum estimates_window window) {
   switch (window) {
-  case ESTIMATES_FROM_2: return 2;
-  case ESTIMATES_FROM_5: return 5;
-  case ESTIMATES_FROM_10: return 10;
+  case ESTIMATES_FROM_2: return 1.5;
+  case ESTIMATES_FROM_5: return 4.5;
+  case ESTIMATES_FROM_10: return 9.5;
   case ESTIMATES_WINDOWS: break;
   }
   return NAN;

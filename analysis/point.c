@@ -64,12 +64,13 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
                    "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
                    "results_version = :version AND counts = 1 ORDER BY replicate, seed",
                    2, parameters, 0, &sink, error);
-  /* Every run's window from_2 begins at two of its mean grain masses. */
+  /* Every run's window from_2 begins at so many of its mean grain masses. */
   if (!code)
     code = query_number(store,
-                        "SELECT avg(lower) / 2 FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
+                        "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
                         "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
                         2, parameters, &out->grain_mass, error);
+  out->grain_mass /= estimates_window_grains(ESTIMATES_FROM_2);
   if (code) {
     point_release(out);
     return code;

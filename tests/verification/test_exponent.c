@@ -109,6 +109,40 @@ static void ks_pays_with_scatter(void **state) {
   assert_true(result.deviation > result.quoted); /* .047 (.036): the search of x_min is not in the quoted error */
 }
 
+/* Masses in whole grains, P(N) ~ N^-2, N >= 1: drawn by inversion from the sums themselves. */
+static double grains(uint64_t sample, uint64_t i) {
+  double left = random_draw(22, 0, sample, i) * M_PI * M_PI / 6, n = 1;
+  while (left > 1 / (n * n) && n < 3000) { /* the rest of the sum beyond N is near 1/(N + 1/2) */
+    left -= 1 / (n * n);
+    n++;
+  }
+  return n < 3000 ? n : floor(1 / fmax(1.0 / 2999.5 - left, 1e-9));
+}
+
+static void equal_grains_are_discrete(void **state) {
+  (void)state;
+  enum { N = 2000, SETS = 60 };
+  /* From one grain up as if continuous: 1 + 1/mean(ln N) = 2.755, the sum done by hand (2.77 was measured). From
+   * N - 1/2 the windows of estimates.h: 1.955, 1.996, 2.004. */
+  const double lower[4] = {1, 1.5, 4.5, 9.5}, expected[4] = {2.755, 1.955, 1.996, 2.004};
+  double mean[4] = {0}, squares[4] = {0};
+  static double masses[N];
+  for (uint64_t s = 0; s < SETS; s++) {
+    for (uint64_t i = 0; i < N; i++) masses[i] = grains(s, i);
+    for (int w = 0; w < 4; w++) {
+      struct exponent fit;
+      assert_int_equal(exponent_fit(EXPONENT_MASSES, N, masses, (struct exponent_window){lower[w], HUGE_VAL}, &fit, NULL), STATUS_OK);
+      mean[w] += fit.beta / SETS;
+      squares[w] += fit.beta * fit.beta / SETS;
+    }
+  }
+  for (int w = 0; w < 4; w++) {
+    double error = sqrt((squares[w] - mean[w] * mean[w]) / SETS), bias = 1.0 / (N / (lower[w] + 0.5)); /* (beta-1)/n */
+    printf("  whole grains from %.1f: %.3f +- %.3f\n", lower[w], mean[w], error);
+    assert_true(fabs(mean[w] - expected[w]) < 4 * error + 0.003 /* error of the expected numbers */ + bias);
+  }
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
@@ -116,6 +150,7 @@ int main(void) {
       cmocka_unit_test(least_squares_has_its_known_bias),
       cmocka_unit_test(cutoff_is_found),
       cmocka_unit_test(ks_pays_with_scatter),
+      cmocka_unit_test(equal_grains_are_discrete),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
