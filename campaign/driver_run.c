@@ -15,6 +15,20 @@ static const char *outcome_of(status code) {
   return code == STATUS_OK || code == STATUS_FAILED_RUNS ? "finished" : code == STATUS_STOPPED ? "stopped" : "failed";
 }
 
+/* Nothing to do: lets the other ranks go in peace when the manager cannot begin. */
+static bool no_task(void *context, struct farm_task *task) {
+  (void)context, (void)task;
+  return false;
+}
+static status no_report(void *context, const struct farm_report *report, struct error *error) {
+  (void)context, (void)report, (void)error;
+  return STATUS_OK;
+}
+static status no_tick(void *context, int running, struct error *error) {
+  (void)context, (void)running, (void)error;
+  return STATUS_OK;
+}
+
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error) {
   *summary = (struct driver_summary){0};
@@ -41,6 +55,10 @@ status driver_run(const struct campaign *campaign, struct farm *farm, const stru
     code = verdict(summary, code, error);
     status session = store_end_session(store, summary->session_id, outcome_of(code), code == STATUS_OK ? error : NULL);
     code = code != STATUS_OK ? code : session;
+  } else {
+    const struct farm_manager nobody = {.next = no_task, .report = no_report, .tick = no_tick};
+    struct error ignored;
+    farm_run(farm, &nobody, &ignored);
   }
   driver_free(driver);
   /* What was committed stays, whatever happened; an error on closing is the last word only when all else went well. */

@@ -45,6 +45,7 @@ static void defaults_and_units(void **state) {
   struct campaign *campaign = good(HEAD "vary: {strain: [1 %, 3 %]}\nset: {contact.friction: 0.2}\n"
                                         "limits: {time: 10 min, memory: 2 GiB}\n");
   assert_string_equal(campaign->store, "t.db");
+  assert_non_null(strstr(campaign->text, "vary: {strain: [1 %, 3 %]}")); /* the store keeps it as written */
   assert_string_equal(campaign->quantity, "largest_fraction");
   assert_int_equal(campaign->per_point, 20);
   assert_int_equal(campaign->attempts, 2);
