@@ -74,7 +74,7 @@ static struct scene *create(const struct engine_kind *kind) {
   struct scene *scene = calloc(1, sizeof *scene);
   if (!scene) return NULL;
   scene->kind = kind;
-  scene->inputs = malloc(kind->inputs->size);
+  scene->inputs = calloc(1, kind->inputs->size);
   scene->given = calloc(kind->inputs->count + 1, sizeof *scene->given);
   if (!scene->inputs || !scene->given) {
     scene_free(scene);

@@ -137,7 +137,6 @@ void field_get(const struct field *row, const void *object, struct field_value *
 }
 
 void field_defaults(const struct field_table *table, void *object) {
-  memset(object, 0, table->size);
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     struct field_value value = {.kind = row->kind, .number = row->number};
@@ -315,7 +314,6 @@ size_t field_encoded_size(const struct field_table *table, const void *object) {
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object) {
   size_t used = 8;
   if (size < used || take(bytes, 8) != table_hash(table)) return 0;
-  memset(object, 0, table->size);
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char *to = (char *)object + row->offset;
@@ -346,6 +344,7 @@ size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_
     }
     case FIELD_TEXT:
       if (size - used < bits) return 0;
+      memset(to, 0, FIELD_TEXT_SIZE);
       memcpy(to, bytes + used, bits);
       used += bits;
       break;

@@ -77,7 +77,8 @@ size_t field_distance(const char *a, const char *b);
 /* Nearest known path by edit distance, or NULL when nothing is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
 
-void field_defaults(const struct field_table *table, void *object); /* fills every row; required ones get zero/NaN */
+/* Fills every row, required ones with zero or NaN; members that no row describes are left alone. */
+void field_defaults(const struct field_table *table, void *object);
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
 
 /* Why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is active. */
@@ -118,7 +119,7 @@ size_t field_explain(const struct field_table *table, const char *prefix, FILE *
  * so that a reader with other rows refuses instead of misreading. */
 size_t field_encoded_size(const struct field_table *table, const void *object);
 size_t field_encode(const struct field_table *table, const void *object, uint8_t *bytes);
-/* Returns bytes consumed, 0 when truncated or made from another table. */
+/* Returns bytes consumed, 0 when truncated or made from another table. Members that no row describes are left alone. */
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object);
 
 #endif

@@ -19,6 +19,7 @@ struct thing {
   int law, mode;
   char name[FIELD_TEXT_SIZE];
   double needed;
+  int unlisted; /* by no row */
 };
 
 static const char *const laws[] = {"weak", "strong", "off", NULL};
@@ -112,6 +113,9 @@ static void defaults_fill_everything(void **state) {
   assert_true(thing.broken && thing.law == 1 && thing.mode == 0 && thing.angle == 0.5);
   assert_string_equal(thing.name, "none");
   assert_true(isnan(thing.needed));
+  thing.unlisted = 7;
+  field_defaults(&table, &thing);
+  assert_int_equal(thing.unlisted, 7); /* what no row describes belongs to somebody else */
 }
 
 static void finds_by_suffix(void **state) {
