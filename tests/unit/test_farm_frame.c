@@ -1,0 +1,148 @@
+/* Frames: whole ones come out as they went in, whatever the cuts; torn and foreign bytes are seen. Jobs: handles. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/farm/frame.h"
+#include "campaign/farm/job.h"
+
+static void append(struct farm_bytes *bytes, uint64_t handle, size_t size) {
+  uint8_t *payload = malloc(size + 1);
+  memset(payload, (int)(handle & 0xff), size + 1);
+  struct iovec part[2] = {{payload, size / 3}, {payload + size / 3, size - size / 3}};
+  assert_true(farm_frame_append(bytes, FARM_FRAME_TASK, 7, handle, 2, part));
+  free(payload);
+}
+
+/* Fed in pieces of every small size: the same frames, payloads aligned. */
+static void any_cut(void **state) {
+  (void)state;
+  struct farm_bytes whole = {0};
+  for (uint64_t i = 0; i < 40; i++)
+    append(&whole, i, (size_t)(i * i * 7));
+  for (size_t piece = 1; piece < 200; piece += 13) {
+    struct farm_bytes in = {0};
+    uint64_t expected = 0;
+    for (size_t at = 0; at < whole.end; at += piece) {
+      const size_t n = whole.end - at < piece ? whole.end - at : piece;
+      assert_true(farm_frame_reserve(&in, farm_frame_missing(&in, n)));
+      memcpy(in.data + in.end, whole.data + at, n);
+      in.end += n;
+      struct farm_frame frame;
+      const uint8_t *payload;
+      int got;
+      while ((got = farm_frame_next(&in, &frame, &payload)) == 1) {
+        assert_int_equal(frame.handle, expected);
+        assert_int_equal(frame.size, expected * expected * 7);
+        assert_int_equal(frame.kind, FARM_FRAME_TASK);
+        assert_int_equal(frame.ticket, 7);
+        assert_int_equal((uintptr_t)payload % 16, 0);
+        for (size_t i = 0; i < frame.size; i++)
+          assert_int_equal(payload[i], expected & 0xff);
+        expected++;
+      }
+      assert_int_equal(got, 0);
+    }
+    assert_int_equal(expected, 40);
+    farm_frame_free(&in);
+  }
+  farm_frame_free(&whole);
+}
+
+/* Every single bit of a frame matters, padding excepted: it carries nothing. */
+static void any_flipped_bit(void **state) {
+  (void)state;
+  struct farm_bytes bytes = {0};
+  append(&bytes, 5, 100);
+  for (size_t bit = 0; bit < 8 * (sizeof(struct farm_frame) + 100); bit++) {
+    struct farm_frame frame;
+    const uint8_t *payload;
+    bytes.data[bit / 8] ^= (uint8_t)(1u << (bit % 8));
+    const int got = farm_frame_next(&bytes, &frame, &payload);
+    assert_true(got < 1); /* 0: a larger size says that more is to come */
+    bytes.data[bit / 8] ^= (uint8_t)(1u << (bit % 8));
+  }
+  struct farm_frame frame;
+  const uint8_t *payload;
+  assert_int_equal(farm_frame_next(&bytes, &frame, &payload), 1);
+  assert_int_equal(farm_frame_next(&bytes, &frame, &payload), 0);
+  farm_frame_free(&bytes);
+}
+
+static void foreign_and_oversized(void **state) {
+  (void)state;
+  struct farm_bytes bytes = {0};
+  struct farm_frame frame = {.magic = FARM_FRAME_MAGIC + (1u << 24), .kind = FARM_FRAME_TASK}; /* version 2 */
+  const uint8_t *payload;
+  assert_true(farm_frame_reserve(&bytes, 1000));
+  memcpy(bytes.data, &frame, sizeof frame);
+  bytes.end = 1000;
+  assert_int_equal(farm_frame_next(&bytes, &frame, &payload), -1);
+  frame = (struct farm_frame){.magic = FARM_FRAME_MAGIC, .size = UINT64_MAX - 5};
+  memcpy(bytes.data, &frame, sizeof frame);
+  assert_int_equal(farm_frame_next(&bytes, &frame, &payload), -1);
+  farm_frame_free(&bytes);
+  uint8_t byte = 0;
+  assert_false(farm_frame_append(&bytes, FARM_FRAME_TASK, 0, 1, 1, &(struct iovec){&byte, FARM_FRAME_LARGEST + 1}));
+}
+
+static void handles_are_never_used_twice(void **state) {
+  (void)state;
+  struct farm_job_table table = {0};
+  uint64_t old = 0;
+  struct farm_job *kept[200];
+  for (int i = 0; i < 200; i++) {
+    kept[i] = farm_job_new(0, (const uint8_t *)"x", 1);
+    assert_true(farm_job_table_add(&table, kept[i]));
+    assert_true(kept[i]->handle != 0);
+  }
+  for (int i = 0; i < 1000; i++) {
+    struct farm_job *job = farm_job_new(0, NULL, 0);
+    assert_true(farm_job_table_add(&table, job));
+    assert_true(job->handle != old);
+    assert_null(farm_job_table_find(&table, old));
+    assert_ptr_equal(farm_job_table_find(&table, job->handle), job);
+    old = job->handle;
+    farm_job_table_remove(&table, old);
+    assert_null(farm_job_table_find(&table, old));
+    free(job);
+  }
+  for (int i = 0; i < 200; i++)
+    assert_ptr_equal(farm_job_table_find(&table, kept[i]->handle), kept[i]);
+  assert_int_equal(table.count, 200);
+  assert_in_range(table.capacity, 201, 400); /* places are used again */
+  farm_job_table_free(&table);
+}
+
+static void queues_keep_order(void **state) {
+  (void)state;
+  struct farm_job_queue queue = {0};
+  for (uint64_t i = 1; i <= 5; i++)
+    farm_job_push(&queue, farm_job_new(i, NULL, 0));
+  farm_job_push_front(&queue, farm_job_new(9, NULL, 0));
+  free(farm_job_take(&queue, 5)); /* the last: `last` must move */
+  farm_job_push(&queue, farm_job_new(6, NULL, 0));
+  free(farm_job_take(&queue, 3));
+  assert_null(farm_job_take(&queue, 3));
+  const uint64_t expected[] = {9, 1, 2, 4, 6};
+  assert_int_equal(queue.count, 5);
+  for (int i = 0; i < 5; i++) {
+    struct farm_job *job = farm_job_pop(&queue);
+    assert_int_equal(job->handle, expected[i]);
+    free(job);
+  }
+  assert_null(farm_job_pop(&queue));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(any_cut), cmocka_unit_test(any_flipped_bit), cmocka_unit_test(foreign_and_oversized),
+      cmocka_unit_test(handles_are_never_used_twice), cmocka_unit_test(queues_keep_order)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
