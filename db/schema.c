@@ -13,7 +13,7 @@ size_t schema_table_count(void) {
 struct schema_table schema_table_at(size_t index, const struct field_table *estimate_table) {
   if (index >= schema_tables_count) return schema_result_table(engine_at(index - schema_tables_count));
   struct schema_table table = schema_tables[index];
-  if (strcmp(table.name, "estimate") == 0) table.fields = estimate_table;
+  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0) table.fields = estimate_table;
   return table;
 }
 
@@ -47,24 +47,19 @@ static void write_column(const char *name, const char *declaration, bool last, c
 void schema_write_table(const struct schema_table *table, FILE *out) {
   size_t fields = table->fields ? table->fields->count : 0;
   fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
-  /* A generated column must come after the ones it is made of: fixed columns that are generated go last. */
-  for (int generated = 0; generated < 2; generated++) {
-    for (size_t i = 0; i < table->count; i++) {
-      const struct schema_column *column = &table->columns[i];
-      if ((strstr(column->declaration, "GENERATED") != NULL) != (generated == 1)) continue;
-      bool last = i + 1 == table->count && (generated || fields == 0) && !table->tail;
-      write_column(column->name, column->declaration, last, column->unit, out);
-      fprintf(out, "%s\n", column->meaning);
-    }
-    bool generated_follows = table->count > 0 && strstr(table->columns[table->count - 1].declaration, "GENERATED");
-    for (size_t i = 0; generated == 0 && i < fields; i++) {
-      const struct field *row = &table->fields->rows[i];
-      char name[SCHEMA_NAME_SIZE];
-      sql_column_name(row->path, name, sizeof name);
-      write_column(name, sql_type(row), i + 1 == fields && !table->tail && !generated_follows, row->unit, out);
-      write_meaning(row, out);
-      fputc('\n', out);
-    }
+  for (size_t i = 0; i < table->count; i++) {
+    const struct schema_column *column = &table->columns[i];
+    write_column(column->name, column->declaration, i + 1 == table->count && fields == 0 && !table->tail, column->unit,
+                 out);
+    fprintf(out, "%s\n", column->meaning);
+  }
+  for (size_t i = 0; i < fields; i++) {
+    const struct field *row = &table->fields->rows[i];
+    char name[SCHEMA_NAME_SIZE];
+    sql_column_name(row->path, name, sizeof name);
+    write_column(name, sql_type(row), i + 1 == fields && !table->tail, row->unit, out);
+    write_meaning(row, out);
+    fputc('\n', out);
   }
   if (table->tail) fprintf(out, "  %s\n", table->tail);
   fprintf(out, ") %s;\n", table->options);
@@ -86,12 +81,12 @@ static status has_column(sqlite3 *db, const char *table, const char *column, boo
 }
 
 static status write_docs(sqlite3 *db, const struct schema_table *table, struct error *error) {
-  static const char insert[] = "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning) "
-                               "VALUES (%Q, %Q, %Q, %Q)";
+  static const char insert[] = "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
+                               "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)";
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < table->count; i++)
     result = sql_executef(db, "documenting columns", error, insert, table->name, table->columns[i].name,
-                          table->columns[i].unit, table->columns[i].meaning);
+                          table->columns[i].unit, table->columns[i].meaning, 0);
   for (size_t i = 0; result == STATUS_OK && table->fields && i < table->fields->count; i++) {
     const struct field *row = &table->fields->rows[i];
     char name[SCHEMA_NAME_SIZE], *meaning = NULL;
@@ -101,7 +96,8 @@ static status write_docs(sqlite3 *db, const struct schema_table *table, struct e
     if (!text) return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
     write_meaning(row, text);
     fclose(text);
-    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning);
+    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning,
+                          (row->flags & FIELD_VOLATILE) == 0);
     free(meaning);
   }
   return result;
@@ -161,8 +157,8 @@ static status write_sql(sqlite3 *db, const struct field_table *estimate_table, F
   if (result == STATUS_OK)
     result = sql_prepare(db,
                          "SELECT sql || ';' FROM sqlite_schema WHERE sql IS NOT NULL UNION ALL SELECT * FROM (SELECT "
-                         "format('INSERT INTO column_doc VALUES (%Q, %Q, %Q, %Q);', table_name, column_name, unit, "
-                         "meaning) FROM column_doc ORDER BY table_name, column_name)",
+                         "format('INSERT INTO column_doc VALUES (%Q, %Q, %Q, %Q, %d);', table_name, column_name, unit, "
+                         "meaning, deterministic) FROM column_doc ORDER BY table_name, column_name)",
                          &statement, "writing the schema", error);
   fprintf(out,
           "-- The store of clast: schema of version %d.\n"

@@ -29,7 +29,8 @@ struct schema_table {
   const char *options;              /* STRICT, perhaps WITHOUT ROWID */
 };
 
-/* Tables in the order in which they must be created. estimate_table NULL: `estimate` has its fixed columns only. */
+/* Tables in the order in which they must be created. estimate_table NULL: the tables of
+ * estimates have their fixed columns only. */
 size_t schema_table_count(void);
 struct schema_table schema_table_at(size_t index, const struct field_table *estimate_table);
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */

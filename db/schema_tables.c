@@ -68,8 +68,13 @@ static const struct schema_column run[] = {
     {"rank", "INTEGER NOT NULL", NULL, "MPI rank that computed it"},
     {"finished_at", "REAL NOT NULL", "s", "when it was stored, seconds since 1970-01-01 UTC"},
     {"fields_path", "TEXT", NULL, "HDF5 file with its fields, relative to the store's folder; NULL when none was kept"},
-    {"counts", "INTEGER GENERATED ALWAYS AS (surplus = 0 AND state IN ('completed', 'end-time')) VIRTUAL", NULL,
-     "1: part of the statistics (not surplus, and completed or ended at its time)"},
+    {"counts",
+     "INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT "
+     "NULL "
+     "AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND "
+     "mean_fragment_mass IS "
+     "NOT NULL))",
+     NULL, "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
 };
 
 static const struct schema_column fragment_mass[] = {
@@ -121,11 +126,14 @@ static const struct schema_column point_spectrum[] = {
 };
 
 static const struct schema_column estimate[] = {
-    {"estimate_id", "INTEGER PRIMARY KEY", NULL, "number of the estimate"},
+    {"run_id", "INTEGER NOT NULL REFERENCES run (run_id)", NULL, "the run"},
+    {"ordinal", "INTEGER NOT NULL", NULL, "number among the estimates of the run"},
+};
+
+static const struct schema_column point_estimate[] = {
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the point"},
-    {"run_id", "INTEGER REFERENCES run (run_id)", NULL, "the run, or NULL: pooled over the point's runs that count"},
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results it was made from"},
-    {"ordinal", "INTEGER NOT NULL", NULL, "number among the estimates of the same run or point"},
+    {"ordinal", "INTEGER NOT NULL", NULL, "number among the estimates of the point"},
 };
 
 static const struct schema_column attempt[] = {
@@ -160,6 +168,8 @@ static const struct schema_column column_doc[] = {
     {"column_name", "TEXT NOT NULL", NULL, "column of it"},
     {"unit", "TEXT", NULL, "SI unit; NULL where there is none"},
     {"meaning", "TEXT NOT NULL", NULL, "what the column holds"},
+    {"deterministic", "INTEGER NOT NULL DEFAULT 0", NULL,
+     "1: a result that depends on inputs, seed and results_version alone (not a time, a host...)"},
 };
 
 #define TABLE(table_, meaning_, ...)                                                                                   \
@@ -185,7 +195,10 @@ const struct schema_table schema_tables[] = {
           CLUSTERED("point_id, results_version")),
     TABLE(point_spectrum, "Running pooled spectrum of each point, kept in the transaction that adds the runs.",
           CLUSTERED("point_id, results_version, bin")),
-    TABLE(estimate, "Estimates made from fragment spectra; they can be made again at any time.", ROWID),
+    TABLE(estimate, "Estimates made from the fragments of one run; they can be made again at any time.",
+          CLUSTERED("run_id, ordinal")),
+    TABLE(point_estimate, "Estimates pooled over the runs of a point that count.",
+          CLUSTERED("point_id, results_version, ordinal")),
     TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
     TABLE(holder, "Who holds the store for writing, so that a refusal can name them.", ROWID),
 };
@@ -196,9 +209,6 @@ const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0
 const char *const schema_tables_indexes[][2] = {
     {"run", "CREATE INDEX run_statistics ON run (point_id, results_version, counts, replicate, seed, state, "
             "largest_fraction, second_fraction, fragment_count, dust_fraction, mean_fragment_mass);"},
-    {"estimate", "CREATE UNIQUE INDEX estimate_of_run ON estimate (run_id, ordinal) WHERE run_id IS NOT NULL;"},
-    {"estimate", "CREATE UNIQUE INDEX estimate_of_point ON estimate (point_id, results_version, ordinal) "
-                 "WHERE run_id IS NULL;"},
     {"attempt", "CREATE INDEX attempt_identity ON attempt (identity);"},
     {"attempt", "CREATE INDEX attempt_point ON attempt (point_id);"},
 };

@@ -29,9 +29,10 @@ static struct store *allocate(const char *path) {
 }
 
 static void release(struct store *store) {
-  sqlite3_stmt *const statements[] = {store->run,       store->masses,      store->motion,        store->spectrum,
-                                      store->attempt,   store->estimate,    store->point_find,    store->point,
-                                      store->axis_find, store->point_input, store->campaign_point};
+  sqlite3_stmt *const statements[] = {
+      store->run,         store->masses,        store->motion,     store->spectrum, store->spectrum_together,
+      store->attempt,     store->estimate,      store->point_find, store->point,    store->axis_find,
+      store->point_input, store->campaign_point};
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
   for (size_t i = 0; i < store->kind_count; i++)
@@ -137,7 +138,7 @@ status store_open_writer(const char *path, const struct field_table *estimate_ta
   if (result == STATUS_OK) result = migrate_inspect(store->db, path, &version, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db,
-                         "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = ON; PRAGMA "
+                         "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
                          "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                          "opening for writing", error);
   if (result == STATUS_OK) result = migrate_bring_forward(store->db, path, version, estimate_table, error);
@@ -266,10 +267,11 @@ status store_begin_session(struct store *store, const char *facts_json, int64_t 
   gethostname(host, sizeof host - 1);
   status result = store_begin(store, error);
   if (result != STATUS_OK) return result;
-  result = sql_executef(store->db, "beginning a session", error,
-                        "INSERT INTO session (started_at, host, pid, facts) VALUES (strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', "
-                        "'now'), %Q, %lld, %Q)",
-                        host, (long long)getpid(), facts_json ? facts_json : "{}");
+  result =
+      sql_executef(store->db, "beginning a session", error,
+                   "INSERT INTO session (started_at, host, pid, facts) VALUES (strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', "
+                   "'now'), %Q, %lld, %Q)",
+                   host, (long long)getpid(), facts_json ? facts_json : "{}");
   *session_id = sqlite3_last_insert_rowid(store->db);
   result = store_end(store, result, 1, error);
   return result == STATUS_OK ? store_flush(store, error) : result;

@@ -73,45 +73,46 @@ static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
 }
 
 /* Mean and scatter in one pass over the index run_statistics: deviations from the value of the point's first run (k),
- * so that nothing cancels, summed in the order of replicates, so that the bits do not depend on who finished first. */
+ * so that nothing cancels, summed in the order of replicates, so that the bits do not depend on who finished first. No
+ * quantity of a run that counts is NULL (a CHECK of table run). */
 static status write_points(sqlite3 *db, FILE *out, struct error *error) {
   fprintf(out, "CREATE VIEW points AS -- statistics of every point, one row per results_version\n"
-               "WITH first AS (\n  SELECT t.point_id, t.results_version, t.runs");
+               "WITH first AS (\n  SELECT ");
   for (int i = 0; views_quantities[i]; i++)
-    fprintf(out, ", ifnull(k.%s, 0) AS k%d", views_quantities[i], i);
+    fprintf(out, "k.%s AS k%d, ", views_quantities[i], i);
   fprintf(
       out,
-      "\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE f.point_id = t.point_id AND\n"
-      "    f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, f.seed LIMIT 1)\n"
-      "), moment AS (\n  SELECT f.point_id, f.results_version");
-  for (int i = 0; views_quantities[i]; i++)
-    fprintf(out,
-            ",\n    f.k%d AS k%d, count(r.%s) AS n%d, total(r.%s - f.k%d) AS s%d, total((r.%s - f.k%d) * (r.%s - "
-            "f.k%d)) AS q%d",
-            i, i, views_quantities[i], i, views_quantities[i], i, i, views_quantities[i], i, views_quantities[i], i, i);
+      "t.point_id, t.results_version\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE "
+      "f.point_id =\n    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, "
+      "f.seed LIMIT 1)\n"
+      "), moment AS (\n  SELECT f.point_id, f.results_version, count(*) AS n");
+  for (int i = 0; views_quantities[i]; i++) {
+    const char *name = views_quantities[i];
+    fprintf(out, ",\n    k%d, total(r.%s - k%d) AS s%d, total((r.%s - k%d) * (r.%s - k%d)) AS q%d", i, name, i, i, name,
+            i, name, i, i);
+  }
   fprintf(out,
           "\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
           "    r.counts = 1\n  GROUP BY f.point_id, f.results_version\n"
-          "), scatter AS (\n  SELECT point_id, results_version,\n    ");
-  views_student(out, "(n0 - 1)");
+          "), scatter AS (\n  SELECT point_id, results_version, n,\n    ");
+  views_student(out, "(n - 1)");
   fprintf(out, " AS t");
   for (int i = 0; views_quantities[i]; i++)
-    fprintf(out, ",\n    n%d AS n%d, k%d + s%d / n%d AS m%d, sqrt(max(0, (q%d - s%d * s%d / n%d) / (n%d - 1))) AS d%d",
-            i, i, i, i, i, i, i, i, i, i, i, i);
+    fprintf(out, ",\n    k%d + s%d / n AS m%d, sqrt(max(0, (q%d - s%d * s%d / n) / (n - 1))) AS d%d", i, i, i, i, i, i,
+            i);
   fprintf(out, "\n  FROM moment\n)\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
   fprintf(
       out,
-      "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,\n"
-      "  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
+      "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
+      "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
       "failed_attempts");
   for (int i = 0; views_quantities[i]; i++) {
     const char *name = views_quantities[i];
-    fprintf(out,
-            ",\n  s.m%d AS %s_mean, s.d%d AS %s_sd, s.d%d / sqrt(s.n%d) AS %s_se, s.t * s.d%d / sqrt(s.n%d) AS %s_hw95",
-            i, name, i, name, i, i, name, i, i, name);
+    fprintf(out, ",\n  m%d AS %s_mean, d%d AS %s_sd, d%d / sqrt(n) AS %s_se, s.t * d%d / sqrt(n) AS %s_hw95", i, name,
+            i, name, i, name, i, name);
   }
-  fprintf(out, "\nFROM point p LEFT JOIN point_total t ON t.point_id = p.point_id\n"
+  fprintf(out, "\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
                "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;\n");
   return result;
 }
@@ -131,18 +132,19 @@ static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
 }
 
 static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
+  static const char fields[] =
+      "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'";
   fprintf(out, "CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
-               "SELECT e.point_id, e.run_id, r.replicate, r.seed, r.counts, p.engine, p.scene_name AS scene,\n");
+               "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
-  if (result == STATUS_OK)
-    result =
-        each_row(db,
-                 "SELECT format('  e.\"%w\",' || char(10), name) FROM pragma_table_xinfo('estimate') WHERE name NOT IN "
-                 "('estimate_id', 'point_id', 'run_id', 'results_version')",
-                 write_text, out, error);
-  fprintf(out,
-          "  e.results_version\nFROM estimate e JOIN point p ON p.point_id = e.point_id LEFT JOIN run r ON r.run_id = "
-          "e.run_id;\n");
+  fprintf(out, "  ");
+  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ");
+  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
+               "  SELECT point_id, NULL, NULL, NULL, NULL, ");
+  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "results_version FROM point_estimate\n) e JOIN point p ON p.point_id = e.point_id;\n");
   return result;
 }
 
@@ -150,12 +152,14 @@ static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
 static status document(sqlite3 *db, struct error *error) {
   static const char sql[] =
       "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates');"
-      "INSERT INTO column_doc SELECT v.column1, column_name, unit, meaning || ' (input ' || path || ')' FROM axis, "
+      "INSERT INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, column_name, unit, meaning || "
+      "' (input ' || path || ')' FROM axis, "
       "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;"
-      "INSERT OR IGNORE INTO column_doc SELECT v.column1, w.column1, NULL, w.column2 FROM "
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, w.column1, NULL, "
+      "w.column2 FROM "
       "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, (VALUES ('scene', 'name of the scene the inputs "
       "started from')) w;"
-      "INSERT OR IGNORE INTO column_doc VALUES"
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES"
       "('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),"
       "('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),"
       "('spectra', 'n', '1', 'runs of the point that count'),"
@@ -166,14 +170,16 @@ static status document(sqlite3 *db, struct error *error) {
       "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
       "integral "
       "over mass is 1');"
-      "INSERT OR IGNORE INTO column_doc SELECT 'points', d.column_name || s.column1, d.unit, s.column2 || d.meaning "
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "
+      "s.column1, d.unit, s.column2 || d.meaning "
       "FROM "
       "column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
       "('_se', 'standard error of the mean: '), ('_hw95', 'half width of the 95 % confidence interval of the mean "
       "(Student): ')) s WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE "
       "c.name = "
       "d.column_name || s.column1);"
-      "INSERT OR IGNORE INTO column_doc SELECT v.column1, c.name, d.unit, d.meaning FROM "
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, c.name, d.unit, "
+      "d.meaning FROM "
       "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, column_doc d "
       "WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND (d.table_name IN ('run', "
       "'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*') "

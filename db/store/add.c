@@ -222,6 +222,14 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
   return store_end(store, result, 1, error);
 }
 
+/* Is the run part of the statistics? The same as the CHECK of run.counts. */
+static bool counts(const struct store_run *run) {
+  const struct outcome *o = run->outcome;
+  return !run->surplus && (o->state == OUTCOME_COMPLETED || o->state == OUTCOME_END_TIME) &&
+         !isnan(o->largest_fraction) && !isnan(o->second_fraction) && !isnan(o->dust_fraction) &&
+         !isnan(o->mean_fragment_mass);
+}
+
 static bool reserve_blob(struct store *store, size_t size) {
   if (size <= store->blob_capacity) return true;
   uint8_t *grown = realloc(store->blob, 2 * size);
@@ -303,25 +311,44 @@ static status cover_bins(struct store *store, int lowest, int highest, struct er
   return result;
 }
 
-static status add_spectrum(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
-  size_t count = 0;
-  bool counts = !run->surplus && (run->outcome->state == OUTCOME_COMPLETED || run->outcome->state == OUTCOME_END_TIME);
-  status result =
-      prepared(store, &store->spectrum, "INSERT INTO spectrum (run_id, bin, count, mass) VALUES (?1, ?2, ?3, ?4)",
-               adding_run, error);
-  if (result == STATUS_OK) result = fill_bins(store, &count, run, error);
-  if (result == STATUS_OK && count) result = cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error);
+enum { TOGETHER = 10 }; /* rows of one INSERT: starting a statement costs as much as inserting three rows */
+
+static void bind_bin(sqlite3_stmt *statement, int index, int64_t run_id, const struct spectrum_bin_row *bin) {
+  sqlite3_bind_int64(statement, index, run_id);
+  sqlite3_bind_int(statement, index + 1, bin->bin);
+  sqlite3_bind_int64(statement, index + 2, bin->count);
+  sqlite3_bind_double(statement, index + 3, bin->mass);
+}
+
+static status insert_bins(struct store *store, int64_t run_id, size_t count, struct error *error) {
+#define INSERT_SPECTRUM "INSERT INTO spectrum (run_id, bin, count, mass) VALUES (?, ?, ?, ?)"
+#define TWO_MORE        ", (?, ?, ?, ?), (?, ?, ?, ?)"
+  status result = prepared(store, &store->spectrum, INSERT_SPECTRUM, adding_run, error);
+  if (result == STATUS_OK)
+    result = prepared(store, &store->spectrum_together,
+                      INSERT_SPECTRUM TWO_MORE TWO_MORE TWO_MORE TWO_MORE ", (?, ?, ?, ?)", adding_run, error);
+  size_t i = 0;
+  for (; result == STATUS_OK && i + TOGETHER <= count; i += TOGETHER) {
+    for (int k = 0; k < TOGETHER; k++)
+      bind_bin(store->spectrum_together, 1 + 4 * k, run_id, &store->bins[i + (size_t)k]);
+    result = sql_run(store->spectrum_together, adding_run, error);
+  }
+  for (; result == STATUS_OK && i < count; i++) {
+    bind_bin(store->spectrum, 1, run_id, &store->bins[i]);
+    result = sql_run(store->spectrum, adding_run, error);
+  }
+  return result;
+}
+
+/* What the run adds to its point's running sums. */
+static status add_sums(struct store *store, const struct store_run *run, size_t count, struct error *error) {
+  bool counted = counts(run);
+  int version = run->kind->results_version;
   int64_t fragments = 0;
   double mass = 0;
-  for (size_t i = 0; result == STATUS_OK && i < count; i++) {
+  for (size_t i = 0; counted && i < count; i++) {
     const struct spectrum_bin_row *bin = &store->bins[i];
-    sqlite3_bind_int64(store->spectrum, 1, run_id);
-    sqlite3_bind_int(store->spectrum, 2, bin->bin);
-    sqlite3_bind_int64(store->spectrum, 3, bin->count);
-    sqlite3_bind_double(store->spectrum, 4, bin->mass);
-    result = sql_run(store->spectrum, adding_run, error);
-    if (!counts) continue;
-    struct sums_row *row = sums_at(&store->sums, run->point_id, run->kind->results_version, bin->bin);
+    struct sums_row *row = sums_at(&store->sums, run->point_id, version, bin->bin);
     if (!row) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
     row->runs++;
     row->count += bin->count;
@@ -330,22 +357,31 @@ static status add_spectrum(struct store *store, int64_t run_id, const struct sto
     fragments += bin->count;
     mass += bin->mass;
   }
-  struct sums_row *total = sums_at(&store->sums, run->point_id, run->kind->results_version, SPECTRUM_NO_BIN);
+  struct sums_row *total = sums_at(&store->sums, run->point_id, version, SPECTRUM_NO_BIN);
   if (!total) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  total->runs += counts;
-  total->censored += counts && run->outcome->state == OUTCOME_END_TIME;
+  total->runs += counted;
+  total->censored += counted && run->outcome->state == OUTCOME_END_TIME;
   total->surplus += run->surplus;
-  total->failed += !counts && !run->surplus;
+  total->failed += !counted && !run->surplus;
   total->count += fragments;
   total->mass += mass;
-  return result;
+  return STATUS_OK;
+}
+
+static status add_spectrum(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  size_t count = 0;
+  status result = fill_bins(store, &count, run, error);
+  if (result == STATUS_OK && count) result = cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error);
+  if (result == STATUS_OK) result = insert_bins(store, run_id, count, error);
+  return result == STATUS_OK ? add_sums(store, run, count, error) : result;
 }
 
 static status add_row(struct store *store, const struct store_run *run, int64_t *run_id, struct error *error) {
-  status result = prepare_insert(store, &store->run, "run",
-                                 "point_id, session_id, identity, replicate, seed, results_version, surplus, attempt, "
-                                 "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path",
-                                 &outcome_table, adding_run, error);
+  status result =
+      prepare_insert(store, &store->run, "run",
+                     "point_id, session_id, identity, replicate, seed, results_version, surplus, counts, attempt, "
+                     "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path",
+                     &outcome_table, adding_run, error);
   if (result != STATUS_OK) return result;
   sqlite3_stmt *statement = store->run;
   sqlite3_bind_int64(statement, 1, run->point_id);
@@ -358,15 +394,16 @@ static status add_row(struct store *store, const struct store_run *run, int64_t 
   sqlite3_bind_int64(statement, 5, (int64_t)run->seed);
   sqlite3_bind_int(statement, 6, run->kind->results_version);
   sqlite3_bind_int(statement, 7, run->surplus);
-  sqlite3_bind_int(statement, 8, run->attempt);
-  sqlite3_bind_double(statement, 9, run->wall_s);
-  sqlite3_bind_double(statement, 10, run->cpu_s);
-  sqlite3_bind_int64(statement, 11, run->peak_memory);
-  bind_text(statement, 12, run->host);
-  sqlite3_bind_int(statement, 13, run->rank);
-  sqlite3_bind_double(statement, 14, wall_clock());
-  bind_text(statement, 15, run->fields_path);
-  bind_fields(statement, 16, &outcome_table, run->outcome);
+  sqlite3_bind_int(statement, 8, counts(run));
+  sqlite3_bind_int(statement, 9, run->attempt);
+  sqlite3_bind_double(statement, 10, run->wall_s);
+  sqlite3_bind_double(statement, 11, run->cpu_s);
+  sqlite3_bind_int64(statement, 12, run->peak_memory);
+  bind_text(statement, 13, run->host);
+  sqlite3_bind_int(statement, 14, run->rank);
+  sqlite3_bind_double(statement, 15, wall_clock());
+  bind_text(statement, 16, run->fields_path);
+  bind_fields(statement, 17, &outcome_table, run->outcome);
   result = sql_run(statement, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);
   return result;
@@ -391,8 +428,7 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
   if (result == STATUS_OK) result = add_masses(store, run_id, run, error);
   if (result == STATUS_OK) result = add_spectrum(store, run_id, run, error);
   if (result == STATUS_OK && run->estimate_count)
-    result = store_set_estimates_rows(store, run->point_id, run_id, run->kind->results_version, run->estimate_count,
-                                      run->estimates, error);
+    result = store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error);
   if (result == STATUS_OK && !(entry = identities_add(&store->identities, run->identity)))
     result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   if (result == STATUS_OK) {

@@ -33,8 +33,9 @@ struct store {
   uint8_t batch_identities[STORE_BATCH_ROWS][16];
   size_t batch_identity_count;
 
-  sqlite3_stmt *run, *masses, *motion, *spectrum, *attempt, *estimate;
+  sqlite3_stmt *run, *masses, *motion, *spectrum, *spectrum_together, *attempt, *estimate;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
+  size_t estimate_rows; /* that the statement `estimate` inserts at once */
   struct store_kind kinds[STORE_KINDS];
   size_t kind_count;
 
@@ -50,8 +51,8 @@ status store_begin(struct store *store, struct error *error);
  * back, and the store refuses from then on. Returns `result`, or what the commit gave. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
-/* Insert estimates without clearing older ones, within the open batch. */
-status store_set_estimates_rows(struct store *store, int64_t point_id, int64_t run_id, int results_version,
-                                size_t count, const void *rows, struct error *error);
+/* Insert the estimates of a run that has none yet, within the open batch. */
+status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const void *rows,
+                                struct error *error);
 
 #endif

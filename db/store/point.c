@@ -23,12 +23,12 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
   char column[SCHEMA_NAME_SIZE];
   sqlite3_stmt *statement = NULL;
   sql_column_name(row->path, column, sizeof column);
-  char *sql =
-      sqlite3_mprintf("SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
-                      "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
-                      "= ?2 ORDER BY r.replicate, r.seed",
-                      of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_",
-                      of_outcome ? "" : kind->name, of_outcome ? "" : " e ON e.run_id = r.run_id");
+  char *sql = sqlite3_mprintf(
+      "SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
+      "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "
+      "= ?2 ORDER BY r.replicate, r.seed",
+      of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_", of_outcome ? "" : kind->name,
+      of_outcome ? "" : " e ON e.run_id = r.run_id");
   if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_prepare(store->db, sql, &statement, doing, error);
   sqlite3_free(sql);

@@ -6,49 +6,74 @@
 
 static const char writing[] = "writing estimates";
 
-static status prepare(struct store *store, struct error *error) {
-  if (store->estimate) return STATUS_OK;
+/* INSERT of `key` columns and the estimate's own, `rows` rows at once. */
+static status prepare(struct store *store, sqlite3_stmt **statement, const char *table, const char *key, size_t rows,
+                      struct error *error) {
+  if (*statement) return STATUS_OK;
   if (!store->estimate_table)
     return status_fail(error, STATUS_INTERNAL, "%s: estimates came, but the store was opened without their table",
                        store->path);
   char *sql = NULL;
-  size_t size = 0;
+  size_t size = 0, columns = store->estimate_table->count + 1;
   FILE *out = open_memstream(&sql, &size);
   if (!out) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
-  fputs("INSERT INTO estimate (point_id, run_id, results_version, ordinal", out);
+  for (const char *c = key; *c; c++)
+    columns += *c == ',';
+  fprintf(out, "INSERT INTO %s (%s", table, key);
   for (size_t i = 0; i < store->estimate_table->count; i++) {
     char name[SCHEMA_NAME_SIZE];
     sql_column_name(store->estimate_table->rows[i].path, name, sizeof name);
     fprintf(out, ", \"%s\"", name);
   }
-  fputs(") VALUES (?, ?, ?, ?", out);
-  for (size_t i = 0; i < store->estimate_table->count; i++)
-    fputs(", ?", out);
+  fputs(") VALUES ", out);
+  for (size_t row = 0; row < rows; row++)
+    for (size_t i = 0; i < columns; i++)
+      fputs(i ? ", ?" : row ? "), (?" : "(?", out);
   fputs(")", out);
   fclose(out);
-  status result = sql ? sql_prepare(store->db, sql, &store->estimate, writing, error)
+  status result = sql ? sql_prepare(store->db, sql, statement, writing, error)
                       : status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
   free(sql);
   return result;
 }
 
-status store_set_estimates_rows(struct store *store, int64_t point_id, int64_t run_id, int results_version,
-                                size_t count, const void *rows, struct error *error) {
-  status result = prepare(store, error);
-  for (size_t i = 0; result == STATUS_OK && i < count; i++) {
-    const struct field_table *table = store->estimate_table;
-    const void *object = (const char *)rows + i * table->size;
-    sqlite3_bind_int64(store->estimate, 1, point_id);
-    if (run_id > 0)
-      sqlite3_bind_int64(store->estimate, 2, run_id);
-    else
-      sqlite3_bind_null(store->estimate, 2);
-    sqlite3_bind_int(store->estimate, 3, results_version);
-    sqlite3_bind_int64(store->estimate, 4, (int64_t)i);
-    for (size_t k = 0; k < table->count; k++)
-      sql_bind_field(store->estimate, 5 + (int)k, &table->rows[k], object, false);
-    result = sql_run(store->estimate, writing, error);
+static void bind_fields(sqlite3_stmt *statement, int index, const struct field_table *table, const void *object) {
+  for (size_t k = 0; k < table->count; k++)
+    sql_bind_field(statement, index + (int)k, &table->rows[k], object, false);
+}
+
+/* All rows of a run go in with one statement: every run has the same number of them. */
+status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const void *rows,
+                                struct error *error) {
+  if (store->estimate && store->estimate_rows != count) {
+    sqlite3_finalize(store->estimate);
+    store->estimate = NULL;
   }
+  status result = prepare(store, &store->estimate, "estimate", "run_id, ordinal", count, error);
+  if (result != STATUS_OK) return result;
+  store->estimate_rows = count;
+  const struct field_table *table = store->estimate_table;
+  for (size_t i = 0; i < count; i++) {
+    int index = 1 + (int)(i * (2 + table->count));
+    sqlite3_bind_int64(store->estimate, index, run_id);
+    sqlite3_bind_int64(store->estimate, index + 1, (int64_t)i);
+    bind_fields(store->estimate, index + 2, table, (const char *)rows + i * table->size);
+  }
+  return sql_run(store->estimate, writing, error);
+}
+
+static status add_point_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
+                                  const void *rows, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = prepare(store, &statement, "point_estimate", "point_id, results_version, ordinal", 1, error);
+  for (size_t i = 0; result == STATUS_OK && i < count; i++) {
+    sqlite3_bind_int64(statement, 1, point_id);
+    sqlite3_bind_int(statement, 2, results_version);
+    sqlite3_bind_int64(statement, 3, (int64_t)i);
+    bind_fields(statement, 4, store->estimate_table, (const char *)rows + i * store->estimate_table->size);
+    result = sql_run(statement, writing, error);
+  }
+  sqlite3_finalize(statement);
   return result;
 }
 
@@ -56,14 +81,15 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
                            const void *rows, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK) return result;
-  if (run_id > 0)
+  if (run_id > 0) {
     result = sql_executef(store->db, writing, error, "DELETE FROM estimate WHERE run_id = %lld", (long long)run_id);
-  else
+    if (result == STATUS_OK && count) result = store_set_estimates_rows(store, run_id, count, rows, error);
+  } else {
     result = sql_executef(store->db, writing, error,
-                          "DELETE FROM estimate WHERE run_id IS NULL AND point_id = %lld AND results_version = %d",
+                          "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d",
                           (long long)point_id, results_version);
-  if (result == STATUS_OK)
-    result = store_set_estimates_rows(store, point_id, run_id, results_version, count, rows, error);
+    if (result == STATUS_OK) result = add_point_estimates(store, point_id, results_version, count, rows, error);
+  }
   return store_end(store, result, 1, error);
 }
 
@@ -75,9 +101,11 @@ status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, s
   if (result == STATUS_OK)
     result =
         sql_executef(store->db, doing, error,
-                     "UPDATE run SET surplus = replicate >= %lld WHERE point_id = %lld AND surplus <> (replicate >= "
-                     "%lld)",
-                     (long long)prefix, (long long)point_id, (long long)prefix);
+                     "UPDATE run SET surplus = replicate >= %lld, counts = replicate < %lld AND state IN "
+                     "('completed', 'end-time') AND largest_fraction + second_fraction + fragment_count + "
+                     "dust_fraction + mean_fragment_mass IS NOT NULL WHERE point_id = %lld AND surplus <> (replicate "
+                     ">= %lld)",
+                     (long long)prefix, (long long)prefix, (long long)point_id, (long long)prefix);
   if (result == STATUS_OK && sqlite3_changes64(store->db) > 0) result = sums_rebuild(store->db, point_id, error);
   return store_end(store, result, 1, error);
 }

@@ -251,9 +251,9 @@ static void estimates_are_replaced(void **state) {
   rows[0].beta = 4;
   OK(store_set_estimates(store, 1, 0, 3, 1, rows, &error));
   OK(store_set_estimates(store, 1, 2, 3, 1, rows, &error));
-  assert_near(number(store, "SELECT count(*) FROM estimate WHERE run_id IS NULL"), 1, 0);
-  assert_near(number(store, "SELECT beta FROM estimate WHERE run_id IS NULL"), 4, 0);
-  assert_near(number(store, "SELECT count(*) FROM estimate"), 6, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimates WHERE run_id IS NULL"), 1, 0);
+  assert_near(number(store, "SELECT beta FROM estimates WHERE run_id IS NULL"), 4, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimates"), 6, 0);
   OK(store_close(store, &error));
 }
 

@@ -1,0 +1,211 @@
+/* Is the store what it says? Each check is a question whose answer must be none. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "db/schema.h"
+#include "db/store/internal.h"
+#include "engine/scene.h"
+
+struct report {
+  struct store *store;
+  void (*line)(void *context, const char *text);
+  void *context;
+  int64_t problems;
+};
+
+static void say(struct report *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void say(struct report *report, const char *format, ...) {
+  char text[1024];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  report->problems++;
+  if (report->line) report->line(report->context, text);
+}
+
+/* Every row of `sql` is a problem; its first column is the sentence. */
+static status no_rows(struct report *report, const char *sql, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(report->store->db, sql, &statement, "checking", error);
+  int code = SQLITE_DONE;
+  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
+    say(report, "%s", (const char *)sqlite3_column_text(statement, 0));
+  if (result == STATUS_OK && code != SQLITE_DONE) result = sql_fail(report->store->db, code, "checking", error);
+  sqlite3_finalize(statement);
+  return result;
+}
+
+static const char *const questions[] = {
+    "SELECT 'database: ' || integrity_check FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
+    "SELECT 'foreign key: row ' || ifnull(rowid, '?') || ' of table ' || \"table\" || ' names a row of ' || parent || "
+    "' that "
+    "is not there' FROM pragma_foreign_key_check",
+    "SELECT 'run ' || run_id || ' has no fragment masses' FROM run WHERE run_id NOT IN (SELECT run_id FROM "
+    "fragment_mass)",
+    "SELECT 'point ' || point_id || ' has no inputs' FROM point WHERE point_id NOT IN (SELECT point_id FROM "
+    "point_input)",
+    "SELECT 'run ' || run_id || ': ' || length(masses) / 8.0 || ' masses, but fragment_count is ' || fragment_count "
+    "FROM run "
+    "JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * fragment_count",
+    "SELECT 'bin ' || bin || ' has no edges' FROM (SELECT DISTINCT bin FROM point_spectrum) WHERE bin NOT IN (SELECT "
+    "bin FROM "
+    "bin)",
+};
+
+/* Orphans of result tables, whatever engines there are. */
+static status check_results(struct report *report, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result =
+      sql_prepare(report->store->db,
+                  "SELECT format('SELECT ''run '' || run_id || '' has no row in %w'' FROM run JOIN point USING "
+                  "(point_id) WHERE engine = %Q AND run_id NOT IN (SELECT run_id FROM \"%w\")', name, substr(name, "
+                  "8), name) FROM sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
+                  &statement, "checking", error);
+  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
+    result = no_rows(report, (const char *)sqlite3_column_text(statement, 0), error);
+  sqlite3_finalize(statement);
+  return result;
+}
+
+static status check_files(struct report *report, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  const char *slash = strrchr(report->store->path, '/');
+  int folder = slash ? (int)(slash - report->store->path + 1) : 0;
+  status result = sql_prepare(report->store->db, "SELECT run_id, fields_path FROM run WHERE fields_path IS NOT NULL",
+                              &statement, "checking", error);
+  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW) {
+    const char *name = (const char *)sqlite3_column_text(statement, 1);
+    char *path =
+        name[0] == '/' ? sqlite3_mprintf("%s", name) : sqlite3_mprintf("%.*s%s", folder, report->store->path, name);
+    if (path && access(path, R_OK) != 0)
+      say(report, "run %lld: its fields file %s is missing", (long long)sqlite3_column_int64(statement, 0), path);
+    sqlite3_free(path);
+  }
+  sqlite3_finalize(statement);
+  return result;
+}
+
+/* The spectrum rows of a run against its masses binned again: counts exactly, mass to its rounding (n additions). */
+static void check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows) {
+  struct spectrum_bin_row bins[512];
+  size_t count = spectrum_fill(n, masses, bins, 512), i = 0;
+  bool same = count <= 512;
+  sqlite3_bind_int64(rows, 1, run_id);
+  while (sqlite3_step(rows) == SQLITE_ROW) {
+    same = same && i < count && sqlite3_column_int(rows, 0) == bins[i].bin &&
+           sqlite3_column_int64(rows, 1) == bins[i].count &&
+           fabs(sqlite3_column_double(rows, 2) - bins[i].mass) <= 1e-12 * bins[i].mass;
+    i++;
+  }
+  sqlite3_reset(rows);
+  if (!same || i != count) say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
+}
+
+static status check_masses(struct report *report, struct error *error) {
+  sqlite3_stmt *runs = NULL, *rows = NULL;
+  double *masses = NULL;
+  size_t capacity = 0;
+  status result = sql_prepare(report->store->db,
+                              "SELECT run_id, masses, total_mass, counts FROM fragment_mass JOIN run USING "
+                              "(run_id)",
+                              &runs, "checking", error);
+  if (result == STATUS_OK)
+    result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
+                         &rows, "checking", error);
+  while (result == STATUS_OK && sqlite3_step(runs) == SQLITE_ROW) {
+    int64_t run_id = sqlite3_column_int64(runs, 0);
+    const unsigned char *bytes = sqlite3_column_blob(runs, 1);
+    size_t n = (size_t)sqlite3_column_bytes(runs, 1) / 8;
+    if (n > capacity) {
+      double *grown = realloc(masses, 2 * n * sizeof *grown);
+      if (!grown) {
+        result = status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+        break;
+      }
+      masses = grown;
+      capacity = 2 * n;
+    }
+    double total = 0;
+    bool descending = true;
+    for (size_t i = 0; i < n; i++) {
+      uint64_t bits = 0;
+      for (size_t k = 8; k-- > 0;)
+        bits = bits << 8 | bytes[8 * i + k];
+      memcpy(&masses[i], &bits, sizeof bits);
+      total += masses[i];
+      descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
+    }
+    if (!descending) say(report, "run %lld: its masses are not in descending order", (long long)run_id);
+    /* The engine may have summed in another order: n roundings of the total, n below 1e6. */
+    double stored = sqlite3_column_double(runs, 2);
+    if (sqlite3_column_int(runs, 3) && fabs(total - stored) > 1e-9 * stored)
+      say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
+          stored);
+    check_spectrum(report, run_id, n, masses, rows);
+  }
+  free(masses);
+  sqlite3_finalize(runs);
+  sqlite3_finalize(rows);
+  return result;
+}
+
+/* A run's identity made again from its point's scene. Runs of another results_version, or of an engine that this
+ * program lacks, cannot be judged. */
+static status check_identities(struct report *report, struct error *error) {
+  sqlite3_stmt *points = NULL, *runs = NULL;
+  status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,
+                              "checking", error);
+  if (result == STATUS_OK)
+    result = sql_prepare(report->store->db,
+                         "SELECT run_id, seed, identity FROM run WHERE point_id = ?1 AND results_version = ?2", &runs,
+                         "checking", error);
+  while (result == STATUS_OK && sqlite3_step(points) == SQLITE_ROW) {
+    struct scene *scene = NULL;
+    struct error why = {0};
+    int64_t point_id = sqlite3_column_int64(points, 0);
+    if (!engine_find((const char *)sqlite3_column_text(points, 3), NULL)) continue;
+    if (scene_parse((const char *)sqlite3_column_text(points, 2), (const char *)sqlite3_column_text(points, 1), &scene,
+                    &why) != STATUS_OK) {
+      say(report, "point %lld: its scene cannot be read: %.600s", (long long)point_id, why.message);
+      continue;
+    }
+    sqlite3_bind_int64(runs, 1, point_id);
+    sqlite3_bind_int(runs, 2, scene->kind->results_version);
+    while (sqlite3_step(runs) == SQLITE_ROW) {
+      uint8_t identity[16];
+      scene_identity(scene, (uint64_t)sqlite3_column_int64(runs, 1), identity);
+      if (sqlite3_column_bytes(runs, 2) != 16 || memcmp(identity, sqlite3_column_blob(runs, 2), 16) != 0)
+        say(report, "run %lld: its identity is not that of its scene and seed",
+            (long long)sqlite3_column_int64(runs, 0));
+    }
+    sqlite3_reset(runs);
+    scene_free(scene);
+  }
+  sqlite3_finalize(points);
+  sqlite3_finalize(runs);
+  return result;
+}
+
+status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
+                   struct error *error) {
+  struct report report = {.store = store, .line = line, .context = context};
+  int64_t wrong = 0;
+  status result = store_flush(store, error);
+  for (size_t i = 0; result == STATUS_OK && i < sizeof questions / sizeof questions[0]; i++)
+    result = no_rows(&report, questions[i], error);
+  if (result == STATUS_OK) result = check_results(&report, error);
+  if (result == STATUS_OK) result = check_files(&report, error);
+  if (result == STATUS_OK) result = sums_mismatches(store->db, &wrong, error);
+  if (result == STATUS_OK && wrong > 0)
+    say(&report, "running sums: %lld rows of point_total and point_spectrum differ from the runs they sum",
+        (long long)wrong);
+  if (result == STATUS_OK) result = check_masses(&report, error);
+  if (result == STATUS_OK) result = check_identities(&report, error);
+  if (result == STATUS_OK && report.problems > 0)
+    result = status_fail(error, STATUS_CONTENT, "%s: %lld problems found", store->path, (long long)report.problems);
+  return result;
+}

@@ -1,0 +1,196 @@
+/* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
+#include <string.h>
+
+#include "db/bins.h"
+#include "db/schema.h"
+#include "db/store/internal.h"
+#include "db/views.h"
+
+static const char doing[] = "merging";
+
+/* Columns both stores have in a table, besides `but`, each with a comma before it; sqlite3_free() it. */
+static char *common_columns(sqlite3 *db, const char *table, const char *but) {
+  sqlite3_stmt *statement = NULL;
+  char *list = sqlite3_mprintf("");
+  int code =
+      sqlite3_prepare_v2(db,
+                         "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') b "
+                         "USING (name) WHERE name <> ?2",
+                         -1, &statement, NULL);
+  if (code == SQLITE_OK) {
+    sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
+    sqlite3_bind_text(statement, 2, but, -1, SQLITE_STATIC);
+    while (list && sqlite3_step(statement) == SQLITE_ROW) {
+      char *longer = sqlite3_mprintf("%s, \"%w\"", list, sqlite3_column_text(statement, 0));
+      sqlite3_free(list);
+      list = longer;
+    }
+  }
+  sqlite3_finalize(statement);
+  return list;
+}
+
+/* What ids of `other` are called here: temporary tables. Sessions are the same when started by the same process at the
+ * same time. */
+static status map_parents(sqlite3 *db, struct error *error) {
+  return sql_execute(
+      db,
+      "CREATE TEMP TABLE merge_point AS SELECT b.point_id AS theirs, a.point_id AS ours FROM other.point b LEFT JOIN "
+      "main.point a USING (hash);"
+      "INSERT INTO main.point (hash, engine, scene_name, scene) SELECT hash, engine, scene_name, scene FROM "
+      "other.point "
+      "WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
+      "DROP TABLE merge_point;"
+      "CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
+      "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
+      "INSERT OR IGNORE INTO main.point_input SELECT m.ours, i.path, i.value FROM other.point_input i JOIN merge_point "
+      "m ON "
+      "m.theirs = i.point_id;"
+      "INSERT OR IGNORE INTO main.axis SELECT * FROM other.axis;"
+
+      "INSERT INTO main.campaign (name, document, plan, added_at) SELECT name, document, plan, added_at FROM "
+      "other.campaign "
+      "b WHERE NOT EXISTS (SELECT 1 FROM main.campaign a WHERE a.name = b.name AND a.document = b.document);"
+      "INSERT OR IGNORE INTO main.campaign_point SELECT a.campaign_id, m.ours FROM other.campaign_point c JOIN "
+      "other.campaign b ON b.campaign_id = c.campaign_id JOIN main.campaign a ON a.name = b.name AND a.document = "
+      "b.document "
+      "JOIN merge_point m ON m.theirs = c.point_id;"
+
+      "INSERT INTO main.session (started_at, ended_at, outcome, host, pid, facts) SELECT started_at, ended_at, "
+      "outcome, host, "
+      "pid, facts FROM other.session b WHERE NOT EXISTS (SELECT 1 FROM main.session a WHERE (a.started_at, a.host, "
+      "a.pid) = "
+      "(b.started_at, b.host, b.pid));"
+      "CREATE TEMP TABLE merge_session (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
+      "INSERT OR IGNORE INTO merge_session SELECT b.session_id, a.session_id FROM other.session b JOIN main.session a "
+      "ON "
+      "(a.started_at, a.host, a.pid) = (b.started_at, b.host, b.pid);",
+      doing, error);
+}
+
+/* Runs that main lacks, numbered on from its last. */
+static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
+  char *columns = common_columns(db, "run", "");
+  if (!columns) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result = sql_execute(db,
+                              "CREATE TEMP TABLE merge_run (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
+                              "INSERT INTO merge_run SELECT b.run_id, (SELECT ifnull(max(run_id), 0) FROM main.run) + "
+                              "row_number() OVER (ORDER BY "
+                              "b.run_id) FROM other.run b WHERE b.identity NOT IN (SELECT identity FROM main.run);",
+                              doing, error);
+  if (result == STATUS_OK)
+    result =
+        sql_executef(db, doing, error,
+                     "CREATE TEMP TABLE merge_rows AS SELECT %s FROM other.run WHERE run_id IN (SELECT theirs FROM "
+                     "merge_run);"
+                     "UPDATE merge_rows SET run_id = (SELECT ours FROM merge_run WHERE theirs = run_id), point_id = "
+                     "(SELECT ours FROM merge_point WHERE theirs = point_id), session_id = (SELECT ours FROM "
+                     "merge_session WHERE theirs = session_id);"
+                     "INSERT INTO main.run (%s) SELECT %s FROM merge_rows ORDER BY run_id; DROP TABLE merge_rows;",
+                     columns + 2, columns + 2, columns + 2);
+  sqlite3_free(columns);
+  return result == STATUS_OK ? sql_integer(db, "SELECT count(*) FROM merge_run", 0, added, error) : result;
+}
+
+/* Rows of a table that belong to the runs that were copied. */
+static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) {
+  char *columns = common_columns(db, table, "run_id");
+  if (!columns) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result =
+      sql_executef(db, doing, error,
+                   "INSERT INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m JOIN other.\"%w\" o ON "
+                   "o.run_id = m.theirs ORDER BY m.ours",
+                   table, columns, columns, table);
+  sqlite3_free(columns);
+  return result;
+}
+
+static status copy_attempts(sqlite3 *db, struct error *error) {
+  return sql_execute(
+      db,
+      "INSERT INTO main.attempt (identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, "
+      "wall_time, peak_memory, limited_to, message, host, rank, failed_at) SELECT b.identity, m.ours, b.replicate, "
+      "b.seed, "
+      "s.ours, b.number, b.reason, b.exit_code, b.signal, b.wall_time, b.peak_memory, b.limited_to, b.message, b.host, "
+      "b.rank, b.failed_at FROM other.attempt b JOIN merge_point m ON m.theirs = b.point_id LEFT JOIN merge_session s "
+      "ON "
+      "s.theirs = b.session_id WHERE NOT EXISTS (SELECT 1 FROM main.attempt a WHERE (a.identity, a.number, "
+      "a.failed_at) = "
+      "(b.identity, b.number, b.failed_at))",
+      doing, error);
+}
+
+/* Result tables of engines that this program has not got are made as theirs are. */
+static status make_tables(sqlite3 *db, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result =
+      sql_prepare(db,
+                  "SELECT sql FROM other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' AND name NOT "
+                  "IN (SELECT name FROM main.sqlite_schema)",
+                  &statement, doing, error);
+  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
+    result = sql_execute(db, (const char *)sqlite3_column_text(statement, 0), doing, error);
+  sqlite3_finalize(statement);
+  if (result == STATUS_OK)
+    result = sql_execute(db, "INSERT OR IGNORE INTO main.column_doc SELECT * FROM other.column_doc", doing, error);
+  return result;
+}
+
+static status copy_results(sqlite3 *db, struct error *error) {
+  static const char *const tables[] = {"fragment_mass", "fragment_motion", "spectrum", "estimate"};
+  sqlite3_stmt *statement = NULL;
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)
+    result = copy_of_runs(db, tables[i], error);
+  if (result == STATUS_OK)
+    result = sql_prepare(db, "SELECT name FROM other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
+                         &statement, doing, error);
+  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
+    result = copy_of_runs(db, (const char *)sqlite3_column_text(statement, 0), error);
+  sqlite3_finalize(statement);
+  return result;
+}
+
+static status merge(sqlite3 *db, int64_t *added, struct error *error) {
+  status result = make_tables(db, error);
+  if (result == STATUS_OK) result = map_parents(db, error);
+  if (result == STATUS_OK) result = copy_runs(db, added, error);
+  if (result == STATUS_OK) result = copy_results(db, error);
+  if (result == STATUS_OK) result = copy_attempts(db, error);
+  if (result == STATUS_OK) result = bins_cover_spectrum(db, error);
+  if (result == STATUS_OK && *added > 0) result = sums_rebuild(db, 0, error);
+  /* Pooled estimates were of fewer runs. */
+  if (result == STATUS_OK && *added > 0)
+    result =
+        sql_execute(db,
+                    "DELETE FROM main.point_estimate WHERE point_id IN (SELECT point_id FROM main.run WHERE run_id IN "
+                    "(SELECT ours FROM merge_run))",
+                    doing, error);
+  return result == STATUS_OK ? views_regenerate(db, error) : result;
+}
+
+status store_merge(struct store *store, const char *source, int64_t *added, struct error *error) {
+  struct store *other = NULL;
+  *added = 0;
+  status result = store_open_reader(source, &other, error); /* refuses what is missing, foreign, newer, older */
+  if (result == STATUS_OK) result = store_close(other, error);
+  if (result == STATUS_OK) result = store_flush(store, error);
+  if (result == STATUS_OK) result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
+  if (result != STATUS_OK) return result;
+  result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
+  if (result == STATUS_OK) {
+    result = merge(store->db, added, error);
+    if (result == STATUS_OK) result = sql_execute(store->db, "COMMIT", doing, error);
+    if (result != STATUS_OK) {
+      sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+      *added = 0;
+    }
+  }
+  sqlite3_exec(store->db,
+               "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
+               "temp.merge_run; DETACH other",
+               NULL, NULL, NULL);
+  identities_clear(&store->identities); /* read again at the next question */
+  store->identities_loaded = false;
+  return result;
+}

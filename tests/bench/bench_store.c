@@ -1,0 +1,138 @@
+/* Speed of the store on 1e5 runs with 30 non-empty bins each, 100 points: what issue and design promise. Prints `name
+ * value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
+#include <time.h>
+
+#include "tests/store_fixture.h"
+
+enum { POINTS = 100, BINS = 30, REPEATS = 5, VARIANTS = 64 };
+
+static struct error error;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void need(status result) {
+  if (result == STATUS_OK) return;
+  fprintf(stderr, "%s\n", error.message);
+  exit(result);
+}
+
+/* Two fragments in each of 30 bins. */
+static void fill(struct fixture_run *f, const struct scene *scene, int variant) {
+  fixture_fill(f, scene, 0, 0, variant, FIXTURE_FRAGMENTS);
+  for (int i = 0; i < FIXTURE_FRAGMENTS; i++)
+    f->fragments[i].mass = pow(10, -0.1 * (i / 2) - 0.01 - 0.08 * fixture_random((uint64_t)i, (uint64_t)variant));
+}
+
+static double processor(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Seconds spent in the store: adding, committing, closing. Runs come point by point in turn, the hardest order for
+ * sums. */
+static double load(const char *path, int64_t runs, size_t estimates, double *cpu) {
+  static struct fixture_run variants[VARIANTS];
+  struct fixture_inputs inputs;
+  struct store *store = NULL;
+  int64_t points[POINTS];
+  unlink(path);
+  double start = now();
+  need(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  for (int p = 0; p < POINTS; p++) {
+    struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
+    need(store_add_point(store, 0, &scene, 2, fixture_axes, &points[p], &error));
+  }
+  double spent = now() - start;
+  struct scene scene = fixture_scene(&inputs, 1, 1e30);
+  for (int v = 0; v < VARIANTS; v++)
+    fill(&variants[v], &scene, v);
+  *cpu = processor();
+  for (int64_t r = 0; r < runs; r++) {
+    struct fixture_run *f = &variants[r % VARIANTS];
+    f->run.point_id = points[r % POINTS];
+    f->run.replicate = r / POINTS;
+    f->run.seed = (uint64_t)f->run.replicate;
+    f->run.estimate_count = estimates;
+    f->outcome.largest_fraction = fixture_random(7, (uint64_t)r);
+    for (int i = 0; i < 2; i++) {
+      double word = fixture_random((uint64_t)r, (uint64_t)i);
+      memcpy(f->run.identity + 8 * i, &word, sizeof word);
+    }
+    start = now();
+    need(store_add_run(store, &f->run, &error));
+    spent += now() - start;
+  }
+  start = now();
+  need(store_close(store, &error));
+  *cpu = processor() - *cpu;
+  return spent + now() - start;
+}
+
+static status count_row(void *context, size_t count, const struct query_value *values, struct error *unused) {
+  (void)count, (void)values, (void)unused;
+  ++*(int *)context;
+  return STATUS_OK;
+}
+
+static void ask(struct store *store, const char *name, const char *sql, int rows_expected) {
+  double best = HUGE_VAL;
+  for (int i = 0; i < REPEATS; i++) {
+    int rows = 0;
+    const struct query_sink sink = {.context = &rows, .row = count_row};
+    double start = now();
+    need(query_run(store, sql, 0, NULL, 0, &sink, &error));
+    best = fmin(best, now() - start);
+    if (rows != rows_expected) {
+      fprintf(stderr, "%s: %d rows instead of %d\n", name, rows, rows_expected);
+      exit(1);
+    }
+  }
+  printf("%s %.2f ms\n", name, 1e3 * best);
+}
+
+int main(int argc, char **argv) {
+  int64_t runs = argc > 1 ? atoll(argv[1]) : 100000;
+  char path[512], copy[600];
+  snprintf(path, sizeof path, "%s/bench-store.db", argc > 2 ? argv[2] : ".");
+  snprintf(copy, sizeof copy, "%s.estimates", path);
+  double cpu = 0, least = HUGE_VAL;
+  double seconds = load(copy, runs / 4, 2, &cpu);
+  printf("store_load_with_2_estimates_runs_per_s %.0f 1/s\n", (double)(runs / 4) / seconds);
+  unlink(copy);
+  seconds = HUGE_VAL;
+  for (int i = 0; i < 2; i++) {
+    seconds = fmin(seconds, load(path, runs, 0, &cpu));
+    least = fmin(least, cpu);
+  }
+  printf("store_load_runs_per_s %.0f 1/s\n", (double)runs / seconds);
+  printf("store_load_cpu_us_per_run %.1f us\n", 1e6 * least / (double)runs);
+
+  struct store *store = NULL;
+  double start = now();
+  need(store_open_reader(path, &store, &error));
+  printf("store_open_reader_ms %.2f ms\n", 1e3 * (now() - start));
+  double bytes = 0;
+  need(query_number(store, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size", 0, NULL, &bytes,
+                    &error));
+  printf("store_bytes_per_run %.0f B\n", bytes / (double)runs);
+  ask(store, "store_point_stats_ms", query_canned_find("point-stats", NULL)->sql, POINTS);
+  ask(store, "store_points_view_ms", "SELECT * FROM points", POINTS);
+  ask(store, "store_spectrum_one_ms",
+      "SELECT lower, upper, count, mass, density, count_sd FROM spectra WHERE point_id = 17", BINS);
+  ask(store, "store_spectrum_all_ms", "SELECT * FROM spectra", POINTS * BINS);
+  ask(store, "store_spectrum_one_from_runs_ms",
+      "SELECT bin, sum(count) FROM run JOIN spectrum USING (run_id) WHERE point_id = 17 GROUP BY bin", BINS);
+  ask(store, "store_runs_of_point_ms", "SELECT count(*) FROM runs WHERE point_id = 17", 1);
+  store_close(store, NULL);
+  start = now();
+  need(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  printf("store_resume_open_ms %.2f ms\n", 1e3 * (now() - start));
+  need(store_close(store, &error));
+  unlink(path);
+  return 0;
+}

@@ -1,0 +1,206 @@
+/* check, merge, export, dump. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "tests/store_fixture.h"
+
+static struct error error;
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+  } while (0)
+
+static double number(struct store *store, const char *sql) {
+  double value = 0;
+  OK(query_number(store, sql, 0, NULL, &value, &error));
+  return value;
+}
+
+static struct store *writer(const char *path) {
+  struct store *store = NULL;
+  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  return store;
+}
+
+static void populated(char path[64], const char *name, int m, int k, int64_t runs, bool by_replicate) {
+  struct store *store = writer(fixture_path(path, name));
+  OK(fixture_populate(store, m, k, runs, by_replicate, &error));
+  OK(store_close(store, &error));
+}
+
+static char *dump(const char *path) {
+  struct store *store = NULL;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  OK(store_open_reader(path, &store, &error));
+  OK(store_dump(store, out, &error));
+  fclose(out);
+  OK(store_close(store, &error));
+  return text;
+}
+
+static void line(void *context, const char *text) {
+  size_t used = strlen(context);
+  snprintf((char *)context + used, 4000 - used, "%s\n", text);
+}
+
+static void dumps_agree_whatever_the_order(void **state) {
+  (void)state;
+  char a[64], b[64];
+  populated(a, "dump-a", 2, 2, 10, false);
+  populated(b, "dump-b", 2, 2, 10, true);
+  char *x = dump(a), *y = dump(b);
+  assert_true(strlen(x) > 10000);
+  assert_string_equal(x, y);
+  assert_null(strstr(x, "testhost"));
+  assert_null(strstr(x, "clock")); /* FIELD_VOLATILE */
+  assert_non_null(strstr(x, "broken_count=27"));
+  free(y);
+  /* one bit of one mass, a surplus run more: seen, not seen */
+  struct store *store = writer(b);
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  struct fixture_run f;
+  fixture_fill(&f, &scene, 1, 0, 99, 10);
+  f.run.surplus = true;
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_close(store, &error));
+  y = dump(b);
+  assert_string_equal(x, y);
+  free(y);
+  store = writer(b);
+  assert_int_equal(sqlite3_exec(store_handle(store),
+                                "UPDATE run SET largest_fraction = largest_fraction + 1e-16 WHERE run_id = 7", NULL,
+                                NULL, NULL),
+                   SQLITE_OK);
+  OK(store_close(store, &error));
+  y = dump(b);
+  assert_string_not_equal(x, y);
+  free(x);
+  free(y);
+}
+
+static void points_view_has_the_same_bits(void **state) {
+  (void)state;
+  char a[64], b[64];
+  populated(a, "bits-a", 2, 2, 40, false);
+  populated(b, "bits-b", 2, 2, 40, true);
+  struct store *one = NULL, *two = NULL;
+  OK(store_open_reader(a, &one, &error));
+  OK(store_open_reader(b, &two, &error));
+  for (int m = 6; m < 8; m++) {
+    char sql[200];
+    snprintf(sql, sizeof sql, "SELECT mean_fragment_mass_sd FROM points WHERE material_m = %d AND material_k = 1e31",
+             m);
+    assert_true(number(one, sql) == number(two, sql));
+  }
+  store_close(one, NULL);
+  store_close(two, NULL);
+}
+
+static void merge_takes_what_is_missing(void **state) {
+  (void)state;
+  char a[64], b[64], whole[64];
+  int64_t added = 0;
+  populated(a, "merge-a", 1, 2, 12, false); /* m = 6 only, 12 replicates */
+  populated(b, "merge-b", 2, 2, 10, true);  /* m = 6 and 7, 10 replicates: 20 of them shared */
+  struct store *store = writer(a);
+  OK(store_merge(store, b, &added, &error));
+  assert_int_equal(added, 20);
+  OK(store_merge(store, b, &added, &error));
+  assert_int_equal(added, 0);
+  assert_near(number(store, "SELECT count(*) FROM run"), 44, 0);
+  assert_near(number(store, "SELECT count(*) FROM point"), 4, 0);
+  assert_near(number(store, "SELECT count(*) FROM estimate"), 88, 0);
+  assert_near(number(store, "SELECT count(*) FROM session"), 2, 0);
+  assert_near(number(store, "SELECT count(*) FROM campaign"), 1, 0);
+  char problem[4000] = "";
+  if (store_check(store, line, problem, &error) != STATUS_OK) fail_msg("%s: %s", error.message, problem);
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 7, 1e31);
+  uint8_t identity[16];
+  scene_identity(&scene, 1003, identity);
+  assert_true(store_has_run(store, identity));          /* also at once in memory */
+  OK(fixture_populate(store, 2, 2, 12, false, &error)); /* the writer goes on */
+  OK(store_close(store, &error));
+  populated(whole, "merge-whole", 2, 2, 12, false);
+  char *x = dump(a), *y = dump(whole);
+  assert_string_equal(x, y);
+  free(x);
+  free(y);
+  store = writer(a);
+  assert_int_equal(store_merge(store, "nothing-here.db", &added, &error), STATUS_MISSING);
+  OK(store_close(store, &error));
+}
+
+static void check_finds(void **state) {
+  (void)state;
+  static const struct {
+    const char *damage, *word;
+  } faults[] = {
+      {"UPDATE point_spectrum SET count = count + 1 WHERE bin = -15", "running sums"},
+      {"UPDATE point_total SET mass = mass * 1.000001", "running sums"},
+      {"UPDATE spectrum SET count = count + 1 WHERE run_id = 3 AND bin = (SELECT max(bin) FROM spectrum)", "spectrum"},
+      {"DELETE FROM fragment_mass WHERE run_id = 5", "run 5 has no fragment masses"},
+      {"DELETE FROM result_fake WHERE run_id = 5", "run 5 has no row in result_fake"},
+      {"UPDATE run SET total_mass = total_mass * 1.00001 WHERE run_id = 2", "run 2: its masses sum to"},
+      {"UPDATE run SET fields_path = 'not-there.h5' WHERE run_id = 2", "not-there.h5"},
+      {"UPDATE run SET point_id = 77 WHERE run_id = 4", "foreign key"},
+      {"UPDATE fragment_mass SET masses = substr(masses, 9) WHERE run_id = 6", "run 6"},
+      {"DELETE FROM bin WHERE bin = -15", "bin -15"},
+  };
+  char path[64], problem[4000];
+  for (size_t i = 0; i < sizeof faults / sizeof faults[0]; i++) {
+    populated(path, "check", 1, 2, 5, false);
+    struct store *store = NULL;
+    OK(store_open_reader(path, &store, &error));
+    problem[0] = 0;
+    if (store_check(store, line, problem, &error) != STATUS_OK) fail_msg("a whole store: %s", problem);
+    store_close(store, NULL);
+    sqlite3 *db;
+    sqlite3_open(path, &db);
+    assert_int_equal(sqlite3_exec(db, faults[i].damage, NULL, NULL, NULL), SQLITE_OK);
+    assert_true(sqlite3_changes(db) > 0);
+    sqlite3_close(db);
+    OK(store_open_reader(path, &store, &error));
+    problem[0] = 0;
+    assert_int_equal(store_check(store, line, problem, &error), STATUS_CONTENT);
+    if (!strstr(problem, faults[i].word)) fail_msg("%s: said '%s'", faults[i].damage, problem);
+    store_close(store, NULL);
+  }
+}
+
+static void export_is_whole_and_single(void **state) {
+  (void)state;
+  char path[64], copy[96];
+  populated(path, "export", 1, 1, 5, false);
+  snprintf(copy, sizeof copy, "%s.out", path);
+  struct store *store = NULL;
+  OK(store_open_reader(path, &store, &error));
+  OK(store_export(store, copy, &error));
+  assert_int_equal(store_export(store, copy, &error), STATUS_IO);
+  assert_int_equal(store_export(store, "no-such-folder/x.db", &error), STATUS_IO);
+  assert_int_equal(sqlite3_exec(store_handle(store), "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
+  store_close(store, NULL);
+  char *x = dump(path), *y = dump(copy);
+  assert_string_equal(x, y);
+  free(x);
+  free(y);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(dumps_agree_whatever_the_order), cmocka_unit_test(points_view_has_the_same_bits),
+      cmocka_unit_test(merge_takes_what_is_missing),    cmocka_unit_test(check_finds),
+      cmocka_unit_test(export_is_whole_and_single),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
