@@ -398,9 +398,8 @@ static void show(struct driver *driver, int running, bool last) {
     return;
   double now = now_s(), elapsed = now - driver->begin;
   uint64_t unmet = design_points(driver->design) - driver->expanded;
-  int64_t surplus = driver->summary.runs_surplus;
   struct progress_state state = {
-      .done = driver->summary.runs_done + driver->summary.runs_reused - surplus,
+      .done = driver->summary.runs_done + driver->summary.runs_reused - driver->summary.runs_surplus,
       .failed = driver->summary.runs_failed,
       .running = running,
       .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),

@@ -35,7 +35,7 @@ struct driver_summary {
   int64_t runs_reused, runs_done;    /* found in the store; computed now */
   int64_t runs_failed;               /* gave up after their attempts, or ended in a failed state; reused ones included */
   int64_t runs_censored;             /* ended at the hard end time: usable, but fragments may still be breaking */
-  int64_t runs_surplus;              /* computed now and left out of statistics */
+  int64_t runs_surplus;              /* of the points met, in the store and left out of statistics */
   int64_t fields_written;            /* HDF5 files kept */
   int64_t attempts_failed;           /* of this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */

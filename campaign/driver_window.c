@@ -66,6 +66,7 @@ static void take_stored(void *context, const struct store_point_run *run) {
   point->replicates[r].fields = run->fields_path != NULL;
   cost_learn(&driver->cost, &point->cost, run->wall_s);
   driver->summary.runs_reused++;
+  driver->summary.runs_surplus += run->surplus;
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
   driver_window_count(driver, usable ? run->value : DRIVER_NOTHING);
@@ -83,6 +84,7 @@ static status admit(struct driver *driver, struct point *point, struct error *er
     if (r < point->prefix && replicate->surplus) {
       any = true;
       replicate->surplus = false;
+      driver->summary.runs_surplus--;
     } else if (r >= prefix && !replicate->surplus) {
       prefix = r + 1;
     }

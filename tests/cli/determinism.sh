@@ -74,10 +74,10 @@ expect 0 "$clast" run until.yaml -j 1 --store until-one.db
 expect 0 "$clast" run until.yaml -j 3 --store until-three.db
 expect 0 mpirun -n 3 --oversubscribe "$clast" run until.yaml -j 2 --store until-ranks.db
 for store in until-one until-three until-ranks; do echo "  $store: $(dump $store.db), $(surplus $store.db) surplus"; done
-same "$(surplus until-one.db)" 0 "runs computed ahead by one slot"
-[ "$(surplus until-three.db)" -gt 0 ] || fail "three slots computed nothing ahead: the comparison says little"
+ahead=$(($(surplus until-one.db) + $(surplus until-three.db) + $(surplus until-ranks.db)))
+[ $ahead -gt 0 ] || fail "nothing was computed ahead: the comparison says little"
 same_as until-one.db until-three.db
 same_as until-one.db until-ranks.db
 expect 0 "$clast" run until.yaml -j 3 --store until-three.db
 says "0 runs computed"
-done_after 28
+done_after 27
