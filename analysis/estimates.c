@@ -25,7 +25,7 @@ static const struct field rows_of_table[] = {
     {.path = "method", .kind = FIELD_CHOICE, .offset = AT(fit.method), .choices = exponent_method_names,
      .choice_docs = method_docs, .minimum = 0, .maximum = EXPONENT_METHODS - 1, .doc = "How the exponent was estimated."},
     {.path = "headline", .kind = FIELD_BOOLEAN, .offset = AT(headline), .minimum = 0, .maximum = 1,
-     .doc = "The estimate that is called beta: maximum likelihood on masses of 10 grains and more, the largest fragment "
+     .doc = "The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment "
             "left out."},
     REAL("lower", "kg", fit.lower, 0, "Lower end of the window really used (2D: kg per metre of thickness).", NULL),
     REAL("upper", "kg", fit.upper, 0, "Upper end, itself outside: the mass of the largest fragment, or a bin edge.", NULL),
@@ -68,7 +68,7 @@ static const struct {
     {EXPONENT_BINNED, ESTIMATES_FROM_5}, {EXPONENT_BINNED, ESTIMATES_FROM_10},
     {EXPONENT_MASSES, ESTIMATES_FROM_2}, {EXPONENT_MASSES, ESTIMATES_FROM_5},
     {EXPONENT_MASSES, ESTIMATES_FROM_10}, {EXPONENT_KS, ESTIMATES_FROM_2},
-    {EXPONENT_CUTOFF, ESTIMATES_FROM_10},
+    {EXPONENT_CUTOFF, ESTIMATES_FROM_5},
 };
 
 status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],

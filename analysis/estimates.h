@@ -21,13 +21,14 @@ struct estimate {
 };
 extern const struct field_table estimates_table;
 
-/* The headline is maximum likelihood on masses of 10 grains and more up to M_1, itself left out: free of the bias of least
- * squares, of discreteness and of a giant remnant that belongs to no power law. One run of 1100 grains has some ten such
- * fragments: expect a standard error of 0.3 and, as for any ratio of small numbers, a bias of about (beta-1)/n; pool runs. */
+/* The headline is maximum likelihood on masses of 5 grains and more up to M_1, itself left out: free of the bias of least
+ * squares, of a giant remnant that belongs to no power law, and (the lowest window of which that is true) of discreteness
+ * whatever the scatter of grain masses. One run of 1100 grains has some 30 such fragments: expect a standard error of 0.2
+ * and, as for any ratio of small numbers, a bias of about (beta-1)/n; pool runs. */
 enum {
   ESTIMATES_HEADLINE_METHOD = EXPONENT_MASSES,
-  ESTIMATES_HEADLINE_WINDOW = ESTIMATES_FROM_10,
-  ESTIMATES_COUNT = 3 * ESTIMATES_WINDOWS + 2, /* least_squares, binned, masses in each; ks from 2; cutoff from 10 */
+  ESTIMATES_HEADLINE_WINDOW = ESTIMATES_FROM_5,
+  ESTIMATES_COUNT = 3 * ESTIMATES_WINDOWS + 2, /* least_squares, binned, masses in each; ks from 2; cutoff from 5 */
 };
 
 /* Fragments by descending mass, dust included (the mean grain mass is total mass over total count; fragments of one grain

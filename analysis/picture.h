@@ -30,6 +30,10 @@ struct picture_panel {
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error);
 
+/* What a body's picture should say below its title: "1100 grains in 259 fragments, 180 of them single; largest 12.1 % of the
+ * area". `cells`: what its cells are called ("grains"). Empty when there is nothing or the labels are wrong. */
+void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
+
 /* A fitted power law: drawn so that it holds as many fragments per run in [lower, upper) as the fit was made from. */
 struct picture_fit {
   const char *label; /* "beta 2.03 +- 0.05" */

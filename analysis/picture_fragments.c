@@ -153,16 +153,41 @@ static void draw_crack(cairo_t *cairo, const struct picture_body *body, uint32_t
   cairo_line_to(cairo, body->vertex[to][0], body->vertex[to][1]);
 }
 
+static double area_of(const struct picture_body *body, size_t cell) {
+  double area = 0;
+  uint32_t first = body->first_vertex[cell], end = body->first_vertex[cell + 1];
+  for (uint32_t v = first; v < end; v++) {
+    const double *a = body->vertex[v], *b = body->vertex[v + 1 < end ? v + 1 : first];
+    area += (a[0] * b[1] - a[1] * b[0]) / 2;
+  }
+  return fabs(area);
+}
+
 static double typical_cell(const struct picture_body *body) {
   double area = 0;
-  for (size_t i = 0; i < body->cells; i++) {
-    uint32_t first = body->first_vertex[i], end = body->first_vertex[i + 1];
-    for (uint32_t v = first; v < end; v++) {
-      const double *a = body->vertex[v], *b = body->vertex[v + 1 < end ? v + 1 : first];
-      area += (a[0] * b[1] - a[1] * b[0]) / 2;
+  for (size_t i = 0; i < body->cells; i++) area += area_of(body, i);
+  return sqrt(area / (double)body->cells);
+}
+
+void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size) {
+  struct grouping grouping;
+  size_t single = 0, fragments = 0;
+  double total = 0, largest = 0;
+  text[0] = 0;
+  if (body->cells == 0) return;
+  if (group(body, &grouping) == STATUS_OK) {
+    for (size_t f = 0; f < grouping.fragments; f++) {
+      double area = 0;
+      for (uint32_t i = grouping.start[f]; i < grouping.start[f + 1]; i++) area += area_of(body, grouping.order[i]);
+      fragments += grouping.start[f + 1] > grouping.start[f];
+      single += grouping.start[f + 1] - grouping.start[f] == 1;
+      total += area;
+      largest = fmax(largest, area);
     }
+    snprintf(text, size, "%zu %s in %zu fragment%s, %zu of them single; largest %.1f %% of the area", body->cells, cells,
+             fragments, fragments == 1 ? "" : "s", single, 100 * largest / total);
   }
-  return sqrt(fabs(area) / (double)body->cells);
+  grouping_free(&grouping);
 }
 
 static void scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double room, double font) {

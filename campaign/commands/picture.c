@@ -18,9 +18,10 @@ status picture_draw(const char *fields, const char *picture, const char *caption
     return code;
   struct picture_panel panel = {
       .body = {.cells = body.cells, .first_vertex = body.first_vertex, .vertex = (const double(*)[2])body.vertex,
-               .fragment = body.fragment, .cracks = body.cracks, .crack = (const uint32_t(*)[2])body.crack},
-      .caption = caption};
-  code = picture_fragments(picture, WIDTH, NULL, NULL, 1, &panel, error);
+               .fragment = body.fragment, .cracks = body.cracks, .crack = (const uint32_t(*)[2])body.crack}};
+  char numbers[160];
+  picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
+  code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
   body_clear(&body);
   return code;
 }
@@ -31,7 +32,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Write this under it."},
+    {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title over it."},
 };
 
 const struct command picture_command = {

@@ -35,8 +35,9 @@ static void rows_of_a_run(void **state) {
   assert_int_equal(headlines, 1);
   const struct estimate *headline = estimates_headline(ESTIMATES_COUNT, rows);
   assert_int_equal(headline->fit.method, EXPONENT_MASSES);
-  assert_true(headline->fit.lower == 19 && headline->fit.upper == 600);
-  assert_int_equal(headline->fit.n, 29); /* 300/2 .. 300/30 = 10 grains; not the 300 of M_1, not 300/31 = 9 */
+  assert_true(headline->fit.lower == 9 && headline->fit.upper == 600);
+  assert_int_equal(headline->fit.n, 59); /* 300/2 .. 300/60 = 5 grains; not the 300 of M_1 */
+  assert_int_equal(rows[8].fit.n, 29);       /* masses from 10: to 300/30; not 300/31 = 9 */
   assert_null(estimates_headline(0, NULL));
 }
 

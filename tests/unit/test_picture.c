@@ -114,6 +114,12 @@ static void fragments_are_drawn(void **state) {
   assert_int_equal(picture_fragments(at("one.png"), 900, "An example of a broken disc", "40 pieces and dust", 1, panels + 1, NULL), STATUS_OK);
   assert_int_equal(picture_fragments(at("two.png"), 1400, "An example of a broken disc", "40 pieces and dust", 2, panels, NULL), STATUS_OK);
   assert_int_equal(picture_fragments(at("two.svg"), 900, NULL, NULL, 2, panels, NULL), STATUS_OK);
+  char numbers[160];
+  struct picture_body small = {.cells = 3, .first_vertex = (const uint32_t[]){0, 4, 8, 12},
+                               .vertex = (const double[12][2]){{0, 0}, {2, 0}, {2, 1}, {0, 1}, {2, 0}, {3, 0}, {3, 1}, {2, 1}, {5, 0}, {6, 0}, {6, 1}, {5, 1}},
+                               .fragment = (const uint32_t[]){0, 0, 1}};
+  picture_fragments_numbers(&small, "cells", numbers, sizeof numbers);
+  assert_string_equal(numbers, "3 cells in 2 fragments, 1 of them single; largest 75.0 % of the area");
   double dark, coloured;
   int width, height;
   ink(at("one.png"), &dark, &coloured, &width, &height);
