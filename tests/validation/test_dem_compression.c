@@ -1,0 +1,92 @@
+/* Compressive strength test (K99 section 3.2, figures 8 and 9): linear, then abrupt failure; cracks along the load;
+ * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: ten, loaded at half the rate, too. */
+#include "tests/dem_case.h"
+
+#include "engine/dem/run.h"
+
+struct figures {
+  double modulus, strength, strain, residue, drop, upright, triangle, broken;
+};
+
+static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
+  struct dem_run *run;
+  struct error error = {0};
+  if (dem_run_create(inputs, seed, &run, &error))
+    fail_msg("%s", error.message);
+  while (!run->state.finished)
+    dem_run_advance(run, 10000);
+  assert_int_equal(run->state.outcome_state, OUTCOME_COMPLETED);
+  struct outcome outcome;
+  struct dem_results r;
+  struct fragment *fragments;
+  size_t count;
+  assert_int_equal(dem_report_finish(run, &outcome, &r, &fragments, &count, NULL), STATUS_OK);
+  free(fragments);
+  struct figures f = {.modulus = r.young_modulus, .strength = r.strength, .strain = r.failure_strain,
+                      .upright = r.upright_share, .triangle = r.end_triangle_share, .broken = r.broken_share};
+  /* Linear: largest departure from the fitted line up to 70 % of the failure strain, over the strength. The line's
+   * intercept is what the samples between 10 and 50 % leave. */
+  double n = 0, shift = 0;
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t k = 0; k < run->state.samples; k++) {
+      double strain = -run->sample[k].strain, stress = -run->sample[k].stress;
+      if (pass == 0 && strain > 0.1 * f.strain && strain < 0.5 * f.strain) {
+        shift += stress - f.modulus * strain;
+        n += 1;
+      }
+      if (pass == 1 && strain > 0.1 * f.strain && strain < 0.7 * f.strain)
+        f.residue = fmax(f.residue, fabs(stress - f.modulus * strain - shift / n) / f.strength);
+    }
+  /* Abrupt: time from the maximum to half of it, in wave passages along the block (height over sqrt(E/rho)): a crack
+   * cannot end the load sooner than waves tell of it, however slow the load. */
+  double passage = (double)inputs->body.rows * inputs->grain.spacing / r.sound_speed_extension;
+  f.drop = NAN;
+  for (size_t k = 0; k < run->state.samples; k++)
+    if (run->sample[k].time > run->state.time_peak && -run->sample[k].stress < 0.5 * f.strength) {
+      f.drop = (run->sample[k].time - run->state.time_peak) / passage;
+      break;
+    }
+  print_message("%4d %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f %10.2e %10.2e\n", (int)seed, f.modulus, f.strength, f.strain,
+                f.residue, f.drop, f.upright, f.triangle, f.broken, outcome.energy_error, outcome.momentum_error);
+  assert_true(outcome.energy_error < 0.05); /* the run's own bound is 0.1 */
+  dem_run_free(run);
+  return f;
+}
+
+static struct figures press_all(const struct dem_inputs *inputs, uint64_t bodies) {
+  struct figures sum = {0};
+  double *to = &sum.modulus;
+  print_message("%4s %9s %9s %8s %8s %8s %8s %8s %8s %10s %10s\n", "seed", "K, Pa", "strength", "strain", "bend", "drop", "upright",
+                "triangle", "broken", "energy", "momentum");
+  for (uint64_t seed = 1; seed <= bodies; seed++) {
+    struct figures f = press(inputs, seed);
+    const double *from = &f.modulus;
+    for (size_t k = 0; k < sizeof f / sizeof(double); k++)
+      to[k] += from[k] / (double)bodies;
+  }
+  print_message("mean %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f\n", sum.modulus, sum.strength, sum.strain, sum.residue, sum.drop,
+                sum.upright, sum.triangle, sum.broken);
+  return sum;
+}
+
+static void failure_is_abrupt_and_cracks_are_upright(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("compression", NULL);
+  if (!dem_case_full())
+    inputs.loading.rate *= 2;
+  struct figures f = press_all(&inputs, dem_case_full() ? 10 : 1);
+  assert_true(f.residue < 0.1); /* "linear until it fails": within a tenth of the strength up to 70 % of the strain */
+  assert_true(f.drop < 3);      /* "abruptly": half of the stress is gone within a few wave passages */
+  assert_true(f.upright > 0.5); /* isotropic cracks: 1/3 */
+  assert_true(f.triangle < 0.5); /* "practically intact": less than half as many breaks as elsewhere */
+  if (dem_case_full()) {
+    inputs.loading.rate /= 2;
+    struct figures slow = press_all(&inputs, 10);
+    assert_true(fabs(slow.strength / f.strength - 1) < 0.1); /* quasi-static: the rate does not make the strength */
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(failure_is_abrupt_and_cracks_are_upright)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
