@@ -9,8 +9,8 @@
 /* SQLite locks bytes 0x40000000 to 0x400001ff, whatever the size of the file. */
 static const off_t LOCK_BYTE = (off_t)1 << 62;
 
-status lock_take(const char *path, int *descriptor, long *holder_pid, struct error *error) {
-  *holder_pid = -1;
+status lock_take(const char *path, int *descriptor, bool *held, struct error *error) {
+  *held = false;
   *descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (*descriptor < 0) {
     const char *remedy = errno == ENOENT    ? "Make its folder first."
@@ -24,16 +24,11 @@ status lock_take(const char *path, int *descriptor, long *holder_pid, struct err
                        remedy);
   }
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
-  if (fcntl(*descriptor, F_SETLK, &lock) == 0) return STATUS_OK;
-  status result;
-  if (errno == EACCES || errno == EAGAIN) {
-    *holder_pid = 0;
-    if (fcntl(*descriptor, F_GETLK, &lock) == 0 && lock.l_type != F_UNLCK && lock.l_pid > 0) *holder_pid = lock.l_pid;
-    result = status_fail(error, STATUS_IO, "%s: another process is writing this store.", path);
-  } else {
-    result =
-        status_fail(error, STATUS_IO, "%s: cannot lock the store: %s. Put it on a local disk.", path, strerror(errno));
-  }
+  if (fcntl(*descriptor, F_OFD_SETLK, &lock) == 0) return STATUS_OK;
+  *held = errno == EACCES || errno == EAGAIN;
+  status result = *held ? status_fail(error, STATUS_IO, "%s: another process is writing this store.", path)
+                        : status_fail(error, STATUS_IO, "%s: cannot lock the store: %s. Put it on a local disk.", path,
+                                      strerror(errno));
   close(*descriptor);
   *descriptor = -1;
   return result;

@@ -1,6 +1,5 @@
 #include "db/migrate.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "db/bins.h"
@@ -8,37 +7,21 @@
 #include "db/sums.h"
 #include "db/views.h"
 
-/* A file cut short keeps a header that promises more pages. Not while a log beside it holds pages: then the file may
- * rightly be shorter. */
-static status refuse_truncated(sqlite3 *db, const char *path, struct error *error) {
-  struct stat file, log;
-  char *log_path = sqlite3_mprintf("%s-wal", path);
-  if (!log_path) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-  bool logged = stat(log_path, &log) == 0 && log.st_size > 0;
-  sqlite3_free(log_path);
-  if (logged || stat(path, &file) != 0) return STATUS_OK;
-  int64_t pages, page_size;
-  status result = sql_integer(db, "PRAGMA page_count", 0, &pages, error);
-  if (result == STATUS_OK) result = sql_integer(db, "PRAGMA page_size", 0, &page_size, error);
-  if (result == STATUS_OK && pages * page_size > file.st_size)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "%s: the store is cut short: %lld bytes of %lld are there. Restore a copy, or save what can be saved "
-        "with `sqlite3 FILE .recover`.",
-        path, (long long)file.st_size, (long long)(pages * page_size));
-  return result;
-}
-
 status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error) {
   int64_t application, user_version, things;
   status result = sql_integer(db, "PRAGMA application_id", 0, &application, error);
   if (result == STATUS_OK) result = sql_integer(db, "PRAGMA user_version", 0, &user_version, error);
-  if (result == STATUS_OK) result = refuse_truncated(db, path, error);
   if (result == STATUS_OK) result = sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &things, error);
-  if (result == STATUS_CONTENT)
+  if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
     return status_fail(error, STATUS_CONTENT,
-                       "%s is not a store that can be read: it is no SQLite database, or damaged. (%s)", path,
-                       error ? sqlite3_errmsg(db) : "");
+                       "%s is no SQLite database, so no store of clast. Name another file; this one was left alone.",
+                       path);
+  if (result == STATUS_CONTENT) /* SQLite compares the file's length with what its header says */
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s is damaged, perhaps cut short: %s. Restore a copy, or save what can be saved with `sqlite3 FILE "
+        ".recover`.",
+        path, sqlite3_errmsg(db));
   if (result != STATUS_OK) return result;
   if (application == 0 && user_version == 0 && things == 0) {
     *version = -1;

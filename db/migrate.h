@@ -5,7 +5,7 @@
 #include "db/sql.h"
 
 /* *version: the store's user_version, -1 when the file is new (empty). STATUS_CONTENT: not SQLite, not ours, newer than
- * this program, shorter than it says. */
+ * this program, damaged. */
 status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error);
 
 /* Create everything in an empty file, or bring an older version forward, after a copy of it as `path`.version<N>

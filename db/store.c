@@ -54,8 +54,8 @@ static status open_database(struct store *store, int flags, struct error *error)
   return STATUS_OK;
 }
 
-/* Who holds it: the row that the holder wrote, if it can be read, and what the system says. */
-static status refuse_held(const char *path, long pid, struct error *error) {
+/* Who holds it: the row that the holder wrote, if it is there yet. */
+static status refuse_held(const char *path, struct error *error) {
   struct store *store = NULL;
   sqlite3_stmt *statement = NULL;
   char holder[512] = "";
@@ -64,8 +64,6 @@ static status refuse_held(const char *path, long pid, struct error *error) {
       sqlite3_step(statement) == SQLITE_ROW)
     snprintf(holder, sizeof holder, " on host %s, process %lld, since %s", sqlite3_column_text(statement, 0),
              (long long)sqlite3_column_int64(statement, 1), sqlite3_column_text(statement, 2));
-  else if (pid > 0)
-    snprintf(holder, sizeof holder, " in process %ld", pid);
   sqlite3_finalize(statement);
   store_close(store, NULL);
   return status_fail(
@@ -112,7 +110,7 @@ static status write_holder(struct store *store, struct error *error) {
 
 status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
                          size_t warning_size, struct error *error) {
-  long pid = 0;
+  bool held = false;
   int version = -1;
   *out = NULL;
   if (warning_size) warning[0] = '\0';
@@ -121,11 +119,10 @@ status store_open_writer(const char *path, const struct field_table *estimate_ta
   store->writer = true;
   store->estimate_table = estimate_table;
   bool existed = access(path, F_OK) == 0;
-  status result = lock_take(path, &store->lock, &pid, error);
+  status result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
-    bool held = pid >= 0;
     release(store);
-    return held ? refuse_held(path, pid, error) : result;
+    return held ? refuse_held(path, error) : result;
   }
   const char *network = lock_network_file_system(store->lock);
   if (network && warning_size)

@@ -19,8 +19,8 @@ struct store;
  * or foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: estimates_table); NULL when
  * no estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
  * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
- * system), or "". The lock is a POSIX record lock: it dies with the process, is not inherited by a fork, and a process
- * must not open one store for writing twice. */
+ * system), or "". The lock dies with the process; a child forked while the store is open shares it until it ends or
+ * executes another program. */
 status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
                          size_t warning_size, struct error *error);
 /* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are

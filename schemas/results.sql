@@ -1,0 +1,954 @@
+-- The store of clast: schema of version 1.
+-- Made from the tables in db/schema_tables.c and the engines' field tables; do not edit: a test compares.
+-- Views have, besides, one column per input that some campaign varied (table axis).
+PRAGMA application_id = 1129075540;
+PRAGMA user_version = 1;
+
+CREATE TABLE column_doc ( -- Meaning and unit of every column.
+  table_name TEXT NOT NULL, -- table or view
+  column_name TEXT NOT NULL, -- column of it
+  unit TEXT, -- SI unit; NULL where there is none
+  meaning TEXT NOT NULL, -- what the column holds
+  deterministic INTEGER NOT NULL DEFAULT 0, -- 1: a result that depends on inputs, seed and results_version alone (not a time, a host...)
+  PRIMARY KEY (table_name, column_name)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE campaign ( -- What was asked for.
+  campaign_id INTEGER PRIMARY KEY, -- number of the campaign in this store
+  name TEXT NOT NULL, -- its name
+  document TEXT NOT NULL, -- the campaign file as it was read
+  plan TEXT, -- what it was resolved to, JSON
+  added_at TEXT NOT NULL -- when it was first run, UTC, ISO 8601
+) STRICT;
+
+CREATE TABLE session ( -- Provenance: one row per invocation that wrote to the store.
+  session_id INTEGER PRIMARY KEY, -- number of the invocation that computed
+  started_at TEXT NOT NULL, -- UTC, ISO 8601, to the millisecond
+  ended_at TEXT, -- UTC, ISO 8601; NULL while running or when it was killed
+  outcome TEXT, -- how it ended: a status name; NULL while running or when it was killed
+  host TEXT NOT NULL, -- machine of the manager
+  pid INTEGER NOT NULL, -- process of the manager
+  facts TEXT NOT NULL CHECK (json_valid(facts)) -- provenance, JSON: version, commit, compiler, flags, processor class, libraries, ranks, slots, command line
+) STRICT;
+
+CREATE TABLE point ( -- Points: sets of input values. The resolved scene is the truth.
+  point_id INTEGER PRIMARY KEY, -- number of the point: one set of input values
+  hash BLOB NOT NULL UNIQUE CHECK (length(hash) = 16), -- 128-bit hash of engine and active inputs, without seed and results_version
+  engine TEXT NOT NULL, -- name of the engine
+  scene_name TEXT NOT NULL, -- name of the scene the inputs started from
+  scene TEXT NOT NULL CHECK (json_valid(scene)) -- the resolved scene, JSON, SI units: every active input, defaults too
+) STRICT;
+
+CREATE TABLE campaign_point ( -- Which campaign asked for which point.
+  campaign_id INTEGER NOT NULL REFERENCES campaign (campaign_id), -- campaign that asked for the point
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- a point of it; campaigns may share points
+  PRIMARY KEY (campaign_id, point_id)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE point_input ( -- Every active input of every point.
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
+  path TEXT NOT NULL, -- path of an active input in the scene
+  value ANY NOT NULL, -- its value in SI units; choices by name, booleans 0 or 1, the keyword off as text
+  PRIMARY KEY (point_id, path)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE axis ( -- Inputs that some campaign varied: columns of the views.
+  path TEXT NOT NULL PRIMARY KEY, -- path of an input that some campaign varied
+  column_name TEXT NOT NULL UNIQUE, -- its column in the views
+  unit TEXT, -- SI unit of the input
+  meaning TEXT NOT NULL -- what the input means
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what every engine reports of it.
+  run_id INTEGER PRIMARY KEY, -- number of the run in this store
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point it belongs to
+  session_id INTEGER REFERENCES session (session_id), -- the session that computed it
+  identity BLOB NOT NULL UNIQUE CHECK (length(identity) = 16), -- 128-bit hash of engine, results_version, active inputs and seed: the same run is never stored twice
+  replicate INTEGER NOT NULL, -- which seed of the point, from 0
+  seed INTEGER NOT NULL, -- the seed (64 bits, shown as a signed number)
+  results_version INTEGER NOT NULL, -- version of the engine's results; statistics never mix two
+  surplus INTEGER NOT NULL, -- 1: beyond the prefix a stopping rule decided on; left out of statistics
+  attempt INTEGER NOT NULL, -- which attempt succeeded, from 1
+  wall_time REAL NOT NULL, -- [s] elapsed time of the successful attempt
+  cpu_time REAL NOT NULL, -- [s] processor time of the successful attempt
+  peak_memory INTEGER NOT NULL, -- [B] largest resident memory of the successful attempt
+  host TEXT, -- machine that computed it
+  rank INTEGER NOT NULL, -- MPI rank that computed it
+  finished_at REAL NOT NULL, -- [s] when it was stored, seconds since 1970-01-01 UTC
+  fields_path TEXT, -- HDF5 file with its fields, relative to the store's folder; NULL when none was kept
+  counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)
+  state TEXT, -- The run's own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid
+  message TEXT, -- Diagnostics for a person; empty when all is well.
+  steps INTEGER, -- [1] Time steps taken.
+  time REAL, -- [s] Simulated time at the end.
+  time_step REAL, -- [s] The smallest time step used.
+  total_mass REAL, -- [kg] Mass of the body at the end (two dimensions: per metre of thickness).
+  energy_error REAL, -- [1] Drift of the closed energy ledger over the energy put in.
+  momentum_error REAL, -- [1] Change of total momentum not explained by outer forces, over the sum of the members' momenta.
+  fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
+  single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
+  dust_fraction REAL, -- [1] Mass share of single grains.
+  largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
+  second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
+  mean_fragment_mass REAL, -- [kg] Second moment over first of all fragment masses (not M_2/M_1).
+  mean_fragment_mass_rest REAL, -- [kg] The same without the largest fragment.
+  kinetic_energy_share REAL -- [1] Translation energy of the fragments over the energy put in.
+) STRICT;
+
+CREATE INDEX run_statistics ON run (point_id, results_version, counts, replicate, seed, state, largest_fraction, second_fraction, fragment_count, dust_fraction, mean_fragment_mass);
+
+CREATE TABLE fragment_mass ( -- Fragment masses: any spectrum can be made from them without a new run.
+  run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
+  masses BLOB NOT NULL -- [kg] mass of every fragment, descending: little-endian float64, 8 bytes each
+) STRICT;
+
+CREATE TABLE fragment_motion ( -- How fragments move, for runs that were asked to keep it.
+  run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
+  motion BLOB NOT NULL -- 11 little-endian float32 per fragment, in the order of masses: position x y z (m), velocity x y z (m/s), spin x y z (rad/s), moment of inertia (kg m^2), kinetic energy (J)
+) STRICT;
+
+CREATE TABLE bin ( -- Edges of the mass bins in use.
+  bin INTEGER PRIMARY KEY, -- number of a mass bin: ten per decade, bin 0 starts at 1 kg
+  lower REAL NOT NULL, -- [kg] lower edge, inside the bin
+  upper REAL NOT NULL -- [kg] upper edge, outside the bin
+) STRICT;
+
+CREATE TABLE spectrum ( -- Fragment mass spectrum of each run.
+  run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
+  bin INTEGER NOT NULL, -- mass bin (table bin); only bins that hold something
+  count INTEGER NOT NULL, -- [1] fragments in the bin
+  mass REAL NOT NULL, -- [kg] their mass
+  PRIMARY KEY (run_id, bin)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE point_total ( -- Running totals of each point, kept in the transaction that adds the runs.
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
+  results_version INTEGER NOT NULL, -- version of the engine's results
+  runs INTEGER NOT NULL, -- [1] runs that count: completed, or ended at their time, and not surplus
+  censored INTEGER NOT NULL, -- [1] those of them that ended at their time: fragments may still have been breaking
+  failed INTEGER NOT NULL, -- [1] runs that gave no usable result (NaN, time step, energy, invalid)
+  surplus INTEGER NOT NULL, -- [1] runs left out because a stopping rule decided without them
+  fragments INTEGER NOT NULL, -- [1] fragments of the runs that count
+  mass REAL NOT NULL, -- [kg] mass of these fragments
+  PRIMARY KEY (point_id, results_version)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE point_spectrum ( -- Running pooled spectrum of each point, kept in the transaction that adds the runs.
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
+  results_version INTEGER NOT NULL, -- version of the engine's results
+  bin INTEGER NOT NULL, -- mass bin (table bin)
+  runs INTEGER NOT NULL, -- [1] runs that count and have a fragment in the bin
+  count INTEGER NOT NULL, -- [1] sum of their counts
+  count_squared INTEGER NOT NULL, -- [1] sum of the squares of their counts, for the scatter between runs
+  mass REAL NOT NULL, -- [kg] sum of their masses
+  PRIMARY KEY (point_id, results_version, bin)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they can be made again at any time.
+  run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
+  ordinal INTEGER NOT NULL, -- number among the estimates of the run
+  window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
+  method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
+  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.
+  lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
+  upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
+  n INTEGER, -- [1] Fragments in the window.
+  beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
+  standard_error REAL, -- [1] Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).
+  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
+  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
+  log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
+  PRIMARY KEY (run_id, ordinal)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that count.
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
+  results_version INTEGER NOT NULL, -- version of the engine's results it was made from
+  ordinal INTEGER NOT NULL, -- number among the estimates of the point
+  window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
+  method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
+  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.
+  lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
+  upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
+  n INTEGER, -- [1] Fragments in the window.
+  beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
+  standard_error REAL, -- [1] Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).
+  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
+  ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
+  log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
+  PRIMARY KEY (point_id, results_version, ordinal)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE attempt ( -- Attempts that failed: limits, crashes, lost workers.
+  attempt_id INTEGER PRIMARY KEY, -- number of the failed attempt
+  identity BLOB NOT NULL CHECK (length(identity) = 16), -- identity of the run that was tried
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- its point
+  replicate INTEGER NOT NULL, -- which seed of the point, from 0
+  seed INTEGER NOT NULL, -- the seed (64 bits, shown as a signed number)
+  session_id INTEGER REFERENCES session (session_id), -- the session that tried
+  number INTEGER NOT NULL, -- which attempt, from 1
+  reason TEXT NOT NULL, -- time_limit, memory_limit, crash, lost or exit
+  exit_code INTEGER NOT NULL, -- exit code of the process
+  signal INTEGER NOT NULL, -- signal that ended it, 0 for none
+  wall_time REAL NOT NULL, -- [s] elapsed time
+  peak_memory INTEGER NOT NULL, -- [B] largest resident memory
+  limited_to REAL NOT NULL, -- the limit that ended it: seconds or bytes, 0 for the other reasons
+  message TEXT NOT NULL, -- what it said
+  host TEXT, -- machine
+  rank INTEGER NOT NULL, -- MPI rank
+  failed_at REAL NOT NULL -- [s] when, seconds since 1970-01-01 UTC
+) STRICT;
+
+CREATE INDEX attempt_identity ON attempt (identity);
+
+CREATE INDEX attempt_point ON attempt (point_id);
+
+CREATE TABLE holder ( -- Who holds the store for writing, so that a refusal can name them.
+  holder_id INTEGER PRIMARY KEY CHECK (holder_id = 1), -- always 1
+  host TEXT NOT NULL, -- machine of the process that last opened the store for writing
+  pid INTEGER NOT NULL, -- its process number; the row only names the holder, an OS lock is what holds
+  since TEXT NOT NULL -- when it did, UTC, ISO 8601
+) STRICT;
+
+CREATE TABLE result_dem ( -- What this engine reports beyond the columns of table run, one to one.
+  run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
+  stop_reason TEXT, -- Why the run ended. One of: running, quiet, end-time, strain, failure, fault
+  grains INTEGER, -- [1] Grains, the explosive one left out.
+  beams INTEGER, -- [1] Beams at the start, those of the explosive left out.
+  broken INTEGER, -- [1] Beams broken.
+  broken_stretch INTEGER, -- [1] Beams broken with the stretching term of the breaking rule the larger one.
+  broken_bend INTEGER, -- [1] Beams broken with the bending term the larger one.
+  broken_share REAL, -- [1] Broken beams over all beams.
+  first_break REAL, -- [s] Time of the first break; off when none broke.
+  last_break REAL, -- [s] Time of the last break; off when none broke.
+  energy_input REAL, -- [J/m] Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.
+  threshold_energy REAL, -- [J/m] Energy that would bring every beam to the stretching threshold.
+  stable_time_step REAL, -- [s] Stability limit 2/omega_max of the body as it starts.
+  sound_speed_extension REAL, -- [m/s] Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value).
+  sound_speed_compression REAL, -- [m/s] Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.
+  overlap_share REAL, -- [1] Neighbour pairs that overlap over all neighbour pairs, at the end.
+  energy_kinetic REAL, -- [J/m] Kinetic energy at the end.
+  energy_beam REAL, -- [J/m] Energy stored in beams at the end.
+  energy_contact REAL, -- [J/m] Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).
+  energy_damping REAL, -- [J/m] Energy taken by damping.
+  energy_friction REAL, -- [J/m] Energy taken by friction.
+  energy_broken_beam REAL, -- [J/m] Energy that broken beams held: what the new surfaces cost.
+  energy_external_work REAL, -- [J/m] Work done by moving boundaries.
+  young_modulus REAL, -- [Pa] K: slope of stress against strain under uniaxial load.
+  poisson_ratio REAL, -- [1] nu: minus the slope of lateral against axial strain.
+  strength REAL, -- [Pa] Largest stress under load.
+  failure_strain REAL, -- [1] Strain at the largest stress.
+  final_strain REAL, -- [1] Strain at the end of the loading.
+  upright_share REAL, -- [1] Compression: broken beams whose crack (the common side) lies within 30 degrees of the load's direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.
+  end_triangle_share REAL -- [1] Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.
+) STRICT;
+
+CREATE VIEW runs AS -- every run with its varied inputs and all its results
+SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,
+  r."session_id",
+  r."results_version",
+  r."surplus",
+  r."attempt",
+  r."wall_time",
+  r."cpu_time",
+  r."peak_memory",
+  r."host",
+  r."rank",
+  r."finished_at",
+  r."fields_path",
+  r."counts",
+  r."state",
+  r."message",
+  r."steps",
+  r."time",
+  r."time_step",
+  r."total_mass",
+  r."energy_error",
+  r."momentum_error",
+  r."fragment_count",
+  r."single_count",
+  r."dust_fraction",
+  r."largest_fraction",
+  r."second_fraction",
+  r."mean_fragment_mass",
+  r."mean_fragment_mass_rest",
+  r."kinetic_energy_share",
+  result_dem."stop_reason",
+  result_dem."grains",
+  result_dem."beams",
+  result_dem."broken",
+  result_dem."broken_stretch",
+  result_dem."broken_bend",
+  result_dem."broken_share",
+  result_dem."first_break",
+  result_dem."last_break",
+  result_dem."energy_input",
+  result_dem."threshold_energy",
+  result_dem."stable_time_step",
+  result_dem."sound_speed_extension",
+  result_dem."sound_speed_compression",
+  result_dem."overlap_share",
+  result_dem."energy_kinetic",
+  result_dem."energy_beam",
+  result_dem."energy_contact",
+  result_dem."energy_damping",
+  result_dem."energy_friction",
+  result_dem."energy_broken_beam",
+  result_dem."energy_external_work",
+  result_dem."young_modulus",
+  result_dem."poisson_ratio",
+  result_dem."strength",
+  result_dem."failure_strain",
+  result_dem."final_strain",
+  result_dem."upright_share",
+  result_dem."end_triangle_share",
+  lower(hex(r.identity)) AS identity
+FROM run r JOIN point p ON p.point_id = r.point_id
+  LEFT JOIN result_dem ON result_dem.run_id = r.run_id;
+
+CREATE VIEW points AS -- statistics of every point, one row per results_version
+WITH first AS (
+  SELECT k.largest_fraction AS k0, k.second_fraction AS k1, k.fragment_count AS k2, k.dust_fraction AS k3, k.mean_fragment_mass AS k4, t.point_id, t.results_version
+  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE f.point_id =
+    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, f.seed LIMIT 1)
+), moment AS (
+  SELECT f.point_id, f.results_version, count(*) AS n,
+    k0, total(r.largest_fraction - k0) AS s0, total((r.largest_fraction - k0) * (r.largest_fraction - k0)) AS q0,
+    k1, total(r.second_fraction - k1) AS s1, total((r.second_fraction - k1) * (r.second_fraction - k1)) AS q1,
+    k2, total(r.fragment_count - k2) AS s2, total((r.fragment_count - k2) * (r.fragment_count - k2)) AS q2,
+    k3, total(r.dust_fraction - k3) AS s3, total((r.dust_fraction - k3) * (r.dust_fraction - k3)) AS q3,
+    k4, total(r.mean_fragment_mass - k4) AS s4, total((r.mean_fragment_mass - k4) * (r.mean_fragment_mass - k4)) AS q4
+  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND
+    r.counts = 1
+  GROUP BY f.point_id, f.results_version
+), scatter AS (
+  SELECT point_id, results_version, n,
+    CASE WHEN (n - 1) = 1 THEN 12.706204736174 WHEN (n - 1) = 2 THEN 4.302652729749 WHEN (n - 1) = 3 THEN 3.182446305284 WHEN (n - 1) = 4 THEN 2.776445105198 WHEN (n - 1) = 5 THEN 2.570581835636 WHEN (n - 1) = 6 THEN 2.446911851145 WHEN (n - 1) = 7 THEN 2.364624251593 WHEN (n - 1) = 8 THEN 2.306004135204 WHEN (n - 1) = 9 THEN 2.262157162798 WHEN (n - 1) = 10 THEN 2.228138851986
+      WHEN (n - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (n - 1)) / (n - 1)) / (n - 1)) / (n - 1) END AS t,
+    k0 + s0 / n AS m0, sqrt(max(0, (q0 - s0 * s0 / n) / (n - 1))) AS d0,
+    k1 + s1 / n AS m1, sqrt(max(0, (q1 - s1 * s1 / n) / (n - 1))) AS d1,
+    k2 + s2 / n AS m2, sqrt(max(0, (q2 - s2 * s2 / n) / (n - 1))) AS d2,
+    k3 + s3 / n AS m3, sqrt(max(0, (q3 - s3 * s3 / n) / (n - 1))) AS d3,
+    k4 + s4 / n AS m4, sqrt(max(0, (q4 - s4 * s4 / n) / (n - 1))) AS d4
+  FROM moment
+)
+SELECT p.point_id, p.engine, p.scene_name AS scene,
+  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
+  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
+  m0 AS largest_fraction_mean, d0 AS largest_fraction_sd, d0 / sqrt(n) AS largest_fraction_se, s.t * d0 / sqrt(n) AS largest_fraction_hw95,
+  m1 AS second_fraction_mean, d1 AS second_fraction_sd, d1 / sqrt(n) AS second_fraction_se, s.t * d1 / sqrt(n) AS second_fraction_hw95,
+  m2 AS fragment_count_mean, d2 AS fragment_count_sd, d2 / sqrt(n) AS fragment_count_se, s.t * d2 / sqrt(n) AS fragment_count_hw95,
+  m3 AS dust_fraction_mean, d3 AS dust_fraction_sd, d3 / sqrt(n) AS dust_fraction_se, s.t * d3 / sqrt(n) AS dust_fraction_hw95,
+  m4 AS mean_fragment_mass_mean, d4 AS mean_fragment_mass_sd, d4 / sqrt(n) AS mean_fragment_mass_se, s.t * d4 / sqrt(n) AS mean_fragment_mass_hw95
+FROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id
+  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;
+
+CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point
+SELECT p.point_id, p.engine, p.scene_name AS scene,
+  s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,
+  1.0 * s.count / t.runs AS count_mean,
+  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,
+  s.count / (t.fragments * (b.upper - b.lower)) AS density
+FROM point p JOIN point_total t ON t.point_id = p.point_id
+  JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version
+  JOIN bin b ON b.bin = s.bin;
+
+CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)
+SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,
+  "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", e.results_version
+FROM (
+  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", r.results_version
+  FROM estimate JOIN run r USING (run_id)
+  UNION ALL
+  SELECT point_id, NULL, NULL, NULL, NULL, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", results_version FROM point_estimate
+) e JOIN point p ON p.point_id = e.point_id;
+
+INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'exit_code', NULL, 'exit code of the process', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'failed_at', 's', 'when, seconds since 1970-01-01 UTC', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'host', NULL, 'machine', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'identity', NULL, 'identity of the run that was tried', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'limited_to', NULL, 'the limit that ended it: seconds or bytes, 0 for the other reasons', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'message', NULL, 'what it said', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'number', NULL, 'which attempt, from 1', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'peak_memory', 'B', 'largest resident memory', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'point_id', NULL, 'its point', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'rank', NULL, 'MPI rank', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'reason', NULL, 'time_limit, memory_limit, crash, lost or exit', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'replicate', NULL, 'which seed of the point, from 0', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'session_id', NULL, 'the session that tried', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'signal', NULL, 'signal that ended it, 0 for none', 0);
+
+INSERT INTO column_doc VALUES ('attempt', 'wall_time', 's', 'elapsed time', 0);
+
+INSERT INTO column_doc VALUES ('axis', 'column_name', NULL, 'its column in the views', 0);
+
+INSERT INTO column_doc VALUES ('axis', 'meaning', NULL, 'what the input means', 0);
+
+INSERT INTO column_doc VALUES ('axis', 'path', NULL, 'path of an input that some campaign varied', 0);
+
+INSERT INTO column_doc VALUES ('axis', 'unit', NULL, 'SI unit of the input', 0);
+
+INSERT INTO column_doc VALUES ('bin', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
+
+INSERT INTO column_doc VALUES ('bin', 'lower', 'kg', 'lower edge, inside the bin', 0);
+
+INSERT INTO column_doc VALUES ('bin', 'upper', 'kg', 'upper edge, outside the bin', 0);
+
+INSERT INTO column_doc VALUES ('campaign', 'added_at', NULL, 'when it was first run, UTC, ISO 8601', 0);
+
+INSERT INTO column_doc VALUES ('campaign', 'campaign_id', NULL, 'number of the campaign in this store', 0);
+
+INSERT INTO column_doc VALUES ('campaign', 'document', NULL, 'the campaign file as it was read', 0);
+
+INSERT INTO column_doc VALUES ('campaign', 'name', NULL, 'its name', 0);
+
+INSERT INTO column_doc VALUES ('campaign', 'plan', NULL, 'what it was resolved to, JSON', 0);
+
+INSERT INTO column_doc VALUES ('campaign_point', 'campaign_id', NULL, 'campaign that asked for the point', 0);
+
+INSERT INTO column_doc VALUES ('campaign_point', 'point_id', NULL, 'a point of it; campaigns may share points', 0);
+
+INSERT INTO column_doc VALUES ('column_doc', 'column_name', NULL, 'column of it', 0);
+
+INSERT INTO column_doc VALUES ('column_doc', 'deterministic', NULL, '1: a result that depends on inputs, seed and results_version alone (not a time, a host...)', 0);
+
+INSERT INTO column_doc VALUES ('column_doc', 'meaning', NULL, 'what the column holds', 0);
+
+INSERT INTO column_doc VALUES ('column_doc', 'table_name', NULL, 'table or view', 0);
+
+INSERT INTO column_doc VALUES ('column_doc', 'unit', NULL, 'SI unit; NULL where there is none', 0);
+
+INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'lower', 'kg', 'Lower end of the window really used (2D: kg per metre of thickness).', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'n', '1', 'Fragments in the window.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the estimates of the run', 0);
+
+INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
+
+INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 1);
+
+INSERT INTO column_doc VALUES ('estimates', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'lower', 'kg', 'lower edge, inside the bin', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'n', '1', 'Fragments in the window.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'ordinal', NULL, 'number among the estimates of the run', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'replicate', NULL, 'which seed of the point, from 0', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 0);
+
+INSERT INTO column_doc VALUES ('fragment_mass', 'masses', 'kg', 'mass of every fragment, descending: little-endian float64, 8 bytes each', 0);
+
+INSERT INTO column_doc VALUES ('fragment_mass', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('fragment_motion', 'motion', NULL, '11 little-endian float32 per fragment, in the order of masses: position x y z (m), velocity x y z (m/s), spin x y z (rad/s), moment of inertia (kg m^2), kinetic energy (J)', 0);
+
+INSERT INTO column_doc VALUES ('fragment_motion', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('holder', 'holder_id', NULL, 'always 1', 0);
+
+INSERT INTO column_doc VALUES ('holder', 'host', NULL, 'machine of the process that last opened the store for writing', 0);
+
+INSERT INTO column_doc VALUES ('holder', 'pid', NULL, 'its process number; the row only names the holder, an OS lock is what holds', 0);
+
+INSERT INTO column_doc VALUES ('holder', 'since', NULL, 'when it did, UTC, ISO 8601', 0);
+
+INSERT INTO column_doc VALUES ('point', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('point', 'hash', NULL, '128-bit hash of engine and active inputs, without seed and results_version', 0);
+
+INSERT INTO column_doc VALUES ('point', 'point_id', NULL, 'number of the point: one set of input values', 0);
+
+INSERT INTO column_doc VALUES ('point', 'scene', NULL, 'the resolved scene, JSON, SI units: every active input, defaults too', 0);
+
+INSERT INTO column_doc VALUES ('point', 'scene_name', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'lower', 'kg', 'Lower end of the window really used (2D: kg per metre of thickness).', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'n', '1', 'Fragments in the window.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'ordinal', NULL, 'number among the estimates of the point', 0);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
+
+INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 1);
+
+INSERT INTO column_doc VALUES ('point_input', 'path', NULL, 'path of an active input in the scene', 0);
+
+INSERT INTO column_doc VALUES ('point_input', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('point_input', 'value', NULL, 'its value in SI units; choices by name, booleans 0 or 1, the keyword off as text', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'bin', NULL, 'mass bin (table bin)', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'count', '1', 'sum of their counts', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'count_squared', '1', 'sum of the squares of their counts, for the scatter between runs', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'mass', 'kg', 'sum of their masses', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('point_spectrum', 'runs', '1', 'runs that count and have a fragment in the bin', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'censored', '1', 'those of them that ended at their time: fragments may still have been breaking', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'fragments', '1', 'fragments of the runs that count', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'mass', 'kg', 'mass of these fragments', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'runs', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
+
+INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
+
+INSERT INTO column_doc VALUES ('points', 'censored', '1', 'those of them that ended at their time: fragments may still have been breaking', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard error of the mean: Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('points', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
+
+INSERT INTO column_doc VALUES ('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over runs: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_sd', '1', 'standard deviation between runs: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_se', '1', 'standard error of the mean: Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean (Student): Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
+
+INSERT INTO column_doc VALUES ('points', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('points', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('points', 'scene', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard deviation between runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard error of the mean: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
+
+INSERT INTO column_doc VALUES ('result_dem', 'beams', '1', 'Beams at the start, those of the explosive left out.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'broken', '1', 'Beams broken.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'broken_bend', '1', 'Beams broken with the bending term the larger one.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'broken_share', '1', 'Broken beams over all beams.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_damping', 'J/m', 'Energy taken by damping.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_external_work', 'J/m', 'Work done by moving boundaries.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_friction', 'J/m', 'Energy taken by friction.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'energy_kinetic', 'J/m', 'Kinetic energy at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'failure_strain', '1', 'Strain at the largest stress.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'final_strain', '1', 'Strain at the end of the loading.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'first_break', 's', 'Time of the first break; off when none broke.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'grains', '1', 'Grains, the explosive one left out.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'last_break', 's', 'Time of the last break; off when none broke.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('result_dem', 'sound_speed_compression', 'm/s', 'Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'sound_speed_extension', 'm/s', 'Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice''s value).', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'strength', 'Pa', 'Largest stress under load.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression: broken beams whose crack (the common side) lies within 30 degrees of the load''s direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
+
+INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+
+INSERT INTO column_doc VALUES ('run', 'cpu_time', 's', 'processor time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of single grains.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Drift of the closed energy ledger over the energy put in.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'fields_path', NULL, 'HDF5 file with its fields, relative to the store''s folder; NULL when none was kept', 0);
+
+INSERT INTO column_doc VALUES ('run', 'finished_at', 's', 'when it was stored, seconds since 1970-01-01 UTC', 0);
+
+INSERT INTO column_doc VALUES ('run', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'host', NULL, 'machine that computed it', 0);
+
+INSERT INTO column_doc VALUES ('run', 'identity', NULL, '128-bit hash of engine, results_version, active inputs and seed: the same run is never stored twice', 0);
+
+INSERT INTO column_doc VALUES ('run', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 1);
+
+INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'message', NULL, 'Diagnostics for a person; empty when all is well.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'momentum_error', '1', 'Change of total momentum not explained by outer forces, over the sum of the members'' momenta.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('run', 'point_id', NULL, 'the point it belongs to', 0);
+
+INSERT INTO column_doc VALUES ('run', 'rank', NULL, 'MPI rank that computed it', 0);
+
+INSERT INTO column_doc VALUES ('run', 'replicate', NULL, 'which seed of the point, from 0', 0);
+
+INSERT INTO column_doc VALUES ('run', 'results_version', NULL, 'version of the engine''s results; statistics never mix two', 0);
+
+INSERT INTO column_doc VALUES ('run', 'run_id', NULL, 'number of the run in this store', 0);
+
+INSERT INTO column_doc VALUES ('run', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
+
+INSERT INTO column_doc VALUES ('run', 'session_id', NULL, 'the session that computed it', 0);
+
+INSERT INTO column_doc VALUES ('run', 'single_count', '1', 'Fragments of one grain or particle: below the model''s resolution.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 1);
+
+INSERT INTO column_doc VALUES ('run', 'steps', '1', 'Time steps taken.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
+
+INSERT INTO column_doc VALUES ('run', 'time', 's', 'Simulated time at the end.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'time_step', 's', 'The smallest time step used.', 1);
+
+INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at the end (two dimensions: per metre of thickness).', 1);
+
+INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'beams', '1', 'Beams at the start, those of the explosive left out.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'broken', '1', 'Beams broken.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'broken_bend', '1', 'Beams broken with the bending term the larger one.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'broken_share', '1', 'Broken beams over all beams.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Drift of the closed energy ledger over the energy put in.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_external_work', 'J/m', 'Work done by moving boundaries.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_friction', 'J/m', 'Energy taken by friction.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_kinetic', 'J/m', 'Kinetic energy at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'failure_strain', '1', 'Strain at the largest stress.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fields_path', NULL, 'HDF5 file with its fields, relative to the store''s folder; NULL when none was kept', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'final_strain', '1', 'Strain at the end of the loading.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'finished_at', 's', 'when it was stored, seconds since 1970-01-01 UTC', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'first_break', 's', 'Time of the first break; off when none broke.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'grains', '1', 'Grains, the explosive one left out.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'host', NULL, 'machine that computed it', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'identity', NULL, '128-bit hash of engine, results_version, active inputs and seed: the same run is never stored twice', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'message', NULL, 'Diagnostics for a person; empty when all is well.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum not explained by outer forces, over the sum of the members'' momenta.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'point_id', NULL, 'number of the point: one set of input values', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'rank', NULL, 'MPI rank that computed it', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'replicate', NULL, 'which seed of the point, from 0', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'results_version', NULL, 'version of the engine''s results; statistics never mix two', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'run_id', NULL, 'number of the run in this store', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'scene', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'session_id', NULL, 'the session that computed it', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'single_count', '1', 'Fragments of one grain or particle: below the model''s resolution.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'sound_speed_compression', 'm/s', 'Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'sound_speed_extension', 'm/s', 'Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice''s value).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'time', 's', 'Simulated time at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'time_step', 's', 'The smallest time step used.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'total_mass', 'kg', 'Mass of the body at the end (two dimensions: per metre of thickness).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broken beams whose crack (the common side) lies within 30 degrees of the load''s direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
+
+INSERT INTO column_doc VALUES ('session', 'ended_at', NULL, 'UTC, ISO 8601; NULL while running or when it was killed', 0);
+
+INSERT INTO column_doc VALUES ('session', 'facts', NULL, 'provenance, JSON: version, commit, compiler, flags, processor class, libraries, ranks, slots, command line', 0);
+
+INSERT INTO column_doc VALUES ('session', 'host', NULL, 'machine of the manager', 0);
+
+INSERT INTO column_doc VALUES ('session', 'outcome', NULL, 'how it ended: a status name; NULL while running or when it was killed', 0);
+
+INSERT INTO column_doc VALUES ('session', 'pid', NULL, 'process of the manager', 0);
+
+INSERT INTO column_doc VALUES ('session', 'session_id', NULL, 'number of the invocation that computed', 0);
+
+INSERT INTO column_doc VALUES ('session', 'started_at', NULL, 'UTC, ISO 8601, to the millisecond', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'count', '1', 'fragments in the bin, of all runs', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'count_mean', '1', 'fragments in the bin per run', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'count_sd', '1', 'standard deviation of the count between runs', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its integral over mass is 1', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'engine', NULL, 'name of the engine', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'lower', 'kg', 'lower edge, inside the bin', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'mass', 'kg', 'their mass', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'n', '1', 'runs of the point that count', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'point_id', NULL, 'the point', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'runs', '1', 'runs that count and have a fragment in the bin', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'scene', NULL, 'name of the scene the inputs started from', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'upper', 'kg', 'upper edge, outside the bin', 0);
+
+INSERT INTO column_doc VALUES ('spectrum', 'bin', NULL, 'mass bin (table bin); only bins that hold something', 0);
+
+INSERT INTO column_doc VALUES ('spectrum', 'count', '1', 'fragments in the bin', 0);
+
+INSERT INTO column_doc VALUES ('spectrum', 'mass', 'kg', 'their mass', 0);
+
+INSERT INTO column_doc VALUES ('spectrum', 'run_id', NULL, 'the run', 0);

@@ -1,0 +1,161 @@
+/* schemas/results.sql is what a store is, every column of it is documented, and the names in SQL text of ours are those
+ * of the field tables. CLAST_REGENERATE=1 in the environment writes the file anew. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "analysis/estimates.h"
+#include "db/views.h"
+#include "tests/store_fixture.h"
+
+static struct error error;
+
+static sqlite3 *run_text(const char *sql) {
+  sqlite3 *db = NULL;
+  assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
+  char *message = NULL;
+  if (sqlite3_exec(db, sql, NULL, NULL, &message) != SQLITE_OK) fail_msg("%s", message);
+  return db;
+}
+
+static int integer(sqlite3 *db, const char *sql) {
+  sqlite3_stmt *statement = NULL;
+  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK) fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+  int value = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int(statement, 0) : -1;
+  sqlite3_finalize(statement);
+  return value;
+}
+
+static void committed_text_is_the_schema(void **state) {
+  (void)state;
+  static const char path[] = CLAST_SOURCE_DIR "/schemas/results.sql";
+  char *made = store_schema_sql(&estimates_table);
+  assert_non_null(made);
+  if (getenv("CLAST_REGENERATE")) {
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs(made, out);
+    fclose(out);
+  }
+  size_t size = strlen(made);
+  char *committed = calloc(1, size + 2);
+  FILE *in = fopen(path, "r");
+  if (!in) fail_msg("schemas/results.sql is missing: run this test with CLAST_REGENERATE=1");
+  size_t got = fread(committed, 1, size + 1, in);
+  fclose(in);
+  if (got != size || memcmp(made, committed, size) != 0)
+    fail_msg(
+        "schemas/results.sql is not the schema any more: run this test with CLAST_REGENERATE=1 and commit the file");
+  free(committed);
+  free(made);
+}
+
+static void text_makes_the_same_store(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  char *sql = store_schema_sql(&estimates_table);
+  sqlite3 *db = run_text(sql);
+  assert_int_equal(store_open_writer(fixture_path(path, "schema"), &estimates_table, &store, NULL, 0, &error),
+                   STATUS_OK);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(integer(db, "ATTACH 'test-store-schema.db' AS real"), -1);
+  assert_int_equal(
+      integer(db, "SELECT count(*) FROM (SELECT name, sql FROM main.sqlite_schema WHERE sql IS NOT NULL EXCEPT "
+                  "SELECT name, sql FROM real.sqlite_schema)"),
+      0);
+  assert_int_equal(integer(db, "SELECT count(*) FROM real.sqlite_schema WHERE name NOT LIKE 'sqlite_%'"),
+                   integer(db, "SELECT count(*) FROM main.sqlite_schema WHERE name NOT LIKE 'sqlite_%'"));
+  assert_int_equal(
+      integer(db, "SELECT count(*) FROM (SELECT * FROM main.column_doc EXCEPT SELECT * FROM real.column_doc)"), 0);
+  assert_int_equal(integer(db, "PRAGMA main.application_id"), integer(db, "PRAGMA real.application_id"));
+  assert_int_equal(integer(db, "PRAGMA main.user_version"), integer(db, "PRAGMA real.user_version"));
+  sqlite3_close(db);
+  free(sql);
+}
+
+static void every_column_is_documented(void **state) {
+  (void)state;
+  char *sql = store_schema_sql(&estimates_table);
+  sqlite3 *db = run_text(sql);
+  sqlite3_stmt *statement = NULL;
+  sqlite3_prepare_v2(
+      db,
+      "SELECT s.name || '.' || c.name FROM sqlite_schema s, pragma_table_xinfo(s.name) c LEFT JOIN column_doc d "
+      "ON d.table_name = s.name AND d.column_name = c.name WHERE s.type IN ('table', 'view') AND "
+      "ifnull(d.meaning, '') = ''",
+      -1, &statement, NULL);
+  if (sqlite3_step(statement) == SQLITE_ROW)
+    fail_msg("no meaning: %s", (const char *)sqlite3_column_text(statement, 0));
+  sqlite3_finalize(statement);
+  assert_true(integer(db, "SELECT count(*) FROM column_doc") > 150);
+  assert_int_equal(integer(db, "SELECT count(*) FROM column_doc d WHERE NOT EXISTS (SELECT 1 FROM "
+                               "pragma_table_xinfo(d.table_name) c WHERE c.name = d.column_name)"),
+                   0);
+  sqlite3_close(db);
+  /* a comment on every column of a table, where the column stands */
+  for (const char *line = strstr(sql, "CREATE TABLE"), *end; line; line = *end ? end + 1 : NULL) {
+    end = line + strcspn(line, "\n");
+    if (strncmp(line, "  ", 2) == 0 && strncmp(line, "  PRIMARY KEY", 13) != 0 && line[2] != '(' &&
+        !strstr(line, "CREATE VIEW")) {
+      const char *comment = strstr(line, " -- ");
+      if (!comment || comment > end) fail_msg("no comment: %.*s", (int)(end - line), line);
+    }
+    if (strncmp(end + (*end == '\n'), "CREATE VIEW", 11) == 0) break;
+  }
+  free(sql);
+}
+
+static void every_table_is_strict(void **state) {
+  (void)state;
+  char *sql = store_schema_sql(&estimates_table);
+  sqlite3 *db = run_text(sql);
+  assert_int_equal(
+      integer(db, "SELECT count(*) FROM pragma_table_list WHERE type = 'table' AND schema = 'main' AND name NOT "
+                  "LIKE 'sqlite_%' AND NOT strict"),
+      0);
+  assert_int_equal(integer(db, "SELECT count(*) FROM pragma_table_list WHERE name = 'result_dem'"), 1);
+  sqlite3_close(db);
+  free(sql);
+}
+
+/* SQL text of ours names quantities and states: they must be those of outcome_table. */
+static void names_are_those_of_the_tables(void **state) {
+  (void)state;
+  for (int i = 0; views_quantities[i]; i++) {
+    const struct field *row = field_find(&outcome_table, views_quantities[i], &error);
+    if (!row) fail_msg("%s", error.message);
+    assert_true(row->kind == FIELD_INTEGER || (row->kind == FIELD_REAL && !(row->flags & FIELD_MAY_BE_OFF)));
+  }
+  const struct field *states = field_find(&outcome_table, "state", &error);
+  assert_string_equal(states->choices[OUTCOME_COMPLETED], "completed");
+  assert_string_equal(states->choices[OUTCOME_END_TIME], "end-time");
+}
+
+static void canned_queries_know_the_real_columns(void **state) {
+  (void)state;
+  struct store *store = NULL;
+  const struct query_sink sink = {.context = NULL};
+  assert_int_equal(store_open_reader("test-store-schema.db", &store, &error), STATUS_OK);
+  for (size_t i = 0; i < query_canned_count(); i++) {
+    const struct query_canned *canned = query_canned_at(i);
+    const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};
+    if (query_run(store, canned->sql, *canned->parameters ? 1 : 0, &parameter, 0, &sink, &error) != STATUS_OK)
+      fail_msg("%s: %s", canned->name, error.message);
+  }
+  store_close(store, NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(committed_text_is_the_schema),  cmocka_unit_test(text_makes_the_same_store),
+      cmocka_unit_test(every_column_is_documented),    cmocka_unit_test(every_table_is_strict),
+      cmocka_unit_test(names_are_those_of_the_tables), cmocka_unit_test(canned_queries_know_the_real_columns),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
