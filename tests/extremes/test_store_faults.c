@@ -1,0 +1,304 @@
+/* The store under kill -9, full disks, missing permissions and readers that stay: whatever happens, what was committed
+ * is whole, and the same command finishes the rest to the same bits. CLAST_FULL=1 kills ten times as often. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/mman.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+
+#include "tests/store_fixture.h"
+
+static struct error error;
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+  } while (0)
+
+enum { M = 2, K = 2, RUNS = 1500 };
+
+static double number(struct store *store, const char *sql) {
+  double value = 0;
+  OK(query_number(store, sql, 0, NULL, &value, &error));
+  return value;
+}
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static status fill(const char *path, int64_t runs, struct error *e) {
+  struct store *store = NULL;
+  status result = store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, e);
+  if (result != STATUS_OK) return result;
+  result = fixture_populate(store, M, K, runs, true, e);
+  status closing = store_close(store, result == STATUS_OK ? e : NULL);
+  return result == STATUS_OK ? closing : result;
+}
+
+static char *dump(const char *path) {
+  struct store *store = NULL;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  OK(store_open_reader(path, &store, &error));
+  OK(store_dump(store, out, &error));
+  fclose(out);
+  store_close(store, NULL);
+  return text;
+}
+
+static void line(void *context, const char *text) {
+  (void)context;
+  print_error("%s\n", text);
+}
+
+/* Opened by a reader, whole; how many runs. */
+static double whole(const char *path) {
+  struct store *store = NULL;
+  OK(store_open_reader(path, &store, &error));
+  OK(store_check(store, line, NULL, &error));
+  double runs = number(store, "SELECT count(*) FROM run");
+  store_close(store, NULL);
+  return runs;
+}
+
+static void killed_writer_loses_at_most_its_batch(void **state) {
+  (void)state;
+  char path[64], reference[64];
+  int kills = getenv("CLAST_FULL") ? 250 : 25;
+  int64_t *added = mmap(NULL, sizeof *added, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  assert_true(added != MAP_FAILED);
+  fixture_path(path, "killed");
+  double before = 0;
+  int in_the_middle = 0;
+  for (int i = 0; i < kills; i++) {
+    *added = -1;
+    pid_t pid = fork();
+    if (pid == 0) {
+      struct store *store = NULL;
+      struct fixture_inputs inputs;
+      static struct fixture_run f;
+      int64_t point;
+      if (store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, NULL) != STATUS_OK) _exit(2);
+      double there = before;
+      *added = (int64_t)there;
+      for (int64_t r = 0; r < RUNS; r++)
+        for (int p = 0; p < M * K; p++) {
+          struct scene scene = fixture_scene(&inputs, 6 + p / K, pow(10, 30 + p % K));
+          if (r == 0 && store_add_point(store, 0, &scene, 2, fixture_axes, &point, NULL) != STATUS_OK) _exit(3);
+          fixture_fill(&f, &scene, p + 1, 0, r, FIXTURE_FRAGMENTS);
+          bool new = !store_has_run(store, f.run.identity);
+          if (store_add_run(store, &f.run, NULL) != STATUS_OK) _exit(4);
+          *added += new;
+        }
+      pause();
+    }
+    double wait = 0.002 + 0.06 * fixture_random(11, (uint64_t)i), start = now();
+    if (i % 5 == 0) wait *= 0.1; /* while it is being made or opened */
+    while (i % 5 && *(volatile int64_t *)added < 0 && now() - start < 20)
+      usleep(200);
+    usleep((useconds_t)(1e6 * wait));
+    kill(pid, SIGKILL);
+    int ending;
+    waitpid(pid, &ending, 0);
+    assert_true(WIFSIGNALED(ending)); /* it did not fail by itself */
+    struct store *store = NULL;
+    status result = store_open_reader(path, &store, &error);
+    store_close(store, NULL);
+    if (result == STATUS_CONTENT || result == STATUS_MISSING) { /* killed before the first commit: empty */
+      assert_true(before == 0);
+      continue;
+    }
+    double after = whole(path);
+    if (after < before) fail_msg("committed runs were lost: %g, then %g", before, after);
+    if ((double)*added - after > 500)
+      fail_msg("more than a batch was lost: %lld added, %g there", (long long)*added, after);
+    in_the_middle += after > before;
+    before = after;
+  }
+  munmap(added, sizeof *added);
+  assert_true(in_the_middle >= 3); /* the kills did fall into the writing */
+  OK(fill(path, RUNS, &error));
+  assert_near(whole(path), M * K * RUNS, 0);
+  OK(fill(fixture_path(reference, "unkilled"), RUNS, &error));
+  char *a = dump(path), *b = dump(reference);
+  assert_string_equal(a, b);
+  free(a);
+  free(b);
+}
+
+/* What a full disk does to a writer, then the same with room. */
+static void run_out_of_room(const char *path, void (*narrow)(void), void (*widen)(void)) {
+  narrow();
+  pid_t pid = fork();
+  if (pid == 0) {
+    struct error said = {0};
+    status result = fill(path, RUNS, &said);
+    bool clear = strstr(said.message, "give the same command again") || strstr(said.message, "Free some space");
+    if (!clear) fprintf(stderr, "said (%d): %s\n", result, said.message);
+    _exit(result == STATUS_IO && clear ? 0 : 1);
+  }
+  int ending;
+  waitpid(pid, &ending, 0);
+  widen();
+  assert_true(WIFEXITED(ending));
+  assert_int_equal(WEXITSTATUS(ending), 0);
+  double kept = whole(path);
+  assert_true(kept >= 500 && kept < M * K * RUNS); /* it did run out, after some batches */
+  OK(fill(path, RUNS, &error));
+  assert_near(whole(path), M * K * RUNS, 0);
+}
+
+static struct rlimit wide;
+static void narrow_files(void) {
+  getrlimit(RLIMIT_FSIZE, &wide);
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &(struct rlimit){.rlim_cur = 3000000, .rlim_max = wide.rlim_max});
+}
+static void widen_files(void) {
+  setrlimit(RLIMIT_FSIZE, &wide);
+}
+
+static void file_size_limit_loses_nothing_committed(void **state) {
+  (void)state;
+  char path[64];
+  run_out_of_room(fixture_path(path, "narrow"), narrow_files, widen_files);
+}
+
+static const char disk[] = "test-store-disk";
+static void nothing(void) {}
+static void enlarge_disk(void) {
+  assert_int_equal(mount("tmpfs", disk, "tmpfs", MS_REMOUNT, "size=64m"), 0);
+}
+
+static void full_disk_loses_nothing_committed(void **state) {
+  (void)state;
+  mkdir(disk, 0777);
+  if (mount("tmpfs", disk, "tmpfs", 0, "size=5m") != 0) { /* needs root; the test above covers the rest */
+    print_message("no right to mount a small disk: skipped\n");
+    skip();
+  }
+  run_out_of_room("test-store-disk/full.db", nothing, enlarge_disk);
+  assert_int_equal(umount(disk), 0);
+}
+
+static void without_permission(void **state) {
+  (void)state;
+  char path[64];
+  fixture_path(path, "permission");
+  mkdir("test-store-closed", 0755);
+  unlink("test-store-closed/a.db");
+  OK(fill("test-store-closed/a.db", 3, &error));
+  chmod("test-store-closed/a.db", 0444);
+  chmod("test-store-closed", 0555);
+  pid_t pid = fork();
+  if (pid == 0) {
+    struct store *store = NULL;
+    struct error said = {0};
+    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(9);
+    if (store_open_writer("test-store-closed/a.db", NULL, &store, NULL, 0, &said) != STATUS_IO) _exit(1);
+    if (!strstr(said.message, "permission")) _exit(2);
+    if (store_open_writer("test-store-closed/new.db", NULL, &store, NULL, 0, &said) != STATUS_IO) _exit(3);
+    if (store_open_reader("test-store-closed/a.db", &store, &said) != STATUS_OK) _exit(4); /* a finished store reads */
+    double runs = 0;
+    if (query_number(store, "SELECT count(*) FROM run", 0, NULL, &runs, &said) != STATUS_OK || runs != 12) _exit(5);
+    if (store_export(store, "test-store-closed/copy.db", &said) != STATUS_IO) _exit(6);
+    store_close(store, NULL);
+    _exit(0);
+  }
+  int ending;
+  waitpid(pid, &ending, 0);
+  chmod("test-store-closed", 0755);
+  chmod("test-store-closed/a.db", 0000);
+  assert_true(WIFEXITED(ending));
+  assert_int_equal(WEXITSTATUS(ending), 0);
+  chmod("test-store-closed/a.db", 0644);
+}
+
+/* A reader in the middle of a query for the whole time: the writer neither waits nor fails, the reader sees its moment.
+ */
+static void reader_never_blocks_the_writer(void **state) {
+  (void)state;
+  char path[64];
+  struct store *writer = NULL, *reader = NULL;
+  OK(fill(fixture_path(path, "stays"), 50, &error));
+  OK(store_open_writer(path, &fixture_estimates_table, &writer, NULL, 0, &error));
+  OK(store_open_reader(path, &reader, &error));
+  sqlite3_stmt *half = NULL;
+  sqlite3_prepare_v2(store_handle(reader), "SELECT run_id FROM run", -1, &half, NULL);
+  assert_int_equal(sqlite3_step(half), SQLITE_ROW);
+  double start = now();
+  OK(fixture_populate(writer, M, K, RUNS, true, &error));
+  OK(store_flush(writer, &error));
+  double spent = now() - start;
+  int seen = 1;
+  while (sqlite3_step(half) == SQLITE_ROW)
+    seen++;
+  assert_int_equal(seen, M * K * 50); /* as it was when the query began */
+  sqlite3_reset(half);
+  assert_near(number(reader, "SELECT count(*) FROM run"), M * K * RUNS, 0);
+  if (spent > 30)
+    fail_msg("the writer waited: %g s", spent); /* 6000 runs take half a second; a wait would take 10 s each */
+  assert_int_equal(sqlite3_step(half), SQLITE_ROW);
+  OK(store_close(writer, &error)); /* cannot leave WAL mode now, and that is no error */
+  sqlite3_finalize(half);
+  store_close(reader, NULL);
+  assert_near(whole(path), M * K * RUNS, 0);
+}
+
+/* After a write failed, the store takes nothing more and says so; the identities of the lost batch are not "stored". */
+static void after_a_failure_nothing_is_pretended(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct fixture_inputs inputs;
+  struct scene scene = fixture_scene(&inputs, 6, 1e30);
+  static struct fixture_run f;
+  int64_t point;
+  OK(store_open_writer(fixture_path(path, "failed-write"), &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_add_point(store, 0, &scene, 2, fixture_axes, &point, &error));
+  OK(store_flush(store, &error));
+  fixture_fill(&f, &scene, point, 0, 0, 5);
+  OK(store_add_run(store, &f.run, &error));
+  assert_true(store_has_run(store, f.run.identity));
+  uint8_t first[16];
+  memcpy(first, f.run.identity, 16);
+  sqlite3_exec(store_handle(store), "PRAGMA max_page_count = 1", NULL, NULL, NULL); /* = as many as there are */
+  status result = STATUS_OK;
+  for (int r = 1; r < 2000 && result == STATUS_OK; r++) {
+    fixture_fill(&f, &scene, point, 0, r, FIXTURE_FRAGMENTS);
+    result = store_add_run(store, &f.run, &error);
+  }
+  assert_int_equal(result, STATUS_IO);
+  assert_non_null(strstr(error.message, "disk is full"));
+  assert_false(store_has_run(store, first));
+  assert_int_equal(store_add_run(store, &f.run, &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "earlier write failed"));
+  store_close(store, NULL);
+  assert_near(whole(path), 0, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(killed_writer_loses_at_most_its_batch),
+      cmocka_unit_test(file_size_limit_loses_nothing_committed),
+      cmocka_unit_test(full_disk_loses_nothing_committed),
+      cmocka_unit_test(without_permission),
+      cmocka_unit_test(reader_never_blocks_the_writer),
+      cmocka_unit_test(after_a_failure_nothing_is_pretended),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
