@@ -22,6 +22,8 @@ static void rows_of_a_run(void **state) {
     grains += fragments[i].count;
   }
   assert_true(total / grains == 2);
+  fragments[60].mass = 4; /* a single grain twice the mean is unresolved all the same */
+  fragments[61].mass = fragments[62].mass = 1;
   struct estimate rows[ESTIMATES_COUNT];
   assert_int_equal(estimates_make(200, fragments, rows, NULL), STATUS_OK);
   int headlines = 0;
@@ -37,6 +39,7 @@ static void rows_of_a_run(void **state) {
   assert_int_equal(headline->fit.method, EXPONENT_MASSES);
   assert_true(headline->fit.lower == 9 && headline->fit.upper == 600);
   assert_int_equal(headline->fit.n, 59); /* 300/2 .. 300/60 = 5 grains; not the 300 of M_1 */
+  assert_int_equal(rows[6].fit.n, 59);       /* masses from 2 */
   assert_int_equal(rows[8].fit.n, 29);       /* masses from 10: to 300/30; not 300/31 = 9 */
   assert_null(estimates_headline(0, NULL));
 }

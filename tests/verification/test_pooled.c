@@ -123,19 +123,19 @@ static void cutoffs_are_told_apart(void **state) {
 
 static void spectrum_density_and_error(void **state) {
   (void)state;
-  /* Two runs: bin [1, 1.26) holds 3 and 1, bin [10, 12.6) 1 and 1 (the largest of each), NaN and 0 nowhere. */
-  const size_t first[3] = {0, 5, 8};
-  const double masses[8] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN};
-  struct pooled_runs runs = {2, first, masses};
+  /* Three runs: bin [1, 1.26) holds 3, 1 and 2, bin [10, 12.6) one in each (the largest), NaN and 0 nowhere. */
+  const size_t first[4] = {0, 5, 8, 11};
+  const double masses[11] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN, 10, 1.25, 1};
+  struct pooled_runs runs = {3, first, masses};
   struct pooled_bin *bins;
   size_t count;
   assert_int_equal(pooled_spectrum(&runs, true, 1, &bins, &count, NULL), STATUS_OK);
   assert_int_equal(count, 2);
   double width = pow(10, 0.1) - 1;
-  assert_int_equal(bins[0].count, 4);
+  assert_int_equal(bins[0].count, 6);
   assert_true(fabs(bins[0].density * width - 2) < 1e-13);
-  assert_true(fabs(bins[0].standard_error * width - 1) < 1e-13); /* counts 3 and 1: s.d. sqrt 2, over sqrt 2 */
-  assert_true(bins[1].count == 2 && bins[1].standard_error == 0);
+  assert_true(fabs(bins[0].standard_error * width - sqrt(1.0 / 3)) < 1e-13); /* counts 3, 1, 2: s.d. 1, over sqrt 3 */
+  assert_true(bins[1].count == 3 && bins[1].standard_error == 0);
   free(bins);
   assert_int_equal(pooled_spectrum(&runs, false, 23, &bins, &count, NULL), STATUS_OK);
   assert_int_equal(count, 1);
