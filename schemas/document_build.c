@@ -60,6 +60,8 @@ static void append(struct builder *b, document_node *to, document_node *key, doc
     to->capacity = capacity;
   }
   to->pairs[to->count++] = (struct document_pair){.key = key, .value = value};
+  value->parent = to;
+  value->key = key;
 }
 
 /* The path of what is being read now, such as "vary.grain.density[2]". */

@@ -11,7 +11,7 @@ struct reading {
   const char *const *also;
   void *object;
   struct place {
-    document_node *key;
+    document_node *key, *value;
     bool good;
   } * places;
 };
@@ -46,15 +46,15 @@ static char **siblings(const struct reading *r, const char *prefix) {
   return words;
 }
 
-static void unknown(const struct reading *r, document_node *key, const char *prefix) {
+static void unknown(const struct reading *r, const document_node *mapping, document_node *key, const char *prefix) {
   if (key->document->error_count >= DOCUMENT_MOST_ERRORS) {
     document_unknown_key(key, NULL, NULL, NULL); /* counted */
     return;
   }
   char path[PATH_SIZE];
-  snprintf(path, sizeof path, "%.*s", (int)(strlen(prefix) - (*prefix != 0)), prefix);
   char **words = siblings(r, prefix);
-  document_unknown_key(key, path, (const char *const *)words, field_nearest(r->table, key->text));
+  document_unknown_key(key, document_value_path(mapping, path, sizeof path), (const char *const *)words,
+                       field_nearest(r->table, key->text));
   for (size_t i = 0; words && words[i]; i++)
     free(words[i]);
   free(words);
@@ -80,6 +80,7 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
       struct field_value value;
       if (place->key) continue; /* a duplicate: reported already, the first one counts */
       place->key = key;
+      place->value = node;
       place->good = document_value(node, row, &value);
       if (place->good) field_set_unchecked(row, r->object, &value);
     } else if (section && node->kind == DOCUMENT_MAPPING) {
@@ -87,10 +88,10 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
       path[length + 1] = 0;
       walk(r, node, path);
     } else if (section) {
-      document_report(node, path, "expected keys and values below it, got %s",
+      document_report(node, document_value_path(node, path, sizeof path), "expected keys and values below it, got %s",
                       document_value_is_null(node) ? "nothing" : document_value_what(node));
     } else {
-      unknown(r, key, prefix);
+      unknown(r, mapping, key, prefix);
     }
   }
 }
@@ -128,7 +129,8 @@ bool document_read(document_node *node, const struct field_table *table, const c
   size_t before = document->error_count;
   if (node->faulty) return false;
   if (node->kind != DOCUMENT_MAPPING) {
-    document_report(node, NULL, "expected the keys and values of a %s, got %s", table->name,
+    char path[PATH_SIZE];
+    document_report(node, document_value_path(node, path, sizeof path), "expected keys and values, got %s",
                     document_value_is_null(node) ? "nothing" : document_value_what(node));
     return false;
   }
@@ -141,16 +143,19 @@ bool document_read(document_node *node, const struct field_table *table, const c
   walk(&r, node, "");
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    char why[600];
+    char why[600], path[PATH_SIZE], whole[2 * PATH_SIZE];
     if (!judgeable(&r, row)) continue;
     if (field_is_active(table, row, object)) {
       if (!(row->flags & FIELD_REQUIRED) || r.places[i].key) continue;
       size_t at = holder(node, row->path)->start;
-      document_report_at(document, at, at + 1, row->path, "is missing and has no default; %s",
+      document_value_path(node, path, sizeof path);
+      snprintf(whole, sizeof whole, "%s%s%s", path, *path ? "." : "", row->path);
+      document_report_at(document, at, at + 1, whole, "is missing and has no default; %s",
                          row->doc ? row->doc : "give it");
     } else if (r.places[i].key) {
       field_describe_inactive(table, row, object, why, sizeof why);
-      document_report(r.places[i].key, row->path, "has no effect: it is %s; remove one or change the other", why);
+      document_value_path(r.places[i].value, path, sizeof path);
+      document_report(r.places[i].key, path, "has no effect: it is %s; remove one or change the other", why);
     }
   }
   free(r.places);

@@ -21,6 +21,7 @@ struct document_pair {
 struct document_node {
   struct document *document;
   struct document_node *next; /* all nodes, for freeing */
+  document_node *parent, *key; /* where it stands: NULL at the root, key NULL in a list */
   enum document_kind kind;
   bool plain;        /* scalar without quotes: the core schema gives it a type */
   bool faulty;       /* an error about it was reported already: readers pass over it in silence */
@@ -60,6 +61,8 @@ void document_report_at(struct document *document, size_t start, size_t end, con
 size_t document_report_line(const struct document *document, size_t offset); /* counted from 1 */
 char *document_report_text(struct document *document);                       /* malloc'd, sorted by line */
 
+/* Whole path of a node in its document, such as "vary.grain.density[2]"; empty at the root. */
+const char *document_value_path(const document_node *node, char *path, size_t size);
 /* "a list", "nothing", "the text 'x'": what a node is, for messages. */
 const char *document_value_what(const document_node *node);
 bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */

@@ -2,7 +2,7 @@
 
 #include "schemas/document_tree.h"
 
-enum { LIST_SIZE = 400 };
+enum { LIST_SIZE = 400, PATH_SIZE = 256 };
 
 const char *document_value_what(const document_node *node) {
   switch (node->kind) {
@@ -55,29 +55,52 @@ static void describe(const struct field *row, char *text, size_t size) {
   }
 }
 
+const char *document_value_path(const document_node *node, char *path, size_t size) {
+  const document_node *chain[DOCUMENT_DEEPEST + 1];
+  size_t depth = 0, used = 0;
+  *path = 0;
+  for (; node && node->parent && depth <= DOCUMENT_DEEPEST; node = node->parent)
+    chain[depth++] = node;
+  while (depth-- > 0 && used < size) {
+    const document_node *at = chain[depth];
+    size_t index = 0;
+    while (!at->key && at->parent->pairs[index].value != at)
+      index++;
+    int n = at->key ? snprintf(path + used, size - used, "%s%s", used ? "." : "", at->key->text)
+                    : snprintf(path + used, size - used, "[%zu]", index);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  return path;
+}
+
+/* field_parse's message begins with the row's path; the node's own is the same or longer ("vary." before it). */
+static void report(document_node *node, const struct field *row, const char *message) {
+  char path[PATH_SIZE] = "";
+  size_t length = strlen(row->path);
+  if (strncmp(message, row->path, length) == 0 && strncmp(message + length, ": ", 2) == 0) message += length + 2;
+  if (node->document->error_count < DOCUMENT_MOST_ERRORS) document_value_path(node, path, sizeof path);
+  document_report(node, *path ? path : row->path, "%s", message);
+}
+
 bool document_value(document_node *node, const struct field *row, struct field_value *value) {
-  char expected[LIST_SIZE];
-  if (node->faulty) return false;
-  if (node->kind != DOCUMENT_SCALAR || document_value_is_null(node)) {
-    describe(row, expected, sizeof expected);
-    document_report(node, row->path, "expected %s, got %s", expected,
-                    document_value_is_null(node) ? "nothing" : document_value_what(node));
-    return false;
-  }
-  const char *text = node->text;
-  bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
-  if (!node->plain && (row->kind == FIELD_BOOLEAN || (row->kind == FIELD_INTEGER && unitless))) {
-    document_report(node, row->path, "expected %s, got a text in quotes; remove the quotes",
-                    row->kind == FIELD_BOOLEAN ? "true or false" : "a whole number");
-    return false;
-  }
-  if (row->kind == FIELD_BOOLEAN) {
-    static const char *const yes[] = {"true", "True", "TRUE", NULL}, *const no[] = {"false", "False", "FALSE", NULL};
-    if (any_of(text, yes)) text = "true";
-    if (any_of(text, no)) text = "false";
-  }
   struct error error;
-  if (field_parse(row, text, value, &error) == STATUS_OK) return true;
-  document_report(node, NULL, "%s", error.message); /* begins with the path */
+  if (node->faulty) return false;
+  bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
+  if (node->kind != DOCUMENT_SCALAR || document_value_is_null(node)) {
+    char expected[LIST_SIZE];
+    describe(row, expected, sizeof expected);
+    status_fail(&error, STATUS_CONTENT, "expected %s, got %s", expected,
+                document_value_is_null(node) ? "nothing" : document_value_what(node));
+  } else if (!node->plain && (row->kind == FIELD_BOOLEAN || (row->kind == FIELD_INTEGER && unitless))) {
+    status_fail(&error, STATUS_CONTENT, "expected %s, got a text in quotes; remove the quotes",
+                row->kind == FIELD_BOOLEAN ? "true or false" : "a whole number");
+  } else {
+    static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
+    const char *text = node->text;
+    if (row->kind == FIELD_BOOLEAN && any_of(text, yes)) text = "true";
+    if (row->kind == FIELD_BOOLEAN && any_of(text, no)) text = "false";
+    if (field_parse(row, text, value, &error) == STATUS_OK) return true;
+  }
+  report(node, row, error.message);
   return false;
 }

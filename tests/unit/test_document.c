@@ -469,6 +469,46 @@ static void files_that_are_none(void **state) {
   document_free(NULL);
 }
 
+/* A table read from a part of a document: paths are those of the document. */
+static void parts_have_whole_paths(void **state) {
+  (void)state;
+  struct document *document;
+  struct thing thing;
+  struct field_value value;
+  const char *text = "part:\n  body: {lenght: 1, count: x}\n  shape: block\n  contact: {law: off, speed: 1}\nlist: [1, "
+                     "[2 s]]\nother: 3\n",
+             *report;
+  assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, NULL), STATUS_OK);
+  document_node *root = document_root(document);
+  field_defaults(&table, &thing);
+  assert_false(document_read(document_key(root, "part"), &table, NULL, &thing));
+  assert_false(document_read(document_key(root, "other"), &table, NULL, &thing));
+  document_node *item = document_item(document_item(document_key(root, "list"), 1, NULL), 0, NULL);
+  assert_false(document_value(item, &rows[1], &value));
+  document_finish(document, &report);
+  assert_string_equal(report,
+                      "a.yaml:2:3: error: part.block.height: is missing and has no default; Height of the block.\n"
+                      "    body: {lenght: 1, count: x}\n"
+                      "    ^\n"
+                      "a.yaml:2:10: error: part.body.lenght: unknown key; did you mean 'length'?\n"
+                      "    body: {lenght: 1, count: x}\n"
+                      "           ^~~~~~\n"
+                      "a.yaml:2:28: error: part.body.count: expected a number, got 'x'\n"
+                      "    body: {lenght: 1, count: x}\n"
+                      "                             ^\n"
+                      "a.yaml:4:23: error: part.contact.speed: has no effect: it is used only when contact.law is weak "
+                      "or strong; here it is off; remove one or change the other\n"
+                      "    contact: {law: off, speed: 1}\n"
+                      "                        ^~~~~\n"
+                      "a.yaml:5:12: error: list[1][0]: expected a length such as m, got a time (s)\n"
+                      "  list: [1, [2 s]]\n"
+                      "             ^~~\n"
+                      "a.yaml:6:8: error: other: expected keys and values, got a single value\n"
+                      "  other: 3\n"
+                      "         ^");
+  document_free(document);
+}
+
 static void trees_are_walked(void **state) {
   (void)state;
   struct document *document;
@@ -513,6 +553,7 @@ int main(void) {
       cmocka_unit_test(long_lines_and_many_errors_stay_readable),
       cmocka_unit_test(limits_hold),
       cmocka_unit_test(files_that_are_none),
+      cmocka_unit_test(parts_have_whole_paths),
       cmocka_unit_test(trees_are_walked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
