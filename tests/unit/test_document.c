@@ -302,6 +302,13 @@ static void each_error_says_this(void **state) {
                   "  a: @b\n"
                   "     ^"},
       /* Columns count characters, not bytes; tabs inside a line stay tabs above the caret. */
+      {"body: {'\xC3\xA9\xE2\x82\xAC': 1}\n",
+       "a.yaml:1:8: error: body.\xC3\xA9\xE2\x82\xAC: unknown key; known here are length, limit, count\n"
+       "  body: {'\xC3\xA9\xE2\x82\xAC': 1}\n"
+       "         ^~~~"},
+      {"note: ['\xC3\xA9\xE2\x82\xAC', *a]\n", "a.yaml:1:14: error: note[1]: alias '*a' has no anchor '&a' before it\n"
+                                               "  note: ['\xC3\xA9\xE2\x82\xAC', *a]\n"
+                                               "               ^~"},
       {"'\xC3\xA9\xC3\xA9': 1\nname:\t[\xC3\xA9]\n", "a.yaml:1:1: error: \xC3\xA9\xC3\xA9: unknown key; known here are "
                                                      "shape, body, memory, broken, contact, name, block, note\n"
                                                      "  '\xC3\xA9\xC3\xA9': 1\n"
@@ -385,6 +392,44 @@ static void long_lines_and_many_errors_stay_readable(void **state) {
       "8, 9, 10, 11, 12, 1...\n"
       "                                                                           ^~~~~");
   free(report);
+}
+
+/* RFC 3629: what is UTF-8 and what is not, one byte sequence at a time in the place of a name's last letters. */
+static void utf8_is_judged_strictly(void **state) {
+  (void)state;
+  static const struct {
+    const char *bytes;
+    bool good;
+  } cases[] = {
+      {"\xC2\xA2", true},
+      {"\xE2\x82\xAC", true},
+      {"\xF0\x9F\x8C\x8D", true},
+      {"\xF4\x8F\xBF\xBD", true},
+      {"\xC0\xAF", false},
+      {"\xC1\xBF", false},
+      {"\xE0\x80\xAF", false},
+      {"\xF0\x80\x80\xAF", false}, /* overlong */
+      {"\xED\xA0\x80", false},
+      {"\xF4\x90\x80\x80", false},
+      {"\xF5\x80\x80\x80", false}, /* surrogate; beyond U+10FFFF */
+      {"\xC2 ", false},
+      {"\xE2\x82 ", false},
+      {"\x80", false},
+      {"\xFF", false}, /* cut short; stray */
+      {"\xC2\x85", false},
+      {"\xE2\x80\xA8", false},
+      {"\xEF\xBB\xBF", false},
+      {"\xEF\xBF\xBF", false}, /* no text */
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[64];
+    struct thing thing;
+    snprintf(text, sizeof text, "name: a%sb\n", cases[i].bytes);
+    char *report = report_text(text, &thing);
+    if ((report == NULL) != cases[i].good) fail_msg("case %zu: %s", i, report ? report : "accepted");
+    if (report) assert_non_null(strstr(report, "a.yaml:1:8: error: "));
+    free(report);
+  }
 }
 
 static double seconds(void) {
@@ -554,6 +599,7 @@ int main(void) {
       cmocka_unit_test(limits_hold),
       cmocka_unit_test(files_that_are_none),
       cmocka_unit_test(parts_have_whole_paths),
+      cmocka_unit_test(utf8_is_judged_strictly),
       cmocka_unit_test(trees_are_walked),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

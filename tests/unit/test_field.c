@@ -295,6 +295,10 @@ static void json_and_identity(void **state) {
   assert_null(strstr(text, "mode="));
   assert_null(strstr(text, "angle="));
   free(text);
+  text = field_json(&table, &thing);
+  assert_string_equal(text, "{\"body\":{\"length\":0.4,\"limit\":\"off\",\"count\":7},\"law\":\"off\",\"memory\":1024,"
+                            "\"broken\":false,\"other\":{\"length\":-1.5e-7}}");
+  free(text);
 }
 
 static void explains(void **state) {
