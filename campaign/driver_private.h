@@ -13,7 +13,7 @@
 /* Points looked at together: "dearest first" is exact for campaigns of up to this many points, and a window for larger
  * ones, whose points are made as they are needed. Filling it may take this long before the first run starts. */
 enum { DRIVER_WINDOW = 1024 };
-#define DRIVER_FILL_S 0.2
+#define DRIVER_FILL_S 0.05
 
 struct flight { /* a task on a slot */
   struct point *point; /* NULL: this place is free */

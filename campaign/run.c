@@ -6,7 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* Both encodings begin so. All ranks of a farm run one binary; the mark and the sizes catch anything else. */
+/* Both encodings begin so. All ranks of a farm run one binary, so arrays of structs go as they lie in memory; the mark, the
+ * sizes and the tables' own hashes catch anything else. */
 #define TASK_MARK "clast task 1"
 #define RESULT_MARK "clast result 1"
 
@@ -172,9 +173,9 @@ static void write_result(struct writer *writer, const struct engine_kind *kind, 
   put_count(writer, sizeof(struct fragment));
   put_count(writer, result->fragment_count);
   put(writer, result->fragments, result->fragment_count * sizeof(struct fragment));
+  put_count(writer, sizeof(struct estimate));
   put_count(writer, result->estimate_count);
-  for (size_t i = 0; i < result->estimate_count; i++)
-    put_object(writer, &estimates_table, &result->estimates[i]);
+  put(writer, result->estimates, result->estimate_count * sizeof(struct estimate));
 }
 
 uint8_t *run_encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
@@ -212,11 +213,14 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
     memcpy(result->fragments, fragments, (size_t)count * sizeof(struct fragment));
     result->fragment_count = (size_t)count;
   }
+  if (take_count(&reader) != sizeof(struct estimate))
+    reader.good = false;
   uint64_t estimates = take_count(&reader);
   if (estimates > ESTIMATES_COUNT)
     reader.good = false;
-  for (uint64_t i = 0; reader.good && i < estimates; i++)
-    take_object(&reader, &estimates_table, &result->estimates[i]);
+  const uint8_t *rows = reader.good ? take(&reader, estimates * sizeof(struct estimate)) : NULL;
+  if (rows)
+    memcpy(result->estimates, rows, (size_t)estimates * sizeof(struct estimate));
   if (!reader.good || reader.left) {
     run_result_clear(result);
     return status_fail(error, STATUS_INTERNAL,

@@ -219,7 +219,7 @@ static status play_row(void *context, size_t count, const struct query_value *va
 }
 
 /* What counts in a store, as text; malloc'd. */
-static char *play_dump(const char *path) {
+static inline char *play_dump(const char *path) {
   struct error error = {0};
   struct store *store = NULL;
   char *text = NULL;
