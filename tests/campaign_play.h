@@ -12,7 +12,6 @@
 #include "analysis/estimates.h"
 #include "campaign/driver.h"
 #include "campaign/run.h"
-#include "db/query.h"
 #include "engine/dem/inputs.h"
 #include "engine/dem/results.h"
 #include "engine/random.h"
@@ -210,14 +209,6 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   return code;
 }
 
-static status play_row(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  for (size_t i = 0; i < count; i++)
-    fprintf(context, "%s ", values[i].kind == QUERY_TEXT ? values[i].text : "?");
-  fputc('\n', context);
-  return STATUS_OK;
-}
-
 /* What counts in a store, as text; malloc'd. */
 static inline char *play_dump(const char *path) {
   struct error error = {0};
@@ -225,10 +216,7 @@ static inline char *play_dump(const char *path) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  struct query_sink sink = {out, NULL, play_row};
-  if (store_open_reader(path, &store, &error) != STATUS_OK ||
-      query_run(store, "select printf('%s %d %d %s %.17g %d', hex(identity), replicate, seed, state, largest_fraction, "
-                       "fragment_count) from run where surplus = 0 order by identity", 0, NULL, 0, &sink, &error) != STATUS_OK)
+  if (store_open_reader(path, &store, &error) != STATUS_OK || store_dump(store, out, &error) != STATUS_OK)
     fprintf(stderr, "dump: %s\n", error.message);
   store_close(store, NULL);
   fclose(out);

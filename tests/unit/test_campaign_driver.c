@@ -231,6 +231,11 @@ static int files_in(const char *path) {
   return count;
 }
 
+static void print_line(void *context, const char *text) {
+  (void)context;
+  fprintf(stderr, "%s\n", text);
+}
+
 static void fields_are_kept_as_asked(void **state) {
   (void)state;
   const char *path = in("fields.db");
@@ -252,6 +257,12 @@ static void fields_are_kept_as_asked(void **state) {
   campaign->per_point = 9;
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(files_in(kept), 18);
+  struct store *store = NULL;
+  struct error error = {0};
+  assert_int_equal(store_open_reader(path, &store, &error), STATUS_OK);
+  if (store_check(store, print_line, NULL, &error) != STATUS_OK) /* every file it names is there, and the sums are right */
+    fail_msg("%s", error.message);
+  store_close(store, NULL);
   free(play.says);
   campaign_free(campaign);
 }
