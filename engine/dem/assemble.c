@@ -17,16 +17,22 @@ static const double shrink = 1e-11;
 static void *zeroed(size_t count, size_t size) {
   const size_t bytes = ((count ? count : 1) * size + 63) / 64 * 64;
   void *block = aligned_alloc(64, bytes);
-  if (block)
-    memset(block, 0, bytes);
+  if (block) memset(block, 0, bytes);
   return block;
 }
 
 static bool allocate(struct dem_system *s, size_t vertices) {
-  double **const columns[] = {&s->c.x, &s->c.y, &s->c.angle, &s->c.cosine, &s->c.sine, &s->c.vx, &s->c.vy, &s->c.spin,
-                              &s->c.fx, &s->c.fy, &s->c.torque, &s->c.mobility_x, &s->c.mobility_y,
-                              &s->c.mobility_angle, &s->c.guess_vx, &s->c.guess_vy, &s->c.guess_spin, &s->c.list_x,
-                              &s->c.list_y, &s->c.list_angle, &s->c.skin, &s->radius};
+  double **const columns[] = {&s->c.x,          &s->c.y,
+                              &s->c.angle,      &s->c.cosine,
+                              &s->c.sine,       &s->c.vx,
+                              &s->c.vy,         &s->c.spin,
+                              &s->c.fx,         &s->c.fy,
+                              &s->c.torque,     &s->c.mobility_x,
+                              &s->c.mobility_y, &s->c.mobility_angle,
+                              &s->c.guess_vx,   &s->c.guess_vy,
+                              &s->c.guess_spin, &s->c.list_x,
+                              &s->c.list_y,     &s->c.list_angle,
+                              &s->c.skin,       &s->radius};
   const size_t basic = sizeof columns / sizeof *columns, gear = s->p.integrator == DEM_GEAR ? 12 : 0;
   s->arena_doubles = (basic + gear) * s->padded;
   s->arena = zeroed(s->arena_doubles, sizeof *s->arena);
@@ -69,11 +75,13 @@ static bool allocate(struct dem_system *s, size_t vertices) {
   s->cell_grain = malloc(s->cell_capacity * sizeof *s->cell_grain);
   s->cell_next = malloc(s->cell_capacity * sizeof *s->cell_next);
   s->cell_key = malloc(s->cell_capacity * sizeof *s->cell_key);
+  s->cell_low = malloc(n * sizeof *s->cell_low);
   if (!s->arena || !s->mass || !s->inertia || !s->diameter || !s->first_vertex || !s->outline_x || !s->outline_y ||
       !s->first_partner || !s->partner || !s->partner_pair || !s->freedoms || !s->present || !s->held_vx ||
       !s->held_vy || !s->held_spin || !s->held || !s->pair || !s->pair_stiffness || !s->pair_normal ||
       !s->pair_tangential || !s->alive || !s->windowed || !s->pair_lane || !s->lane_pair || !s->bond || !s->log ||
-      !s->near || !s->near_pair || !s->general || !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key)
+      !s->near || !s->near_pair || !s->general || !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key ||
+      !s->cell_low)
     return false;
   double *next = s->arena;
   for (size_t k = 0; k < basic; ++k, next += s->padded)
@@ -89,10 +97,12 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
   for (size_t i = 0; i < s->count; ++i) {
     const uint32_t first = t->first_vertex[i], sides = t->first_vertex[i + 1] - first;
     if (sides < 3 || sides > DEM_MAX_VERTICES)
-      return status_fail(error, STATUS_CONTENT, "grain %zu has %u sides; 3 to %d can be used.", i, sides, DEM_MAX_VERTICES);
+      return status_fail(error, STATUS_CONTENT, "grain %zu has %u sides; 3 to %d can be used.", i, sides,
+                         DEM_MAX_VERTICES);
     if (!(t->area[i] > 0.0 && t->area[i] < 1e30 && t->polar_moment[i] > 0.0 && t->polar_moment[i] < 1e30))
-      return status_fail(error, STATUS_CONTENT, "grain %zu has area %g m2 and polar moment %g m4; both must be positive.", i,
-                         t->area[i], t->polar_moment[i]);
+      return status_fail(error, STATUS_CONTENT,
+                         "grain %zu has area %g m2 and polar moment %g m4; both must be positive.", i, t->area[i],
+                         t->polar_moment[i]);
     s->c.x[i] = t->centroid[i].x;
     s->c.y[i] = t->centroid[i].y;
     s->mass[i] = s->p.density * t->area[i];
@@ -143,7 +153,8 @@ static bool common_side(const struct dem_tessellation *t, uint32_t i, uint32_t j
 }
 
 /* The window of one grain: the vertices before, at either end of, and after its common side. */
-static void window(struct dem_system *s, struct dem_bond_block *block, size_t lane, int k, uint32_t grain, uint32_t side) {
+static void window(struct dem_system *s, struct dem_bond_block *block, size_t lane, int k, uint32_t grain,
+                   uint32_t side) {
   const uint32_t first = s->first_vertex[grain], sides = s->first_vertex[grain + 1] - first;
   double x[4], y[4];
   for (uint32_t v = 0; v < 4; ++v) {
@@ -160,14 +171,14 @@ static void window(struct dem_system *s, struct dem_bond_block *block, size_t la
   block->before_y[k][lane] = y[0] - my;
   block->after_x[k][lane] = x[3] - mx;
   block->after_y[k][lane] = y[3] - my;
-  const double before = 2.0 * (hx * (y[0] - my) - hy * (x[0] - mx)), after = 2.0 * (hx * (y[3] - my) - hy * (x[3] - mx));
+  const double before = 2.0 * (hx * (y[0] - my) - hy * (x[0] - mx)),
+               after = 2.0 * (hx * (y[3] - my) - hy * (x[3] - mx));
   block->depth[k][lane] = fmin(before, after);
 }
 
 /* Thresholds of a beam: Weibull with the printed threshold as its scale, so that modulus -> infinity gives K99. */
 static double threshold(const struct dem_system *s, double scale, size_t pair, uint64_t draw) {
-  if (isnan(s->p.threshold_modulus))
-    return scale;
+  if (isnan(s->p.threshold_modulus)) return scale;
   const double u = random_draw(s->p.seed, RANDOM_THRESHOLD, pair, draw);
   return scale * pow(-log1p(-u), 1.0 / s->p.threshold_modulus);
 }
@@ -177,11 +188,13 @@ static status bonds(struct dem_system *s, const struct dem_tessellation *t, stru
   for (size_t k = 0; k < s->pair_count; ++k) {
     const uint32_t i = t->pair[k][0], j = t->pair[k][1];
     if (i >= j || j >= s->count)
-      return status_fail(error, STATUS_CONTENT, "pair %zu joins grains %u and %u: the first must be lower, both below %zu.", k,
-                         i, j, s->count);
+      return status_fail(error, STATUS_CONTENT,
+                         "pair %zu joins grains %u and %u: the first must be lower, both below %zu.", k, i, j,
+                         s->count);
     const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i], length = hypot(dx, dy), side = t->side[k];
     if (!(side > 0.0 && side < 1e30 && length > 0.0))
-      return status_fail(error, STATUS_CONTENT, "pair %zu has a common side of %g m and centres %g m apart.", k, side, length);
+      return status_fail(error, STATUS_CONTENT, "pair %zu has a common side of %g m and centres %g m apart.", k, side,
+                         length);
     s->pair[k][0] = i;
     s->pair[k][1] = j;
     ++s->first_partner[i + 2];
@@ -215,12 +228,10 @@ static status bonds(struct dem_system *s, const struct dem_tessellation *t, stru
     s->pair_stiffness[k] = p->grain_modulus * per_length / (p->contact == DEM_CONTACT_PRINTED ? 1.0 : side);
     s->pair_normal[k] = effective * p->normal_damping;
     s->pair_tangential[k] = effective * p->tangential_damping;
-    if (p->contact == DEM_CONTACT_OFF)
-      continue;
+    if (p->contact == DEM_CONTACT_OFF) continue;
     const double size = 0.5 * (s->diameter[i] + s->diameter[j]);
     uint32_t side_i, side_j;
-    if (side < shortest_window * size || !common_side(t, i, j, 1e-9 * size, &side_i, &side_j))
-      continue;
+    if (side < shortest_window * size || !common_side(t, i, j, 1e-9 * size, &side_i, &side_j)) continue;
     s->windowed[k] = 1;
     window(s, block, lane, 0, i, side_i);
     window(s, block, lane, 1, j, side_j);

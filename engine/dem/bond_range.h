@@ -34,8 +34,13 @@ LANES_INLINE void bond_rotate(lanes_d c, lanes_d s, const double *x, const doubl
 /* Angle whose sine is s, |s| <= 1/8: series to s^17, next term below 1e-18. */
 LANES_INLINE lanes_d bond_arcsine(lanes_d s) {
   const lanes_d z = s * s;
-  return s + s * z * (1.0 / 6.0 + z * (3.0 / 40.0 + z * (5.0 / 112.0 + z * (35.0 / 1152.0 + z * (63.0 / 2816.0 +
-         z * (231.0 / 13312.0 + z * (143.0 / 10240.0 + z * (6435.0 / 557056.0))))))));
+  return s + s * z *
+                 (1.0 / 6.0 +
+                  z * (3.0 / 40.0 +
+                       z * (5.0 / 112.0 +
+                            z * (35.0 / 1152.0 +
+                                 z * (63.0 / 2816.0 +
+                                      z * (231.0 / 13312.0 + z * (143.0 / 10240.0 + z * (6435.0 / 557056.0))))))));
 }
 
 /* Contact by the window; returns lanes that need the general overlap, *touching lanes have their sums in *sums. */
@@ -84,8 +89,7 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
   *touching = exact & ~separated;
   const lanes_i general = ~separated & ~exact;
   *sums = (struct contact_sums){0};
-  if (!lanes_any(*touching))
-    return general;
+  if (!lanes_any(*touching)) return general;
   for (int k = 0; k < 2; ++k)
     for (int e = 0; e < 3; e += 2)
       for (int v = 0; v < 4; ++v)
@@ -157,8 +161,7 @@ LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool con
         if (work == BOND_MEASURE || __builtin_expect(!lanes_any(turned), 1))
           break; /* measuring changes nothing: the last evaluation has already turned what had to turn */
         for (int lane = 0; lane < LANES; ++lane)
-          if (turned[lane])
-            dem_breaking_turn(block, at + lane, ux[lane], uy[lane], sine[lane], forward[lane]);
+          if (turned[lane]) dem_breaking_turn(block, at + lane, ux[lane], uy[lane], sine[lane], forward[lane]);
       }
       const lanes_d phi = lanes_load(block->reference_angle + at) + bond_arcsine(sine);
       const lanes_d theta_1 = ends.angle[0] - phi, theta_2 = ends.angle[1] - phi;

@@ -20,8 +20,8 @@ static void lose_beam(struct dem_system *s, struct dem_bond_block *block, int la
                          &block->tangential_damping[lane]);
 }
 
-void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int lane, double length, double ux, double uy,
-                       double theta_first, double theta_second) {
+void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int lane, double length, double ux,
+                       double uy, double theta_first, double theta_second) {
   const size_t slot = (size_t)(block - s->bond) * DEM_BLOCK + (size_t)lane;
   const int32_t pair = s->lane_pair[slot];
   const double stretch = length - block->length[lane], twist = theta_first - theta_second;
@@ -34,8 +34,8 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
     const double m2 = block->diagonal[lane] * (theta_first - theta_second) - block->cross[lane] * theta_first;
     const double tension = block->axial[lane] * stretch, shear = (m1 + m2) / length;
     const double vx = s->c.vx[i] - s->c.vx[j], vy = s->c.vy[i] - s->c.vy[j];
-    const double power = (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] +
-                         m2 * s->c.spin[j];
+    const double power =
+        (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] + m2 * s->c.spin[j];
     energy += 0.5 * s->p.time_step * power;
   }
   s->now.broken_beam += energy;
@@ -54,8 +54,7 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
 }
 
 void dem_breaking_cut(struct dem_system *s, int32_t pair) {
-  if (!s->alive[pair])
-    return;
+  if (!s->alive[pair]) return;
   const int32_t slot = s->pair_lane[pair];
   lose_beam(s, &s->bond[slot / DEM_BLOCK], slot % DEM_BLOCK, pair);
 }

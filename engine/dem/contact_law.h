@@ -13,10 +13,10 @@
 
 /* Sums over the pieces p0 -> p1 of one outline inside the other, about an origin near the contact. */
 struct contact_sums {
-  lanes_d twice_area;         /* of both outlines' pieces: p0 x p1 */
-  lanes_d chord_x, chord_y;   /* grain 1's pieces: p1 - p0 */
-  lanes_d moment;             /* grain 1's: (|p1|^2 - |p0|^2) / 2 */
-  lanes_d xx, xy, yy;         /* grain 1's: p1 (x) p1 - p0 (x) p0, for the chord's middle; only with velocities */
+  lanes_d twice_area;       /* of both outlines' pieces: p0 x p1 */
+  lanes_d chord_x, chord_y; /* grain 1's pieces: p1 - p0 */
+  lanes_d moment;           /* grain 1's: (|p1|^2 - |p0|^2) / 2 */
+  lanes_d xx, xy, yy;       /* grain 1's: p1 (x) p1 - p0 (x) p0, for the chord's middle; only with velocities */
 };
 
 /* Part [enter, leave] of the side from (x, y) along (ex, ey), in units of the side. */
@@ -24,8 +24,7 @@ LANES_INLINE void contact_add_piece(struct contact_sums *sums, lanes_d enter, la
                                     lanes_d ex, lanes_d ey, bool own, bool velocities) {
   const lanes_d part = lanes_mask(leave > enter, leave - enter);
   sums->twice_area += part * (x * ey - y * ex);
-  if (!own)
-    return;
+  if (!own) return;
   const lanes_d both = lanes_mask(leave > enter, enter + leave); /* an empty part may have infinite ends */
   sums->chord_x += part * ex;
   sums->chord_y += part * ey;
@@ -71,15 +70,15 @@ LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums,
   const lanes_d tx = cx * inverse, ty = cy * inverse, nx = -ty, ny = tx;
   /* The chord's middle: p (x) p taken from P1 to P2 is C (x) M + M (x) C, so n . (..) . t = |C| (n . M). */
   const lanes_d along = moment * inverse;
-  const lanes_d across = lanes_mask(touching, nx * tx * sums->xx + (nx * ty + ny * tx) * sums->xy + ny * ty * sums->yy) * inverse;
+  const lanes_d across =
+      lanes_mask(touching, nx * tx * sums->xx + (nx * ty + ny * tx) * sums->xy + ny * ty * sums->yy) * inverse;
   const lanes_d mx = along * tx + across * nx, my = along * ty + across * ny;
   const lanes_d r1x = pairs->origin_x + mx, r1y = pairs->origin_y + my, r2x = away_x + mx, r2y = away_y + my;
   const lanes_d ux = (pairs->vx[1] - pairs->spin[1] * r2y) - (pairs->vx[0] - pairs->spin[0] * r1y); /* K99 eq 5 */
   const lanes_d uy = (pairs->vy[1] + pairs->spin[1] * r2x) - (pairs->vy[0] + pairs->spin[0] * r1x);
   const lanes_d approach = ux * nx + uy * ny, slip = ux * tx + uy * ty;
   lanes_d elastic = pairs->stiffness * area; /* K99 eq 2 */
-  if (p->contact == DEM_CONTACT_CONSERVATIVE)
-    elastic *= length;
+  if (p->contact == DEM_CONTACT_CONSERVATIVE) elastic *= length;
   /* K99 eq 3 with the sign that takes energy out; never attractive. */
   const lanes_d damped = elastic + pairs->normal_damping * approach;
   const lanes_d normal = lanes_mask(touching, lanes_max(damped, damped * 0.0));
@@ -92,7 +91,8 @@ LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums,
   force.torque[0] = r1x * force.y - r1y * force.x;
   force.torque[1] = -(r2x * force.y - r2y * force.x);
   lanes_store(booked->contact + at, lanes_load(booked->contact + at) + lanes_mask(touching, elastic * approach));
-  lanes_store(booked->damping + at, lanes_load(booked->damping + at) + lanes_mask(touching, (normal - elastic) * approach));
+  lanes_store(booked->damping + at,
+              lanes_load(booked->damping + at) + lanes_mask(touching, (normal - elastic) * approach));
   lanes_store(booked->friction + at, lanes_load(booked->friction + at) + lanes_mask(touching, friction * speed));
   return force;
 }

@@ -14,10 +14,8 @@ const struct dem_kernels *dem_kernels_choose(void) {
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl");
-  if (v3 && limit >= 3)
-    best = &dem_kernels_v3;
-  if (v4 && limit >= 4)
-    best = &dem_kernels_v4;
+  if (v3 && limit >= 3) best = &dem_kernels_v3;
+  if (v4 && limit >= 4) best = &dem_kernels_v4;
 #endif
   return best;
 }

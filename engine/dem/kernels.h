@@ -18,7 +18,8 @@ struct dem_kernels {
   void (*verlet_kick)(struct dem_system *system);
   bool (*gear_predict)(struct dem_system *system, bool *moved);
   void (*gear_correct)(struct dem_system *system);
-  void (*turn)(struct dem_system *system); /* cosine and sine from the angles */
+  void (*turn)(struct dem_system *system);                           /* cosine and sine from the angles */
+  void (*best_side)(const struct dem_ring ring[2], struct dem_overlap *out);
   void (*overlap)(struct dem_ring ring[2], struct dem_overlap *out); /* moves the rings' origin */
 };
 

@@ -18,17 +18,27 @@
 typedef double lanes_d __attribute__((vector_size(8 * LANES)));
 typedef int64_t lanes_i __attribute__((vector_size(8 * LANES)));
 
-LANES_INLINE lanes_d lanes_all(double value) { return (lanes_d){0} + value; }
+LANES_INLINE lanes_d lanes_all(double value) {
+  return (lanes_d){0} + value;
+}
 
 LANES_INLINE lanes_d lanes_select(lanes_i mask, lanes_d yes, lanes_d no) {
   return (lanes_d)((mask & (lanes_i)yes) | (~mask & (lanes_i)no));
 }
 
-LANES_INLINE lanes_d lanes_mask(lanes_i mask, lanes_d yes) { return (lanes_d)(mask & (lanes_i)yes); }
+LANES_INLINE lanes_d lanes_mask(lanes_i mask, lanes_d yes) {
+  return (lanes_d)(mask & (lanes_i)yes);
+}
 
-LANES_INLINE lanes_d lanes_max(lanes_d a, lanes_d b) { return lanes_select(a > b, a, b); }
-LANES_INLINE lanes_d lanes_min(lanes_d a, lanes_d b) { return lanes_select(a < b, a, b); }
-LANES_INLINE lanes_d lanes_abs(lanes_d a) { return (lanes_d)((lanes_i)a & INT64_MAX); }
+LANES_INLINE lanes_d lanes_max(lanes_d a, lanes_d b) {
+  return lanes_select(a > b, a, b);
+}
+LANES_INLINE lanes_d lanes_min(lanes_d a, lanes_d b) {
+  return lanes_select(a < b, a, b);
+}
+LANES_INLINE lanes_d lanes_abs(lanes_d a) {
+  return (lanes_d)((lanes_i)a & INT64_MAX);
+}
 
 LANES_INLINE bool lanes_any(lanes_i mask) {
   int64_t any = 0;
@@ -43,7 +53,9 @@ LANES_INLINE lanes_d lanes_load(const double *from) {
   return value;
 }
 
-LANES_INLINE void lanes_store(double *to, lanes_d value) { memcpy(to, &value, sizeof value); }
+LANES_INLINE void lanes_store(double *to, lanes_d value) {
+  memcpy(to, &value, sizeof value);
+}
 
 LANES_INLINE lanes_d lanes_gather(const double *array, const uint32_t *index) {
 #if LANES == 8
@@ -74,11 +86,19 @@ LANES_INLINE void lanes_sincos(lanes_d angle, lanes_d *sine, lanes_d *cosine) {
   r -= turns * 6.07710050630396597660e-11;
   r -= turns * 2.02226624879595063154e-21;
   const lanes_d z = r * r;
-  const lanes_d s = r + r * z * (-1.66666666666666324348e-01 + z * (8.33333333332248946124e-03 + z * (-1.98412698298579493134e-04 +
-                z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-  const lanes_d c = 1.0 - 0.5 * z + z * z * (4.16666666666666019037e-02 + z * (-1.38888888888741095749e-03 +
-                z * (2.48015872894767294178e-05 + z * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 +
-                z * -1.13596475577881948265e-11)))));
+  const lanes_d s = r + r * z *
+                            (-1.66666666666666324348e-01 +
+                             z * (8.33333333332248946124e-03 +
+                                  z * (-1.98412698298579493134e-04 +
+                                       z * (2.75573137070700676789e-06 +
+                                            z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+  const lanes_d c = 1.0 - 0.5 * z +
+                    z * z *
+                        (4.16666666666666019037e-02 +
+                         z * (-1.38888888888741095749e-03 +
+                              z * (2.48015872894767294178e-05 +
+                                   z * (-2.75573143513906633035e-07 +
+                                        z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
   const lanes_i odd = -(quadrant & 1);
   const lanes_i sine_negative = (quadrant & 2) << 62, cosine_negative = ((quadrant + 1) & 2) << 62;
   *sine = (lanes_d)((lanes_i)lanes_select(odd, c, s) ^ sine_negative);

@@ -3,10 +3,10 @@
  * Velocity Verlet: kick by half a step, drift, new forces, kick by half a step. Forces that depend on velocities see
  * v + dt a of the step's start (the velocity of the first kick carried on by another half step).
  *
- * Gear's predictor-corrector of fifth order in Nordsieck form: r_k = dt^k/k! d^k x/dt^k, k = 0..5; prediction by Pascal's
- * triangle, correction r_k += g_k (dt^2/2 a - r_2). g = {3/16, 251/360, 1, 11/18, 1/6, 1/60} for forces of positions
- * alone, 3/20 in the first place with velocity-dependent forces (Gear 1971, table 9.1; Allen & Tildesley 1987,
- * appendix E, table E.1). Damping sees predicted velocities, as in K99. */
+ * Gear's predictor-corrector of fifth order in Nordsieck form: r_k = dt^k/k! d^k x/dt^k, k = 0..5; prediction by
+ * Pascal's triangle, correction r_k += g_k (dt^2/2 a - r_2). g = {3/16, 251/360, 1, 11/18, 1/6, 1/60} for forces of
+ * positions alone, 3/20 in the first place with velocity-dependent forces (Gear 1971, table 9.1; Allen & Tildesley
+ * 1987, appendix E, table E.1). Damping sees predicted velocities, as in K99. */
 #ifndef CLAST_ENGINE_DEM_MOTION_RANGE_H
 #define CLAST_ENGINE_DEM_MOTION_RANGE_H
 
@@ -20,7 +20,8 @@ LANES_INLINE void motion_turn(struct dem_columns *c, size_t g) {
   lanes_store(c->cosine + g, cosine);
 }
 
-/* Has a grain left its skin, is its state still a number? (A turn moves the farthest vertex by at most radius x angle.) */
+/* Has a grain left its skin, is its state still a number? (A turn moves the farthest vertex by at most radius x angle.)
+ */
 LANES_INLINE void motion_check(const struct dem_system *s, size_t g, lanes_i *moved, lanes_i *lost) {
   const struct dem_columns *c = &s->c;
   const lanes_d x = lanes_load(c->x + g), y = lanes_load(c->y + g), angle = lanes_load(c->angle + g);
@@ -28,7 +29,8 @@ LANES_INLINE void motion_check(const struct dem_system *s, size_t g, lanes_i *mo
   const lanes_d swing = lanes_load(s->radius + g) * lanes_abs(angle - lanes_load(c->list_angle + g));
   const lanes_d left = lanes_load(c->skin + g) - swing;
   *moved |= (dx * dx + dy * dy > left * left) | (left < 0.0);
-  const lanes_d speed = lanes_abs(lanes_load(c->vx + g)) + lanes_abs(lanes_load(c->vy + g)) + lanes_abs(lanes_load(c->spin + g));
+  const lanes_d speed =
+      lanes_abs(lanes_load(c->vx + g)) + lanes_abs(lanes_load(c->vy + g)) + lanes_abs(lanes_load(c->spin + g));
   *lost |= ~((lanes_abs(x) + lanes_abs(y) + speed < 1e30) & (lanes_abs(angle) < 1e8));
 }
 
@@ -45,8 +47,7 @@ LANES_INLINE bool motion_verlet_drift(struct dem_system *s, bool *moved_out) {
       const lanes_d kick = half * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g));
       const lanes_d v = lanes_load(velocity[k] + g) + kick;
       lanes_store(velocity[k] + g, v);
-      if (s->velocities)
-        lanes_store(guess[k] + g, v + kick);
+      if (s->velocities) lanes_store(guess[k] + g, v + kick);
       lanes_store(position[k] + g, lanes_load(position[k] + g) + dt * v);
     }
     motion_turn(c, g);
@@ -102,7 +103,8 @@ LANES_INLINE void motion_gear_correct(struct dem_system *s) {
   for (size_t g = 0; g < s->padded; g += LANES) {
     for (int k = 0; k < 3; ++k) {
       double *const *r = c->gear[k];
-      const lanes_d error = 0.5 * dt * dt * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g)) - lanes_load(r[2] + g);
+      const lanes_d error =
+          0.5 * dt * dt * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g)) - lanes_load(r[2] + g);
       lanes_store(position[k] + g, lanes_load(position[k] + g) + position_share * error);
       lanes_store(velocity[k] + g, lanes_load(velocity[k] + g) + (251.0 / 360.0) / dt * error);
       lanes_store(r[2] + g, lanes_load(r[2] + g) + error);

@@ -1,4 +1,5 @@
-/* Pairs of the near list, and the general overlap of those that neither their cached side nor a bond's window decides. */
+/* Pairs of the near list, and the general overlap of those that neither their cached side nor a bond's window decides.
+ */
 #ifndef CLAST_ENGINE_DEM_NEAR_RANGE_H
 #define CLAST_ENGINE_DEM_NEAR_RANGE_H
 
@@ -27,8 +28,7 @@ LANES_INLINE void near_range(struct dem_system *s) {
         out[v] = x * ey - y * ex - lanes_load(block->offset + at);
       }
       const lanes_i apart = (out[1] > 0.0) & (out[1] <= out[0]) & (out[1] <= out[2]);
-      if (!lanes_any(~apart))
-        continue;
+      if (!lanes_any(~apart)) continue;
       for (int lane = 0; lane < LANES; ++lane)
         if (!apart[lane] && owner[lane] != s->ghost)
           s->general[s->general_count++] = (uint32_t)(b * DEM_BLOCK + (size_t)(at + lane));
@@ -44,8 +44,7 @@ struct near_batch {
 };
 
 LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, bool measure, bool velocities) {
-  if (!batch->count)
-    return;
+  if (!batch->count) return;
   for (int lane = batch->count; lane < LANES; ++lane) {
     batch->first[lane] = s->ghost;
     batch->second[lane] = s->ghost + 1;
@@ -56,7 +55,8 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
   lanes_d v[12];
   for (int f = 0; f < 12; ++f)
     v[f] = lanes_load(batch->column[f]);
-  const struct contact_sums sums = {.twice_area = v[0], .chord_x = v[1], .chord_y = v[2], .moment = v[3], .xx = v[4], .xy = v[5], .yy = v[6]};
+  const struct contact_sums sums = {
+      .twice_area = v[0], .chord_x = v[1], .chord_y = v[2], .moment = v[3], .xx = v[4], .xy = v[5], .yy = v[6]};
   struct contact_pairs pairs = {
       .origin_x = v[7], .origin_y = v[8], .stiffness = v[9], .normal_damping = v[10], .tangential_damping = v[11]};
   const uint32_t *index[2] = {batch->first, batch->second};
@@ -107,27 +107,24 @@ LANES_INLINE void near_general(struct dem_system *s, bool measure, bool velociti
       j = near->second;
       stiffness = near->stiffness, normal = near->normal_damping, tangential = near->tangential_damping;
     }
-    if (pair != DEM_NO_PAIR)
-      dem_breaking_contact(s, pair, &stiffness, &normal, &tangential);
+    if (pair != DEM_NO_PAIR) dem_breaking_contact(s, pair, &stiffness, &normal, &tangential);
     dem_neighbours_ring(s, i, 0.0, 0.0, &ring[0]);
     dem_neighbours_ring(s, j, s->c.x[j] - s->c.x[i], s->c.y[j] - s->c.y[i], &ring[1]);
     struct dem_overlap overlap;
     overlap_rings(ring, &overlap);
     if (overlap.apart) {
-      if (!measure && !(code & DEM_FROM_BOND))
-        dem_neighbours_cache_side(s, slot, &overlap);
+      if (!measure && !(code & DEM_FROM_BOND)) dem_neighbours_cache_side(s, slot, &overlap);
       continue;
     }
-    if (!(overlap.twice_area > 0.0) || !(stiffness > 0.0))
-      continue;
-    const double column[12] = {overlap.twice_area, overlap.chord_x, overlap.chord_y, overlap.moment, overlap.xx, overlap.xy,
-                               overlap.yy, overlap.origin_x, overlap.origin_y, stiffness, normal, tangential};
+    if (!(overlap.twice_area > 0.0) || !(stiffness > 0.0)) continue;
+    const double column[12] = {overlap.twice_area, overlap.chord_x, overlap.chord_y, overlap.moment,
+                               overlap.xx,         overlap.xy,      overlap.yy,      overlap.origin_x,
+                               overlap.origin_y,   stiffness,       normal,          tangential};
     batch.first[batch.count] = i;
     batch.second[batch.count] = j;
     for (int f = 0; f < 12; ++f)
       batch.column[f][batch.count] = column[f];
-    if (++batch.count == LANES)
-      near_flush(s, &batch, measure, velocities);
+    if (++batch.count == LANES) near_flush(s, &batch, measure, velocities);
   }
   near_flush(s, &batch, measure, velocities);
 }

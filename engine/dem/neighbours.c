@@ -2,14 +2,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/dem/breaking.h"
+#include "engine/dem/kernels.h"
 
-#define LANES 2
-#include "engine/dem/overlap.h"
-
-static const double horizon_steps = 100.0; /* a skin holds about so many steps at the grain's present speed */
-static const double smallest_skin = 0.02;  /* in mean diameters */
+static const double horizon_steps = 150.0; /* a skin holds about so many steps at the grain's present speed */
+static const double smallest_skin = 0.25;  /* in mean diameters */
 static const double largest_skin = 3.0;
 static const uint32_t none = UINT32_MAX;
 
@@ -22,7 +21,7 @@ void dem_neighbours_ring(const struct dem_system *s, uint32_t grain, double dx, 
     ring->x[v] = c * x - sn * y + dx;
     ring->y[v] = sn * x + c * y + dy;
   }
-  for (size_t v = ring->count; v <= overlap_last(ring); ++v) {
+  for (size_t v = ring->count; v <= dem_overlap_last(ring); ++v) {
     ring->x[v] = ring->x[0];
     ring->y[v] = ring->y[0];
   }
@@ -55,8 +54,7 @@ static void repack_bonds(struct dem_system *s) {
   size_t kept = 0;
   for (size_t lane = 0; lane < lanes; ++lane) {
     const int32_t pair = s->lane_pair[lane];
-    if (pair == DEM_NO_PAIR)
-      continue;
+    if (pair == DEM_NO_PAIR) continue;
     if (!s->alive[pair]) {
       s->pair_lane[pair] = DEM_NO_PAIR;
       continue;
@@ -113,22 +111,19 @@ static bool grow_near(struct dem_system *s) {
 static bool grow_cells(struct dem_system *s) {
   const size_t capacity = s->cell_capacity * 2;
   uint32_t *grain = realloc(s->cell_grain, capacity * sizeof *grain);
-  if (grain)
-    s->cell_grain = grain;
+  if (grain) s->cell_grain = grain;
   uint32_t *next = realloc(s->cell_next, capacity * sizeof *next);
-  if (next)
-    s->cell_next = next;
+  if (next) s->cell_next = next;
   int32_t(*key)[2] = realloc(s->cell_key, capacity * sizeof *key);
-  if (key)
-    s->cell_key = key;
-  if (!grain || !next || !key)
-    return false;
+  if (key) s->cell_key = key;
+  if (!grain || !next || !key) return false;
   s->cell_capacity = capacity;
   return true;
 }
 
-static int32_t cell_of(double position, double size) {
-  return (int32_t)fmax(-1e9, fmin(1e9, floor(position / size)));
+static int32_t cell_of(double position, double per_size) {
+  const double cell = floor(position * per_size);
+  return cell > 1e9 ? 1000000000 : cell > -1e9 ? (int32_t)cell : -1000000000;
 }
 
 static size_t bucket_of(const struct dem_system *s, int32_t x, int32_t y) {
@@ -138,8 +133,7 @@ static size_t bucket_of(const struct dem_system *s, int32_t x, int32_t y) {
 
 static int32_t pair_of(const struct dem_system *s, uint32_t i, uint32_t j) {
   for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; ++k)
-    if (s->partner[k] == j)
-      return (int32_t)s->partner_pair[k];
+    if (s->partner[k] == j) return (int32_t)s->partner_pair[k];
   return DEM_NO_PAIR;
 }
 
@@ -148,20 +142,19 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
   const struct dem_columns *c = &s->c;
   const double dx = c->x[j] - c->x[i], dy = c->y[j] - c->y[i];
   const double skins = c->skin[i] + c->skin[j], reach = s->radius[i] + s->radius[j] + skins;
-  if (dx * dx + dy * dy > reach * reach)
-    return true;
+  if (dx * dx + dy * dy > reach * reach) return true;
   const int32_t pair = pair_of(s, i, j);
-  if (pair != DEM_NO_PAIR && s->windowed[pair] && s->pair_lane[pair] != DEM_NO_PAIR)
-    return true;
+  if (pair != DEM_NO_PAIR && s->windowed[pair] && s->pair_lane[pair] != DEM_NO_PAIR) return true;
   struct dem_ring ring[2]; /* first is the lower index, as in near_pair */
   struct dem_overlap overlap;
   dem_neighbours_ring(s, j, dx, dy, &ring[0]);
-  ring[1] = *mine;
-  overlap_best_side(ring, &overlap);
-  if (overlap.gap > skins)
-    return true;
-  if (s->now.near_count == s->near_capacity && !grow_near(s))
-    return false;
+  ring[1].count = mine->count;
+  const size_t used = (dem_overlap_last(mine) + 1) * sizeof(double);
+  memcpy(ring[1].x, mine->x, used);
+  memcpy(ring[1].y, mine->y, used);
+  s->kernels->best_side(ring, &overlap);
+  if (overlap.gap > skins) return true;
+  if (s->now.near_count == s->near_capacity && !grow_near(s)) return false;
   struct dem_near_pair *near = &s->near_pair[s->now.near_count];
   *near = (struct dem_near_pair){.first = j, .second = i, .pair = pair};
   if (pair == DEM_NO_PAIR) {
@@ -195,36 +188,32 @@ bool dem_neighbours_make(struct dem_system *s) {
   set_skins(s);
   repack_bonds(s);
   s->now.near_count = 0;
-  if (s->p.contact == DEM_CONTACT_OFF)
-    return true;
-  const double size = 1.5 * s->mean_diameter;
+  if (s->p.contact == DEM_CONTACT_OFF) return true;
+  const double per_size = 1.0 / (1.5 * s->mean_diameter);
   size_t entries = 0;
   for (size_t b = 0; b < s->cell_buckets; ++b)
     s->cell_head[b] = none;
   for (uint32_t i = 0; i < s->count; ++i) {
-    if (!s->present[i])
-      continue;
+    if (!s->present[i]) continue;
     const double reach = s->radius[i] + s->c.skin[i];
-    const int32_t x0 = cell_of(s->c.x[i] - reach, size), x1 = cell_of(s->c.x[i] + reach, size);
-    const int32_t y0 = cell_of(s->c.y[i] - reach, size), y1 = cell_of(s->c.y[i] + reach, size);
+    const int32_t x0 = cell_of(s->c.x[i] - reach, per_size), x1 = cell_of(s->c.x[i] + reach, per_size);
+    const int32_t y0 = cell_of(s->c.y[i] - reach, per_size), y1 = cell_of(s->c.y[i] + reach, per_size);
+    s->cell_low[i][0] = x0;
+    s->cell_low[i][1] = y0;
     struct dem_ring mine;
     dem_neighbours_ring(s, i, 0.0, 0.0, &mine);
     for (int32_t y = y0; y <= y1; ++y)
       for (int32_t x = x0; x <= x1; ++x) {
         const size_t bucket = bucket_of(s, x, y);
         for (uint32_t e = s->cell_head[bucket]; e != none; e = s->cell_next[e]) {
-          if (s->cell_key[e][0] != x || s->cell_key[e][1] != y)
-            continue;
+          if (s->cell_key[e][0] != x || s->cell_key[e][1] != y) continue;
           const uint32_t j = s->cell_grain[e];
-          const double other = s->radius[j] + s->c.skin[j];
-          const int32_t home_x = cell_of(s->c.x[j] - other, size), home_y = cell_of(s->c.y[j] - other, size);
+          const int32_t home_x = s->cell_low[j][0], home_y = s->cell_low[j][1];
           if (x != (home_x > x0 ? home_x : x0) || y != (home_y > y0 ? home_y : y0))
-            continue; /* the lowest common cell of the two, so that a pair is met once */
-          if (!consider(s, i, j, &mine))
-            return false;
+            continue; /* a pair is met once, in the lowest common cell of the two */
+          if (!consider(s, i, j, &mine)) return false;
         }
-        if (entries == s->cell_capacity && !grow_cells(s))
-          return false;
+        if (entries == s->cell_capacity && !grow_cells(s)) return false;
         s->cell_key[entries][0] = x;
         s->cell_key[entries][1] = y;
         s->cell_grain[entries] = i;

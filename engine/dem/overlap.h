@@ -1,7 +1,7 @@
 /* Overlap of any two convex polygons, by boundary integrals: no case analysis.
  *
- * Every side of either is clipped to the other's half-planes (Cyrus-Beck intervals); the pieces of both outlines are the
- * outline of the overlap. Sides that coincide count once: the first polygon's are clipped to the closed second, the
+ * Every side of either is clipped to the other's half-planes (Cyrus-Beck intervals); the pieces of both outlines are
+ * the outline of the overlap. Sides that coincide count once: the first polygon's are clipped to the closed second, the
  * second's to the open first, with a tolerance above rounding. Eight vertices of the clipped outline at a time. */
 #ifndef CLAST_ENGINE_DEM_OVERLAP_H
 #define CLAST_ENGINE_DEM_OVERLAP_H
@@ -11,35 +11,30 @@
 #include "engine/dem/contact_law.h"
 #include "engine/dem/overlap_types.h"
 
-/* Last entry in use: the vertices, padded to a whole number of blocks, and one more. */
-static inline size_t overlap_last(const struct dem_ring *ring) {
-  return (ring->count + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
-}
-
-/* The side of either polygon that the other keeps farthest outside of. */
-static inline void overlap_best_side(const struct dem_ring ring[2], struct dem_overlap *out) {
-  out->gap = -INFINITY;
+/* The side of either polygon that the other keeps farthest outside of; eight sides at a time. */
+LANES_INLINE void overlap_best_side(const struct dem_ring ring[2], struct dem_overlap *out) {
+  out->gap = -(double)INFINITY;
   for (int owner = 0; owner < 2; ++owner) {
     const struct dem_ring *a = &ring[owner], *b = &ring[1 - owner];
-    for (size_t k = 0; k < a->count; ++k) {
-      const double ex = a->x[k + 1] - a->x[k], ey = a->y[k + 1] - a->y[k];
-      const double length = ex * ex + ey * ey;
-      if (!(length > 0.0))
-        continue;
-      double nearest = INFINITY;
-      size_t vertex = 0;
+    for (size_t k = 0; k < a->count; k += LANES) {
+      const lanes_d x = lanes_load(a->x + k), y = lanes_load(a->y + k);
+      const lanes_d ex = lanes_load(a->x + k + 1) - x, ey = lanes_load(a->y + k + 1) - y;
+      const lanes_d size = lanes_sqrt(ex * ex + ey * ey);
+      lanes_d nearest = lanes_all((double)INFINITY), vertex = lanes_all(0.0);
       for (size_t v = 0; v < b->count; ++v) {
-        const double out_by = (b->x[v] - a->x[k]) * ey - (b->y[v] - a->y[k]) * ex;
-        if (out_by < nearest)
-          nearest = out_by, vertex = v;
+        const lanes_d out_by = (b->x[v] - x) * ey - (b->y[v] - y) * ex;
+        const lanes_i nearer = out_by < nearest;
+        nearest = lanes_select(nearer, out_by, nearest);
+        vertex = lanes_select(nearer, lanes_all((double)v), vertex);
       }
-      const double gap = nearest / sqrt(length);
-      if (gap > out->gap) {
-        out->gap = gap;
-        out->owner = owner;
-        out->side = k;
-        out->vertex = vertex;
-      }
+      const lanes_d gap = nearest / size;
+      for (size_t lane = 0; lane < LANES && k + lane < a->count; ++lane)
+        if (gap[lane] > out->gap && size[lane] > 0.0) {
+          out->gap = gap[lane];
+          out->owner = owner;
+          out->side = k + lane;
+          out->vertex = (size_t)vertex[lane];
+        }
     }
   }
 }
@@ -80,12 +75,11 @@ static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *ou
   const double tolerance = 1e-15 * size; /* a few roundings of a coordinate */
   overlap_best_side(ring, out);
   out->apart = out->gap >= -tolerance;
-  if (out->apart)
-    return;
+  if (out->apart) return;
   out->origin_x = ring[1 - out->owner].x[out->vertex];
   out->origin_y = ring[1 - out->owner].y[out->vertex];
   for (int k = 0; k < 2; ++k)
-    for (size_t v = 0; v <= overlap_last(&ring[k]); ++v) {
+    for (size_t v = 0; v <= dem_overlap_last(&ring[k]); ++v) {
       ring[k].x[v] -= out->origin_x;
       ring[k].y[v] -= out->origin_y;
     }

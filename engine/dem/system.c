@@ -11,13 +11,19 @@
 #include "engine/dem/neighbours.h"
 
 static status check(const struct dem_parameters *p, struct error *error) {
-  const struct { const char *name; double value, low; } positive[] = {
-      {"density", p->density, 1e-30}, {"grain modulus", p->grain_modulus, 0.0}, {"beam modulus", p->beam_modulus, 0.0},
-      {"normal damping", p->normal_damping, 0.0}, {"tangential damping", p->tangential_damping, 0.0},
-      {"friction", p->friction, 0.0}, {"time step", p->time_step, 1e-30},
-      {"strain threshold", p->breaking ? p->strain_threshold : 1.0, 0.0},
-      {"angle threshold", p->breaking ? p->angle_threshold : 1.0, 0.0},
-      {"threshold modulus", isnan(p->threshold_modulus) ? 1.0 : p->threshold_modulus, 1e-3}};
+  const struct {
+    const char *name;
+    double value, low;
+  } positive[] = {{"density", p->density, 1e-30},
+                  {"grain modulus", p->grain_modulus, 0.0},
+                  {"beam modulus", p->beam_modulus, 0.0},
+                  {"normal damping", p->normal_damping, 0.0},
+                  {"tangential damping", p->tangential_damping, 0.0},
+                  {"friction", p->friction, 0.0},
+                  {"time step", p->time_step, 1e-30},
+                  {"strain threshold", p->breaking ? p->strain_threshold : 1.0, 0.0},
+                  {"angle threshold", p->breaking ? p->angle_threshold : 1.0, 0.0},
+                  {"threshold modulus", isnan(p->threshold_modulus) ? 1.0 : p->threshold_modulus, 1e-3}};
   for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k)
     if (!(positive[k].value >= positive[k].low && positive[k].value < 1e30))
       return status_fail(error, STATUS_CONTENT, "%s is %g; it must be a finite number not below %g.", positive[k].name,
@@ -33,8 +39,7 @@ static void evaluate(struct dem_system *s, double dt) {
   memset(&s->sums, 0, sizeof s->sums);
   s->general_count = 0;
   s->kernels->forces(s);
-  if (!s->velocities)
-    return;
+  if (!s->velocities) return;
   for (int lane = 0; lane < DEM_BLOCK; ++lane) {
     s->now.contact += dt * s->sums.contact[lane];
     s->now.damping += dt * s->sums.damping[lane];
@@ -47,8 +52,7 @@ static bool make_ready(struct dem_system *s) {
   memcpy(s->c.guess_vx, s->c.vx, s->padded * sizeof(double));
   memcpy(s->c.guess_vy, s->c.vy, s->padded * sizeof(double));
   memcpy(s->c.guess_spin, s->c.spin, s->padded * sizeof(double));
-  if (!dem_neighbours_make(s))
-    return false;
+  if (!dem_neighbours_make(s)) return false;
   evaluate(s, 0.0);
   s->now.ready = 1;
   return true;
@@ -58,19 +62,17 @@ status dem_system_create(const struct dem_tessellation *tessellation, const stru
                          struct dem_system **out, struct error *error) {
   *out = NULL;
   status done = check(parameters, error);
-  if (done != STATUS_OK)
-    return done;
+  if (done != STATUS_OK) return done;
   struct dem_system *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
-  if (!s)
-    return status_fail(error, STATUS_MEMORY, "not enough memory for a system.");
+  if (!s) return status_fail(error, STATUS_MEMORY, "not enough memory for a system.");
   memset(s, 0, sizeof *s);
   s->p = *parameters;
   s->kernels = dem_kernels_choose();
-  s->velocities = s->p.contact != DEM_CONTACT_OFF && (s->p.contact == DEM_CONTACT_PRINTED || s->p.normal_damping > 0.0 ||
-                                                      (s->p.tangential_damping > 0.0 && s->p.friction > 0.0));
+  s->velocities =
+      s->p.contact != DEM_CONTACT_OFF && (s->p.contact == DEM_CONTACT_PRINTED || s->p.normal_damping > 0.0 ||
+                                          (s->p.tangential_damping > 0.0 && s->p.friction > 0.0));
   done = dem_assemble(s, tessellation, error);
-  if (done == STATUS_OK)
-    s->kernels->rest(s);
+  if (done == STATUS_OK) s->kernels->rest(s);
   if (done == STATUS_OK && !make_ready(s))
     done = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
   if (done != STATUS_OK) {
@@ -82,13 +84,14 @@ status dem_system_create(const struct dem_tessellation *tessellation, const stru
 }
 
 void dem_system_free(struct dem_system *s) {
-  if (!s)
-    return;
-  void *const blocks[] = {s->arena, s->mass, s->inertia, s->diameter, s->first_vertex, s->outline_x, s->outline_y,
-                          s->first_partner, s->partner, s->partner_pair, s->freedoms, s->present, s->held_vx, s->held_vy,
-                          s->held_spin, s->held, s->pair, s->pair_stiffness, s->pair_normal, s->pair_tangential, s->alive,
-                          s->windowed, s->pair_lane, s->lane_pair, s->bond, s->near, s->near_pair, s->general,
-                          s->cell_head, s->cell_grain, s->cell_next, s->cell_key, s->log};
+  if (!s) return;
+  void *const blocks[] = {s->arena,     s->mass,      s->inertia,        s->diameter,    s->first_vertex,
+                          s->outline_x, s->outline_y, s->first_partner,  s->partner,     s->partner_pair,
+                          s->freedoms,  s->present,   s->held_vx,        s->held_vy,     s->held_spin,
+                          s->held,      s->pair,      s->pair_stiffness, s->pair_normal, s->pair_tangential,
+                          s->alive,     s->windowed,  s->pair_lane,      s->lane_pair,   s->bond,
+                          s->near,      s->near_pair, s->general,        s->cell_head,   s->cell_grain,
+                          s->cell_next, s->cell_key,  s->cell_low,       s->log};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     free(blocks[k]);
   free(s);
@@ -96,15 +99,19 @@ void dem_system_free(struct dem_system *s) {
 
 size_t dem_system_bytes(const struct dem_system *s) {
   const size_t n = s->count, pairs = s->pair_count;
-  return sizeof *s + s->arena_doubles * sizeof(double) + n * (3 * sizeof(double) + 2 + 3 * sizeof(double) + 3 * sizeof(uint32_t)) +
+  return sizeof *s + s->arena_doubles * sizeof(double) +
+         n * (3 * sizeof(double) + 2 + 3 * sizeof(double) + 3 * sizeof(uint32_t)) +
          s->first_vertex[n] * 2 * sizeof(double) +
-         pairs * (4 * sizeof(uint32_t) + sizeof *s->pair + 3 * sizeof(double) + 2 + 2 * sizeof(int32_t) + sizeof *s->log) +
+         pairs *
+             (4 * sizeof(uint32_t) + sizeof *s->pair + 3 * sizeof(double) + 2 + 2 * sizeof(int32_t) + sizeof *s->log) +
          s->bond_capacity * sizeof *s->bond + s->near_capacity / DEM_BLOCK * sizeof *s->near +
-         s->near_capacity * sizeof *s->near_pair + s->general_capacity * sizeof(uint32_t) +
+         s->near_capacity * sizeof *s->near_pair + s->general_capacity * sizeof(uint32_t) + n * sizeof *s->cell_low +
          s->cell_buckets * sizeof(uint32_t) + s->cell_capacity * (2 * sizeof(uint32_t) + sizeof *s->cell_key);
 }
 
-const char *dem_system_cpu_class(const struct dem_system *s) { return s->kernels->name; }
+const char *dem_system_cpu_class(const struct dem_system *s) {
+  return s->kernels->name;
+}
 
 void dem_system_set_velocity(struct dem_system *s, uint32_t grain, double vx, double vy, double spin) {
   s->c.vx[grain] = vx;
@@ -114,8 +121,7 @@ void dem_system_set_velocity(struct dem_system *s, uint32_t grain, double vx, do
 }
 
 void dem_system_remove(struct dem_system *s, uint32_t grain) {
-  if (!s->present[grain])
-    return;
+  if (!s->present[grain]) return;
   s->present[grain] = 0;
   for (uint32_t k = s->first_partner[grain]; k < s->first_partner[grain + 1]; ++k) {
     const int32_t pair = (int32_t)s->partner_pair[k];
@@ -133,18 +139,14 @@ static double kinetic_of(const struct dem_system *s, uint32_t i) {
 
 static void prescribe(struct dem_system *s, uint32_t grain) {
   const double before = kinetic_of(s, grain);
-  if (s->freedoms[grain] & 1)
-    s->c.vx[grain] = s->held_vx[grain];
-  if (s->freedoms[grain] & 2)
-    s->c.vy[grain] = s->held_vy[grain];
-  if (s->freedoms[grain] & 4)
-    s->c.spin[grain] = s->held_spin[grain];
+  if (s->freedoms[grain] & 1) s->c.vx[grain] = s->held_vx[grain];
+  if (s->freedoms[grain] & 2) s->c.vy[grain] = s->held_vy[grain];
+  if (s->freedoms[grain] & 4) s->c.spin[grain] = s->held_spin[grain];
   s->now.external_work += kinetic_of(s, grain) - before; /* a jolt is work too */
 }
 
 void dem_system_hold(struct dem_system *s, uint32_t grain, unsigned freedoms) {
-  if (!s->freedoms[grain] && freedoms)
-    s->held[s->held_count++] = grain;
+  if (!s->freedoms[grain] && freedoms) s->held[s->held_count++] = grain;
   s->freedoms[grain] |= (unsigned char)(freedoms & 7u);
   double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
   for (int k = 0; k < 3; ++k)
@@ -167,8 +169,7 @@ void dem_system_drive(struct dem_system *s, uint32_t grain, double vx, double vy
 static void book_holds(struct dem_system *s, double dt) {
   for (size_t k = 0; k < s->held_count; ++k) {
     const uint32_t i = s->held[k];
-    if (!s->present[i])
-      continue;
+    if (!s->present[i]) continue;
     const unsigned f = s->freedoms[i];
     s->now.external_work -= dt * ((f & 1 ? s->c.fx[i] * s->c.vx[i] : 0.0) + (f & 2 ? s->c.fy[i] * s->c.vy[i] : 0.0) +
                                   (f & 4 ? s->c.torque[i] * s->c.spin[i] : 0.0));
@@ -178,18 +179,16 @@ static void book_holds(struct dem_system *s, double dt) {
 bool dem_system_step(struct dem_system *s) {
   const double dt = s->p.time_step;
   bool moved = false;
-  if (!s->now.ready && !make_ready(s))
-    return false;
+  if (!s->now.ready && !make_ready(s)) return false;
   if (s->p.integrator == DEM_GEAR && !s->now.gear_started) {
-    if (!dem_gear_start(s))
-      return false;
+    if (!dem_gear_start(s)) return false;
     s->now.gear_started = 1;
   }
   book_holds(s, 0.5 * dt);
-  const bool finite = s->p.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved) : s->kernels->verlet_drift(s, &moved);
+  const bool finite =
+      s->p.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved) : s->kernels->verlet_drift(s, &moved);
   s->now.time = (double)++s->now.steps * dt;
-  if (!finite || (moved && !dem_neighbours_make(s)))
-    return false;
+  if (!finite || (moved && !dem_neighbours_make(s))) return false;
   evaluate(s, dt);
   if (s->p.integrator == DEM_GEAR)
     s->kernels->gear_correct(s);
@@ -199,9 +198,15 @@ bool dem_system_step(struct dem_system *s) {
   return true;
 }
 
-size_t dem_system_grains(const struct dem_system *s) { return s->count; }
-double dem_system_time(const struct dem_system *s) { return s->now.time; }
-uint64_t dem_system_steps(const struct dem_system *s) { return s->now.steps; }
+size_t dem_system_grains(const struct dem_system *s) {
+  return s->count;
+}
+double dem_system_time(const struct dem_system *s) {
+  return s->now.time;
+}
+uint64_t dem_system_steps(const struct dem_system *s) {
+  return s->now.steps;
+}
 
 static void measure(struct dem_system *s) {
   memset(&s->sums, 0, sizeof s->sums);
@@ -215,30 +220,32 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
                               .friction = s->now.friction,
                               .broken_beam = s->now.broken_beam,
                               .external_work = s->now.external_work};
-  if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
-    ledger.contact = 0.0;
+  if (s->p.contact == DEM_CONTACT_CONSERVATIVE) ledger.contact = 0.0;
   measure(s);
   for (int lane = 0; lane < DEM_BLOCK; ++lane) {
     ledger.beam += s->sums.beam[lane];
-    if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
-      ledger.contact += s->sums.contact[lane];
+    if (s->p.contact == DEM_CONTACT_CONSERVATIVE) ledger.contact += s->sums.contact[lane];
   }
   for (uint32_t i = 0; i < s->count; ++i)
-    if (s->present[i])
-      ledger.kinetic += kinetic_of(s, i);
+    if (s->present[i]) ledger.kinetic += kinetic_of(s, i);
   return ledger;
 }
 
 double dem_system_overlap_share(struct dem_system *s) {
-  if (s->p.contact == DEM_CONTACT_OFF || s->pair_count == 0)
-    return 0.0;
+  if (s->p.contact == DEM_CONTACT_OFF || s->pair_count == 0) return 0.0;
   measure(s);
   return (double)s->sums.overlaps / (double)s->pair_count;
 }
 
 struct dem_grain dem_system_grain(const struct dem_system *s, uint32_t i) {
-  return (struct dem_grain){.x = s->c.x[i], .y = s->c.y[i], .angle = s->c.angle[i], .vx = s->c.vx[i], .vy = s->c.vy[i],
-                            .spin = s->c.spin[i], .mass = s->mass[i], .moment_of_inertia = s->inertia[i],
+  return (struct dem_grain){.x = s->c.x[i],
+                            .y = s->c.y[i],
+                            .angle = s->c.angle[i],
+                            .vx = s->c.vx[i],
+                            .vy = s->c.vy[i],
+                            .spin = s->c.spin[i],
+                            .mass = s->mass[i],
+                            .moment_of_inertia = s->inertia[i],
                             .present = s->present[i] != 0};
 }
 
@@ -248,12 +255,13 @@ void dem_system_force(const struct dem_system *s, uint32_t grain, double *fx, do
   *torque = s->c.torque[grain];
 }
 
-bool dem_system_beam_alive(const struct dem_system *s, size_t beam) { return s->alive[beam] != 0; }
+bool dem_system_beam_alive(const struct dem_system *s, size_t beam) {
+  return s->alive[beam] != 0;
+}
 
 double dem_system_beam_strain(const struct dem_system *s, size_t beam) {
   const int32_t slot = s->pair_lane[beam];
-  if (!s->alive[beam] || slot == DEM_NO_PAIR)
-    return NAN;
+  if (!s->alive[beam] || slot == DEM_NO_PAIR) return NAN;
   const uint32_t i = s->pair[beam][0], j = s->pair[beam][1];
   const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i];
   return sqrt(dx * dx + dy * dy) / s->bond[slot / DEM_BLOCK].length[slot % DEM_BLOCK] - 1.0;
@@ -264,7 +272,9 @@ size_t dem_system_breaks(const struct dem_system *s, const struct dem_break **lo
   return s->now.break_count;
 }
 
-double dem_system_last_break(const struct dem_system *s) { return s->now.last_break; }
+double dem_system_last_break(const struct dem_system *s) {
+  return s->now.last_break;
+}
 
 size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {
   struct dem_ring ring;

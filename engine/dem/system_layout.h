@@ -22,8 +22,8 @@ struct dem_bond_block {
   uint32_t second[DEM_BLOCK];
   /* beam: direction the chord is measured from, and the chord's angle at that direction (unwrapped) */
   dem_lane reference_x, reference_y, reference_angle, length;
-  dem_lane axial;           /* alpha, N/m per m */
-  dem_lane cross, diagonal; /* beta l0^2 / 2 and delta l0^2, N m/rad */
+  dem_lane axial;                       /* alpha, N/m per m */
+  dem_lane cross, diagonal;             /* beta l0^2 / 2 and delta l0^2, N m/rad */
   dem_lane weight_strain, weight_angle; /* 1/(t_eps l0)^2 and 1/t_Theta; 0 = does not break */
   /* contact */
   dem_lane stiffness, normal_damping, tangential_damping; /* damping: m_eff gamma, kg/s; 0 = none */
@@ -39,7 +39,7 @@ struct dem_bond_block {
 struct dem_near_block {
   uint32_t owner[DEM_BLOCK] DEM_ALIGNED;
   uint32_t other[DEM_BLOCK];
-  dem_lane side_x, side_y, offset; /* owner's body frame: a point p is outside when p x side > offset */
+  dem_lane side_x, side_y, offset;   /* owner's body frame: a point p is outside when p x side > offset */
   dem_lane vertex_x[3], vertex_y[3]; /* other's body frame */
 };
 
@@ -89,14 +89,14 @@ struct dem_system {
   uint32_t ghost;       /* the first of two ghosts */
   bool velocities;      /* contact forces need velocities (damping, friction, printed law's ledger) */
   struct dem_columns c;
-  double *arena;        /* holds every column */
+  double *arena; /* holds every column */
   size_t arena_doubles;
 
   /* grains, fixed */
   double *mass, *inertia, *diameter;
-  double *radius;                             /* of the farthest vertex; padded */
-  uint32_t *first_vertex;                     /* count + 1, into the outlines; each grain's closes on itself */
-  double *outline_x, *outline_y;              /* body frame */
+  double *radius;                                   /* of the farthest vertex; padded */
+  uint32_t *first_vertex;                           /* count + 1, into the outlines; each grain's closes on itself */
+  double *outline_x, *outline_y;                    /* body frame */
   uint32_t *first_partner, *partner, *partner_pair; /* tessellation neighbours of each grain */
   double mean_diameter;
 
@@ -109,14 +109,14 @@ struct dem_system {
   /* tessellation pairs */
   size_t pair_count;
   uint32_t (*pair)[2];
-  double *pair_stiffness;                 /* kappa or Y/L_c by the pair's own S_ref, fixed for good */
-  double *pair_normal, *pair_tangential;  /* m_eff gamma */
-  unsigned char *alive;                   /* beam */
-  unsigned char *windowed;                /* contact handled by the bond block's window */
-  int32_t *pair_lane;                     /* lane in the bond blocks, or DEM_NO_PAIR */
-  int32_t *lane_pair;                     /* and back */
+  double *pair_stiffness;                /* kappa or Y/L_c by the pair's own S_ref, fixed for good */
+  double *pair_normal, *pair_tangential; /* m_eff gamma */
+  unsigned char *alive;                  /* beam */
+  unsigned char *windowed;               /* contact handled by the bond block's window */
+  int32_t *pair_lane;                    /* lane in the bond blocks, or DEM_NO_PAIR */
+  int32_t *lane_pair;                    /* and back */
   struct dem_bond_block *bond;
-  size_t bond_capacity;                   /* blocks */
+  size_t bond_capacity; /* blocks */
 
   /* near pairs */
   struct dem_near_block *near;
@@ -127,7 +127,7 @@ struct dem_system {
 
   /* cells of the neighbour search, only used while a list is made */
   uint32_t *cell_head, *cell_grain, *cell_next;
-  int32_t (*cell_key)[2];
+  int32_t (*cell_key)[2], (*cell_low)[2]; /* cell of an entry; lowest cell of a grain */
   size_t cell_capacity, cell_buckets;
 
   struct dem_break *log;

@@ -56,8 +56,7 @@ void dem_system_state_save(const struct dem_system *system, void *bytes) {
 }
 
 static bool reserve(struct dem_system *s, size_t near_count) {
-  if (near_count <= s->near_capacity)
-    return true;
+  if (near_count <= s->near_capacity) return true;
   const size_t capacity = (near_count + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
   struct dem_near_block *near = aligned_alloc(64, capacity / DEM_BLOCK * sizeof *near);
   struct dem_near_pair *pairs = malloc(capacity * sizeof *pairs);
@@ -81,8 +80,7 @@ static bool reserve(struct dem_system *s, size_t near_count) {
 
 bool dem_system_state_load(struct dem_system *s, const void *bytes, size_t size) {
   struct dem_progress saved;
-  if (size < sizeof saved)
-    return false;
+  if (size < sizeof saved) return false;
   memcpy(&saved, bytes, sizeof saved);
   if (saved.bond_blocks > s->bond_capacity || saved.break_count > s->pair_count ||
       saved.near_count > size / sizeof *s->near_pair || !reserve(s, (size_t)saved.near_count))

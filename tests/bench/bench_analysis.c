@@ -1,4 +1,5 @@
-/* Cost of what every run pays for its estimates, and of a pooled exponent with its bootstrap. Prints `name value unit`. */
+/* Cost of what every run pays for its estimates, and of a pooled exponent with its bootstrap. Prints `name value unit`.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -63,7 +64,8 @@ int main(void) {
     for (int repeat = 0; repeat < 50; repeat++) {
       struct exponent fit;
       double start = seconds();
-      if (exponent_fit((enum exponent_method)method, N, masses, (struct exponent_window){0.8, HUGE_VAL}, &fit, NULL)) return 70;
+      if (exponent_fit((enum exponent_method)method, N, masses, (struct exponent_window){0.8, HUGE_VAL}, &fit, NULL))
+        return 70;
       best = fmin(best, seconds() - start);
     }
     printf("analysis_%s_500_ms %.4f ms\n", exponent_method_names[method], 1e3 * best);

@@ -7,28 +7,36 @@
 #include "engine/dem/system.h"
 
 static inline struct dem_parameters dem_disc_parameters(void) {
-  return (struct dem_parameters){.density = 5000.0, .grain_modulus = 1e9, .beam_modulus = 5e8,
-                                 .contact = DEM_CONTACT_CONSERVATIVE, .contact_on_bonded = true, .breaking = false,
-                                 .strain_threshold = 0.03, .angle_threshold = 4.0 * 3.14159265358979323846 / 180.0,
-                                 .threshold_modulus = NAN, .integrator = DEM_VERLET, .time_step = 1e-6};
+  return (struct dem_parameters){.density = 5000.0,
+                                 .grain_modulus = 1e9,
+                                 .beam_modulus = 5e8,
+                                 .contact = DEM_CONTACT_CONSERVATIVE,
+                                 .contact_on_bonded = true,
+                                 .breaking = false,
+                                 .strain_threshold = 0.03,
+                                 .angle_threshold = 4.0 * 3.14159265358979323846 / 180.0,
+                                 .threshold_modulus = NAN,
+                                 .integrator = DEM_VERLET,
+                                 .time_step = 1e-6};
 }
 
-static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t seed,
-                                         struct dem_tessellation **out, struct error *error) {
-  const struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = spacing, .disorder = 1.0, .radius = radius, .seed = seed};
+static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t seed, struct dem_tessellation **out,
+                                         struct error *error) {
+  const struct dem_lattice lattice = {
+      .outline = DEM_OUTLINE_DISC, .spacing = spacing, .disorder = 1.0, .radius = radius, .seed = seed};
   return dem_tessellation_make(&lattice, out, error) == STATUS_OK;
 }
 
 static inline uint32_t dem_disc_centre(const struct dem_tessellation *t) {
   uint32_t centre = 0;
   for (uint32_t i = 1; i < t->cell_count; ++i)
-    if (hypot(t->centroid[i].x, t->centroid[i].y) < hypot(t->centroid[centre].x, t->centroid[centre].y))
-      centre = i;
+    if (hypot(t->centroid[i].x, t->centroid[i].y) < hypot(t->centroid[centre].x, t->centroid[centre].y)) centre = i;
   return centre;
 }
 
 /* Velocity of a charge neighbour, per unit of impulse per length: outward normal of the common side times S / m. */
-static inline struct dem_point dem_disc_push(const struct dem_tessellation *t, uint32_t centre, size_t pair, double density) {
+static inline struct dem_point dem_disc_push(const struct dem_tessellation *t, uint32_t centre, size_t pair,
+                                             double density) {
   const uint32_t other = t->pair[pair][0] == centre ? t->pair[pair][1] : t->pair[pair][0];
   const uint32_t fi = t->first_vertex[centre], ni = t->first_vertex[centre + 1] - fi;
   const uint32_t fj = t->first_vertex[other], nj = t->first_vertex[other + 1] - fj;
@@ -44,13 +52,13 @@ static inline struct dem_point dem_disc_push(const struct dem_tessellation *t, u
   return (struct dem_point){0.0, 0.0};
 }
 
-static inline void dem_disc_charge(struct dem_system *system, const struct dem_tessellation *t, double density, double energy) {
+static inline void dem_disc_charge(struct dem_system *system, const struct dem_tessellation *t, double density,
+                                   double energy) {
   const uint32_t centre = dem_disc_centre(t);
   double unit = 0.0;
   for (int pass = 0; pass < 2; ++pass)
     for (size_t k = 0; k < t->pair_count; ++k) {
-      if (t->pair[k][0] != centre && t->pair[k][1] != centre)
-        continue;
+      if (t->pair[k][0] != centre && t->pair[k][1] != centre) continue;
       const uint32_t other = t->pair[k][0] == centre ? t->pair[k][1] : t->pair[k][0];
       const struct dem_point v = dem_disc_push(t, centre, k, density);
       if (pass == 0)
