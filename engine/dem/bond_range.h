@@ -19,6 +19,9 @@
 #include "engine/dem/breaking.h"
 #include "engine/dem/contact_law.h"
 
+/* Sides nearer to one line than this share of their length are in one line: above the rounding of positions. */
+static const double bond_same_line = 1e-12;
+
 enum bond_work { BOND_FORCES, BOND_MEASURE };
 
 struct bond_ends { /* gathered states of the grains at either end */
@@ -29,6 +32,10 @@ LANES_INLINE void bond_rotate(lanes_d c, lanes_d s, const double *x, const doubl
   const lanes_d bx = lanes_load(x), by = lanes_load(y);
   *rx = c * bx - s * by;
   *ry = s * bx + c * by;
+}
+
+LANES_INLINE lanes_d bond_length(lanes_d x, lanes_d y) {
+  return lanes_sqrt(x * x + lanes_rounded(y * y));
 }
 
 /* Angle whose sine is s, |s| <= 1/8: series to s^17, next term below 1e-18. */
@@ -95,19 +102,28 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
       for (int v = 0; v < 4; ++v)
         out[k][e][v] = x[1 - k][v] * ey[k][e] - y[1 - k][v] * ex[k][e] - cross[k][e];
   /* Clip side a of grain 1 and side b of grain 2 against each other's half-planes: in either case the crossing is at
-   * distance / difference of distances, and both differences are the cross product of the sides, up to sign. */
+   * distance / difference of distances. */
   lanes_d enter[2][3], leave[2][3];
   for (int k = 0; k < 2; ++k)
     for (int e = 0; e < 3; ++e)
       enter[k][e] = lanes_all(0.0), leave[k][e] = lanes_all(1.0);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      const lanes_d inverse = 1.0 / (out[1][b][a] - out[1][b][a + 1]);
-      const lanes_d on_a = out[1][b][a] * inverse;
-      enter[0][a] = lanes_max(enter[0][a], lanes_mask(out[1][b][a] > 0.0, on_a));
-      leave[0][a] = lanes_min(leave[0][a], lanes_select(out[1][b][a + 1] > 0.0, on_a, lanes_all(1.0)));
+      const lanes_d on_a = out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]);
       const lanes_d on_b = out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]);
-      enter[1][b] = lanes_max(enter[1][b], lanes_mask(out[0][a][b] > 0.0, on_b));
+      lanes_i start_a = out[1][b][a] > 0.0, end_a = out[1][b][a + 1] > 0.0;
+      lanes_d start_b = lanes_mask(out[0][a][b] > 0.0, on_b);
+      if (a + b == 2 && a != 1) { /* sides that can lie in one line (a square lattice): counted once, as grain 1's */
+        const lanes_d same_a = bond_same_line * (ex[1][b] * ex[1][b] + ey[1][b] * ey[1][b]);
+        const lanes_d same_b = bond_same_line * (ex[0][a] * ex[0][a] + ey[0][a] * ey[0][a]);
+        const lanes_i along_a = (lanes_abs(out[1][b][a]) <= same_a) & (lanes_abs(out[1][b][a + 1]) <= same_a);
+        const lanes_i along_b = (lanes_abs(out[0][a][b]) <= same_b) & (lanes_abs(out[0][a][b + 1]) <= same_b);
+        start_a &= ~along_a, end_a &= ~along_a;
+        start_b = lanes_select(along_b, lanes_all(2.0), start_b);
+      }
+      enter[0][a] = lanes_max(enter[0][a], lanes_mask(start_a, on_a));
+      leave[0][a] = lanes_min(leave[0][a], lanes_select(end_a, on_a, lanes_all(1.0)));
+      enter[1][b] = lanes_max(enter[1][b], start_b);
       leave[1][b] = lanes_min(leave[1][b], lanes_select(out[0][a][b + 1] > 0.0, on_b, lanes_all(1.0)));
     }
   }
@@ -124,10 +140,10 @@ LANES_INLINE void bond_rest(struct dem_system *s) {
     for (int at = 0; at < DEM_BLOCK; at += LANES) {
       const lanes_d dx = lanes_gather(s->c.x, block->second + at) - lanes_gather(s->c.x, block->first + at);
       const lanes_d dy = lanes_gather(s->c.y, block->second + at) - lanes_gather(s->c.y, block->first + at);
-      const lanes_d length = lanes_sqrt(dx * dx + dy * dy), inverse = 1.0 / length;
+      const lanes_d length = bond_length(dx, dy), inverse = 1.0 / length;
       lanes_store(block->length + at, length);
-      lanes_store(block->reference_x + at, dx * inverse);
-      lanes_store(block->reference_y + at, dy * inverse);
+      lanes_store(block->reference_x + at, lanes_rounded(dx * inverse));
+      lanes_store(block->reference_y + at, lanes_rounded(dy * inverse));
     }
   }
 }
@@ -150,8 +166,8 @@ LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool con
         }
       }
       const lanes_d dx = ends.x[1] - ends.x[0], dy = ends.y[1] - ends.y[0];
-      const lanes_d length = lanes_sqrt(dx * dx + dy * dy), inverse = 1.0 / length;
-      const lanes_d ux = dx * inverse, uy = dy * inverse;
+      const lanes_d length = bond_length(dx, dy), inverse = 1.0 / length;
+      const lanes_d ux = lanes_rounded(dx * inverse), uy = lanes_rounded(dy * inverse);
       lanes_d sine, forward;
       for (;;) {
         const lanes_d rx = lanes_load(block->reference_x + at), ry = lanes_load(block->reference_y + at);

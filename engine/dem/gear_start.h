@@ -1,10 +1,11 @@
-/* First derivatives for the Gear integrator: it needs five, and a scene gives one. */
+/* Higher derivatives for the Gear integrator to start from: it needs five, and a scene gives one. */
 #ifndef CLAST_ENGINE_DEM_GEAR_START_H
 #define CLAST_ENGINE_DEM_GEAR_START_H
 
 #include "engine/dem/system_layout.h"
 
-/* Fill r_2 .. r_5 from the forces now. */
+/* Fill r_2 .. r_5: from the accelerations along four trial steps of the classical Runge-Kutta method, undone afterwards.
+ * False: out of memory, or the trial steps are not finite. */
 bool dem_gear_start(struct dem_system *system);
 
 #endif

@@ -68,6 +68,15 @@ LANES_INLINE lanes_d lanes_gather(const double *array, const uint32_t *index) {
 #endif
 }
 
+/* The value as it is, out of the compiler's sight: it will not be contracted into what follows, so that two places that
+ * compute the same do so to the last bit. */
+LANES_INLINE lanes_d lanes_rounded(lanes_d value) {
+#ifdef __x86_64__
+  __asm__("" : "+v"(value));
+#endif
+  return value;
+}
+
 LANES_INLINE lanes_d lanes_sqrt(lanes_d a) {
   lanes_d root;
   for (int lane = 0; lane < LANES; ++lane)

@@ -48,14 +48,32 @@ void dem_neighbours_cache_side(struct dem_system *s, uint32_t near, const struct
   }
 }
 
-/* Broken pairs leave the bond blocks; the lanes that remain move together, in their old order. */
+/* Is a broken pair's contact still one of side on side, where a window serves? By where the grains are alone, so that
+ * it does not matter when the beam broke. */
+static bool still_side_on_side(const struct dem_system *s, const struct dem_bond_block *block, size_t lane,
+                               int32_t pair) {
+  if (!s->windowed[pair]) return false;
+  double x[2], y[2];
+  for (int k = 0; k < 2; ++k) {
+    const uint32_t grain = s->pair[pair][k];
+    const double c = s->c.cosine[grain], sn = s->c.sine[grain];
+    x[k] = s->c.x[grain] + c * block->middle_x[k][lane] - sn * block->middle_y[k][lane];
+    y[k] = s->c.y[grain] + sn * block->middle_x[k][lane] + c * block->middle_y[k][lane];
+  }
+  const double dx = x[1] - x[0], dy = y[1] - y[0];
+  const double half = block->half_x[0][lane] * block->half_x[0][lane] + block->half_y[0][lane] * block->half_y[0][lane];
+  return dx * dx + dy * dy < half && fabs(s->c.angle[s->pair[pair][0]] - s->c.angle[s->pair[pair][1]]) < 0.3;
+}
+
+/* Broken pairs that came apart leave the bond blocks; the lanes that remain move together, in their old order. */
 static void repack_bonds(struct dem_system *s) {
   const size_t lanes = s->now.bond_blocks * DEM_BLOCK;
   size_t kept = 0;
   for (size_t lane = 0; lane < lanes; ++lane) {
     const int32_t pair = s->lane_pair[lane];
     if (pair == DEM_NO_PAIR) continue;
-    if (!s->alive[pair]) {
+    const bool gone = !s->present[s->pair[pair][0]] || !s->present[s->pair[pair][1]];
+    if (gone || (!s->alive[pair] && !still_side_on_side(s, &s->bond[lane / DEM_BLOCK], lane % DEM_BLOCK, pair))) {
       s->pair_lane[pair] = DEM_NO_PAIR;
       continue;
     }

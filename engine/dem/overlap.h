@@ -1,8 +1,8 @@
 /* Overlap of any two convex polygons, by boundary integrals: no case analysis.
  *
  * Every side of either is clipped to the other's half-planes (Cyrus-Beck intervals); the pieces of both outlines are
- * the outline of the overlap. Sides that coincide count once: the first polygon's are clipped to the closed second, the
- * second's to the open first, with a tolerance above rounding. Eight vertices of the clipped outline at a time. */
+ * the outline of the overlap. Sides that coincide count once: as the first polygon's, with a tolerance above
+ * rounding. Eight vertices of the clipped outline at a time. */
 #ifndef CLAST_ENGINE_DEM_OVERLAP_H
 #define CLAST_ENGINE_DEM_OVERLAP_H
 
@@ -39,7 +39,7 @@ LANES_INLINE void overlap_best_side(const struct dem_ring ring[2], struct dem_ov
   }
 }
 
-/* Pieces of p inside q. `tolerance`: how far outside still counts as inside, m; negative for the open polygon. */
+/* Pieces of p inside q. A side of p that runs along a side of q to within `tolerance`, m, counts for p if `own`. */
 LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *q, double tolerance, bool own,
                                struct contact_sums *sums) {
   for (size_t v = 0; v < p->count; v += LANES) {
@@ -48,10 +48,13 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
     lanes_d enter = lanes_all(0.0), leave = lanes_all(1.0);
     for (size_t k = 0; k < q->count; ++k) {
       const double sx = q->x[k + 1] - q->x[k], sy = q->y[k + 1] - q->y[k];
-      const double size = sqrt(sx * sx + sy * sy) * tolerance;
-      const lanes_d from = (x - q->x[k]) * sy - (y - q->y[k]) * sx - size;
-      const lanes_d to = (x + ex - q->x[k]) * sy - (y + ey - q->y[k]) * sx - size;
-      const lanes_d crossing = from / (from - to);
+      const double same = sqrt(sx * sx + sy * sy) * tolerance;
+      lanes_d from = (x - q->x[k]) * sy - (y - q->y[k]) * sx;
+      lanes_d to = (x + ex - q->x[k]) * sy - (y + ey - q->y[k]) * sx;
+      const lanes_i along = (lanes_abs(from) <= same) & (lanes_abs(to) <= same);
+      from = lanes_select(along, lanes_all(own ? -1.0 : 1.0), from);
+      to = lanes_select(along, lanes_all(own ? -1.0 : 1.0), to);
+      const lanes_d crossing = from / (from - to); /* infinite, so nothing is left, where both are outside and equal */
       enter = lanes_max(enter, lanes_mask(from > 0.0, crossing));
       leave = lanes_min(leave, lanes_select(to > 0.0, crossing, lanes_all(1.0)));
     }
@@ -72,7 +75,7 @@ static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *ou
   for (int k = 0; k < 2; ++k)
     for (size_t v = 1; v < ring[k].count; ++v)
       size = fmax(size, fmax(fabs(ring[k].x[v] - ring[k].x[0]), fabs(ring[k].y[v] - ring[k].y[0])));
-  const double tolerance = 1e-15 * size; /* a few roundings of a coordinate */
+  const double tolerance = 1e-12 * size; /* above the rounding of positions */
   overlap_best_side(ring, out);
   out->apart = out->gap >= -tolerance;
   if (out->apart) return;
@@ -85,7 +88,7 @@ static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *ou
     }
   struct contact_sums sums = {0};
   overlap_clip(&ring[0], &ring[1], tolerance, true, &sums);
-  overlap_clip(&ring[1], &ring[0], -tolerance, false, &sums);
+  overlap_clip(&ring[1], &ring[0], tolerance, false, &sums);
   out->twice_area = overlap_total(sums.twice_area);
   out->chord_x = overlap_total(sums.chord_x);
   out->chord_y = overlap_total(sums.chord_y);

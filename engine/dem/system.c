@@ -31,8 +31,7 @@ static status check(const struct dem_parameters *p, struct error *error) {
   return STATUS_OK;
 }
 
-/* Forces at the positions now. `dt` books the dissipated powers for a step's length. */
-static void evaluate(struct dem_system *s, double dt) {
+void dem_system_evaluate(struct dem_system *s, double dt) {
   memset(s->c.fx, 0, s->padded * sizeof(double));
   memset(s->c.fy, 0, s->padded * sizeof(double));
   memset(s->c.torque, 0, s->padded * sizeof(double));
@@ -53,7 +52,7 @@ static bool make_ready(struct dem_system *s) {
   memcpy(s->c.guess_vy, s->c.vy, s->padded * sizeof(double));
   memcpy(s->c.guess_spin, s->c.spin, s->padded * sizeof(double));
   if (!dem_neighbours_make(s)) return false;
-  evaluate(s, 0.0);
+  dem_system_evaluate(s, 0.0);
   s->now.ready = 1;
   return true;
 }
@@ -189,7 +188,7 @@ bool dem_system_step(struct dem_system *s) {
       s->p.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved) : s->kernels->verlet_drift(s, &moved);
   s->now.time = (double)++s->now.steps * dt;
   if (!finite || (moved && !dem_neighbours_make(s))) return false;
-  evaluate(s, dt);
+  dem_system_evaluate(s, dt);
   if (s->p.integrator == DEM_GEAR)
     s->kernels->gear_correct(s);
   else

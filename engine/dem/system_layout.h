@@ -135,4 +135,7 @@ struct dem_system {
   const struct dem_kernels *kernels;
 };
 
+/* Forces at the positions now, with the lists as they are. `dt` books the dissipated powers for a step's length. */
+void dem_system_evaluate(struct dem_system *system, double dt);
+
 #endif

@@ -1,0 +1,377 @@
+/* Whole discs in motion: what is conserved, orders of the integrators, breaking, the same bits again, bounded memory.
+ */
+#include "tests/bench/dem_disc.h"
+#include "tests/verification/dem_fixture.h"
+
+#ifndef __SANITIZE_ADDRESS__ /* the sanitizer brings its own */
+static size_t allocations;   /* counted for the test that the step loop allocates nothing */
+void *__libc_malloc(size_t size);
+void *__libc_realloc(void *old, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+void *malloc(size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+void *realloc(void *old, size_t size) {
+  ++allocations;
+  return __libc_realloc(old, size);
+}
+void *aligned_alloc(size_t alignment, size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+#endif
+
+/* K99's grains on a smaller disc, the charge at the same energy per mass; the whole set moving and turning. */
+static struct dem_system *charged(const struct dem_tessellation *t, const struct dem_parameters *p, double vx,
+                                  double spin) {
+  struct dem_system *s = fixture_create(t, p);
+  dem_disc_charge(s, t, p->density, 80.0 * p->density * 0.0314);
+  for (uint32_t i = 0; i < t->cell_count; ++i) {
+    const struct dem_grain g = dem_system_grain(s, i);
+    if (g.present) dem_system_set_velocity(s, i, g.vx + vx - spin * g.y, g.vy + spin * g.x, g.spin + spin);
+  }
+  return s;
+}
+
+struct momenta {
+  double px, py, l, scale, turn_scale;
+};
+
+static struct momenta momenta(const struct dem_system *s) {
+  struct momenta m = {0};
+  for (uint32_t i = 0; i < dem_system_grains(s); ++i) {
+    const struct dem_grain g = dem_system_grain(s, i);
+    if (!g.present) continue;
+    m.px += g.mass * g.vx;
+    m.py += g.mass * g.vy;
+    const double orbit = g.mass * (g.x * g.vy - g.y * g.vx);
+    m.l += orbit + g.moment_of_inertia * g.spin;
+    m.scale += g.mass * hypot(g.vx, g.vy);
+    m.turn_scale += fabs(orbit) + fabs(g.moment_of_inertia * g.spin);
+  }
+  return m;
+}
+
+/* Momentum to 1e-12 and angular momentum to 1e-10 of the grains' own, through breaking, friction and either law. */
+static void momenta_are_conserved(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  for (int kind = 0; kind < 4; ++kind) {
+    struct dem_parameters p = fixture_parameters();
+    p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
+    p.breaking = kind >= 1;
+    if (kind >= 2) p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
+    p.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
+    struct dem_system *s = charged(t, &p, 3.0, 40.0);
+    const struct momenta before = momenta(s);
+    for (int k = 0; k < 2000; ++k)
+      assert_true(dem_system_step(s));
+    const struct momenta after = momenta(s);
+    fixture_near(after.px, before.px, 1e-12 * before.scale, "momentum x");
+    fixture_near(after.py, before.py, 1e-12 * before.scale, "momentum y");
+    /* Gear corrects positions and velocities apart, so r x v is kept only to its truncation error */
+    fixture_near(after.l, before.l, (p.integrator == DEM_GEAR ? 1e-4 : 1e-10) * before.turn_scale, "angular momentum");
+    const struct dem_break *log;
+    assert_true(kind == 0 || dem_system_breaks(s, &log) > 20);
+    dem_system_free(s);
+  }
+  dem_tessellation_free(t);
+}
+
+/* Unbroken, undamped, conservative: total energy within 0.5 % over 10 ms at 1 us, and its error falls as dt^2. */
+static void energy_is_conserved(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  double worst[3] = {0};
+  for (int fine = 0; fine < 3; ++fine) {
+    struct dem_parameters p = fixture_parameters();
+    p.time_step = 2e-6 / (1 << fine);
+    struct dem_system *s = charged(t, &p, 0.0, 0.0);
+    const double before = fixture_total(dem_system_ledger(s));
+    const int every = 20 << fine;
+    double mean = 0.0;
+    int count = 0;
+    for (int k = 0; k * p.time_step < 10e-3; k += every, ++count) {
+      for (int i = 0; i < every; ++i)
+        assert_true(dem_system_step(s));
+      const double error = fixture_total(dem_system_ledger(s)) / before - 1.0;
+      mean += error;
+      worst[fine] = fmax(worst[fine], fabs(error));
+    }
+    dem_system_free(s);
+    print_message("          dt %.1f us: worst %.2e, mean %.2e\n", p.time_step * 1e6, worst[fine], mean / count);
+  }
+  assert_true(worst[1] < 0.005);
+  /* order 2 is a factor 4; kinks of contact and the maximum over a chaotic run leave some room */
+  assert_true(worst[0] / worst[1] > 3.0 && worst[1] / worst[2] > 3.0);
+  dem_tessellation_free(t);
+}
+
+/* Order by the difference to a run with far smaller steps; beams only, which is a smooth problem. */
+static double order(int integrator, double finest, const struct dem_tessellation *t) {
+  double error[2];
+  struct dem_parameters p = fixture_parameters();
+  p.contact = DEM_CONTACT_OFF;
+  p.integrator = integrator;
+  const double span = 64e-6;
+  double *exact = calloc(3 * t->cell_count, sizeof *exact);
+  for (int run = 0; run < 3; ++run) {
+    p.time_step = run == 0 ? finest / 8.0 : run == 1 ? finest : 2.0 * finest;
+    struct dem_system *s = charged(t, &p, 0.0, 0.0);
+    for (int k = 0, steps = (int)lround(span / p.time_step); k < steps; ++k)
+      assert_true(dem_system_step(s));
+    double sum = 0.0;
+    for (uint32_t i = 0; i < t->cell_count; ++i) {
+      const double v[3] = {s->c.x[i], s->c.y[i], 0.01 * s->c.angle[i]};
+      for (int k = 0; k < 3; ++k) {
+        if (run == 0) exact[3 * i + (size_t)k] = v[k];
+        sum += (v[k] - exact[3 * i + (size_t)k]) * (v[k] - exact[3 * i + (size_t)k]);
+      }
+    }
+    if (run) error[run - 1] = sqrt(sum);
+    dem_system_free(s);
+  }
+  free(exact);
+  print_message("          %s: %.2e m at %.1f us, order %.2f\n", integrator == DEM_GEAR ? "Gear" : "Verlet", error[0],
+                finest * 1e6, log2(error[1] / error[0]));
+  return log2(error[1] / error[0]);
+}
+
+static void integrators_have_their_order(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01069, 1.0, 5);
+  const double verlet = order(DEM_VERLET, 0.5e-6, t), gear = order(DEM_GEAR, 0.5e-6, t);
+  assert_true(verlet > 1.9 && verlet < 2.1);
+  assert_true(gear > 4.0); /* fifth-order predictor; positions are corrected to fourth order or better */
+  dem_tessellation_free(t);
+}
+
+/* Breaking, damping and friction on: kinetic + stored + broken + dissipated stays what it was. */
+static void ledger_closes(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  for (int kind = 0; kind < 3; ++kind) {
+    struct dem_parameters p = fixture_parameters();
+    p.breaking = true;
+    p.time_step = 2.5e-7;
+    p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
+    if (kind == 2) p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
+    struct dem_system *s = charged(t, &p, 0.0, 0.0);
+    const double before = fixture_total(dem_system_ledger(s));
+    for (int k = 0; k < 8000; ++k)
+      assert_true(dem_system_step(s));
+    const struct dem_ledger l = dem_system_ledger(s);
+    print_message(
+        "          kinetic %.0f beam %.0f contact %.0f broken %.0f damping %.0f friction %.0f of %.0f: open by %.1e\n",
+        l.kinetic, l.beam, l.contact, l.broken_beam, l.damping, l.friction, before, fixture_total(l) / before - 1.0);
+    assert_true(l.broken_beam > 0.01 * before);
+    assert_true(kind != 2 || (l.damping > 0.01 * before && l.friction > 0.0));
+    fixture_near(fixture_total(l), before, 0.005 * before, "ledger"); /* the same bound as without breaking */
+    dem_system_free(s);
+  }
+  dem_tessellation_free(t);
+}
+
+/* At rest nothing acts, to the last bit, and nothing begins to move. */
+static void rest_is_rest(void **state) {
+  (void)state;
+  for (int disorder = 0; disorder < 2; ++disorder) {
+    const struct dem_lattice lattice = {.outline = DEM_OUTLINE_BLOCK,
+                                        .spacing = 0.01,
+                                        .disorder = disorder,
+                                        .columns = 20,
+                                        .rows = 20,
+                                        .origin = {3.0, -7.0},
+                                        .seed = 2};
+    struct dem_tessellation *t = NULL;
+    assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
+    for (int law = 0; law < 3; ++law) {
+      struct dem_parameters p = fixture_parameters();
+      p.contact = law;
+      p.breaking = true;
+      p.integrator = law == 1 ? DEM_GEAR : DEM_VERLET;
+      struct dem_system *s = fixture_create(t, &p);
+      for (int k = 0; k < 10; ++k)
+        assert_true(dem_system_step(s));
+      for (uint32_t i = 0; i < t->cell_count; ++i) {
+        double fx, fy, torque;
+        dem_system_force(s, i, &fx, &fy, &torque);
+        assert_true(fx == 0.0 && fy == 0.0 && torque == 0.0 && s->c.vx[i] == 0.0 && s->c.x[i] == t->centroid[i].x);
+      }
+      assert_true(fixture_total(dem_system_ledger(s)) == 0.0);
+      dem_system_free(s);
+    }
+    dem_tessellation_free(t);
+  }
+}
+
+/* Every beam is stretched and breaks in the first step: from then on the same bits as grains that had no beams. */
+static void broken_is_unbonded(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  for (int on_bonded = 0; on_bonded < 2; ++on_bonded) {
+    struct dem_parameters p = fixture_parameters();
+    p.breaking = true;
+    p.strain_threshold = 1e-9;
+    p.contact_on_bonded = on_bonded;
+    p.normal_damping = 1e3;
+    p.damping_on_bonded = on_bonded;
+    struct dem_system *broken = fixture_create(t, &p), *unbonded = fixture_create(t, &p);
+    uint64_t seed = 9;
+    for (uint32_t i = 0; i < t->cell_count; ++i) {
+      const double spin = 2000.0 * fixture_random(&seed);
+      for (int which = 0; which < 2; ++which) /* the whole expands, and corners of spinning grains hit each other */
+        dem_system_set_velocity(which ? unbonded : broken, i, 30.0 * t->centroid[i].x, 30.0 * t->centroid[i].y, spin);
+    }
+    for (int32_t k = 0; k < (int32_t)t->pair_count; ++k)
+      dem_breaking_cut(unbonded, k);
+    const struct dem_break *log;
+    for (int k = 0; k < 1000; ++k) {
+      assert_true(dem_system_step(broken) && dem_system_step(unbonded));
+      assert_int_equal(dem_system_breaks(broken, &log), t->pair_count);
+      assert_memory_equal(broken->c.x, unbonded->c.x, t->cell_count * sizeof(double));
+      assert_memory_equal(broken->c.spin, unbonded->c.spin, t->cell_count * sizeof(double));
+    }
+    assert_true(dem_system_ledger(broken).damping > 0.0); /* they did touch */
+    assert_int_equal(dem_system_breaks(unbonded, &log), 0);
+    dem_system_free(broken);
+    dem_system_free(unbonded);
+  }
+  dem_tessellation_free(t);
+}
+
+/* Save in the middle, load into a fresh system: the same bits from then on, lists and all. */
+static void restored_run_has_the_same_bits(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  for (int integrator = 0; integrator < 2; ++integrator) {
+    struct dem_parameters p = fixture_parameters();
+    p.breaking = true;
+    p.integrator = integrator;
+    p.normal_damping = 1e3;
+    p.threshold_modulus = 5.0;
+    struct dem_system *s = charged(t, &p, 0.0, 0.0), *copy = fixture_create(t, &p);
+    for (int k = 0; k < 777; ++k)
+      assert_true(dem_system_step(s));
+    const size_t size = dem_system_state_size(s);
+    unsigned char *bytes = malloc(size), *again = malloc(size);
+    dem_system_state_save(s, bytes);
+    assert_false(dem_system_state_load(copy, bytes, size - 1));
+    assert_true(dem_system_state_load(copy, bytes, size));
+    for (int k = 0; k < 777; ++k) {
+      assert_true(dem_system_step(s) && dem_system_step(copy));
+      if (k % 100 == 0) {
+        const struct dem_ledger a = dem_system_ledger(s); /* asking one and not the other changes nothing */
+        assert_true(a.kinetic > 0.0);
+      }
+    }
+    const size_t size_now = dem_system_state_size(s);
+    assert_int_equal(size_now, dem_system_state_size(copy));
+    bytes = realloc(bytes, size_now);
+    again = realloc(again, size_now);
+    dem_system_state_save(s, bytes);
+    dem_system_state_save(copy, again);
+    assert_memory_equal(bytes, again, size_now);
+    free(bytes);
+    free(again);
+    dem_system_free(s);
+    dem_system_free(copy);
+  }
+  dem_tessellation_free(t);
+}
+
+/* A grain a thousand kilometres away costs no memory, and does not slow the search down. */
+static void far_flung_grain(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  struct dem_parameters p = fixture_parameters();
+  struct dem_system *s = fixture_create(t, &p);
+  const size_t bytes = dem_system_bytes(s);
+  for (size_t k = 0; k < t->pair_count; ++k)
+    if (t->pair[k][0] == 0 || t->pair[k][1] == 0) dem_breaking_cut(s, (int32_t)k);
+  fixture_place(s, 0, 1e6, -1e6, 0.0);
+  dem_system_set_velocity(s, 0, 1e4, 0.0, 10.0);
+  for (int k = 0; k < 2000; ++k)
+    assert_true(dem_system_step(s));
+  assert_int_equal(dem_system_bytes(s), bytes);
+  for (uint32_t i = 1; i < 20;
+       ++i) /* so fast that their skins are as wide as skins get: room for more pairs, no more */
+    dem_system_set_velocity(s, i, 0.0, 0.0, 1e6);
+  for (int k = 0; k < 100; ++k)
+    assert_true(dem_system_step(s));
+  assert_true(dem_system_bytes(s) < 4 * bytes);
+  dem_system_free(s);
+  dem_tessellation_free(t);
+}
+
+static void step_loop_allocates_nothing(void **state) {
+  (void)state;
+#ifndef __SANITIZE_ADDRESS__
+  struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
+  struct dem_parameters p = fixture_parameters();
+  p.breaking = true;
+  struct dem_system *s = charged(t, &p, 0.0, 0.0);
+  assert_true(dem_system_step(s));
+  const size_t before = allocations;
+  for (int k = 0; k < 3000; ++k)
+    assert_true(dem_system_step(s));
+  assert_true(s->now.rebuilds > 5);
+  assert_int_equal(allocations, before);
+  dem_system_free(s);
+  assert_true(allocations > 0);
+  dem_tessellation_free(t);
+#endif
+}
+
+/* Steps far beyond the stability limit, absurd thresholds and velocities: false or a finite state, never a crash. */
+static void extremes(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
+  const double steps[] = {1e-30, 1e-4, 1.0, 1e20}, thresholds[] = {0.0, 1e-300, 1e20};
+  for (size_t a = 0; a < 4; ++a)
+    for (size_t b = 0; b < 3; ++b)
+      for (int integrator = 0; integrator < 2; ++integrator) {
+        struct dem_parameters p = fixture_parameters();
+        p.time_step = steps[a];
+        p.breaking = true;
+        p.strain_threshold = p.angle_threshold = thresholds[b];
+        p.integrator = integrator;
+        p.normal_damping = p.tangential_damping = b == 1 ? 1e20 : 0.0;
+        p.friction = 1.0;
+        struct dem_system *s = charged(t, &p, 0.0, 1e3);
+        for (int k = 0; k < 300 && dem_system_step(s); ++k) {
+        }
+        dem_system_ledger(s);
+        dem_system_overlap_share(s);
+        dem_system_free(s);
+      }
+  struct dem_parameters p = fixture_parameters();
+  p.time_step = 20e-6; /* unstable without breaking: grows until it is no number */
+  struct dem_system *s = charged(t, &p, 0.0, 0.0);
+  assert_true(p.time_step > dem_system_stable_time_step(s));
+  int taken = 0;
+  while (taken < 100000 && dem_system_step(s))
+    ++taken;
+  assert_true(taken < 100000);
+  dem_system_free(s);
+  p.density = (double)NAN;
+  struct error error = {0};
+  assert_int_equal(dem_system_create(t, &p, &s, &error), STATUS_CONTENT);
+  assert_null(s);
+  dem_tessellation_free(t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
+                                     cmocka_unit_test(energy_is_conserved),
+                                     cmocka_unit_test(integrators_have_their_order),
+                                     cmocka_unit_test(ledger_closes),
+                                     cmocka_unit_test(rest_is_rest),
+                                     cmocka_unit_test(broken_is_unbonded),
+                                     cmocka_unit_test(restored_run_has_the_same_bits),
+                                     cmocka_unit_test(far_flung_grain),
+                                     cmocka_unit_test(step_loop_allocates_nothing),
+                                     cmocka_unit_test(extremes)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
