@@ -7,22 +7,21 @@
 #include "campaign/commands/rows.h"
 
 struct options {
-  bool csv;
+  bool csv, bits;
 };
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
-/* Written under a temporary name and renamed: a file with its final name is whole. */
-static status export_view(struct store *store, const char *folder, const char *view, struct error *error) {
-  char path[4096], temporary[4096], sql[64];
-  if (snprintf(path, sizeof path, "%s/%s.csv", folder, view) >= (int)sizeof path ||
-      snprintf(temporary, sizeof temporary, "%s/.%s.csv.part", folder, view) >= (int)sizeof temporary)
-    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  snprintf(sql, sizeof sql, "select * from %s", view);
+/* Written under a temporary name and renamed: a file with its final name is whole. view NULL: the bits. */
+static status export_text(struct store *store, const char *path, const char *view, struct error *error) {
+  char temporary[4096], sql[64];
+  if (snprintf(temporary, sizeof temporary, "%s.part", path) >= (int)sizeof temporary)
+    return status_fail(error, STATUS_USAGE, "the target's name is too long");
   FILE *out = fopen(temporary, "w");
   if (!out)
     return status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
-  status code = rows_print(store, sql, 0, NULL, TABLE_CSV, out, error);
+  snprintf(sql, sizeof sql, "select * from %s", view ? view : "");
+  status code = view ? rows_print(store, sql, 0, NULL, TABLE_CSV, out, error) : store_dump(store, out, error);
   if (fclose(out) && !code)
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
   if (!code && rename(temporary, path))
@@ -32,21 +31,31 @@ static status export_view(struct store *store, const char *folder, const char *v
   return code;
 }
 
+static status export_folder(struct store *store, const char *folder, struct error *error) {
+  if (mkdir(folder, 0777) && errno != EEXIST)
+    return status_fail(error, STATUS_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+  status code = STATUS_OK;
+  for (size_t i = 0; !code && i < sizeof exported / sizeof exported[0]; i++) {
+    char path[4096];
+    if (snprintf(path, sizeof path, "%s/%s.csv", folder, exported[i]) >= (int)sizeof path)
+      return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+    code = export_text(store, path, exported[i], error);
+  }
+  return code;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *target = line->arguments[1];
   struct store *store = NULL;
+  if (options->csv && options->bits)
+    return status_fail(error, STATUS_USAGE, "--csv and --bits exclude each other");
   status code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  if (!options->csv) {
-    code = store_export(store, target, error);
-  } else if (mkdir(target, 0777) && errno != EEXIST) {
-    code = status_fail(error, STATUS_IO, "cannot make the folder %s: %s", target, strerror(errno));
-  } else {
-    for (size_t i = 0; !code && i < sizeof exported / sizeof exported[0]; i++)
-      code = export_view(store, target, exported[i], error);
-  }
+  code = options->csv    ? export_folder(store, target, error)
+         : options->bits ? export_text(store, target, NULL, error)
+                         : store_export(store, target, error);
   if (!code)
     fprintf(stderr, "%s written\n", target);
   store_close(store, NULL);
@@ -56,6 +65,9 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     {"csv", 0, OPTION_FLAG, NULL, offsetof(struct options, csv), 0, 0, NULL,
      "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with meaning and unit of each column."},
+    {"bits", 0, OPTION_FLAG, NULL, offsetof(struct options, bits), 0, 0, NULL,
+     "Write every value that a run determines as text, in the order of identities and without times and hosts: of two stores "
+     "of one campaign these files are the same, however they were computed."},
 };
 
 const struct command export_command = {
@@ -64,7 +76,7 @@ const struct command export_command = {
     .arguments = "STORE TARGET",
     .summary = "one compact file for hand-over, or a folder of CSV files",
     .doc = "Writes a compact copy of the store as one SQLite file (also while a campaign is running), or with --csv its\n"
-           "views as CSV files in a folder. An existing store is never overwritten; CSV files are.",
+           "views as CSV files in a folder. An existing store is never overwritten; CSV and bits files are.",
     .examples = "clast export out.db handover.db\nclast export out.db tables --csv",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

@@ -56,3 +56,23 @@ YAML
   for line in "$@"; do echo "$line" >>"$name.yaml"; done
 }
 number() { "$clast" query "$1" "$2" --csv | tail -n 1 | tr -d '\r'; } # number STORE SQL
+# The deterministic content of a store: the same however it was computed.
+bits() { "$clast" export "$1" "$1.bits" --bits 2>>err || fail "no bits of $1"; [ -s "$1.bits" ] || fail "empty bits"; cat "$1.bits"; }
+same_bits() { # same_bits STORE REFERENCE.bits WHAT
+  bits "$1" | cmp -s - "$2" || fail "$3: the store differs from the reference"
+  "$clast" check "$1" >out 2>err || fail "$3: the store does not pass clast check"
+  ok "$3: same bits as the reference"
+}
+mpi() { mpirun --oversubscribe "$@"; }
+
+# A campaign that runs for a second or two, to be interrupted: 3 points, 6 seeds.
+slow() {
+  cat >"$1.yaml" <<YAML
+name: slow
+scene: disc-explosion
+set: {body.diameter: 14 cm, charge.energy: 6 kJ/m, stop.end_time: 1.5 ms}
+vary: {threshold.strain: [2 %, 3 %, 5 %]}
+seeds: {per_point: 6}
+store: $1.db
+YAML
+}

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Runs that cannot go well: a time step above stability, an energy that drifts, runs over their time or memory. Verdicts are
+# rows, attempts are logged, the campaign goes on, and what was given up can be tried again.
+. "$(dirname "$0")/../cli/lib.bash"
+
+small=(--set "body.diameter=8 cm" --set "stop.end_time=1 ms")
+expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.time_step=1e-4
+says "fidelity.time_step"; one_error; prints "invalid"
+expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.energy_bound=1e-9 --json
+says "energy"; prints '"state": "energy"'
+expect 65 "$clast" simulate disc-explosion --set "body.diameter=1000 km"
+says "too large"; one_error
+
+# verdicts in a campaign: one point of two fails, the other does not
+tiny verdict
+sed -i 's/^vary:/vary: {fidelity.time_step: [1 us, 100 us]}/; /threshold/d' verdict.yaml
+expect 1 "$clast" run verdict.yaml -j 2
+says "failed"
+same "$(number verdict.db "select group_concat(n || ':' || failed, ' ') from points")" "3:0 0:3" "runs and failures of the points"
+same "$(number verdict.db "select count(*) from runs where state = 'invalid' and message like '%time_step%'")" 3 "verdicts with their reason"
+expect 1 "$clast" run verdict.yaml --quiet
+same "$(number verdict.db "select count(*) from run")" 6 "a verdict is not computed again"
+
+# over its time
+slow time; sed -i 's/14 cm/40 cm/; s/per_point: 6/per_point: 1/' time.yaml
+echo 'limits: {time: 0.05 s, attempts: 2, failures: 0}' >>time.yaml
+expect 1 "$clast" run time.yaml -j 2
+says "attempts failed"
+same "$(number time.db "select count(*) || ' ' || min(reason) || ' ' || max(reason) from attempt")" "6 time_limit time_limit" "attempts"
+same "$(number time.db "select count(*) from run")" 0 "no run of them is stored"
+expect 1 "$clast" run time.yaml --quiet
+same "$(number time.db "select count(*) from attempt")" 6 "attempts that were used up are not made again"
+expect 0 "$clast" status time.db --json
+prints '"without_result": 3'
+sed -i 's/stop.end_time: 1.5 ms/stop.end_time: 1.5 ms/' time.yaml
+expect 0 "$clast" retry time.db --status failed --time "100 s" -j 2
+same "$(number time.db "select count(*) from runs where counts")" 3 "runs after the retry"
+expect 64 "$clast" retry time.db --status elephant
+
+# over its memory
+slow memory; sed -i 's/14 cm/400 cm/; s/per_point: 6/per_point: 1/; s/\[2 %, 3 %, 5 %\]/[2 %]/' memory.yaml
+echo 'limits: {memory: 8 MiB, attempts: 1, failures: 0}' >>memory.yaml
+expect 1 "$clast" run memory.yaml -j 1
+same "$(number memory.db "select count(*) || ' ' || reason from attempt")" "1 memory_limit" "attempts"
+
+# too many of the first runs fail: the campaign stops and says so
+tiny failures
+sed -i 's/^vary:/vary: {fidelity.time_step: [100 us, 110 us]}/; /threshold/d; s/per_point: 3/per_point: 100/' failures.yaml
+echo 'limits: {failures: 20}' >>failures.yaml
+expect 1 "$clast" run failures.yaml -j 2
+says "20"
+[ "$(number failures.db "select count(*) from run")" -lt 60 ] || fail "it did not stop"
+ok "stopped after $(number failures.db "select count(*) from run") runs of 200"
+done_after 26

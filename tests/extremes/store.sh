@@ -1,0 +1,94 @@
+#!/usr/bin/env bash
+# Stores that are not ours, newer, damaged, read-only, locked or on a full disk: a clear message, the documented code, and
+# the file as it was.
+. "$(dirname "$0")/../cli/lib.bash"
+
+tiny tiny
+unchanged() { same "$(sha256sum <"$1" | cut -c1-12)" "$2" "$1 is as it was"; }
+refuses() { # refuses CODE FILE: to write and to read
+  local sum
+  sum=$(sha256sum <"$2" | cut -c1-12)
+  expect "$1" "$clast" run tiny.yaml --store "$2" --quiet; one_error; says "$2"
+  expect "$1" "$clast" status "$2"; one_error; says "$2"
+  unchanged "$2" "$sum"
+}
+echo "not a database at all, but long enough to be one" >text.db; refuses 65 text.db
+head -c 40000 /dev/urandom >noise.db; refuses 65 noise.db
+python -c "import sqlite3; d = sqlite3.connect('other.db'); d.execute('create table run (a)'); d.commit()"; refuses 65 other.db
+expect 0 "$clast" run tiny.yaml --quiet
+bits tiny.db >reference.bits
+cp tiny.db newer.db; python -c "import sqlite3; d = sqlite3.connect('newer.db'); d.execute('pragma user_version = 1000'); d.commit()"
+refuses 65 newer.db; says "newer"
+head -c 60000 tiny.db >cut.db
+expect 65 "$clast" check cut.db
+mkdir folder.db
+expect 74 "$clast" run tiny.yaml --store folder.db --quiet
+expect 66 "$clast" status missing.db
+says "missing.db"
+expect 74 "$clast" run tiny.yaml --store none/such/x.db --quiet; one_error
+for command in status estimates stats spectrum check; do expect 66 "$clast" $command missing.db; one_error; done
+[ ! -e missing.db ] || fail "a reading command made a store"
+
+# an empty file is what a disk that was full leaves behind: it becomes a store
+: >empty.db
+expect 0 "$clast" run tiny.yaml --store empty.db --quiet
+same_bits empty.db reference.bits "an empty file"
+
+# a byte of a mass flipped: check finds it
+cp tiny.db flipped.db
+python -c "
+import sqlite3
+d = sqlite3.connect('flipped.db')
+(run, masses), = d.execute('select run_id, masses from fragment_mass order by run_id limit 1')
+masses = bytearray(masses); masses[5] ^= 1
+d.execute('update fragment_mass set masses = ? where run_id = ?', (bytes(masses), run)); d.commit()"
+expect 65 "$clast" check flipped.db
+[ -s out ] || fail "check does not say what is wrong"
+expect 65 "$clast" replay flipped.db 1
+prints "fragment masses"
+
+# read-only: needs a user whom permissions bind
+chmod 755 .
+cp tiny.db locked.db; chmod 444 locked.db; mkdir fixed; cp tiny.db fixed/; chmod 555 fixed
+if [ "$(id -u)" -ne 0 ]; then as=(); elif setpriv --reuid=65534 --clear-groups test -x "$work" 2>/dev/null && setpriv --reuid=65534 --clear-groups test -x "$clast"; then as=(setpriv --reuid=65534 --clear-groups); else as=(none); fi
+if [ "${as[*]:-}" != none ]; then
+  sed -i 's/per_point: 3/per_point: 4/' tiny.yaml
+  expect 74 "${as[@]}" "$clast" run tiny.yaml --store locked.db --quiet; one_error
+  expect 74 "${as[@]}" "$clast" run tiny.yaml --store fixed/tiny.db --quiet; one_error
+  expect 0 "${as[@]}" "$clast" status locked.db
+  expect 0 "${as[@]}" "$clast" status fixed/tiny.db
+  sed -i 's/per_point: 4/per_point: 3/' tiny.yaml
+else
+  for i in 1 2 3 4; do ok "(not tried: permissions do not bind here)"; done
+fi
+
+# one writer: the second is told who has it; readers read meanwhile
+slow slow
+"$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
+pid=$!
+for i in $(seq 100); do [ -e slow.db ] && "$clast" status slow.db >/dev/null 2>&1 && break; sleep 0.05; done
+expect 74 "$clast" run slow.yaml --quiet
+says "$pid"; one_error
+expect 74 "$clast" merge slow.db tiny.db
+expect 0 "$clast" status slow.db
+prints "slow"
+kill -TERM "$pid"; code=0; wait "$pid" || code=$?
+same "$code" 75 "the first writer was not disturbed"
+
+# a full disk: in a file system of its own if we may, else by a limit on file sizes
+expect_full() { [ "$got" -eq 74 ] || fail "exit $got on a full disk"; says "$1"; one_error; ok "exit 74: $2"; }
+mkdir small
+if unshare --mount true 2>/dev/null && unshare --mount sh -c 'mount -t tmpfs -o size=300k tmpfs small' 2>/dev/null; then
+  got=0
+  unshare --mount sh -c "mount -t tmpfs -o size=300k tmpfs small && '$clast' run slow.yaml --store small/x.db --quiet >out 2>err; code=\$?; cp small/x.db* . 2>/dev/null; exit \$code" || got=$?
+  expect_full "small/x.db" "a full disk"
+else
+  got=0
+  (trap '' XFSZ; ulimit -f 250; exec "$clast" run slow.yaml --store x.db --quiet >out 2>err) || got=$?
+  expect_full "x.db" "a file that may not grow"
+fi
+rm -f slow.db*
+expect 0 "$clast" run slow.yaml --quiet
+bits slow.db >slow.bits
+if [ -s x.db ]; then expect 0 "$clast" run slow.yaml --store x.db --quiet; same_bits x.db slow.bits "after room was made"; else ok "nothing"; ok "committed"; ok "yet"; fi
+done_after 53
