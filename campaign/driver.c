@@ -304,7 +304,7 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
   if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
     return STATUS_OK;
   return status_fail(error, STATUS_FAILED_RUNS,
-                     "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s failures. "
+                     "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s --named failures. "
                      "Mend the campaign, or set limits.failures: 0 to go on regardless",
                      (long long)driver->first_failed, (long long)driver->first_done,
                      driver->options.store_path ? driver->options.store_path : driver->campaign->store);

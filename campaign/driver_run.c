@@ -7,8 +7,12 @@
 static status verdict(const struct driver_summary *summary, status code, struct error *error) {
   if (code != STATUS_OK || summary->runs_failed + (int64_t)summary->points_invalid == 0)
     return code;
-  return status_fail(error, STATUS_FAILED_RUNS, "finished, but %lld runs failed and %llu points could not be run",
-                     (long long)summary->runs_failed, (unsigned long long)summary->points_invalid);
+  char points[64] = "";
+  if (summary->points_invalid)
+    snprintf(points, sizeof points, " and %llu point%s could not be run", (unsigned long long)summary->points_invalid,
+             summary->points_invalid == 1 ? "" : "s");
+  return status_fail(error, STATUS_FAILED_RUNS, "finished, but %lld run%s failed%s; `clast query STORE --named failures` says why",
+                     (long long)summary->runs_failed, summary->runs_failed == 1 ? "" : "s", points);
 }
 
 static const char *outcome_of(status code) {

@@ -3,11 +3,12 @@
 #include <string.h>
 
 static const struct command *const all[] = {
-    &run_command,      &plan_command,    &simulate_command, &retry_command, /* running */
-    &scenes_command,   &explain_command, &schema_command,   &cite_command,  /* scenes and inputs */
-    &status_command,   &estimates_command, &spectrum_command, &picture_command, /* results */
-    &export_command,  &replay_command, /* the store */
-    &help_command,     &version_command, &completion_command,
+    /* running */ &run_command, &plan_command, &simulate_command, &retry_command,
+    /* scenes and inputs */ &scenes_command, &explain_command, &schema_command, &cite_command,
+    /* results */ &status_command, &estimates_command, &stats_command, &spectrum_command, &query_command,
+    &picture_command,
+    /* the store */ &check_command, &export_command, &merge_command, &replay_command,
+    /* about clast */ &help_command, &version_command, &completion_command,
 };
 
 size_t commands_count(void) { return sizeof all / sizeof all[0]; }

@@ -62,6 +62,8 @@ static status point_row(void *context, size_t count, const struct query_value *v
     }
     if (code)
       break;
+    if (printing->format == TABLE_TEXT && window > 0 && fragments == 0)
+      continue; /* an empty line tells people nothing */
     bool blank = printing->format == TABLE_TEXT && window > 0; /* people see each point's inputs once */
     value_cell(printing->table, &values[0], blank);
     for (size_t i = 6; i < count; i++)

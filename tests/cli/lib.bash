@@ -63,7 +63,6 @@ same_bits() { # same_bits STORE REFERENCE.bits WHAT
   "$clast" check "$1" >out 2>err || fail "$3: the store does not pass clast check"
   ok "$3: same bits as the reference"
 }
-mpi() { mpirun --oversubscribe "$@"; }
 
 # A campaign that runs for a second or two, to be interrupted: 3 points, 6 seeds.
 slow() {

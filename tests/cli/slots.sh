@@ -10,22 +10,22 @@ bits tiny.db >reference.bits
 
 expect 0 "$clast" run tiny.yaml --store two.db -j 2 --quiet;                same_bits two.db reference.bits "2 slots"
 expect 0 "$clast" run tiny.yaml --store in.db -j 2 --in-process --quiet;    same_bits in.db reference.bits "2 slots in process"
-expect 0 mpi -n 3 "$clast" run tiny.yaml --store three.db --quiet;          same_bits three.db reference.bits "3 ranks"
+expect 0 mpirun --oversubscribe -n 3 "$clast" run tiny.yaml --store three.db --quiet;          same_bits three.db reference.bits "3 ranks"
 same "$(number three.db "select count(distinct rank) > 1 from run")" 1 "more than one rank computed"
-expect 0 mpi -n 2 "$clast" run tiny.yaml --store four.db -j 2 --quiet;      same_bits four.db reference.bits "2 ranks of 2 slots"
-expect 0 mpi -n 1 "$clast" run tiny.yaml --store one.db --quiet;            same_bits one.db reference.bits "1 rank"
+expect 0 mpirun --oversubscribe -n 2 "$clast" run tiny.yaml --store four.db -j 2 --quiet;      same_bits four.db reference.bits "2 ranks of 2 slots"
+expect 0 mpirun --oversubscribe -n 1 "$clast" run tiny.yaml --store one.db --quiet;            same_bits one.db reference.bits "1 rank"
 
 sed 's/per_point: 3/per_point: 1/; s/\[2 %, 5 %\]/[5 %]/' tiny.yaml >small.yaml
 expect 0 "$clast" run small.yaml --store grown.db --quiet
-expect 0 mpi -n 2 "$clast" run tiny.yaml --store grown.db
+expect 0 mpirun --oversubscribe -n 2 "$clast" run tiny.yaml --store grown.db
 says "2 found in the store"
 same_bits grown.db reference.bits "grown from a part"
 
 # errors under mpirun: said once, with the code
-expect 66 mpi -n 3 "$clast" run missing.yaml
+expect 66 mpirun --oversubscribe -n 3 "$clast" run missing.yaml
 [ "$(grep -c 'clast: error' err)" -eq 1 ] || fail "not said once"
 echo 'name: [' >bad.yaml
-expect 65 mpi -n 3 "$clast" run bad.yaml
+expect 65 mpirun --oversubscribe -n 3 "$clast" run bad.yaml
 [ "$(grep -c 'bad.yaml:.*error' err)" -eq 1 ] || fail "not said once"
 expect 64 "$clast" run tiny.yaml -j 0x
-done_after 19
+done_after 18
