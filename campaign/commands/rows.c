@@ -5,11 +5,21 @@
 
 enum { BLOB_SHOWN = 64 }; /* bytes shown in the aligned table: an identity fits, a list of masses does not */
 
-/* A column that has a different unit in another table gets none rather than a wrong one. */
 static status take_unit(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)error;
-  if (count == 1 && values[0].kind == QUERY_TEXT)
-    snprintf(context, 64, "%s", values[0].text);
+  struct rows *rows = context;
+  if (count != 2 || values[0].kind != QUERY_TEXT || values[1].kind != QUERY_TEXT)
+    return STATUS_OK;
+  if ((rows->unit_count & (rows->unit_count - 1)) == 0) { /* full at every power of two */
+    size_t capacity = rows->unit_count ? 2 * rows->unit_count : 1;
+    struct rows_unit *grown = realloc(rows->units, capacity * sizeof *grown);
+    if (!grown)
+      return STATUS_MEMORY;
+    rows->units = grown;
+  }
+  struct rows_unit *unit = &rows->units[rows->unit_count++];
+  snprintf(unit->column, sizeof unit->column, "%s", values[0].text);
+  snprintf(unit->unit, sizeof unit->unit, "%s", values[1].text);
   return STATUS_OK;
 }
 
@@ -18,13 +28,10 @@ static status columns(void *context, size_t count, const char *const *names, str
   struct rows *rows = context;
   rows->table = table_new(rows->format, rows->out);
   for (size_t i = 0; i < count; i++) {
-    char unit[64] = "";
-    struct query_parameter name = {"name", names[i]};
-    struct query_sink sink = {unit, NULL, take_unit};
-    if (rows->format == TABLE_TEXT)
-      (void)query_run(rows->store,
-                      "select min(unit) from column_doc where column_name = :name having count(distinct unit) = 1", 1,
-                      &name, 0, &sink, NULL); /* a store without the table: no units */
+    const char *unit = NULL;
+    for (size_t k = 0; k < rows->unit_count && !unit; k++)
+      if (strcmp(rows->units[k].column, names[i]) == 0)
+        unit = rows->units[k].unit;
     table_column(rows->table, names[i], unit);
   }
   return STATUS_OK;
@@ -71,16 +78,23 @@ static status row(void *context, size_t count, const struct query_value *values,
       print_blob(rows, values[i].blob, values[i].size);
       break;
     }
-  rows->count++;
   return table_broken(rows->table) ? STATUS_IO : STATUS_OK; /* rows_end says what it was */
 }
 
 struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_format format, FILE *out) {
-  *rows = (struct rows){.store = store, .format = format, .out = out};
+  *rows = (struct rows){.format = format, .out = out};
+  struct query_sink units = {rows, NULL, take_unit};
+  if (format == TABLE_TEXT) /* a column that has another unit in another table gets none rather than a wrong one */
+    (void)query_run(store,
+                    "select column_name, min(unit) from column_doc where unit <> '1' group by column_name"
+                    " having count(distinct unit) = 1",
+                    0, NULL, 0, &units, NULL); /* without them the headings have no units */
   return (struct query_sink){rows, columns, row};
 }
 
 status rows_end(struct rows *rows, status code, struct error *error) {
+  free(rows->units);
+  rows->units = NULL;
   if (!rows->table)
     return code;
   bool broken = table_broken(rows->table);

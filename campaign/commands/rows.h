@@ -6,14 +6,15 @@
 #include "db/query.h"
 
 struct rows { /* a sink's context */
-  struct store *store;
   struct table *table;
   enum table_format format;
   FILE *out;
-  uint64_t count; /* rows printed */
+  struct rows_unit { char column[128], unit[64]; } *units;
+  size_t unit_count;
 };
 
-/* A sink that prints what it gets; units in headings come from the store's table column_doc. End it with rows_end. */
+/* A sink that prints what it gets; units in headings come from the store's table column_doc (read here, before the query:
+ * a query inside another one would end the outer one's time limit). End it with rows_end, in every case. */
 struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_format format, FILE *out);
 /* Ends the table, whatever `code` says; returns code, or what writing said. A reader that went away is fine. */
 status rows_end(struct rows *rows, status code, struct error *error);

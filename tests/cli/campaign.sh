@@ -1,0 +1,126 @@
+#!/usr/bin/env bash
+# A tiny campaign from the first line to the last: plan, run, resume, grow; then every command that reads its store.
+. "$(dirname "$0")/lib.bash"
+
+tiny tiny
+expect 0 "$clast" plan tiny.yaml
+prints "12"; [ ! -e tiny.db ] || fail "plan made a store"
+expect 0 "$clast" plan tiny.yaml --no-trial --json
+python -c "import json; d = json.load(open('out')); assert isinstance(d, dict) and d, d"
+expect 0 "$clast" run tiny.yaml --dry-run
+[ ! -e tiny.db ] || fail "a dry run made a store"
+
+expect 0 "$clast" run tiny.yaml -j 2
+says "12 runs computed"; prints "M_1/M"
+for point in 1 2 3 4; do grep -q "^$point " out || fail "no line of point $point"; done
+[ ! -e tiny.db-wal ] || fail "a WAL file is left after a clean end"
+same "$(number tiny.db 'select count(*) from runs where counts')" 12 "runs that count"
+same "$(number tiny.db 'select count(distinct threshold_strain) from points')" 2 "levels of an axis column"
+"$clast" query tiny.db "select identity, largest_fraction from runs order by 1" --csv >first.csv
+
+expect 0 "$clast" run tiny.yaml -j 2
+says "0 runs computed"; says "12 found"
+sed -i 's/per_point: 3/per_point: 5/' tiny.yaml
+expect 0 "$clast" run tiny.yaml -j 2 --json
+python -c "
+import json; rows = json.load(open('out'))
+assert len(rows) == 12 and all(r['n'] == 5 and r['failed'] == 0 for r in rows), rows
+assert all(0 < r['largest_fraction_mean'] <= 1 for r in rows)"
+ok "the table at the end as JSON"
+says "8 runs computed"
+"$clast" query tiny.db "select identity, largest_fraction from runs where replicate < 3 order by 1" --csv | cmp -s - first.csv || fail "old runs changed"
+ok "growing the campaign changed no old run"
+expect 0 "$clast" run tiny.yaml --quiet --csv
+silent err
+
+# table, CSV and JSON tell the same
+expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction --csv; mv out stats.csv
+expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction --json; mv out stats.json
+expect 0 "$clast" stats tiny.db --by strain,angle --quantity largest_fraction
+python - <<'PY'
+import csv, json
+a = list(csv.DictReader(open('stats.csv', newline='')))
+b = json.load(open('stats.json'))
+lines = open('out').read().splitlines()
+assert len(a) == len(b) == len(lines) - 1 == 4, (len(a), len(b), len(lines))
+for x, y, line in zip(a, b, lines[1:]):
+    assert list(x) == list(y)
+    shown = line.split()
+    assert len(shown) == len(x), line
+    for (name, u), v, w in zip(x.items(), y.values(), shown):
+        if v is None: assert u == '' and w == '-'
+        elif isinstance(v, str): assert u == v == w
+        else: assert float(u) == float(v) and abs(float(w) - v) <= 1e-4 * abs(v) + 1e-12, (name, u, v, w)
+PY
+ok "stats: table, CSV and JSON agree"
+
+# every canned query runs
+queries=$("$clast" query --list --json | python -c "import json, sys; print(*[q['name'] for q in json.load(sys.stdin)])")
+count=0
+for name in $queries; do
+  with=()
+  for parameter in $("$clast" query --list --json | python -c "
+import json, sys
+for q in json.load(sys.stdin):
+    if q['name'] == '$name': print(q['with'].replace(',', ' '))"); do with+=(--with "$parameter=1"); done
+  "$clast" query tiny.db --named "$name" "${with[@]}" --json >out 2>err || fail "canned query $name"
+  python -c "import json; json.load(open('out'))"
+  count=$((count + 1))
+done
+[ "$count" -ge 5 ] || fail "only $count canned queries"
+ok "canned queries run: $count"
+
+expect 0 "$clast" status tiny.db
+prints "tiny"; prints "finished"
+expect 0 "$clast" estimates tiny.db --resamples 50
+expect 0 "$clast" spectrum tiny.db --point 1 --json
+python -c "
+import json; rows = json.load(open('out'))
+assert rows and abs(sum(r['mass_share'] for r in rows) - 1) < 1e-9
+assert all(r['runs'] == 5 for r in rows)"
+ok "the mass shares of a spectrum sum to one"
+expect 0 "$clast" spectrum tiny.db --where "replicate = 0" --csv
+expect 0 "$clast" check tiny.db
+expect 0 "$clast" replay tiny.db 3
+says "agree to the last bit"
+expect 64 "$clast" replay tiny.db 999
+expect 64 "$clast" replay tiny.db x
+expect 0 "$clast" retry tiny.db
+says "nothing to try again"
+expect 0 "$clast" export tiny.db hand.db
+expect 0 "$clast" check hand.db
+expect 74 "$clast" export tiny.db hand.db
+expect 0 "$clast" export tiny.db tables --csv
+same "$(ls tables | tr '\n' ' ')" "column_doc.csv estimates.csv points.csv runs.csv spectra.csv " "exported tables"
+same "$(python -c "import csv; print(len(list(csv.DictReader(open('tables/runs.csv', newline='')))))")" 20 "rows of runs.csv"
+
+# two halves from two machines make the whole
+tiny half 'store: left.db'; sed -i '/^store: half/d; s/angle: \[2 deg, 6 deg\]/angle: [2 deg]/' half.yaml
+expect 0 "$clast" run half.yaml --quiet
+sed -i 's/\[2 deg\]/[6 deg]/; s/left/right/' half.yaml
+expect 0 "$clast" run half.yaml --quiet
+expect 0 "$clast" merge both.db left.db right.db
+expect 0 "$clast" merge both.db right.db
+says "0 runs added"
+same "$(number both.db 'select count(*) from runs')" 12 "merged runs"
+"$clast" query both.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - first.csv || fail "merged store differs"
+ok "merged store holds the same bits"
+expect 0 "$clast" check both.db
+
+# a reader that has seen enough is no error
+{ got=0; "$clast" query tiny.db --csv "with recursive c(x) as (select 1 union all select x + 1 from c limit 300000) select x from c" 2>err || got=$?; echo "$got" >code; } | head -n 1 >/dev/null
+same "$(cat code)" 0 "exit code when the reader goes away"
+silent err
+
+# what a query may not do
+expect 64 "$clast" query tiny.db "delete from run"
+expect 64 "$clast" query tiny.db "select 1; select 2"
+expect 64 "$clast" query tiny.db "select nonsense"
+says "nonsense"
+expect 64 "$clast" query tiny.db --named elephant
+expect 64 "$clast" stats tiny.db --by elephant
+says "threshold.strain"
+expect 64 "$clast" query tiny.db "select :x"
+expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
+expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
+done_after 48

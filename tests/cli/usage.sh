@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# The command line itself: help, version, completion, mistakes, a reader that goes away, a full disk.
+. "$(dirname "$0")/lib.bash"
+
+expect 0 "$clast" help
+silent err
+commands=$(sed -nE 's/^  ([a-z]+)  +[A-Za-z].*/\1/p' out)
+same "$(echo "$commands" | wc -l)" "$("$clast" completion bash | sed -n 's/.*compgen -W "\(.*\) --help --version".*/\1/p' | wc -w)" "commands in help and completion"
+for command in $commands; do
+  "$clast" "$command" --help >out 2>err || fail "$command --help"
+  silent err
+  for part in usage: options: examples: "exit codes:" "clast $command"; do prints "$part"; done
+  "$clast" help "$command" | cmp -s - out || fail "help $command differs from $command --help"
+  for option in $("$clast" completion bash | sed -n "s/^    $command) options=\"\(.*\)\" ;;/\1/p"); do prints "$option"; done
+done
+ok "help of every command is whole: $(echo $commands)"
+
+expect 64 "$clast"
+says "which command"
+expect 64 "$clast" simualte
+says "did you mean \`clast simulate\`?"
+one_error
+silent out
+expect 64 "$clast" elephant
+says "no command \"elephant\""
+expect 64 "$clast" --frobnicate
+expect 64 "$clast" explain --stt a=b
+says "did you mean --set?"
+one_error
+expect 64 "$clast" explain a b
+says "does not know what to do with \"b\""
+expect 64 "$clast" scenes --json --csv
+says "exclude each other"
+expect 64 "$clast" query
+expect 64 "$clast" completion zsh
+expect 64 "$clast" simulate
+expect 64 "$clast" simulate disc-explosion --seed -1
+expect 64 "$clast" simulate disc-explosion --seed 1e3
+expect 64 "$clast" simulate disc-explosion --set threshold.strain
+says "PATH=VALUE"
+expect 64 "$clast" run x.yaml -j many
+expect 64 "$clast" run x.yaml -j
+
+expect 0 "$clast" --version
+prints "clast $(sed -nE 's/^project\(clast VERSION ([0-9.]+).*/\1/p' "$source/CMakeLists.txt")"
+for fact in commit compiler flags MPI SQLite HDF5 GSL libfyaml; do prints "$fact"; done
+expect 0 "$clast" --version --json
+python -c "import json; d = json.load(open('out')); assert d['version'] and d['commit'] and d['compiler'], d"
+ok "--version --json is JSON"
+expect 0 "$clast" version --json
+
+# bash accepts the completion, and it completes
+"$clast" completion bash >completion.bash
+bash -c '. ./completion.bash; COMP_WORDS=(clast stat); COMP_CWORD=1; _clast; echo "${COMPREPLY[*]}"' >out
+prints "status stats"
+bash -c '. ./completion.bash; COMP_WORDS=(clast run --dry); COMP_CWORD=2; _clast; echo "${COMPREPLY[*]}"' >out
+prints "--dry-run"
+ok "bash completion completes"
+
+# stdout: a reader that goes away is no error, a full disk is 74
+{ sleep 0.2; got=0; "$clast" explain 2>err || got=$?; echo "$got" >code; } | true
+same "$(cat code)" 0 "exit code when nobody reads stdout"
+silent err
+expect 74 bash -c "'$clast' explain >/dev/full"
+says "standard output"
+one_error
+expect 74 bash -c "'$clast' explain --json >/dev/full"
+expect 74 bash -c "'$clast' help >/dev/full"
+expect 0 bash -c "'$clast' help >&-"
+done_after 28
