@@ -93,24 +93,23 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
       static struct fixture_run f;
       int64_t point;
       if (store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, NULL) != STATUS_OK) _exit(2);
-      double there = before;
-      *added = (int64_t)there;
-      for (int64_t r = 0; r < RUNS; r++)
+      int64_t from = (int64_t)before / (M * K);
+      *added = (int64_t)before;
+      for (int64_t r = from; r < INT64_MAX; r++)
         for (int p = 0; p < M * K; p++) {
           struct scene scene = fixture_scene(&inputs, 6 + p / K, pow(10, 30 + p % K));
-          if (r == 0 && store_add_point(store, 0, &scene, 2, fixture_axes, &point, NULL) != STATUS_OK) _exit(3);
+          if (r == from && store_add_point(store, 0, &scene, 2, fixture_axes, &point, NULL) != STATUS_OK) _exit(3);
           fixture_fill(&f, &scene, p + 1, 0, r, FIXTURE_FRAGMENTS);
           bool new = !store_has_run(store, f.run.identity);
           if (store_add_run(store, &f.run, NULL) != STATUS_OK) _exit(4);
           *added += new;
         }
-      pause();
     }
-    double wait = 0.002 + 0.06 * fixture_random(11, (uint64_t)i), start = now();
-    if (i % 5 == 0) wait *= 0.1; /* while it is being made or opened */
-    while (i % 5 && *(volatile int64_t *)added < 0 && now() - start < 20)
-      usleep(200);
-    usleep((useconds_t)(1e6 * wait));
+    /* After so many more runs and a moment more; every fifth while the store is being made or opened. */
+    int64_t enough = (int64_t)(before + 600 * fixture_random(11, (uint64_t)i));
+    double start = now();
+    while (i % 5 && *(volatile int64_t *)added < enough && now() - start < 20) usleep(200);
+    usleep((useconds_t)(8000 * fixture_random(12, (uint64_t)i)));
     kill(pid, SIGKILL);
     int ending;
     waitpid(pid, &ending, 0);
@@ -131,9 +130,10 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
   }
   munmap(added, sizeof *added);
   assert_true(in_the_middle >= 3); /* the kills did fall into the writing */
-  OK(fill(path, RUNS, &error));
-  assert_near(whole(path), M * K * RUNS, 0);
-  OK(fill(fixture_path(reference, "unkilled"), RUNS, &error));
+  int64_t runs = (int64_t)before / (M * K) + 50;
+  OK(fill(path, runs, &error));
+  assert_near(whole(path), (double)(M * K * runs), 0);
+  OK(fill(fixture_path(reference, "unkilled"), runs, &error));
   char *a = dump(path), *b = dump(reference);
   assert_string_equal(a, b);
   free(a);
