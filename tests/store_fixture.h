@@ -217,7 +217,8 @@ static inline void fixture_fill(struct fixture_run *f, const struct scene *scene
 
 static const char *const fixture_axes[] = {"material.m", "material.k"};
 
-/* points_m x points_k points with `replicates` runs each, added in the order of points (or of replicates). */
+/* points_m x points_k points with `replicates` runs each: point after point, or the last replicate of every point
+ * first. */
 static inline status fixture_populate(struct store *store, int points_m, int points_k, int64_t replicates,
                                       bool by_replicate, struct error *error) {
   struct fixture_inputs inputs;
@@ -230,7 +231,8 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
     for (int p = 0; result == STATUS_OK && p < points_m * points_k; p++) {
       struct scene scene = fixture_scene(&inputs, 6 + p / points_k, pow(10, 30 + p % points_k));
       result = store_add_point(store, campaign, &scene, 2, fixture_axes, &point, error);
-      for (int64_t q = by_replicate ? r : 0; result == STATUS_OK && q < (by_replicate ? r + 1 : replicates); q++) {
+      int64_t from = by_replicate ? replicates - 1 - r : 0, to = by_replicate ? from + 1 : replicates;
+      for (int64_t q = from; result == STATUS_OK && q < to; q++) {
         fixture_fill(f, &scene, point, session, q, FIXTURE_FRAGMENTS);
         result = store_add_run(store, &f->run, error);
       }

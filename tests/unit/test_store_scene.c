@@ -1,0 +1,100 @@
+/* A store of real scenes: the scene kept with a point is enough to make every run's identity again. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "analysis/estimates.h"
+#include "tests/store_fixture.h"
+
+static struct error error;
+#define OK(call)                                                                                                       \
+  do {                                                                                                                 \
+    error.message[0] = 0;                                                                                              \
+    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+  } while (0)
+
+static void line(void *context, const char *text) {
+  size_t used = strlen(context);
+  snprintf((char *)context + used, 4000 - used, "%s\n", text);
+}
+
+/* One run of every built-in scene, its results zero but for two fragments. */
+static void populate(const char *path) {
+  struct store *store = NULL;
+  OK(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
+  for (size_t i = 0; i < scene_builtin_count(); i++) {
+    struct scene *scene = NULL;
+    int64_t point = 0, again = 0;
+    OK(scene_load(scene_builtin_name(i), NULL, &scene, &error));
+    OK(store_add_point(store, 0, scene, 0, NULL, &point, &error));
+    OK(store_add_point(store, 0, scene, 0, NULL, &again, &error));
+    assert_true(point == again);
+    struct fragment fragments[2] = {{.mass = 3, .count = 3}, {.mass = 1, .count = 1}};
+    struct outcome outcome = {.state = OUTCOME_COMPLETED};
+    void *result = calloc(1, scene->kind->results->size);
+    struct estimate estimates[ESTIMATES_COUNT];
+    outcome_fragments(&outcome, 2, fragments);
+    OK(estimates_make(2, fragments, estimates, &error));
+    struct store_run run = {.point_id = point,
+                            .seed = 7 + i,
+                            .kind = scene->kind,
+                            .outcome = &outcome,
+                            .result = result,
+                            .fragments = fragments,
+                            .fragment_count = 2,
+                            .estimates = estimates,
+                            .estimate_count = ESTIMATES_COUNT,
+                            .attempt = 1};
+    scene_identity(scene, run.seed, run.identity);
+    OK(store_add_run(store, &run, &error));
+    free(result);
+    scene_free(scene);
+  }
+  OK(store_close(store, &error));
+}
+
+static void identities_follow_from_the_scenes(void **state) {
+  (void)state;
+  char path[64], problems[4000] = "";
+  struct store *store = NULL;
+  assert_true(scene_builtin_count() > 0);
+  populate(fixture_path(path, "scene"));
+  OK(store_open_reader(path, &store, &error));
+  if (store_check(store, line, problems, &error) != STATUS_OK) fail_msg("%s", problems);
+  double inputs = 0;
+  OK(query_number(store, "SELECT min((SELECT count(*) FROM point_input i WHERE i.point_id = p.point_id)) FROM point p",
+                  0, NULL, &inputs, &error));
+  assert_true(inputs > 10);
+  store_close(store, NULL);
+}
+
+static void a_changed_seed_or_scene_is_found(void **state) {
+  (void)state;
+  static const char *const damages[] = {
+      "UPDATE run SET seed = seed + 1 WHERE run_id = 1", "UPDATE run SET identity = randomblob(16) WHERE run_id = 1",
+      "UPDATE point SET scene = '{\"engine\": \"dem\", \"nonsense\": 1}' WHERE point_id = 1"};
+  for (size_t i = 0; i < sizeof damages / sizeof damages[0]; i++) {
+    char path[64], problems[4000] = "";
+    struct store *store = NULL;
+    populate(fixture_path(path, "scene-changed"));
+    sqlite3 *db = NULL;
+    sqlite3_open(path, &db);
+    assert_int_equal(sqlite3_exec(db, damages[i], NULL, NULL, NULL), SQLITE_OK);
+    sqlite3_close(db);
+    OK(store_open_reader(path, &store, &error));
+    assert_int_equal(store_check(store, line, problems, &error), STATUS_CONTENT);
+    assert_non_null(strstr(problems, i < 2 ? "run 1: its identity" : "point 1: its scene cannot be read"));
+    store_close(store, NULL);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(identities_follow_from_the_scenes),
+                                     cmocka_unit_test(a_changed_seed_or_scene_is_found)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
