@@ -65,4 +65,11 @@ UNUSED static bool dem_case_full(void) {
   return full && strcmp(full, "1") == 0;
 }
 
+/* Number of seeds: CLAST_SEEDS, or the form's own. */
+UNUSED static size_t dem_case_seeds(size_t quick, size_t full) {
+  const char *asked = getenv("CLAST_SEEDS");
+  size_t n = asked ? strtoul(asked, NULL, 10) : 0;
+  return n > 0 && n <= 1000 ? n : dem_case_full() ? full : quick;
+}
+
 #endif

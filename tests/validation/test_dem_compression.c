@@ -1,5 +1,5 @@
 /* Compressive strength test (K99 section 3.2, figures 8 and 9): linear, then abrupt failure; cracks along the load;
- * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: ten, loaded at half the rate, too. */
+ * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: five, and again at half the rate. */
 #include "tests/dem_case.h"
 
 #include "engine/dem/run.h"
@@ -74,14 +74,14 @@ static void failure_is_abrupt_and_cracks_are_upright(void **state) {
   struct dem_inputs inputs = DEM_CASE("compression", NULL);
   if (!dem_case_full())
     inputs.loading.rate *= 2;
-  struct figures f = press_all(&inputs, dem_case_full() ? 10 : 1);
+  struct figures f = press_all(&inputs, dem_case_seeds(1, 5));
   assert_true(f.residue < 0.1); /* "linear until it fails": within a tenth of the strength up to 70 % of the strain */
   assert_true(f.drop < 3);      /* "abruptly": half of the stress is gone within a few wave passages */
   assert_true(f.upright > 0.5); /* isotropic cracks: 1/3 */
-  assert_true(f.triangle < 0.5); /* "practically intact": less than half as many breaks as elsewhere */
+  assert_true(f.triangle < 0.2); /* "practically intact": 0.02 to 0.1 here; sides free to slide give 0.48 */
   if (dem_case_full()) {
     inputs.loading.rate /= 2;
-    struct figures slow = press_all(&inputs, 10);
+    struct figures slow = press_all(&inputs, dem_case_seeds(1, 5));
     assert_true(fabs(slow.strength / f.strength - 1) < 0.1); /* quasi-static: the rate does not make the strength */
   }
 }
