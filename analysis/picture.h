@@ -60,4 +60,9 @@ struct picture_axis {
 status picture_map(const char *path, double width, const char *title, const char *quantity, const struct picture_axis *x,
                    const struct picture_axis *y, const double *value, struct error *error);
 
+/* The same from loose points (x, y, value) in any order: every distinct x is a column, every distinct y a line, what is not
+ * there stays blank. Of two values in one place the later counts. At most 10 000 tiles (STATUS_USAGE). */
+status picture_map_points(const char *path, double width, const char *title, const char *quantity, const char *x_label,
+                          const char *y_label, size_t count, const double (*points)[3], struct error *error);
+
 #endif

@@ -1,6 +1,7 @@
 /* A quantity over two axes of a sweep: one tile per point, a colour bar, the number in the tile where it fits. */
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "analysis/picture.h"
 #include "analysis/picture_canvas.h"
@@ -118,4 +119,53 @@ status picture_map(const char *path, double width, const char *title, const char
   picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, y->label);
   cairo_restore(cairo);
   return picture_canvas_close(&canvas, STATUS_OK, error);
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static size_t distinct(size_t count, const double (*points)[3], int coordinate, double *values) {
+  size_t n = 0;
+  for (size_t i = 0; i < count; i++) values[i] = points[i][coordinate];
+  qsort(values, count, sizeof *values, ascending);
+  for (size_t i = 0; i < count; i++)
+    if (i == 0 || values[i] != values[n - 1]) values[n++] = values[i];
+  return n;
+}
+
+static size_t place(size_t count, const double *values, double value) {
+  const double *found = bsearch(&value, values, count, sizeof *values, ascending);
+  return (size_t)(found - values); /* every value is there: the axis was made from them */
+}
+
+status picture_map_points(const char *path, double width, const char *title, const char *quantity, const char *x_label,
+                          const char *y_label, size_t count, const double (*points)[3], struct error *error) {
+  enum { MOST_TILES = 10000 };
+  double *xs = malloc((count + 1) * sizeof *xs), *ys = malloc((count + 1) * sizeof *ys), *value = NULL;
+  status code = xs && ys ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: no memory for the map", path);
+  for (size_t i = 0; i < count && !code; i++)
+    if (!isfinite(points[i][0]) || !isfinite(points[i][1]))
+      code = status_fail(error, STATUS_USAGE, "%s: a point of the map has no place on its axes", path);
+  if (code) goto cleanup;
+  struct picture_axis x = {x_label, distinct(count, points, 0, xs), xs, false}, y = {y_label, distinct(count, points, 1, ys), ys, false};
+  if (x.count * y.count > MOST_TILES) {
+    code = status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values", path, x.count, y.count);
+    goto cleanup;
+  }
+  value = malloc((x.count * y.count + 1) * sizeof *value);
+  if (!value) {
+    code = status_fail(error, STATUS_MEMORY, "%s: no memory for the map", path);
+    goto cleanup;
+  }
+  for (size_t i = 0; i < x.count * y.count; i++) value[i] = NAN;
+  for (size_t i = 0; i < count; i++)
+    value[place(y.count, ys, points[i][1]) * x.count + place(x.count, xs, points[i][0])] = points[i][2];
+  code = picture_map(path, width, title, quantity, &x, &y, value, error);
+cleanup:
+  free(xs);
+  free(ys);
+  free(value);
+  return code;
 }

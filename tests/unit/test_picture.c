@@ -178,6 +178,11 @@ static void maps_are_drawn(void **state) {
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
+  const double loose[5][3] = {{2, 0.1, 5}, {1, 0.1, 4}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
+  assert_int_equal(picture_map_points(at("loose.png"), 600, NULL, "M_1/M", "x", "y", 5, loose, NULL), STATUS_OK);
+  const double nowhere[1][3] = {{NAN, 1, 1}};
+  assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 1, nowhere, NULL), STATUS_USAGE);
+  assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 0, loose, NULL), STATUS_USAGE);
   for (int i = 0; i < 24; i++) value[i] = NAN;
   assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", &x, &y, value, NULL), STATUS_USAGE);
 }
@@ -220,7 +225,7 @@ int main(int count, char **arguments) {
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "nan.png"};
+    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "nan.png"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
     if (rmdir(folder) != 0) failed++; /* something else was left behind */
   }
