@@ -26,11 +26,13 @@ static bool bad_axis(const struct picture_axis *axis) {
 static void colour_bar(cairo_t *cairo, double x, double y, double width, double height, double font, double low, double high,
                        const char *quantity) {
   enum { STEPS = 128 };
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE); /* no seams between the steps */
   for (int i = 0; i < STEPS; i++) {
     ramp(cairo, (i + 0.5) / STEPS);
     cairo_rectangle(cairo, x, y + height * (STEPS - 1 - i) / STEPS, width, height / STEPS + 0.5);
     cairo_fill(cairo);
   }
+  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
   cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
   cairo_set_line_width(cairo, 0.07 * font);
   cairo_rectangle(cairo, x, y, width, height);
@@ -56,7 +58,7 @@ status picture_map(const char *path, double width, const char *title, const char
                    const struct picture_axis *y, const double *value, struct error *error) {
   if (bad_axis(x) || bad_axis(y)) return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", path);
   double font = width / 46, height = 0.72 * width, low = HUGE_VAL, high = -HUGE_VAL;
-  double left = 6 * font, top = (title ? 3 : 1) * font, wide = width - left - 8 * font, tall = height - top - 3.8 * font;
+  double top = (title ? 3 : 1) * font, tall = height - top - 3.8 * font;
   size_t columns = x->count, lines = y->count;
   for (size_t i = 0; i < columns * lines; i++) {
     if (!isfinite(value[i])) continue;
@@ -68,6 +70,13 @@ status picture_map(const char *path, double width, const char *title, const char
   status code = picture_canvas_open(&canvas, path, width, height, error);
   if (code) return code;
   cairo_t *cairo = canvas.cairo;
+  char text[64];
+  double labels = 0; /* the widest of the tick labels on the left */
+  for (size_t j = 0; j < lines; j++) {
+    snprintf(text, sizeof text, "%.4g", y->values[j]);
+    labels = fmax(labels, picture_canvas_text_width(cairo, 0.95 * font, false, text));
+  }
+  double left = labels + 3 * font, wide = width - left - 8 * font;
   double tile_x = wide / (double)columns, tile_y = tall / (double)lines, digits = fmin(0.85 * font, 0.24 * tile_x);
   for (size_t j = 0; j < lines; j++) {
     for (size_t i = 0; i < columns; i++) {
@@ -87,7 +96,6 @@ status picture_map(const char *path, double width, const char *title, const char
       cairo_rectangle(cairo, at_x, at_y, tile_x + 0.4, tile_y + 0.4);
       cairo_fill(cairo);
       if (digits < 0.4 * font || tile_y < 1.3 * digits) continue;
-      char text[32];
       snprintf(text, sizeof text, "%.3g", v);
       if (share > 0.55) cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
       else cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -98,7 +106,6 @@ status picture_map(const char *path, double width, const char *title, const char
   cairo_set_line_width(cairo, 0.08 * font);
   cairo_rectangle(cairo, left, top, wide, tall);
   cairo_stroke(cairo);
-  char text[64];
   size_t every_x = (size_t)fmax(ceil(3.4 * font / tile_x), 1), every_y = (size_t)fmax(ceil(1.3 * font / tile_y), 1);
   for (size_t i = 0; i < columns; i += every_x) {
     snprintf(text, sizeof text, "%.4g", x->values[i]);
