@@ -108,7 +108,7 @@ static const struct schema_column point_total[] = {
     {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
     {"runs", "INTEGER NOT NULL", "1", "runs that count: completed, or ended at their time, and not surplus"},
     {"censored", "INTEGER NOT NULL", "1",
-     "those of them that ended at their time: fragments may still have been breaking"},
+     "runs that count and ended at their time: fragments may still have been breaking"},
     {"failed", "INTEGER NOT NULL", "1", "runs that gave no usable result (NaN, time step, energy, invalid)"},
     {"surplus", "INTEGER NOT NULL", "1", "runs left out because a stopping rule decided without them"},
     {"fragments", "INTEGER NOT NULL", "1", "fragments of the runs that count"},

@@ -125,7 +125,7 @@ CREATE TABLE point_total ( -- Running totals of each point, kept in the transact
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results
   runs INTEGER NOT NULL, -- [1] runs that count: completed, or ended at their time, and not surplus
-  censored INTEGER NOT NULL, -- [1] those of them that ended at their time: fragments may still have been breaking
+  censored INTEGER NOT NULL, -- [1] runs that count and ended at their time: fragments may still have been breaking
   failed INTEGER NOT NULL, -- [1] runs that gave no usable result (NaN, time step, energy, invalid)
   surplus INTEGER NOT NULL, -- [1] runs left out because a stopping rule decided without them
   fragments INTEGER NOT NULL, -- [1] fragments of the runs that count
@@ -575,7 +575,7 @@ INSERT INTO column_doc VALUES ('point_spectrum', 'results_version', NULL, 'versi
 
 INSERT INTO column_doc VALUES ('point_spectrum', 'runs', '1', 'runs that count and have a fragment in the bin', 0);
 
-INSERT INTO column_doc VALUES ('point_total', 'censored', '1', 'those of them that ended at their time: fragments may still have been breaking', 0);
+INSERT INTO column_doc VALUES ('point_total', 'censored', '1', 'runs that count and ended at their time: fragments may still have been breaking', 0);
 
 INSERT INTO column_doc VALUES ('point_total', 'failed', '1', 'runs that gave no usable result (NaN, time step, energy, invalid)', 0);
 
@@ -591,7 +591,7 @@ INSERT INTO column_doc VALUES ('point_total', 'runs', '1', 'runs that count: com
 
 INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
 
-INSERT INTO column_doc VALUES ('points', 'censored', '1', 'those of them that ended at their time: fragments may still have been breaking', 0);
+INSERT INTO column_doc VALUES ('points', 'censored', '1', 'runs that count and ended at their time: fragments may still have been breaking', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass share of single grains.', 0);
 

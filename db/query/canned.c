@@ -9,15 +9,16 @@ static const struct query_canned queries[] = {
      "SELECT * FROM points", ""},
     {"point-stats",
      "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.",
-     "SELECT point_id, results_version, count(*) AS n, k + total(d) / count(*) AS mean,\n"
-     "  sqrt(max(0, (total(d * d) - total(d) * total(d) / count(*)) / (count(*) - 1))) AS sd,\n"
-     "  sqrt(max(0, (total(d * d) - total(d) * total(d) / count(*)) / (count(*) - 1) / count(*))) AS se\n"
-     "FROM (SELECT r.point_id, r.results_version, f.k, r.largest_fraction - f.k AS d\n"
-     "  FROM (SELECT point_id, results_version, (SELECT largest_fraction FROM run r WHERE r.point_id = t.point_id AND\n"
-     "      r.results_version = t.results_version AND r.counts = 1 ORDER BY replicate, seed LIMIT 1) AS k\n"
-     "    FROM point_total t) f\n"
-     "  CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND r.counts = 1)\n"
-     "GROUP BY point_id, results_version",
+     "SELECT point_id, results_version, n, k + s / n AS mean, sqrt(max(0, (q - s * s / n) / (n - 1))) AS sd,\n"
+     "  sqrt(max(0, (q - s * s / n) / (n - 1) / n)) AS se\n"
+     "FROM (SELECT t.point_id, t.results_version, count(*) AS n, k.largest_fraction AS k,\n"
+     "    total(r.largest_fraction - k.largest_fraction) AS s,\n"
+     "    total((r.largest_fraction - k.largest_fraction) * (r.largest_fraction - k.largest_fraction)) AS q\n"
+     "  FROM point_total t\n"
+     "  JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE f.point_id = t.point_id AND f.results_version =\n"
+     "    t.results_version AND f.counts = 1 ORDER BY f.replicate, f.seed LIMIT 1)\n"
+     "  CROSS JOIN run r ON r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 1\n"
+     "  GROUP BY t.point_id, t.results_version)",
      ""},
     {"runs", "Every run of a point, with its inputs and results (:point).",
      "SELECT * FROM runs WHERE point_id = :point ORDER BY replicate, seed", "point"},

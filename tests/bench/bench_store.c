@@ -2,6 +2,7 @@
  * value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
 #include <time.h>
 
+#include "analysis/estimates.h"
 #include "tests/store_fixture.h"
 
 enum { POINTS = 100, BINS = 30, REPEATS = 5, VARIANTS = 64 };
@@ -40,9 +41,10 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   struct fixture_inputs inputs;
   struct store *store = NULL;
   int64_t points[POINTS];
+  struct estimate rows[ESTIMATES_COUNT];
   unlink(path);
   double start = now();
-  need(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
   for (int p = 0; p < POINTS; p++) {
     struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
     need(store_add_point(store, 0, &scene, 2, fixture_axes, &points[p], &error));
@@ -51,12 +53,14 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   struct scene scene = fixture_scene(&inputs, 1, 1e30);
   for (int v = 0; v < VARIANTS; v++)
     fill(&variants[v], &scene, v);
+  need(estimates_make(FIXTURE_FRAGMENTS, variants[0].fragments, rows, &error));
   *cpu = processor();
   for (int64_t r = 0; r < runs; r++) {
     struct fixture_run *f = &variants[r % VARIANTS];
     f->run.point_id = points[r % POINTS];
     f->run.replicate = r / POINTS;
     f->run.seed = (uint64_t)f->run.replicate;
+    f->run.estimates = rows;
     f->run.estimate_count = estimates;
     f->outcome.largest_fraction = fixture_random(7, (uint64_t)r);
     for (int i = 0; i < 2; i++) {
@@ -101,8 +105,9 @@ int main(int argc, char **argv) {
   snprintf(path, sizeof path, "%s/bench-store.db", argc > 2 ? argv[2] : ".");
   snprintf(copy, sizeof copy, "%s.estimates", path);
   double cpu = 0, least = HUGE_VAL;
-  double seconds = load(copy, runs / 4, 2, &cpu);
-  printf("store_load_with_2_estimates_runs_per_s %.0f 1/s\n", (double)(runs / 4) / seconds);
+  double seconds = load(copy, runs / 4, ESTIMATES_COUNT, &cpu);
+  printf("store_load_with_estimates_runs_per_s %.0f 1/s\n", (double)(runs / 4) / seconds);
+  printf("store_load_with_estimates_cpu_us_per_run %.1f us\n", 1e6 * cpu / (double)(runs / 4));
   unlink(copy);
   seconds = HUGE_VAL;
   for (int i = 0; i < 2; i++) {
@@ -130,7 +135,7 @@ int main(int argc, char **argv) {
   ask(store, "store_runs_of_point_ms", "SELECT count(*) FROM runs WHERE point_id = 17", 1);
   store_close(store, NULL);
   start = now();
-  need(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
   printf("store_resume_open_ms %.2f ms\n", 1e3 * (now() - start));
   need(store_close(store, &error));
   unlink(path);
