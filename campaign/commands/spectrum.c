@@ -45,10 +45,25 @@ static status take_point(void *context, size_t count, const struct query_value *
   return STATUS_OK;
 }
 
+/* Whether a pure power law is enough, by likelihood ratios in the same windows. */
+static void print_rivals(const struct pooled_rivals *rivals) {
+  if (rivals->n == 0 || !isfinite(rivals->cutoff_beta))
+    return;
+  printf("  exponential cut-off: ");
+  if (isfinite(rivals->cutoff_mass))
+    printf("beta %.2f, cut-off mass %.3g kg, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
+           rivals->cutoff_ratio, rivals->cutoff_p);
+  else
+    printf("none\n");
+  printf("  lognormal: 2 dlnL %.1f, p %.2g (small p: better than the pure power law)\n", rivals->lognormal_ratio,
+         rivals->lognormal_p);
+}
+
 static status draw(struct store *store, const struct options *options, struct error *error) {
   struct chosen chosen = {.points = {options->point}, .count = options->point ? 1 : 0};
   struct query_sink sink = {&chosen, NULL, take_point};
   struct point_curve curves[POINTS_MAXIMUM] = {0};
+  struct pooled_rivals rivals[POINTS_MAXIMUM] = {0};
   struct picture_series series[POINTS_MAXIMUM];
   status code = STATUS_OK;
   if (!options->point)
@@ -59,6 +74,9 @@ static status draw(struct store *store, const struct options *options, struct er
     code = point_read(store, chosen.points[i], 0, &point, error);
     if (!code)
       code = point_curve_make(&point, NULL, &curves[i], error);
+    double lower = point_window(&point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
+    if (!code && options->plot && lower > 0)
+      code = pooled_rivals(&point.runs, lower, &rivals[i], error);
     point_release(&point);
     series[i] = point_curve_series(&curves[i]);
   }
@@ -69,6 +87,7 @@ static status draw(struct store *store, const struct options *options, struct er
   for (size_t i = 0; !code && options->plot && i < chosen.count; i++) {
     printf("%s%s\n", i ? "\n" : "", series[i].label);
     text_plot_spectrum(stdout, COLUMNS, !options->ascii, "kg", &series[i]);
+    print_rivals(&rivals[i]);
   }
   for (size_t i = 0; i < chosen.count; i++)
     point_curve_release(&curves[i]);
