@@ -199,6 +199,14 @@ static void set_skins(struct dem_system *s) {
     const double speed = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->radius[i] * fabs(c->spin[i]);
     c->skin[i] = fmin(largest_skin * s->mean_diameter, fmax(smallest_skin * s->mean_diameter, speed * reach));
   }
+  /* The check of the skins runs over whole lanes: those that pad the last one must not look as if they had moved, or the
+   * list would be made again at every step of any body whose number of grains is no multiple of the lanes. */
+  for (size_t i = s->count; i < s->padded; ++i) {
+    c->list_x[i] = c->x[i];
+    c->list_y[i] = c->y[i];
+    c->list_angle[i] = c->angle[i];
+    c->skin[i] = largest_skin * s->mean_diameter;
+  }
 }
 
 bool dem_neighbours_make(struct dem_system *s) {
