@@ -64,14 +64,14 @@ same_bits() { # same_bits STORE REFERENCE.bits WHAT
   ok "$3: same bits as the reference"
 }
 
-# A campaign that runs for a second or two, to be interrupted: 3 points, 6 seeds.
+# A campaign to be interrupted, of a few seconds on one core: 3 points, 12 seeds.
 slow() {
   cat >"$1.yaml" <<YAML
 name: slow
 scene: disc-explosion
 set: {body.diameter: 14 cm, charge.energy: 6 kJ/m, stop.end_time: 1.5 ms}
 vary: {threshold.strain: [2 %, 3 %, 5 %]}
-seeds: {per_point: 6}
+seeds: {per_point: 12}
 store: $1.db
 YAML
 }
