@@ -40,8 +40,13 @@ expect 64 "$clast" retry time.db --status elephant
 # over its memory
 slow memory; sed -i 's/14 cm/400 cm/; s/per_point: 12/per_point: 1/; s/\[2 %, 3 %, 5 %\]/[2 %]/' memory.yaml
 echo 'limits: {memory: 8 MiB, attempts: 1, failures: 0}' >>memory.yaml
-expect 1 "$clast" run memory.yaml -j 1
-same "$(number memory.db "select count(*) || ' ' || reason from attempt")" "1 memory_limit" "attempts"
+if [ "$sanitized" -eq 0 ]; then
+  expect 1 "$clast" run memory.yaml -j 1
+  same "$(number memory.db "select count(*) || ' ' || reason from attempt")" "1 memory_limit" "attempts"
+else
+  ok "(not tried: the sanitizers themselves need terabytes of address space)"
+  ok "(nor this)"
+fi
 
 # too many of the first runs fail: the campaign stops and says so
 tiny failures
