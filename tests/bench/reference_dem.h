@@ -1,0 +1,16 @@
+/* A plain C version of the same model: the yardstick that bench_dem's ratios are taken against. FROZEN: never
+ * optimised, never changed, so that a ratio means the same on every machine and in every year. */
+#ifndef CLAST_TESTS_BENCH_REFERENCE_DEM_H
+#define CLAST_TESTS_BENCH_REFERENCE_DEM_H
+
+#include "engine/dem/system.h"
+
+struct reference_dem;
+struct reference_dem *reference_dem_create(const struct dem_tessellation *tessellation,
+                                           const struct dem_parameters *parameters);
+void reference_dem_state(struct reference_dem *reference, const struct dem_system *system); /* start from its state */
+void reference_dem_step(struct reference_dem *reference);
+double reference_dem_energy(struct reference_dem *reference);
+void reference_dem_free(struct reference_dem *reference);
+
+#endif
