@@ -9,6 +9,7 @@
 
 static const double horizon_steps = 150.0; /* a skin holds about so many steps at the grain's present speed */
 static const double smallest_skin = 0.25;  /* in mean diameters */
+static const double neighbour_share = 0.5;
 static const double largest_skin = 3.0;
 static const uint32_t none = UINT32_MAX;
 
@@ -189,15 +190,23 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
   return true;
 }
 
+/* A grain's skin also allows for the speed of its neighbours: a wave or a blow gives it that next. */
 static void set_skins(struct dem_system *s) {
   struct dem_columns *c = &s->c;
+  double *const speed = c->list_x; /* until the positions go there */
   const double reach = horizon_steps * s->p.time_step;
+  for (size_t i = 0; i < s->count; ++i)
+    speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->radius[i] * fabs(c->spin[i]);
+  for (size_t i = 0; i < s->count; ++i) {
+    double fastest = speed[i];
+    for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; ++k)
+      fastest = fmax(fastest, neighbour_share * speed[s->partner[k]]);
+    c->skin[i] = fmin(largest_skin * s->mean_diameter, fmax(smallest_skin * s->mean_diameter, fastest * reach));
+  }
   for (size_t i = 0; i < s->count; ++i) {
     c->list_x[i] = c->x[i];
     c->list_y[i] = c->y[i];
     c->list_angle[i] = c->angle[i];
-    const double speed = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->radius[i] * fabs(c->spin[i]);
-    c->skin[i] = fmin(largest_skin * s->mean_diameter, fmax(smallest_skin * s->mean_diameter, speed * reach));
   }
   /* The check of the skins runs over whole lanes: those that pad the last one must not look as if they had moved, or the
    * list would be made again at every step of any body whose number of grains is no multiple of the lanes. */
