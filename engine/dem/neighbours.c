@@ -258,6 +258,10 @@ bool dem_neighbours_make(struct dem_system *s) {
   }
   for (size_t lane = s->now.near_count; lane % DEM_BLOCK; ++lane) {
     struct dem_near_block *block = &s->near[lane / DEM_BLOCK];
+    const size_t start = offsetof(struct dem_near_block, side_x);
+    double *const fields = (double *)((char *)block + start);
+    for (size_t f = 0; f < (sizeof *block - start) / sizeof(dem_lane); ++f)
+      fields[f * DEM_BLOCK + lane % DEM_BLOCK] = 0.0; /* so that equal states have equal bytes */
     block->owner[lane % DEM_BLOCK] = s->ghost;
     block->other[lane % DEM_BLOCK] = s->ghost + 1;
   }
