@@ -88,6 +88,10 @@ status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char 
   return code == SQLITE_OK ? STATUS_OK : sql_fail(db, code, doing, error);
 }
 
+status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error) {
+  return *out ? STATUS_OK : sql_prepare(db, sql, out, doing, error);
+}
+
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error) {
   int code = sqlite3_step(statement);
   status result = code == SQLITE_DONE || code == SQLITE_ROW

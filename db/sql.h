@@ -18,6 +18,8 @@ status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error
 /* The same, made by printf. Names and literals in it are ours: use %w and %Q of sqlite3_mprintf for others'. */
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...);
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error);
+/* The same unless *out is there already: for statements that live as long as the store. */
+status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
 /* Step a statement that gives no rows, and reset it. */
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
 /* First column of the first row as an integer; `otherwise` when there is no row or it is NULL. */

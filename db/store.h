@@ -2,8 +2,9 @@
  *
  * One writer under an OS lock that dies with it; many readers that never block it (WAL while running; a clean end
  * leaves journal_mode=DELETE). STRICT tables, foreign keys, application_id, user_version. The schema is in
- * schemas/results.sql, made from the field tables plus db/schema_tables.c; `point.scene` (resolved JSON) and `point_input`
- * are the truth, the views runs, points, spectra, estimates are regenerated when the set of varied paths grows. */
+ * schemas/results.sql, made from the field tables plus db/schema_tables.c; `point.scene` (resolved JSON) and
+ * `point_input` are the truth, the views runs, points, spectra, estimates are regenerated when the set of varied paths
+ * grows. */
 #ifndef CLAST_DB_STORE_H
 #define CLAST_DB_STORE_H
 

@@ -2,6 +2,8 @@
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
+#include <math.h>
+
 #include "db/identities.h"
 #include "db/sql.h"
 #include "db/store.h"
@@ -50,6 +52,17 @@ status store_begin(struct store *store, struct error *error);
 /* After `rows` more rows: commits when the batch is large or old enough. On `result` not OK: takes the whole batch
  * back, and the store refuses from then on. Returns `result`, or what the commit gave. */
 status store_end(struct store *store, status result, int rows, struct error *error);
+
+/* Is the run part of the statistics? The same as the CHECK of run.counts. */
+static inline bool store_run_counts(const struct store_run *run) {
+  const struct outcome *o = run->outcome;
+  return !run->surplus && (o->state == OUTCOME_COMPLETED || o->state == OUTCOME_END_TIME) &&
+         !isnan(o->largest_fraction) && !isnan(o->second_fraction) && !isnan(o->dust_fraction) &&
+         !isnan(o->mean_fragment_mass);
+}
+
+/* Masses, motion, spectrum and running sums of a run whose row is there. Within the open batch. */
+status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
 /* Insert the estimates of a run that has none yet, within the open batch. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const void *rows,
