@@ -10,24 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/dem/inputs.h"
-
-/* Documents are read with the table alone, so that this needs no engine to run. */
-#define engine_find corpus_engine
-#include "engine/scene.c" /* with engine_find replaced */
-#undef engine_find
-
 #include "campaign/campaign.h"
 #include "campaign/campaign_schema.h"
-
-static const struct engine_kind dem = {
-    .name = "dem", .results_version = 1, .inputs = &dem_inputs, .results = &outcome_table};
-
-const struct engine_kind *corpus_engine(const char *name, struct error *error) {
-  if (strcmp(name, "dem") == 0) return &dem;
-  status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: dem", name);
-  return NULL;
-}
+#include "engine/dem/dem.h"
+#include "engine/scene.h"
 
 static bool judge(bool scene_kind, const char *path, bool show) {
   struct error error = {.status = STATUS_OK};
@@ -122,7 +108,7 @@ static void generate(void) {
   static const char *const texts[] = {"3",       "3.5",  "-3",       "0",   "true",   "False", "words", "off",
                                       "null",    "~",    "",         "[1]", "{a: 1}", "yes",   "no",    "1e3",
                                       "5.0",     "1e30", "-1e30",    "007", "+1",     ".5",    "5.",    "''",
-                                      "'3 x,y'", "3 _",  "\"true\"", "3 4",     "1,5",   "- 3"};
+                                      "'3 x,y'", "3 _",  "\"true\"", "3 4", "1,5",    "- 3"};
   for (size_t i = 0; i < dem_inputs.count; i++) {
     const struct field *row = &dem_inputs.rows[i];
     for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
@@ -153,7 +139,7 @@ int main(int count, char **arguments) {
   bool scene_kind = count > 2 && strcmp(arguments[2], "scene") == 0;
   if (count > 2 && strcmp(arguments[1], "schema") == 0) {
     if (scene_kind)
-      scene_schema(&dem, stdout);
+      scene_schema(&dem_engine, stdout);
     else
       campaign_schema_write(stdout);
     return 0;
@@ -167,7 +153,19 @@ int main(int count, char **arguments) {
     generate();
     return 0;
   }
-  int wrong = 0;
+  int wrong = scene_builtin_count() == 0;
+  for (size_t i = 0; i < scene_builtin_count(); i++) { /* what ships can be run as it is */
+    struct scene *scene = NULL;
+    struct error error;
+    if (scene_load(scene_builtin_name(i), NULL, &scene, &error) || scene_check(scene, &error)) {
+      fprintf(stderr, "built-in scene %s: %s\n", scene_builtin_name(i), error.message);
+      wrong++;
+    } else if (strcmp(scene->name, scene_builtin_name(i)) != 0) {
+      fprintf(stderr, "built-in scene %s calls itself %s\n", scene_builtin_name(i), scene->name);
+      wrong++;
+    }
+    scene_free(scene);
+  }
   for (int kind = 0; kind < 2; kind++) {
     int good = 0, bad = 0;
     wrong += judge_folder(kind == 0, "good", true, &good);
