@@ -141,7 +141,7 @@ void field_defaults(const struct field_table *table, void *object) {
     const struct field *row = &table->rows[i];
     struct field_value value = {.kind = row->kind, .number = row->number};
     if (row->flags & FIELD_REQUIRED)
-      value.number = row->kind == FIELD_REAL ? NAN : 0;
+      value.number = row->kind == FIELD_REAL ? (double)NAN : 0;
     else if (row->kind == FIELD_INTEGER)
       value.integer = (int64_t)row->number;
     else if (row->kind == FIELD_TEXT)

@@ -20,7 +20,7 @@ status field_parse(const struct field *row, const char *text, struct field_value
   switch (row->kind) {
   case FIELD_REAL:
     if (row->flags & FIELD_MAY_BE_OFF && strcmp(text, "off") == 0) {
-      came.number = NAN;
+      came.number = (double)NAN;
       break;
     }
     if (strcmp(text, "off") == 0) return status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);

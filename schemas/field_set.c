@@ -71,8 +71,9 @@ status field_set_value(const struct field *row, const struct field_value *value,
   switch (row->kind) {
   case FIELD_REAL:
     if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER) break;
-    out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer;       /* -0 becomes 0 */
-    if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF) return out->number = NAN, STATUS_OK; /* one bit pattern */
+    out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer; /* -0 becomes 0 */
+    if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF)
+      return out->number = (double)NAN, STATUS_OK; /* one bit pattern */
     return check_range(row, out->number, out, error);
   case FIELD_INTEGER:
     if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER) break;

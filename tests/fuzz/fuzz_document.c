@@ -33,7 +33,7 @@ static const struct field rows[] = {
      AT(limit),
      .minimum = -1,
      .maximum = 1,
-     .number = NAN,
+     .number = (double)NAN,
      .flags = FIELD_MAY_BE_OFF},
     {.path = "a.b.count",
      .kind = FIELD_INTEGER,
