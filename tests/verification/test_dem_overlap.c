@@ -322,9 +322,73 @@ static void windows_of_a_square_lattice(void **state) {
   fixture_free(t);
 }
 
+/* Pairs of every shape: a random polygon cut in two along a diagonal, then pushed and turned anyhow. */
+static void windows_of_odd_shapes(void **state) {
+  (void)state;
+  const struct dem_parameters base = fixture_parameters();
+  uint64_t seed = 11;
+  int windows = 0, generals = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    struct dem_ring ring;
+    do
+      random_ring(&seed, &ring, 0.3 + 0.3 * (1.0 + fixture_random(&seed)), 0.0, 0.0, 3.0 * fixture_random(&seed));
+    while (ring.count < 6);
+    const size_t cut_at = 2 + (size_t)(trial % (int)(ring.count - 3));  /* the diagonal from corner 0 */
+    struct dem_tessellation *t = fixture_squares(4, 1, 1.0, 0.0, true); /* room for 16 corners; two cells are used */
+    t->cell_count = 2;
+    t->pair_count = 1;
+    t->first_vertex[1] = (uint32_t)cut_at + 1;
+    t->first_vertex[2] = (uint32_t)ring.count + 2;
+    for (size_t v = 0; v <= cut_at; ++v)
+      t->vertex[v] = (struct dem_point){ring.x[v], ring.y[v]};
+    for (size_t v = cut_at; v <= ring.count; ++v)
+      t->vertex[v + 1] = (struct dem_point){ring.x[v], ring.y[v]};
+    for (int k = 0; k < 2; ++k) {
+      const uint32_t first = t->first_vertex[k], n = t->first_vertex[k + 1] - first;
+      double area = 0.0, x = 0.0, y = 0.0;
+      for (uint32_t v = 0; v < n; ++v) {
+        const struct dem_point a = t->vertex[first + v], b = t->vertex[first + (v + 1) % n];
+        area += 0.5 * (a.x * b.y - a.y * b.x);
+        x += a.x / n, y += a.y / n;
+      }
+      t->area[k] = area;
+      t->polar_moment[k] = area * area;
+      t->centroid[k] = (struct dem_point){x, y};
+    }
+    t->side[0] = hypot(ring.x[cut_at] - ring.x[0], ring.y[cut_at] - ring.y[0]);
+    struct dem_parameters p = base;
+    p.beam_modulus = 0.0;
+    struct dem_system *window = fixture_create(t, &p), *general = fixture_create(t, &p);
+    general->windowed[0] = 0;
+    general->bond[0].stiffness[0] = 0.0;
+    const double size = pow(10.0, -1.0 + fixture_random(&seed));
+    const double dx = size * fixture_random(&seed), dy = size * fixture_random(&seed),
+                 angle = size * fixture_random(&seed);
+    for (int which = 0; which < 2; ++which)
+      fixture_place(which ? general : window, 1, t->centroid[1].x + dx, t->centroid[1].y + dy, angle);
+    fixture_evaluate(window);
+    fixture_evaluate(general);
+    const double force = hypot(general->c.fx[0], general->c.fy[0]);
+    if (force > 0.0) ++*(window->general_count ? &generals : &windows);
+    /* areas are right to 1e-12, see above, and chords are of order one */
+    fixture_near(window->c.fx[0], general->c.fx[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force x");
+    fixture_near(window->c.fy[0], general->c.fy[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force y");
+    fixture_near(window->c.torque[1], general->c.torque[1], 1e-9 * force + 1e-11 * general->pair_stiffness[0],
+                 "torque");
+    dem_system_free(window);
+    dem_system_free(general);
+    fixture_free(t);
+  }
+  print_message("          %d contacts by windows, %d by the general overlap\n", windows, generals);
+  assert_true(windows > 1000 && generals > 1000);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(overlap_baseline), cmocka_unit_test(overlap_best_class),
-                                     cmocka_unit_test(chord_is_the_gradient), cmocka_unit_test(windows_are_exact),
-                                     cmocka_unit_test(windows_of_a_square_lattice)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(overlap_baseline),
+                                     cmocka_unit_test(overlap_best_class),
+                                     cmocka_unit_test(chord_is_the_gradient),
+                                     cmocka_unit_test(windows_are_exact),
+                                     cmocka_unit_test(windows_of_a_square_lattice),
+                                     cmocka_unit_test(windows_of_odd_shapes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
