@@ -171,9 +171,6 @@ static void window(struct dem_system *s, struct dem_bond_block *block, size_t la
   block->before_y[k][lane] = y[0] - my;
   block->after_x[k][lane] = x[3] - mx;
   block->after_y[k][lane] = y[3] - my;
-  const double before = 2.0 * (hx * (y[0] - my) - hy * (x[0] - mx)),
-               after = 2.0 * (hx * (y[3] - my) - hy * (x[3] - mx));
-  block->depth[k][lane] = fmin(before, after);
 }
 
 /* Thresholds of a beam: Weibull with the printed threshold as its scale, so that modulus -> infinity gives K99. */

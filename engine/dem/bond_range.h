@@ -9,10 +9,10 @@
  *
  * The contact's window: of either grain the common side, the side before it and the side after it (vertices 0..3). It
  * gives the overlap of the whole polygons exactly when, for either grain, its vertices 0 and 3 are outside the other's
- * common side while 1 or 2 is inside (so that all its other vertices are outside too: distance to a line has one
- * minimum round a convex outline), and when 1 and 2 are less deep than the other's own vertices 0 and 3 (to that
- * depth the other grain is bounded by its window's sides alone). If neither holds and no common side separates the
- * grains, the lane goes to the general overlap. */
+ * common side while 1 or 2 is inside: then all its other vertices are outside too (distance to a line has one minimum
+ * round a convex outline), so none of its other sides reaches the half-plane that the other grain lies in. If this does
+ * not hold and no common side separates the grains, the lane goes to the general overlap.
+ */
 #ifndef CLAST_ENGINE_DEM_BOND_RANGE_H
 #define CLAST_ENGINE_DEM_BOND_RANGE_H
 
@@ -91,7 +91,7 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
     const lanes_d nearest = lanes_min(out[k][1][1], out[k][1][2]);
     const lanes_d end = lanes_min(out[k][1][0], out[k][1][3]);
     separated |= (nearest >= 0.0) & (nearest <= end);
-    exact &= (nearest < 0.0) & (end >= 0.0) & (nearest > -lanes_load(block->depth[k] + at));
+    exact &= (nearest < 0.0) & (end >= 0.0);
   }
   *touching = exact & ~separated;
   const lanes_i general = ~separated & ~exact;

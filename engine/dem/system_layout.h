@@ -31,7 +31,6 @@ struct dem_bond_block {
   dem_lane half_x[2], half_y[2];     /* half of the common side */
   dem_lane before_x[2], before_y[2]; /* the vertex before it, from its middle */
   dem_lane after_x[2], after_y[2];   /* the vertex after it, from its middle */
-  dem_lane depth[2];                 /* how deep the window is exact, times the side's length */
 };
 
 /* Eight near pairs: while the three vertices of `other` are outside the side of `owner` and the middle one is the
