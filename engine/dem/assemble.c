@@ -11,6 +11,11 @@
 /* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions, where a
  * window is seldom exact: their contact goes by the near list. */
 static const double shortest_window = 0.05;
+double dem_assemble_reference_side(double side, double diameter_i, double diameter_j) {
+  const double usual = 0.27 * (diameter_i + diameter_j);
+  return side > 0.0 ? fmax(side, 0.5 * usual) : usual;
+}
+
 /* Grains are this much smaller than their cells, so that rounding gives no overlap at rest: a gap of 1e-11 cells. */
 static const double shrink = 1e-11;
 
@@ -222,7 +227,9 @@ static status bonds(struct dem_system *s, const struct dem_tessellation *t, stru
     }
     const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
     const double effective = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);  /* K99 eq 6 */
-    s->pair_stiffness[k] = p->grain_modulus * per_length / (p->contact == DEM_CONTACT_PRINTED ? 1.0 : side);
+    s->pair_stiffness[k] =
+        p->grain_modulus * per_length /
+        (p->contact == DEM_CONTACT_PRINTED ? 1.0 : dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]));
     s->pair_normal[k] = effective * p->normal_damping;
     s->pair_tangential[k] = effective * p->tangential_damping;
     if (p->contact == DEM_CONTACT_OFF) continue;

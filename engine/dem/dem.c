@@ -65,7 +65,7 @@ const struct engine_kind dem_engine = {
     .doc = "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
            "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
            "names at each input.",
-    .results_version = 1,
+    .results_version = 2, /* 2: the reference side of a contact has a floor */
     .inputs = &dem_inputs,
     .results = &dem_results,
     .check = check,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/dem/assemble.h"
 #include "engine/dem/breaking.h"
 #include "engine/dem/kernels.h"
 
@@ -177,9 +178,8 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
   struct dem_near_pair *near = &s->near_pair[s->now.near_count];
   *near = (struct dem_near_pair){.first = j, .second = i, .pair = pair};
   if (pair == DEM_NO_PAIR) {
-    /* Physics notes: S_ref of pairs that were never bonded is of the order of 0.27 (d_i + d_j). */
     const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
-    const double reference_side = 0.27 * (s->diameter[i] + s->diameter[j]);
+    const double reference_side = dem_assemble_reference_side(0.0, s->diameter[i], s->diameter[j]);
     const double effective = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);
     near->stiffness = s->p.grain_modulus * per_length / (s->p.contact == DEM_CONTACT_PRINTED ? 1.0 : reference_side);
     near->normal_damping = effective * s->p.normal_damping;
