@@ -36,7 +36,7 @@ static const struct field rows_of_table[] = {
          "there are too few fragments.",
          "Kun & Herrmann (1999) section 3.3"),
     REAL("standard_error", "1", fit.standard_error, 0,
-         "Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).",
+         "Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.",
          NULL),
     REAL("cutoff_mass", "kg", fit.cutoff_mass, 0,
          "m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.", NULL),

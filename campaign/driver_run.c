@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include "analysis/estimates.h"
+#include "campaign/pooling.h"
 
 static status verdict(const struct driver_summary *summary, status code, struct error *error) {
   if (code != STATUS_OK || summary->runs_failed + (int64_t)summary->points_invalid == 0)
@@ -56,6 +57,8 @@ status driver_run(const struct campaign *campaign, struct farm *farm, const stru
     status ended = driver_end(driver, code == STATUS_OK ? error : NULL);
     code = code != STATUS_OK ? code : ended;
     driver_summarise(driver, summary);
+    if (code == STATUS_OK) /* after a stop there is no time to lose: the next invocation pools */
+      code = pooling_store(store, summary->campaign_id, error);
     code = verdict(summary, code, error);
     status session = store_end_session(store, summary->session_id, outcome_of(code), code == STATUS_OK ? error : NULL);
     code = code != STATUS_OK ? code : session;

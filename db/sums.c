@@ -66,6 +66,9 @@ static status prepare(struct sums *sums, sqlite3 *db, struct error *error) {
                          "count_squared = count_squared + "
                          "?6, mass = mass + ?7",
                          &sums->bin, "keeping running sums", error);
+  if (result == STATUS_OK) /* what was pooled before these runs came is stale */
+    result = sql_prepare(db, "DELETE FROM point_estimate WHERE point_id = ?1 AND results_version = ?2", &sums->stale,
+                         "keeping pooled estimates", error);
   return result;
 }
 
@@ -97,8 +100,15 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
   for (size_t i = 0, used = 0; i < sums->capacity; i++) /* the table is not searched again before it is emptied */
     if (sums->slots[i].used) sums->slots[used++] = sums->slots[i];
   qsort(sums->slots, sums->count, sizeof *sums->slots, by_key);
-  for (size_t i = 0; result == STATUS_OK && i < sums->count; i++)
-    result = sql_run(bind(sums, &sums->slots[i]), "keeping running sums", error);
+  for (size_t i = 0; result == STATUS_OK && i < sums->count; i++) {
+    const struct sums_row *row = &sums->slots[i];
+    result = sql_run(bind(sums, row), "keeping running sums", error);
+    if (result == STATUS_OK && row->bin == SPECTRUM_NO_BIN) {
+      sqlite3_bind_int64(sums->stale, 1, row->point_id);
+      sqlite3_bind_int(sums->stale, 2, row->results_version);
+      result = sql_run(sums->stale, "keeping pooled estimates", error);
+    }
+  }
   sums_forget(sums);
   return result;
 }
@@ -111,6 +121,7 @@ void sums_forget(struct sums *sums) {
 void sums_clear(struct sums *sums) {
   sqlite3_finalize(sums->total);
   sqlite3_finalize(sums->bin);
+  sqlite3_finalize(sums->stale);
   free(sums->slots);
   *sums = (struct sums){0};
 }
@@ -135,11 +146,11 @@ status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error) {
   }
   return sql_executef(
       db, "making running sums", error,
-      "DELETE FROM point_total%s; DELETE FROM point_spectrum%s;"
+      "DELETE FROM point_total%s; DELETE FROM point_spectrum%s; DELETE FROM point_estimate%s;"
       "INSERT INTO point_total (point_id, results_version, runs, censored, failed, surplus, fragments, "
       "mass) " TOTALS ";"
       "INSERT INTO point_spectrum (point_id, results_version, bin, runs, count, count_squared, mass) " BINS,
-      here, here, total, bins);
+      here, here, here, total, bins);
 }
 
 /* Integers must agree; a sum of masses in another order agrees to n units in the last place, with n runs below 1e6. */

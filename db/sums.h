@@ -1,4 +1,4 @@
-/* Running sums of points: point_total and point_spectrum. A batch gathers them in memory and writes each changed row
+/* Running sums of points: point_total and point_spectrum; a point whose sums change loses its pooled estimates. A batch gathers them in memory and writes each changed row
  * once, in the transaction that adds the runs; rebuilding from the rows gives the same. */
 #ifndef CLAST_DB_SUMS_H
 #define CLAST_DB_SUMS_H
@@ -19,6 +19,7 @@ struct sums { /* all zero = empty */
   struct sums_row *slots;
   size_t capacity, count;
   sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
+  sqlite3_stmt *stale;       /* deletes the pooled estimates of a point that grew */
 };
 
 /* The row to add to, zeros when new. NULL when memory ran out. Valid until the next call. */

@@ -154,7 +154,7 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).
+  standard_error REAL, -- [1] Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
   log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
@@ -172,7 +172,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).
+  standard_error REAL, -- [1] Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
   log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
@@ -455,7 +455,7 @@ INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the es
 
 INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 1);
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
 
@@ -495,7 +495,7 @@ INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene th
 
 INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 0);
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
@@ -549,7 +549,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Of beta, fragments taken as independent; for method ks with its lower end taken as given (too small by a third).', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
 
