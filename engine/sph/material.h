@@ -1,0 +1,30 @@
+/* What a solid is made of: the numbers that equation of state, strength and fracture need. Which of them a scene really
+ * needs is decided by the modules that are on; a value that is not given is NaN, and asking for it is an error there.
+ */
+#ifndef CLAST_ENGINE_SPH_MATERIAL_H
+#define CLAST_ENGINE_SPH_MATERIAL_H
+
+/* Tillotson 1962; Melosh 1989, appendix II. */
+struct sph_tillotson {
+  double A, B;           /* Pa: bulk modulus and its non-linear companion */
+  double a, b;           /* 1 */
+  double alpha, beta;    /* 1: decay in hot expansion (not the exponent of a spectrum) */
+  double E0, E_iv, E_cv; /* J/kg: reference, incipient and complete vaporisation */
+};
+
+struct sph_weibull {
+  double m; /* 1 */
+  double k; /* m^-3 */
+};
+
+struct sph_material {
+  double density; /* kg/m^3 at rest */
+  struct sph_tillotson tillotson;
+  double shear_modulus; /* Pa */
+  double yield_stress;  /* Pa at u = 0; falls to zero at melt_energy */
+  double melt_energy;   /* J/kg, NaN: yield does not depend on u */
+  double tension_limit; /* Pa: lowest pressure is -tension_limit where no flaws limit tension; NaN = off */
+  struct sph_weibull weibull;
+};
+
+#endif

@@ -1,0 +1,100 @@
+/* Damage from explicit flaws against Grady & Kipp 1980, without any hydrodynamics: every particle at strain rate x t.
+ *
+ * Basalt of Benz & Asphaug 1994 (m 8.5, k 5e34 m^-3, E 53.06 GPa, c_g 1837 m/s), 50 000 particles in 1.257e-5 m^3, peak of the mean
+ * stress. The numbers were computed once by an independent program (means over 24 seeds); one seed scatters by the range given
+ * there, well under the 1 % allowed here (4 % for `count` at 360/s, whose range is +-2 %). The isolated law is met only where
+ * 0.7 < c_g t_f / R_s < 5, and the particle form differs from it by construction: that is why the table, not the law, is the target. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "engine/sph/flaws.h"
+#include "engine/sph/fracture.h"
+
+enum { PARTICLES = 50000, STEPS = 400 };
+static const double m = 8.5, k = 5e34, volume = 1.257e-5, young = 53.06e9, crack_speed = 1837;
+
+static double fracture_time(double rate) { /* t_f = alpha_GK^(-1/(m+3)) rate^(-m/(m+3)) */
+  double alpha = 8 * acos(-1.0) * pow(crack_speed, 3) * k / ((m + 1) * (m + 2) * (m + 3));
+  return pow(alpha, -1 / (m + 3)) * pow(rate, -m / (m + 3));
+}
+
+static double peak_stress(const struct sph_flaws *flaws, double rate, int growth, int cap) {
+  double radius = cbrt(3 * volume / PARTICLES / (4 * acos(-1.0)));
+  double dt = 3 * fracture_time(rate) / STEPS, peak = 0;
+  double *state = calloc(PARTICLES, sizeof *state);
+  for (int step = 0; step < STEPS; step++) {
+    double sum = 0, log_strain = log(rate * (step + 0.5) * dt);
+    for (size_t i = 0; i < PARTICLES; i++) {
+      size_t total = flaws->first[i + 1] - flaws->first[i];
+      state[i] = sph_fracture_grow(state[i], sph_flaws_active(flaws, i, log_strain), total, growth, cap, crack_speed / radius, dt);
+      sum += state[i] * state[i] * state[i];
+    }
+    double stress = young * rate * (step + 1) * dt * (1 - sum / PARTICLES);
+    if (stress > peak)
+      peak = stress;
+  }
+  free(state);
+  return peak / 1e6;
+}
+
+static void particle_table(void **state) {
+  (void)state;
+  static const struct {
+    double rate;
+    int growth, cap;
+    double peak, tolerance;
+  } rows[] = {
+      {360, SPH_GROWTH_CUBE_ROOT, SPH_CAP_NONE, 43.55, 0.01},  {360, SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, 47.14, 0.01},
+      {360, SPH_GROWTH_CUBE_ROOT, SPH_CAP_COUNT, 54.7, 0.04},  {360, SPH_GROWTH_LINEAR, SPH_CAP_BA95, 47.09, 0.01},
+      {3600, SPH_GROWTH_CUBE_ROOT, SPH_CAP_NONE, 61.20, 0.01}, {3600, SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, 61.36, 0.01},
+      {3600, SPH_GROWTH_CUBE_ROOT, SPH_CAP_COUNT, 62.4, 0.01}, {3600, SPH_GROWTH_LINEAR, SPH_CAP_BA95, 57.81, 0.01},
+      {1e4, SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, 77.39, 0.01},  {1e4, SPH_GROWTH_LINEAR, SPH_CAP_BA95, 66.47, 0.01},
+  };
+  struct sph_flaw_law law = {.weibull = {m, k}, .volume = volume, .draw = SPH_FLAWS_RANKED, .seed = 1};
+  struct sph_flaws *flaws = NULL;
+  assert_int_equal(sph_flaws_make(&law, PARTICLES, NULL, NULL, 0, &flaws, NULL), STATUS_OK);
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+    double peak = peak_stress(flaws, rows[r].rate, rows[r].growth, rows[r].cap);
+    print_message("rate %6g /s growth %d cap %d: peak %.2f MPa, table %.2f\n", rows[r].rate, rows[r].growth, rows[r].cap, peak,
+                  rows[r].peak);
+    assert_true(fabs(peak / rows[r].peak - 1) < rows[r].tolerance);
+  }
+  sph_flaws_free(flaws);
+}
+
+static void pieces(void **state) {
+  (void)state;
+  /* one flaw: D^(1/3) = c_g t / R_s exactly, whatever the steps, until the cap */
+  double d = 0;
+  for (int s = 0; s < 7; s++)
+    d = sph_fracture_grow(d, 1, 1, SPH_GROWTH_CUBE_ROOT, SPH_CAP_NONE, 0.1, 1);
+  assert_true(fabs(d - 0.7) < 1e-15);
+  assert_true(sph_fracture_grow(0.7, 8, 8, SPH_GROWTH_CUBE_ROOT, SPH_CAP_NONE, 0.1, 1) - 0.9 < 1e-15); /* 8^(1/3) = 2 */
+  assert_true(sph_fracture_grow(0.95, 8, 8, SPH_GROWTH_LINEAR, SPH_CAP_BA95, 1, 1) == 1);
+  /* caps: 1 of 8 flaws: D <= 1/2 (printed), 1/8 (count); and D never heals under a lower cap */
+  assert_true(fabs(pow(sph_fracture_grow(0, 1, 8, 0, SPH_CAP_BA95, 9, 9), 3) - 0.5) < 1e-15);
+  assert_true(fabs(pow(sph_fracture_grow(0, 1, 8, 0, SPH_CAP_COUNT, 9, 9), 3) - 0.125) < 1e-15);
+  assert_true(sph_fracture_grow(0.9, 1, 8, 0, SPH_CAP_COUNT, 9, 9) == 0.9);
+  assert_true(sph_fracture_grow(0.3, 0, 8, 0, SPH_CAP_NONE, 9, 9) == 0.3);
+  /* principal values: diagonal, pure shear, and a rotated uniaxial tension */
+  assert_true(sph_fracture_largest_tension(3, 0, 0, -5, 0, 1) == 3 ||
+              fabs(sph_fracture_largest_tension(3, 0, 0, -5, 0, 1) - 3) < 1e-14);
+  assert_true(fabs(sph_fracture_largest_tension(0, 2, 0, 0, 0, 0) - 2) < 1e-14);
+  assert_true(sph_fracture_largest_tension(-4, 0, 0, -4, 0, -4) == -4);
+  double n[3] = {2.0 / 7, 3.0 / 7, 6.0 / 7};
+  assert_true(fabs(sph_fracture_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) - 1) <
+              1e-14);
+  /* local strain: E of the undamaged solid from the damaged stress; none in compression or at D = 1 */
+  assert_true(fabs(sph_fracture_strain(50e6, 0.5, 50e9) - 2e-3) < 1e-18);
+  assert_true(sph_fracture_strain(-1, 0, 1) == 0 && sph_fracture_strain(1, 1, 1) == 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(pieces), cmocka_unit_test(particle_table)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
