@@ -1,0 +1,259 @@
+/* Forces and torques of whole small bodies against differences of an energy written again from the paper, in long
+ * double, by other means: beams from their chords by atan2, overlaps by cutting polygons. Every force term of
+ * engine/dem between the two at once: bonded, broken, never bonded and removed grains, held ones, both laws, all CPU
+ * classes, turned as a whole, from slight to deep overlaps. */
+#include "tests/verification/dem_fixture.h"
+
+#include "engine/dem/assemble.h"
+
+enum { GRAINS = 9, PAIRS = GRAINS * (GRAINS - 1) / 2, MOST = 40 };
+
+struct place {
+  long double x, y, angle;
+};
+
+struct polygon {
+  int count;
+  long double x[MOST], y[MOST];
+};
+
+struct model {
+  const struct dem_tessellation *t;
+  struct dem_parameters p;
+  bool beam[PAIRS], present[GRAINS]; /* beam: by pair of the tessellation */
+};
+
+static struct polygon outline(const struct dem_tessellation *t, uint32_t grain, const struct place *at) {
+  struct polygon p = {.count = (int)(t->first_vertex[grain + 1] - t->first_vertex[grain])};
+  const long double c = cosl(at->angle), s = sinl(at->angle);
+  for (int v = 0; v < p.count; ++v) {
+    const struct dem_point *q = &t->vertex[t->first_vertex[grain] + (uint32_t)v];
+    const long double x = (long double)q->x - t->centroid[grain].x, y = (long double)q->y - t->centroid[grain].y;
+    p.x[v] = at->x + c * x - s * y;
+    p.y[v] = at->y + s * x + c * y;
+  }
+  return p;
+}
+
+static long double overlap_area(const struct model *m, uint32_t i, uint32_t j, const struct place *at) {
+  struct polygon p = outline(m->t, i, &at[i]);
+  const struct polygon q = outline(m->t, j, &at[j]);
+  for (int k = 0; k < q.count && p.count; ++k) {
+    const int n = (k + 1) % q.count;
+    const long double ex = q.x[n] - q.x[k], ey = q.y[n] - q.y[k];
+    struct polygon cut = {0};
+    for (int v = 0; v < p.count; ++v) {
+      const int w = (v + 1) % p.count;
+      const long double a = ex * (p.y[v] - q.y[k]) - ey * (p.x[v] - q.x[k]);
+      const long double b = ex * (p.y[w] - q.y[k]) - ey * (p.x[w] - q.x[k]);
+      if (a >= 0) cut.x[cut.count] = p.x[v], cut.y[cut.count++] = p.y[v];
+      if ((a >= 0) != (b >= 0)) {
+        cut.x[cut.count] = p.x[v] + a / (a - b) * (p.x[w] - p.x[v]);
+        cut.y[cut.count++] = p.y[v] + a / (a - b) * (p.y[w] - p.y[v]);
+      }
+    }
+    p = cut;
+  }
+  long double twice = 0;
+  for (int v = 0; v < p.count; ++v) {
+    const int w = (v + 1) % p.count;
+    twice += (p.x[v] - p.x[0]) * (p.y[w] - p.y[0]) - (p.y[v] - p.y[0]) * (p.x[w] - p.x[0]);
+  }
+  return twice / 2;
+}
+
+/* Timoshenko beam as textbooks write it: EI/l [ (4+P) a^2 + 2 (2-P) a b + (4+P) b^2 ] / (2 (1+P)) with P = 12 EI/(G S l^2),
+ * G = E/2 (K99: b = 2a), I = S^3/12; angles from the chord. */
+static long double beam_energy(const struct model *m, size_t pair, const struct place *at) {
+  const uint32_t i = m->t->pair[pair][0], j = m->t->pair[pair][1];
+  const struct dem_point *a = &m->t->centroid[i], *b = &m->t->centroid[j];
+  const long double x0 = (long double)b->x - a->x, y0 = (long double)b->y - a->y, l0 = hypotl(x0, y0);
+  const long double x = at[j].x - at[i].x, y = at[j].y - at[i].y, l = hypotl(x, y);
+  const long double e = m->p.beam_modulus, s = m->t->side[pair], inertia = s * s * s / 12;
+  /* the chord's turn, on the branch next to the first grain's */
+  const long double chord = atan2l(x0 * y - y0 * x, x0 * x + y0 * y), turn = 2 * acosl(-1.0L);
+  const long double phi = chord + turn * roundl((at[i].angle - chord) / turn);
+  const long double t1 = at[i].angle - phi, t2 = at[j].angle - phi, shear = 12 * e * inertia / (e / 2 * s * l0 * l0);
+  return e * s / l0 * (l - l0) * (l - l0) / 2 +
+         e * inertia / l0 * ((4 + shear) * (t1 * t1 + t2 * t2) + 2 * (2 - shear) * t1 * t2) / (2 * (1 + shear));
+}
+
+/* Coefficient of the contact of grains i and j, 0 if there is none: kappa, or Y / L_c. */
+static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
+  const struct dem_tessellation *t = m->t;
+  const double pi = 3.14159265358979323846;
+  const double di = sqrt(4.0 * t->area[i] / pi), dj = sqrt(4.0 * t->area[j] / pi);
+  double side = 0.0;
+  bool bonded = false;
+  for (size_t p = 0; p < t->pair_count; ++p)
+    if (t->pair[p][0] == i && t->pair[p][1] == j) side = t->side[p], bonded = m->beam[p];
+  if (!m->present[i] || !m->present[j] || (bonded && !m->p.contact_on_bonded)) return 0;
+  const long double law = m->p.grain_modulus * (0.5L / di + 0.5L / dj);
+  return m->p.contact == DEM_CONTACT_PRINTED ? law : law / dem_assemble_reference_side(side, di, dj);
+}
+
+/* Potential of beams and, for the conservative law, of contacts. */
+static long double energy(const struct model *m, const struct place *at) {
+  long double sum = 0;
+  for (size_t p = 0; p < m->t->pair_count; ++p)
+    if (m->beam[p]) sum += beam_energy(m, p, at);
+  for (uint32_t i = 0; i < GRAINS && m->p.contact == DEM_CONTACT_CONSERVATIVE; ++i)
+    for (uint32_t j = i + 1; j < GRAINS; ++j) {
+      const long double kappa = contact_of(m, i, j), area = kappa > 0 ? overlap_area(m, i, j, at) : 0;
+      sum += kappa * area * area / 2;
+    }
+  return sum;
+}
+
+static long double *freedom(struct place *at, size_t k) {
+  struct place *g = &at[k / 3];
+  return k % 3 == 0 ? &g->x : k % 3 == 1 ? &g->y : &g->angle;
+}
+
+/* Generalised forces f[3 grain + k]: the energy's central differences and, for the printed law, Y A / L_c along the
+ * unit vector of the area's gradient (the force acts in the contact line's middle, as the gradient's torque does). */
+static void expected_forces(const struct model *m, struct place *at, long double cell, long double f[3 * GRAINS]) {
+  for (size_t k = 0; k < 3 * GRAINS; ++k) {
+    /* 1e-8: truncation below 1e-14, rounding 1e-19/1e-8 */
+    const long double step = k % 3 == 2 ? 1e-8L : 1e-8L * cell, here = *freedom(at, k);
+    *freedom(at, k) = here + step;
+    const long double up = energy(m, at);
+    *freedom(at, k) = here - step;
+    const long double down = energy(m, at);
+    *freedom(at, k) = here;
+    f[k] = (down - up) / (2 * step);
+  }
+  if (m->p.contact != DEM_CONTACT_PRINTED) return;
+  for (uint32_t i = 0; i < GRAINS; ++i)
+    for (uint32_t j = i + 1; j < GRAINS; ++j) {
+      const long double law = contact_of(m, i, j), area = law > 0 ? overlap_area(m, i, j, at) : 0;
+      if (!(area > 0)) continue;
+      long double slope[6];
+      for (size_t k = 0; k < 6; ++k) {
+        const size_t which = 3 * (k < 3 ? i : j) + k % 3;
+        const long double step = k % 3 == 2 ? 1e-8L : 1e-8L * cell, here = *freedom(at, which);
+        *freedom(at, which) = here + step;
+        const long double up = overlap_area(m, i, j, at);
+        *freedom(at, which) = here - step;
+        slope[k] = (up - overlap_area(m, i, j, at)) / (2 * step);
+        *freedom(at, which) = here;
+      }
+      const long double chord = hypotl(slope[0], slope[1]);
+      for (size_t k = 0; k < 6 && chord > 0; ++k)
+        f[3 * (k < 3 ? i : j) + k % 3] -= law * area * slope[k] / chord;
+    }
+}
+
+struct variant {
+  const char *name;
+  bool no_bonds, broken, removed, held, bonded_contact;
+};
+
+static const struct variant variants[] = {{"bonded", .bonded_contact = true},
+                                          {"no contact on bonded", .bonded_contact = false},
+                                          {"half broken", .broken = true, .bonded_contact = true},
+                                          {"half broken, contact of the others only", .broken = true},
+                                          {"never bonded", .no_bonds = true, .bonded_contact = true},
+                                          {"one removed", .removed = true, .bonded_contact = true},
+                                          {"some held", .held = true, .bonded_contact = true}};
+
+static double compare(const struct variant *v, int law, double size, double turned, uint64_t seed) {
+  const double cell = 0.01;
+  struct dem_tessellation *t = NULL;
+  struct error error = {0};
+  const struct dem_lattice lattice = {
+      .outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
+  assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
+  assert_int_equal(t->cell_count, GRAINS);
+  if (v->no_bonds) t->pair_count = 0;
+  struct model m = {.t = t, .p = fixture_parameters()};
+  m.p.contact = law;
+  m.p.contact_on_bonded = v->bonded_contact;
+  struct dem_system *s = fixture_create(t, &m.p);
+  for (size_t p = 0; p < t->pair_count; ++p)
+    m.beam[p] = true;
+  for (uint32_t i = 0; i < GRAINS; ++i)
+    m.present[i] = true;
+  if (v->removed) {
+    dem_system_remove(s, 4);
+    m.present[4] = false;
+    for (size_t p = 0; p < t->pair_count; ++p)
+      m.beam[p] = t->pair[p][0] != 4 && t->pair[p][1] != 4;
+  }
+  for (size_t p = 0; p < t->pair_count && v->broken; p += 2) {
+    dem_breaking_cut(s, (int32_t)p);
+    m.beam[p] = false;
+  }
+  for (uint32_t i = 0; i < 3 && v->held; ++i) /* what holds a grain is no force of its neighbours: the same is reported */
+    dem_system_hold(s, i, 1u << i | 4u);
+  struct place at[GRAINS];
+  uint64_t random = seed * 77 + 5;
+  /* turned as a whole in several moves: a chord may turn by less than half a turn between evaluations */
+  for (int move = 0; move < 8; ++move) {
+    const double angle = turned * (move + 1) / 8.0;
+    for (uint32_t i = 0; i < GRAINS; ++i) {
+      const double x = t->centroid[i].x + (move == 7 ? cell * size * fixture_random(&random) : 0.0);
+      const double y = t->centroid[i].y + (move == 7 ? cell * size * fixture_random(&random) : 0.0);
+      const double more = move == 7 ? size * fixture_random(&random) : 0.0;
+      fixture_place(s, i, cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y, angle + more);
+      at[i] = (struct place){s->c.x[i], s->c.y[i], s->c.angle[i]};
+    }
+    fixture_evaluate(s);
+  }
+  long double f[3 * GRAINS];
+  expected_forces(&m, at, cell, f);
+  double largest = 0.0, worst = 0.0;
+  for (uint32_t i = 0; i < GRAINS; ++i) {
+    double got[3];
+    dem_system_force(s, i, &got[0], &got[1], &got[2]);
+    for (size_t k = 0; k < 3; ++k) {
+      const double arm = k == 2 ? cell : 1.0;
+      largest = fmax(largest, fabs((double)f[3 * i + k]) / arm);
+      worst = fmax(worst, fabs(got[k] - (double)f[3 * i + k]) / arm);
+    }
+  }
+  if (law == DEM_CONTACT_CONSERVATIVE) {
+    const double here = (double)energy(&m, at);
+    fixture_near(fixture_potential(s), here, 1e-8 * fabs(here), v->name);
+  }
+  assert_true(largest > 0.0 || v->no_bonds);
+  dem_system_free(s);
+  dem_tessellation_free(t);
+  return largest > 0.0 ? worst / largest : worst;
+}
+
+static void all_forces_are_gradients(void **state) {
+  (void)state;
+  static const char *const classes[] = {"baseline", "v3", "v4"};
+  static const double sizes[] = {0.02, 0.1, 0.4};
+  for (size_t c = 0; c < 3; ++c) {
+    assert_int_equal(setenv("CLAST_CPU", classes[c], 1), 0);
+    struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+    const struct dem_parameters p = fixture_parameters();
+    struct dem_system *probe = fixture_create(t, &p);
+    const bool here = strcmp(dem_system_cpu_class(probe), classes[c]) == 0;
+    dem_system_free(probe);
+    fixture_free(t);
+    if (!here) {
+      print_message("          CPU class %s: not on this machine\n", classes[c]);
+      continue;
+    }
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; ++v)
+      for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_OFF; ++law)
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
+          for (uint64_t seed = 1; seed <= 4; ++seed) {
+            const double turned = seed % 2 ? 0.0 : 7.0;
+            const double error = compare(&variants[v], law, sizes[k], turned, seed);
+            /* the grains are 1e-11 smaller than their cells, differences err by 1e-8 where an overlap's shape changes */
+            if (!(error <= 1e-7))
+              fail_msg("%s, %s, law %d, motion %g, seed %d: forces differ by %g of the largest", classes[c],
+                       variants[v].name, law, sizes[k], (int)seed, error);
+          }
+  }
+  assert_int_equal(unsetenv("CLAST_CPU"), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_forces_are_gradients)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
