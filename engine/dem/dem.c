@@ -65,7 +65,9 @@ const struct engine_kind dem_engine = {
     .doc = "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
            "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
            "names at each input.",
-    .results_version = 2, /* 2: the reference side of a contact has a floor */
+    /* 2: the reference side of a contact has a floor. 3: contacts that begin with a break (contact.bonded off) are in
+     * the ledger; grains too fast for the time step end a run. */
+    .results_version = 3,
     .inputs = &dem_inputs,
     .results = &dem_results,
     .check = check,

@@ -42,7 +42,9 @@ static const struct field rows[] = {
          .doc = "Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return)."),
     REAL(energy.damping, "J/m", -HUGE_VAL, .doc = "Energy taken by damping."),
     REAL(energy.friction, "J/m", -HUGE_VAL, .doc = "Energy taken by friction."),
-    REAL(energy.broken_beam, "J/m", -HUGE_VAL, .doc = "Energy that broken beams held: what the new surfaces cost."),
+    REAL(energy.broken_beam, "J/m", -HUGE_VAL,
+         .doc = "Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts "
+                "store that begin with a break."),
     REAL(energy.external_work, "J/m", -HUGE_VAL, .doc = "Work done by moving boundaries."),
     REAL(young_modulus, "Pa", -HUGE_VAL, .doc = "K: slope of stress against strain under uniaxial load.",
          .source = "K99 section 3.1"),

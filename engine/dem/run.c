@@ -26,7 +26,7 @@ void dem_run_momentum(const struct dem_run *run, double momentum[2], double *mag
 }
 
 void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...) {
-  if (run->state.finished)
+  if (run->state.finished && (stop != DEM_STOP_FAULT || run->state.stop == DEM_STOP_FAULT))
     return;
   run->state.finished = 1;
   run->state.stop = stop;
@@ -77,6 +77,30 @@ static void held_force(const struct dem_run *run, double force[2]) {
     }
 }
 
+/* Largest way of a grain in one step over the mean diameter: whoever goes farther than `largest_way` can pass through a
+ * neighbour without ever being seen to overlap it, and no ledger would tell. */
+static const double largest_way = 0.5;
+
+static double longest_way(const struct dem_run *run) {
+  double fastest = 0, area = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    fastest = g.present ? fmax(fastest, hypot(g.vx, g.vy)) : fastest;
+    area += run->tessellation->area[i];
+  }
+  double diameter = sqrt(4 / 3.14159265358979323846 * area / (double)run->tessellation->cell_count);
+  return fastest * run->inputs.fidelity.time_step / diameter;
+}
+
+static void check_speed(struct dem_run *run) {
+  double way = longest_way(run);
+  if (run->inputs.contact.law != DEM_CONTACT_OFF && way > largest_way)
+    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_TIME_STEP,
+                "at %.6g s a grain moves by %.3g grain diameters in a time step and could pass through others unseen: "
+                "give a fidelity.time_step below %.3g s",
+                dem_system_time(run->system), way, run->inputs.fidelity.time_step * largest_way / way);
+}
+
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
   *out = NULL;
   status code = dem_inputs_check(inputs, error);
@@ -112,6 +136,7 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
   ledger = dem_system_ledger(run->system);
   run->state.closed_start = dem_run_closed(&ledger);
   dem_run_momentum(run, run->state.momentum_start, &magnitude);
+  check_speed(run);
   *out = run;
   run = NULL;
 cleanup:
@@ -196,7 +221,9 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
       dem_loading_record(run);
     }
     check_stop(run);
-    if (dem_system_steps(run->system) % CHECK_INTERVAL == 0 || run->state.finished)
+    if (dem_system_steps(run->system) % CHECK_INTERVAL == 0 || run->state.finished) {
       check_energy(run);
+      check_speed(run);
+    }
   }
 }

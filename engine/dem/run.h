@@ -52,7 +52,7 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps);
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
-/* End the run: the first reason given stays. */
+/* End the run: the first reason given stays, but a fault stands above any other. */
 void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

@@ -147,14 +147,52 @@ static void integrators_have_their_order(void **state) {
   dem_tessellation_free(t);
 }
 
+/* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value
+ * (Gear 1971; Allen & Tildesley 1987, table E.1). The order alone does not tell all of them. */
+static void gear_has_its_coefficients(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  const double published[2][6] = {{3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
+                                  {3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
+  for (int damped = 0; damped < 2; ++damped) {
+    struct dem_parameters p = fixture_parameters();
+    p.integrator = DEM_GEAR;
+    p.normal_damping = damped ? 1.0 : 0.0; /* forces may depend on velocities: the other first coefficient */
+    struct dem_system *s = fixture_create(t, &p);
+    const double start[6] = {0.0152, 0.7e-5, 0.5e-5, -0.3e-5, 0.2e-5, 0.1e-5}; /* x and dt^k/k! d^k x of grain 1 */
+    const double dt = p.time_step;
+    s->c.x[1] = start[0];
+    s->c.vx[1] = start[1] / dt;
+    for (int k = 2; k < 6; ++k)
+      s->c.gear[0][k][1] = start[k];
+    s->now.gear_started = 1;
+    assert_true(dem_system_step(s));
+    const int pascal[6][6] = {{1, 1, 1, 1, 1, 1}, {0, 1, 2, 3, 4, 5},  {0, 0, 1, 3, 6, 10},
+                              {0, 0, 0, 1, 4, 10}, {0, 0, 0, 0, 1, 5}, {0, 0, 0, 0, 0, 1}};
+    double predicted[6] = {0};
+    for (int k = 0; k < 6; ++k)
+      for (int j = 0; j < 6; ++j)
+        predicted[k] += pascal[k][j] * start[j];
+    const double error = 0.5 * dt * dt * s->c.fx[1] / s->mass[1] - predicted[2];
+    const double got[6] = {s->c.x[1],          s->c.vx[1] * dt,     s->c.gear[0][2][1],
+                           s->c.gear[0][3][1], s->c.gear[0][4][1], s->c.gear[0][5][1]};
+    assert_true(fabs(error) > 1e-6);
+    for (int k = 0; k < 6; ++k) /* roundings of values of 1e-5, and of the position itself */
+      fixture_near(got[k], predicted[k] + published[damped][k] * error, k ? 1e-19 : 1e-17, "Gear");
+    dem_system_free(s);
+  }
+  fixture_free(t);
+}
+
 /* Breaking, damping and friction on: kinetic + stored + broken + dissipated stays what it was. */
 static void ledger_closes(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
-  for (int kind = 0; kind < 3; ++kind) {
+  for (int kind = 0; kind < 4; ++kind) {
     struct dem_parameters p = fixture_parameters();
     p.breaking = true;
     p.time_step = 2.5e-7;
+    p.contact_on_bonded = kind != 3; /* contacts that begin as beams break, at whatever overlap there is */
     p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
     if (kind == 2) p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
     struct dem_system *s = charged(t, &p, 0.0, 0.0);
@@ -365,7 +403,7 @@ static void extremes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
                                      cmocka_unit_test(energy_is_conserved),
-                                     cmocka_unit_test(integrators_have_their_order),
+                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients),
                                      cmocka_unit_test(ledger_closes),
                                      cmocka_unit_test(rest_is_rest),
                                      cmocka_unit_test(broken_is_unbonded),
