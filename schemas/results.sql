@@ -232,7 +232,7 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   energy_contact REAL, -- [J/m] Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).
   energy_damping REAL, -- [J/m] Energy taken by damping.
   energy_friction REAL, -- [J/m] Energy taken by friction.
-  energy_broken_beam REAL, -- [J/m] Energy that broken beams held: what the new surfaces cost.
+  energy_broken_beam REAL, -- [J/m] Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.
   energy_external_work REAL, -- [J/m] Work done by moving boundaries.
   young_modulus REAL, -- [Pa] K: slope of stress against strain under uniaxial load.
   poisson_ratio REAL, -- [1] nu: minus the slope of lateral against axial strain.
@@ -663,7 +663,7 @@ INSERT INTO column_doc VALUES ('result_dem', 'end_triangle_share', '1', 'Compres
 
 INSERT INTO column_doc VALUES ('result_dem', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 1);
 
@@ -797,7 +797,7 @@ INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: 
 
 INSERT INTO column_doc VALUES ('runs', 'energy_beam', 'J/m', 'Energy stored in beams at the end.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
 
