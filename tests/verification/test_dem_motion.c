@@ -319,6 +319,35 @@ static void restored_run_has_the_same_bits(void **state) {
   dem_tessellation_free(t);
 }
 
+/* Long grains that do nothing but turn: their lists must be made anew, or the end of one passes through the other. */
+static void turning_grains_meet(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, false);
+  const double half_length = 0.01, half_width = 0.0025, apart = 0.011; /* ends reach 0.0125 across, skins 0.0056 */
+  for (int i = 0; i < 2; ++i) {
+    t->centroid[i] = (struct dem_point){apart * i, 0.0};
+    t->area[i] = 4.0 * half_length * half_width;
+    t->polar_moment[i] = t->area[i] * (half_length * half_length + half_width * half_width) / 3.0;
+    for (int v = 0; v < 4; ++v)
+      t->vertex[4 * i + v] = (struct dem_point){apart * i + (v == 1 || v == 2 ? half_width : -half_width),
+                                                v >= 2 ? half_length : -half_length};
+  }
+  struct dem_parameters p = fixture_parameters();
+  struct dem_system *s = fixture_create(t, &p);
+  dem_system_set_velocity(s, 1, 0.0, 0.0, 800.0); /* a quarter turn in 2000 steps */
+  bool met = false;
+  for (int k = 0; k < 2200 && !met; ++k) {
+    assert_true(dem_system_step(s));
+    met = s->c.torque[0] != 0.0;
+  }
+  assert_true(met);
+  /* its corner comes over the other's side when half_length sin a + half_width cos a = apart - half_width */
+  const double reach = half_length * sin(s->c.angle[1]) + half_width * cos(s->c.angle[1]);
+  fixture_near(reach, apart - half_width, 800.0 * p.time_step * half_length, "first touch"); /* one step's way */
+  dem_system_free(s);
+  fixture_free(t);
+}
+
 /* A grain a thousand kilometres away costs no memory, and does not slow the search down. */
 static void far_flung_grain(void **state) {
   (void)state;
@@ -403,7 +432,7 @@ static void extremes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
                                      cmocka_unit_test(energy_is_conserved),
-                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients),
+                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients), cmocka_unit_test(turning_grains_meet),
                                      cmocka_unit_test(ledger_closes),
                                      cmocka_unit_test(rest_is_rest),
                                      cmocka_unit_test(broken_is_unbonded),

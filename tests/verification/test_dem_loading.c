@@ -1,0 +1,144 @@
+/* What moves a body from outside, and what is measured of it: work of held grains, momentum under holds, strains and
+ * stresses of an affine deformation, the mode of a break, energies that are known. */
+#include "tests/verification/dem_fixture.h"
+
+#include "engine/dem/run.h"
+#include "tests/dem_case.h"
+
+/* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion. */
+static void driven_grains_do_work(void **state) {
+  (void)state;
+  for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; ++integrator)
+    for (int which = 0; which < 3; ++which) {
+      struct dem_tessellation *t = fixture_squares(2, 2, 0.01, 0.0, true);
+      struct dem_parameters p = fixture_parameters();
+      p.contact = DEM_CONTACT_OFF; /* smooth: what remains is the integrator's error */
+      p.integrator = integrator;
+      p.time_step = 2e-7;
+      struct dem_system *s = fixture_create(t, &p);
+      dem_system_hold(s, 0, which == 0 ? 1u : which == 1 ? 2u : 4u);
+      const double before = fixture_total(dem_system_ledger(s));
+      for (int k = 0; k < 2000; ++k) {
+        const double speed = k < 1000 ? 1e-3 * k : 1.0; /* m/s; and a jolt below */
+        const double jolt = k < 1500 ? 1.0 : -0.5;
+        dem_system_drive(s, 0, which == 0 ? jolt * speed : 0.0, which == 1 ? jolt * speed : 0.0,
+                         which == 2 ? 100.0 * jolt * speed : 0.0);
+        assert_true(dem_system_step(s));
+      }
+      const struct dem_ledger l = dem_system_ledger(s);
+      print_message("          %s, freedom %d: work %.3g, kinetic %.3g, beam %.3g, open by %.1e\n",
+                    integrator == DEM_GEAR ? "Gear" : "Verlet", which, l.external_work, l.kinetic, l.beam,
+                    (fixture_total(l) - before) / l.external_work);
+      assert_true(l.external_work > 0.01); /* J/m: the driven grain's own kinetic energy is 0.25 at 1 m/s */
+      assert_true(l.beam + l.kinetic > 0.5 * l.external_work);
+      /* trapezoids of a force that changes within (2/15 us)^-1: (0.2/15)^2/12 = 1.5e-5 of what goes to and fro */
+      fixture_near(fixture_total(l), before, 1e-3 * l.external_work, "work");
+      dem_system_free(s);
+      fixture_free(t);
+    }
+}
+
+/* Loaded bodies: what held grains feel is what the free ones lose, to rounding; the work is all the energy there is. */
+static void loads_balance(void **state) {
+  (void)state;
+  struct dem_inputs cases[] = {
+      DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms"),
+      DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms")};
+  for (int k = 0; k < 2; ++k) {
+    struct dem_ran ran = dem_case_run(&cases[k], 3);
+    assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+    assert_true(ran.results.energy.external_work > 0.0);
+    assert_true(ran.outcome.energy_error < 1e-3);   /* Verlet at a tenth of the stability limit, with breaks */
+    assert_true(ran.outcome.momentum_error < 1e-11); /* sums of 1e4 steps' roundings */
+    free(ran.fragments);
+  }
+}
+
+/* Put a block by hand into an affine deformation: the strains recorded are those put in, the stress is the beams'. */
+static void strains_are_those_put_in(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("uniaxial", "body.columns=12", "body.rows=10", "grain.disorder=0.7");
+  struct dem_run *run;
+  assert_int_equal(dem_run_create(&inputs, 4, &run, NULL), STATUS_OK);
+  const double axial = 2e-3, lateral = -7e-4;
+  const struct dem_tessellation *t = run->tessellation;
+  for (uint32_t i = 0; i < t->cell_count; ++i) {
+    run->system->c.x[i] = t->centroid[i].x * (1.0 + lateral);
+    run->system->c.y[i] = t->centroid[i].y; /* as the sides do: each row keeps its line */
+    if (t->grid_y[i] == 0) run->system->c.y[i] -= 0.25 * axial * run->gauge_length;
+    if (t->grid_y[i] == 9) run->system->c.y[i] += 0.75 * axial * run->gauge_length;
+    run->system->c.fy[i] = t->grid_y[i] == 0 ? 3.0 : t->grid_y[i] == 9 ? -5.0 : 7.0;
+  }
+  run->sample_interval = 1;
+  dem_loading_record(run);
+  assert_int_equal(run->state.samples, 1);
+  fixture_near(run->sample[0].strain, axial, 1e-12, "axial strain");
+  fixture_near(run->sample[0].lateral_strain, lateral, 1e-12, "lateral strain");
+  /* 12 grains pull with 3 N/m each below, with 5 above: mean of both sides over twelve spacings */
+  fixture_near(run->sample[0].stress, 12 * 4.0 / (12 * inputs.grain.spacing), 1e-9, "stress");
+  dem_run_free(run);
+}
+
+/* A beam that is drawn out breaks by stretching, one that is turned and hardly stretched by bending; pressed, by neither.
+ * The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
+static void modes_of_breaking(void **state) {
+  (void)state;
+  const struct {
+    double strain, first, second; /* in thresholds */
+    int broken, bending;
+  } cases[] = {{1.01, 0.0, 0.0, 1, 0},  {0.99, 0.0, 0.0, 0, 0},  {0.1, 0.995, 0.0, 1, 1}, {0.1, 0.0, -0.995, 1, 1},
+               {0.1, 0.985, 0.2, 0, 0}, {0.8, 0.37, 0.1, 1, 0},  {0.8, 0.35, 0.1, 0, 0},  {0.6, -0.1, 0.65, 1, 1},
+               {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0},  {-0.1, 3.0, 3.0, 0, 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+    struct dem_parameters p = fixture_parameters();
+    p.breaking = true;
+    struct dem_system *s = fixture_create(t, &p);
+    fixture_place(s, 0, t->centroid[0].x, t->centroid[0].y, cases[k].first * p.angle_threshold);
+    fixture_place(s, 1, t->centroid[1].x + 0.01 * cases[k].strain * p.strain_threshold, t->centroid[1].y,
+                  cases[k].second * p.angle_threshold);
+    fixture_evaluate(s);
+    const struct dem_break *log;
+    const size_t breaks = dem_system_breaks(s, &log);
+    if (breaks != (size_t)cases[k].broken) fail_msg("case %zu: %zu breaks", k, breaks);
+    if (breaks && log[0].bending != cases[k].bending) fail_msg("case %zu: bending %d", k, (int)log[0].bending);
+    if (breaks) fixture_near(log[0].strain, cases[k].strain * p.strain_threshold, 1e-12, "strain logged");
+    dem_system_free(s);
+    fixture_free(t);
+  }
+}
+
+/* A square lattice: every beam has S = l = spacing, and half E S l t^2 at the threshold. */
+static void threshold_energy_of_a_square_lattice(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("block-impact", "body.columns=6", "body.rows=5", "grain.disorder=0", "stop.end_time=2 us");
+  struct dem_ran ran = dem_case_run(&inputs, 1);
+  assert_int_equal(ran.results.beams, 5 * 5 + 6 * 4);
+  const double one = 0.5 * inputs.beam.young_modulus * inputs.grain.spacing * inputs.grain.spacing *
+                     inputs.threshold.strain * inputs.threshold.strain;
+  fixture_near(ran.results.threshold_energy, 49.0 * one, 1e-10 * one, "threshold energy");
+  free(ran.fragments);
+}
+
+/* Two discs before they meet: all energy is their translation, half of the relative speed each. */
+static void energy_of_two_discs_on_approach(void **state) {
+  (void)state;
+  struct dem_inputs inputs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=10 m/s", "stop.end_time=2 us",
+                                      "collision.impact_parameter=0.4");
+  struct dem_ran ran = dem_case_run(&inputs, 1);
+  assert_int_equal(ran.count, 2);
+  fixture_near(ran.outcome.kinetic_energy_share, 1.0, 1e-12, "share");
+  fixture_near(ran.results.energy_input, 0.5 * ran.outcome.total_mass * 25.0, 1e-9 * ran.results.energy_input, "input");
+  const double *a = ran.fragments[0].position, *b = ran.fragments[1].position;
+  /* centres 0.4 diameters apart across the approach, to a fraction of a grain: the lattices' outlines are random */
+  fixture_near(fabs(a[1] - b[1]), 0.4 * inputs.body.diameter, 0.25 * inputs.grain.spacing, "impact parameter");
+  free(ran.fragments);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work), cmocka_unit_test(loads_balance),
+                                     cmocka_unit_test(strains_are_those_put_in), cmocka_unit_test(modes_of_breaking),
+                                     cmocka_unit_test(threshold_energy_of_a_square_lattice),
+                                     cmocka_unit_test(energy_of_two_discs_on_approach)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
