@@ -222,6 +222,100 @@ static double compare(const struct variant *v, int law, double size, double turn
   return largest > 0.0 ? worst / largest : worst;
 }
 
+/* Where the outlines of two grains cross; the number of crossings. */
+static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct place *at, long double x[2],
+                     long double y[2]) {
+  const struct polygon p = outline(m->t, i, &at[i]), q = outline(m->t, j, &at[j]);
+  int count = 0;
+  for (int a = 0; a < p.count; ++a)
+    for (int b = 0; b < q.count; ++b) {
+      const int c = (a + 1) % p.count, d = (b + 1) % q.count;
+      const long double ex = p.x[c] - p.x[a], ey = p.y[c] - p.y[a], fx = q.x[d] - q.x[b], fy = q.y[d] - q.y[b];
+      const long double gx = q.x[b] - p.x[a], gy = q.y[b] - p.y[a], det = ex * fy - ey * fx;
+      const long double u = (gx * fy - gy * fx) / det, v = (gx * ey - gy * ex) / det;
+      if (u < 0 || u >= 1 || v < 0 || v >= 1) continue;
+      if (count < 2) x[count] = p.x[a] + u * ex, y[count] = p.y[a] + u * ey;
+      ++count;
+    }
+  return count;
+}
+
+/* K99 eqs 2-6 with the signs that take energy out, at the middle of the contact line P1 P2, for grains in motion. */
+static void damping_and_friction_as_written(void **state) {
+  (void)state;
+  int compared = 0;
+  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; ++law)
+    for (int bonded = 0; bonded < 2; ++bonded)
+      for (uint64_t seed = 1; seed <= 12; ++seed) {
+        const double cell = 0.01;
+        struct dem_tessellation *t = NULL;
+        struct error error = {0};
+        const struct dem_lattice lattice = {
+            .outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
+        assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
+        if (!bonded) t->pair_count = 0;
+        struct model m = {.t = t, .p = fixture_parameters()};
+        m.p.contact = law;
+        m.p.beam_modulus = 0.0;
+        m.p.normal_damping = 3e4, m.p.tangential_damping = 2e4, m.p.friction = 0.4, m.p.damping_on_bonded = true;
+        m.p.time_step = 1e-30; /* nothing moves in the step */
+        struct dem_system *s = fixture_create(t, &m.p);
+        struct place at[GRAINS];
+        uint64_t random = seed;
+        for (uint32_t i = 0; i < GRAINS; ++i) {
+          m.present[i] = true;
+          fixture_place(s, i, t->centroid[i].x + 0.1 * cell * fixture_random(&random),
+                        t->centroid[i].y + 0.1 * cell * fixture_random(&random), 0.1 * fixture_random(&random));
+          at[i] = (struct place){s->c.x[i], s->c.y[i], s->c.angle[i]};
+          dem_system_set_velocity(s, i, 5.0 * fixture_random(&random), 5.0 * fixture_random(&random),
+                                  500.0 * fixture_random(&random));
+          s->c.mobility_x[i] = s->c.mobility_y[i] = s->c.mobility_angle[i] = 0.0;
+        }
+        assert_true(dem_system_step(s));
+        long double f[3 * GRAINS] = {0}, largest = 0;
+        bool simple = true;
+        for (uint32_t i = 0; i < GRAINS; ++i)
+          for (uint32_t j = i + 1; j < GRAINS; ++j) {
+            const long double coefficient = contact_of(&m, i, j), area = overlap_area(&m, i, j, at);
+            long double x[2], y[2];
+            const int count = crossings(&m, i, j, at, x, y);
+            if (count == 0 && !(area > 0)) continue;
+            if (count != 2) simple = false;
+            if (!simple) continue;
+            const long double chord = hypotl(x[1] - x[0], y[1] - y[0]), mx = (x[0] + x[1]) / 2, my = (y[0] + y[1]) / 2;
+            const long double tx = (x[1] - x[0]) / chord, ty = (y[1] - y[0]) / chord;
+            long double nx = -ty, ny = tx; /* towards i: the way on which the overlap shrinks */
+            struct place moved[GRAINS];
+            memcpy(moved, at, sizeof at);
+            moved[i].x += 1e-9L * cell * nx, moved[i].y += 1e-9L * cell * ny;
+            if (overlap_area(&m, i, j, moved) > area) nx = -nx, ny = -ny;
+            const long double ux = (s->c.vx[j] - s->c.spin[j] * (my - at[j].y)) - (s->c.vx[i] - s->c.spin[i] * (my - at[i].y));
+            const long double uy = (s->c.vy[j] + s->c.spin[j] * (mx - at[j].x)) - (s->c.vy[i] + s->c.spin[i] * (mx - at[i].x));
+            const long double mass = (long double)s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);
+            const long double elastic = coefficient * area * (law == DEM_CONTACT_PRINTED ? 1 : chord);
+            const long double normal = fmaxl(0, elastic + mass * m.p.normal_damping * (ux * nx + uy * ny));
+            const long double slip = ux * tx + uy * ty;
+            const long double friction = copysignl(fminl(mass * m.p.tangential_damping * fabsl(slip), m.p.friction * normal), slip);
+            const long double fx = normal * nx + friction * tx, fy = normal * ny + friction * ty;
+            f[3 * i] += fx, f[3 * i + 1] += fy, f[3 * i + 2] += (mx - at[i].x) * fy - (my - at[i].y) * fx;
+            f[3 * j] -= fx, f[3 * j + 1] -= fy, f[3 * j + 2] -= (mx - at[j].x) * fy - (my - at[j].y) * fx;
+          }
+        for (size_t k = 0; k < 3 * GRAINS; ++k)
+          largest = fmaxl(largest, fabsl(f[k]) / (k % 3 == 2 ? cell : 1));
+        for (uint32_t i = 0; i < GRAINS && simple; ++i) /* grains are 1e-11 of themselves smaller than their cells */
+          for (size_t k = 0; k < 3; ++k) {
+            double got[3];
+            dem_system_force(s, i, &got[0], &got[1], &got[2]);
+            fixture_near(got[k], (double)f[3 * i + k], 1e-8 * (double)largest * (k == 2 ? cell : 1.0), "force");
+          }
+        compared += simple;
+        dem_system_free(s);
+        dem_tessellation_free(t);
+      }
+  print_message("          %d of 48 bodies have two crossings at every contact\n", compared);
+  assert_true(compared >= 12);
+}
+
 static void all_forces_are_gradients(void **state) {
   (void)state;
   static const char *const classes[] = {"baseline", "v3", "v4"};
@@ -254,6 +348,7 @@ static void all_forces_are_gradients(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(all_forces_are_gradients)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(all_forces_are_gradients),
+                                     cmocka_unit_test(damping_and_friction_as_written)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

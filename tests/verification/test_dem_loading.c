@@ -120,6 +120,60 @@ static void threshold_energy_of_a_square_lattice(void **state) {
   free(ran.fragments);
 }
 
+/* Mass and moment of inertia of every grain by triangles of its outline, in long double. */
+static void grains_have_their_inertia(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2);
+  const struct dem_parameters p = fixture_parameters();
+  struct dem_system *s = fixture_create(t, &p);
+  for (uint32_t i = 0; i < t->cell_count; ++i) {
+    long double area = 0, moment = 0;
+    for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; ++v) {
+      const uint32_t w = v + 1 < t->first_vertex[i + 1] ? v + 1 : t->first_vertex[i];
+      const long double ax = (long double)t->vertex[v].x - t->centroid[i].x, ay = (long double)t->vertex[v].y - t->centroid[i].y;
+      const long double bx = (long double)t->vertex[w].x - t->centroid[i].x, by = (long double)t->vertex[w].y - t->centroid[i].y;
+      const long double twice = ax * by - ay * bx;
+      area += twice / 2;
+      moment += twice / 12 * (ax * ax + ay * ay + ax * bx + ay * by + bx * bx + by * by);
+    }
+    const struct dem_grain g = dem_system_grain(s, i);
+    fixture_near(g.mass, (double)(p.density * area), 1e-12 * g.mass, "mass"); /* roundings of coordinates of 6 cells */
+    fixture_near(g.moment_of_inertia, (double)(p.density * moment), 1e-12 * g.moment_of_inertia, "moment of inertia");
+  }
+  dem_system_free(s);
+  dem_tessellation_free(t);
+}
+
+/* Thresholds drawn per beam: of a Weibull law ln t has the mean ln t0 - gamma/m and the standard deviation pi/(m sqrt 6). */
+static void thresholds_are_weibulls(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.2, 0.01, 1.0, 2);
+  struct dem_parameters p = fixture_parameters();
+  const double m = 4.0, n = (double)t->pair_count;
+  p.breaking = true;
+  p.threshold_modulus = m;
+  p.seed = 11;
+  struct dem_system *s = fixture_create(t, &p);
+  double sum[2] = {0}, square[2] = {0}, both = 0;
+  for (size_t k = 0; k < t->pair_count; ++k) {
+    const struct dem_bond_block *b = &s->bond[k / DEM_BLOCK];
+    const size_t lane = k % DEM_BLOCK;
+    const double log_of[2] = {-0.5 * log(b->weight_strain[lane]) - log(b->length[lane] * p.strain_threshold),
+                              -log(b->weight_angle[lane] * p.angle_threshold)};
+    for (int q = 0; q < 2; ++q)
+      sum[q] += log_of[q] / n, square[q] += log_of[q] * log_of[q] / n;
+    both += log_of[0] * log_of[1] / n;
+  }
+  const double spread = 3.14159265358979323846 / (m * sqrt(6.0));
+  for (int q = 0; q < 2; ++q) { /* five standard errors of a mean; of a deviation, ln t has kurtosis 5.4 */
+    fixture_near(sum[q], -0.57721566490153286 / m, 5.0 * spread / sqrt(n), "mean of ln t");
+    fixture_near(sqrt(square[q] - sum[q] * sum[q]), spread, 5.0 * spread * sqrt(4.4 / 4.0 / n), "spread of ln t");
+  }
+  fixture_near((both - sum[0] * sum[1]) / (spread * spread), 0.0, 5.0 / sqrt(n), "correlation of the two");
+  dem_system_free(s);
+  dem_tessellation_free(t);
+}
+
 /* Two discs before they meet: all energy is their translation, half of the relative speed each. */
 static void energy_of_two_discs_on_approach(void **state) {
   (void)state;
@@ -139,6 +193,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work), cmocka_unit_test(loads_balance),
                                      cmocka_unit_test(strains_are_those_put_in), cmocka_unit_test(modes_of_breaking),
                                      cmocka_unit_test(threshold_energy_of_a_square_lattice),
-                                     cmocka_unit_test(energy_of_two_discs_on_approach)};
+                                     cmocka_unit_test(energy_of_two_discs_on_approach),
+                                     cmocka_unit_test(grains_have_their_inertia),
+                                     cmocka_unit_test(thresholds_are_weibulls)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,8 @@
 #include "tests/bench/dem_disc.h"
 #include "tests/verification/dem_fixture.h"
 
+#include "engine/dem/gear_start.h"
+
 #ifndef __SANITIZE_ADDRESS__ /* the sanitizer brings its own */
 static size_t allocations;   /* counted for the test that the step loop allocates nothing */
 void *__libc_malloc(size_t size);
@@ -319,6 +321,33 @@ static void restored_run_has_the_same_bits(void **state) {
   dem_tessellation_free(t);
 }
 
+/* Gear's start on a beam that swings lengthwise: x = A cos wt + B sin wt, whose derivatives are known. */
+static void gear_starts_with_the_derivatives(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  struct dem_parameters p = fixture_parameters();
+  p.contact = DEM_CONTACT_OFF;
+  p.time_step = 1e-7;
+  p.integrator = DEM_GEAR;
+  struct dem_system *s = fixture_create(t, &p);
+  const double stretch = 1e-5, speed = 0.2;
+  fixture_place(s, 1, t->centroid[1].x + stretch, t->centroid[1].y, 0.0);
+  dem_system_set_velocity(s, 0, -0.5 * speed, 0.0, 0.0);
+  dem_system_set_velocity(s, 1, 0.5 * speed, 0.0, 0.0);
+  fixture_evaluate(s);
+  s->now.ready = 1;
+  assert_true(dem_gear_start(s));
+  const double w = sqrt(2.0 * p.beam_modulus / s->mass[0]), turn = w * p.time_step; /* alpha = E for S = l */
+  const double u = 0.5 * stretch, v = 0.5 * speed / w; /* of grain 1 about the middle; v in radians of the swing */
+  const double exact[6] = {0, 0, -u * turn * turn / 2, -v * pow(turn, 3) / 6, u * pow(turn, 4) / 24, v * pow(turn, 5) / 120};
+  const double order[6] = {0, 0, 1e-12, pow(turn, 4), pow(turn, 3), pow(turn, 2)}; /* of the one-sided differences */
+  for (int k = 2; k < 6; ++k) /* the next derivatives' terms stand before them with factors of a few */
+    fixture_near(s->c.gear[0][k][1], exact[k], fabs(exact[k]) * (10.0 * order[k] * (1.0 + u / v + v / u) + 1e-6),
+                 "derivative");
+  dem_system_free(s);
+  fixture_free(t);
+}
+
 /* Long grains that do nothing but turn: their lists must be made anew, or the end of one passes through the other. */
 static void turning_grains_meet(void **state) {
   (void)state;
@@ -432,7 +461,7 @@ static void extremes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
                                      cmocka_unit_test(energy_is_conserved),
-                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients), cmocka_unit_test(turning_grains_meet),
+                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients), cmocka_unit_test(turning_grains_meet), cmocka_unit_test(gear_starts_with_the_derivatives),
                                      cmocka_unit_test(ledger_closes),
                                      cmocka_unit_test(rest_is_rest),
                                      cmocka_unit_test(broken_is_unbonded),
