@@ -47,6 +47,7 @@ struct picture_series {
   const struct picture_fit *fit;
 };
 /* Log-log F(m) with error bars (one standard error over runs) and fit lines. One to eight series. */
+/* The legend stands beside the frame, so the picture is wider than `width` by it. */
 status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
                         const struct picture_series *series, struct error *error);
 

@@ -133,33 +133,43 @@ static void fit_line(const struct frame *f, const struct picture_fit *fit, size_
   cairo_restore(cairo);
 }
 
-/* Upper right, where a falling spectrum leaves room. */
+/* Beside the frame: labels that name the inputs are long. Room for it, from the longest text (0.58 em a letter, bold). */
+static double legend_width(double font, size_t count, const struct picture_series *series) {
+  size_t longest = 0;
+  for (size_t s = 0; s < count; s++)
+    for (size_t line = 0; line <= series[s].fits; line++) {
+      const char *text = line == 0 ? series[s].label : series[s].fit[line - 1].label;
+      if (text && strlen(text) > longest) longest = strlen(text);
+    }
+  return longest ? (4 + 0.58 * (double)longest) * font : 0;
+}
+
 static void legend(const struct frame *f, size_t count, const struct picture_series *series) {
   cairo_t *cairo = f->cairo;
-  double y = f->top + 1.7 * f->font, right = f->left + f->width - 0.8 * f->font;
+  double y = f->top + f->font, mark = f->left + f->width + f->font, left = mark + 2.6 * f->font;
   for (size_t s = 0; s < count; s++) {
     for (size_t line = 0; line <= series[s].fits; line++) {
       const char *text = line == 0 ? series[s].label : series[s].fit[line - 1].label;
       if (!text) continue;
       cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
-      picture_canvas_text(cairo, right, y, 0.95 * f->font, PICTURE_RIGHT, line == 0, text);
-      double x = right - picture_canvas_text_width(cairo, 0.95 * f->font, line == 0, text) - 0.7 * f->font;
+      picture_canvas_text(cairo, left, y, 0.95 * f->font, PICTURE_LEFT, line == 0, text);
       series_colour(cairo, s, 1);
       if (line == 0) {
-        cairo_arc(cairo, x - 0.5 * f->font, y - 0.33 * f->font, 0.3 * f->font, 0, 2 * M_PI);
+        cairo_arc(cairo, mark + f->font, y - 0.33 * f->font, 0.3 * f->font, 0, 2 * M_PI);
         cairo_fill(cairo);
       } else {
         const double dashes[3][2] = {{1, 0}, {0.9, 0.5}, {0.25, 0.4}};
         double dash[2] = {dashes[(line - 1) % 3][0] * f->font, dashes[(line - 1) % 3][1] * f->font};
         if ((line - 1) % 3) cairo_set_dash(cairo, dash, 2, 0);
         cairo_set_line_width(cairo, 0.14 * f->font);
-        cairo_move_to(cairo, x - 2 * f->font, y - 0.33 * f->font);
-        cairo_line_to(cairo, x, y - 0.33 * f->font);
+        cairo_move_to(cairo, mark, y - 0.33 * f->font);
+        cairo_rel_line_to(cairo, 2 * f->font, 0);
         cairo_stroke(cairo);
         cairo_set_dash(cairo, NULL, 0, 0);
       }
       y += 1.45 * f->font;
     }
+    y += 0.4 * f->font;
   }
 }
 
@@ -173,7 +183,7 @@ status picture_spectrum(const char *path, double width, const char *title, const
   f.height = height - f.top - 3.6 * font;
   if (!choose_range(count, series, &f)) return status_fail(error, STATUS_USAGE, "%s: there is no fragment to draw", path);
   struct picture_canvas canvas;
-  status code = picture_canvas_open(&canvas, path, width, height, error);
+  status code = picture_canvas_open(&canvas, path, width + legend_width(font, count, series), height, error);
   if (code) return code;
   cairo_t *cairo = f.cairo = canvas.cairo;
   axis(&f, true);

@@ -1,6 +1,7 @@
 /* `clast spectrum STORE`: fragment mass spectra, pooled over the seeds of each point. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "analysis/point.h"
 #include "analysis/text_plot.h"
@@ -59,6 +60,46 @@ static void print_rivals(const struct pooled_rivals *rivals) {
          rivals->lognormal_p);
 }
 
+/* "strain 0.03, angle 0.0698 rad, 20 runs": the varied inputs by the last words of their paths. */
+struct label {
+  char text[128];
+  size_t used;
+};
+
+static status add_input(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  struct label *label = context;
+  const char *word = strrchr(values[0].text, '.');
+  char value[64];
+  if (values[1].kind == QUERY_TEXT)
+    snprintf(value, sizeof value, "%s", values[1].text);
+  else
+    snprintf(value, sizeof value, "%.3g", values[1].real);
+  bool unit = values[2].kind == QUERY_TEXT && strcmp(values[2].text, "1") != 0;
+  char item[128];
+  int size = snprintf(item, sizeof item, "%s %s%s%s, ", word ? word + 1 : values[0].text, value, unit ? " " : "",
+                      unit ? values[2].text : "");
+  if (size > 0 && label->used + (size_t)size + sizeof "20000 runs" < sizeof label->text) { /* what does not fit is left out */
+    memcpy(label->text + label->used, item, (size_t)size + 1);
+    label->used += (size_t)size;
+  }
+  return STATUS_OK;
+}
+
+static status label_of(struct store *store, int64_t point, size_t runs, struct label *label, struct error *error) {
+  char number[32];
+  snprintf(number, sizeof number, "%lld", (long long)point);
+  const struct query_parameter parameter = {"point", number};
+  const struct query_sink sink = {label, NULL, add_input};
+  *label = (struct label){0};
+  status code = query_run(store, "select path, value, unit from point_input join axis using (path) where point_id = :point "
+                                 "order by path desc", 1, &parameter, 0, &sink, error);
+  if (label->used == 0) /* nothing was varied */
+    label->used = (size_t)snprintf(label->text, sizeof label->text, "point %lld, ", (long long)point);
+  snprintf(label->text + label->used, sizeof label->text - label->used, "%zu run%s", runs, runs == 1 ? "" : "s");
+  return code;
+}
+
 static status draw(struct store *store, const struct options *options, struct error *error) {
   struct chosen chosen = {.points = {options->point}, .count = options->point ? 1 : 0};
   struct query_sink sink = {&chosen, NULL, take_point};
@@ -72,8 +113,11 @@ static status draw(struct store *store, const struct options *options, struct er
   for (size_t i = 0; !code && i < chosen.count; i++) {
     struct point_data point;
     code = point_read(store, chosen.points[i], 0, &point, error);
+    struct label label;
     if (!code)
-      code = point_curve_make(&point, NULL, &curves[i], error);
+      code = label_of(store, chosen.points[i], point.runs.count, &label, error);
+    if (!code)
+      code = point_curve_make(&point, label.text, &curves[i], error);
     double lower = point_window(&point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
     if (!code && options->plot && lower > 0)
       code = pooled_rivals(&point.runs, lower, &rivals[i], error);
