@@ -54,6 +54,31 @@ static void loads_balance(void **state) {
   }
 }
 
+/* Sides of a uniaxial load slide along x, those of K99's confined compression do not; neither turns or leaves its line. */
+static void sides_are_held_as_described(void **state) {
+  (void)state;
+  for (int confined = 0; confined < 2; ++confined) {
+    struct dem_inputs inputs = DEM_CASE(confined ? "compression" : "uniaxial", "body.columns=8", "body.rows=8",
+                                        "loading.rate=5 1/s", "loading.ramp=0.5 ms");
+    struct dem_run *run;
+    assert_int_equal(dem_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+    dem_run_advance(run, 1000);
+    double along = 0.0, turned = 0.0, line = 0.0;
+    for (size_t k = 0; k < run->lower_count; ++k) {
+      const struct dem_grain g = dem_system_grain(run->system, run->lower[k]);
+      const struct dem_grain first = dem_system_grain(run->system, run->lower[0]);
+      const struct dem_point *from = &run->tessellation->centroid[run->lower[k]];
+      along = fmax(along, fabs(g.x - from->x));
+      turned = fmax(turned, fabs(g.angle));
+      line = fmax(line, fabs((g.y - from->y) - (first.y - run->tessellation->centroid[run->lower[0]].y)));
+    }
+    assert_true(confined ? along == 0.0 : along > 1e-7);
+    assert_true(turned == 0.0);
+    assert_true(line < 1e-15);
+    dem_run_free(run);
+  }
+}
+
 /* Put a block by hand into an affine deformation: the strains recorded are those put in, the stress is the beams'. */
 static void strains_are_those_put_in(void **state) {
   (void)state;
@@ -191,6 +216,7 @@ static void energy_of_two_discs_on_approach(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work), cmocka_unit_test(loads_balance),
+                                     cmocka_unit_test(sides_are_held_as_described),
                                      cmocka_unit_test(strains_are_those_put_in), cmocka_unit_test(modes_of_breaking),
                                      cmocka_unit_test(threshold_energy_of_a_square_lattice),
                                      cmocka_unit_test(energy_of_two_discs_on_approach),
