@@ -25,6 +25,21 @@ void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, d
                       in->grain.density);
 }
 
+/* Two squares of side s face on, d = 2 s/sqrt(pi): pushed through each other they store at most half kappa s^4 with
+ * kappa = Y/(d S_ref), S_ref = 0.54 d (printed law: half Y s^3/d of work), and have rho s^2 v^2 / 4 to spend. */
+double dem_describe_passing_speed(const struct dem_inputs *in) {
+  const double d = 2 / sqrt(3.14159265358979323846);
+  switch ((enum dem_contact_law)in->contact.law) {
+  case DEM_CONTACT_CONSERVATIVE:
+    return sqrt(2 / (0.54 * d * d) * in->grain.young_modulus / in->grain.density);
+  case DEM_CONTACT_PRINTED:
+    return sqrt(2 / d * in->grain.young_modulus / in->grain.density);
+  case DEM_CONTACT_OFF:
+    break;
+  }
+  return 0;
+}
+
 static void protocol(const struct dem_inputs *in, FILE *out) {
   switch ((enum dem_kind)in->kind) {
   case DEM_DISC_EXPLOSION:
@@ -68,6 +83,8 @@ static void model(const struct dem_inputs *in, FILE *out) {
   fprintf(out, "  contact: %s law, Y %.4g Pa, bonded neighbours %s\n",
           in->contact.law == DEM_CONTACT_PRINTED ? "printed" : "conservative", in->grain.young_modulus,
           in->contact.bonded ? "too" : "not");
+  fprintf(out, "  limit of the model: single grains that close in faster than about %.0f m/s pass through each other\n",
+          dem_describe_passing_speed(in));
   bool damped = in->contact.normal_damping > 0 || in->contact.tangential_damping > 0;
   if (damped)
     fprintf(out, "  damping: normal %.4g /s, tangential %.4g /s, friction %.4g, bonded neighbours %s\n",

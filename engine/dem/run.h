@@ -76,6 +76,8 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
 /* describe.c */
 char *dem_describe_scene(const struct dem_inputs *inputs);
 double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
+/* Closing speed above which two free grains pass through each other: no overlap stores so much energy, m/s. */
+double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
 
 /* fields.c, restart.c */
