@@ -55,10 +55,10 @@ struct reference_dem *reference_dem_create(const struct dem_tessellation *t, con
       struct bond *b = &r->bond[r->bonds++];
       const double di = sqrt(4.0 * t->area[i] / 3.14159265358979323846),
                    dj = sqrt(4.0 * t->area[j] / 3.14159265358979323846);
-      const double s = bonded ? t->side[next] : 0.27 * (di + dj);
+      const double usual = 0.27 * (di + dj), s = bonded ? t->side[next] : usual;
       *b = (struct bond){.i = i, .j = j, .l0 = l, .phi0 = atan2(dy, dx), .beam = bonded};
       b->phi = b->phi0;
-      b->kappa = p->grain_modulus * 0.5 * (1.0 / di + 1.0 / dj) / s;
+      b->kappa = p->grain_modulus * 0.5 * (1.0 / di + 1.0 / dj) / fmax(s, 0.5 * usual);
       if (bonded) {
         const double a = l / (p->beam_modulus * s), c = 12.0 * l * l * l / (p->beam_modulus * s * s * s);
         const double beta = 1.0 / (2.0 * a + c / 12.0), delta = beta * (2.0 * a / c + 1.0 / 3.0);
