@@ -182,7 +182,7 @@ static bool agree_to_finalize(struct farm *farm) {
     farm_signal(farm);
     if (farm->broken || farm_clock_ns() > until) return false;
     if (!now) nanosleep(&(struct timespec){.tv_nsec = sleep_ns}, NULL);
-    if (sleep_ns < FARM_SLEEP_MOST_NS) sleep_ns *= 2;
+    sleep_ns = farm_sleep_longer(sleep_ns);
   }
   return true;
 }

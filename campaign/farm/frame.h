@@ -11,10 +11,10 @@
 #include <stdint.h>
 #include <sys/uio.h>
 
-#define FARM_FRAME_MAGIC UINT32_C(0x31464c43) /* "CLF1"; the digit is the version: raise it when any payload changes   \
-                                               */
-#define FARM_FRAME_LARGEST                                                                                             \
-  ((size_t)1 << 30) /* bytes of payload; MPI counts are int, and a larger size is a torn frame */
+/* "CLF1"; the digit is the version: raise it when any payload changes. */
+#define FARM_FRAME_MAGIC UINT32_C(0x31464c43)
+/* Bytes of payload. MPI counts are int, and a larger size is a torn frame. */
+#define FARM_FRAME_LARGEST ((size_t)1 << 30)
 
 enum farm_frame_kind {
   FARM_FRAME_TASK = 1, /* manager -> slot or rank: the task's bytes */

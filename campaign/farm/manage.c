@@ -6,9 +6,10 @@
 #include "campaign/farm/clock.h"
 #include "campaign/farm/private.h"
 
-#define TICK_NS          (100 * FARM_CLOCK_MS)
-#define SECOND_SIGNAL_NS (100 * FARM_CLOCK_MS) /* closer ones are copies: `timeout` and shells signal child and group  \
-                                                */
+#define TICK_NS (100 * FARM_CLOCK_MS)
+#define SECOND_SIGNAL_NS                                                                                               \
+  (100 * FARM_CLOCK_MS) /* closer ones are copies: `timeout` and shells signal child and group                         \
+                         */
 #define BYE_NS            (10 * FARM_CLOCK_S)
 #define REMOTE_AHEAD_S    0.010 /* work sent ahead to a rank: twice the longest sleep of a main process */
 #define REMOTE_AHEAD_MOST 256
@@ -404,9 +405,7 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
       struct error later;
       fail(&m, farm_link_drain(farm->link, take, &m, &count, m.final == STATUS_OK ? m.error : &later));
     }
-    sleep_ns = heard || count > 0                  ? FARM_SLEEP_LEAST_NS
-               : sleep_ns * 2 < FARM_SLEEP_MOST_NS ? sleep_ns * 2
-                                                   : FARM_SLEEP_MOST_NS;
+    sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(sleep_ns);
     const int64_t after = farm_clock_ns();
     mind_ranks(&m, after, after - looped_ns);
     looped_ns = after;

@@ -12,9 +12,17 @@
 
 #define FARM_HOST_SIZE 64
 
-/* Under MPI nobody can wake a sleeper: look, and when nothing came, sleep twice as long as before. */
+/* Under MPI nobody can wake a sleeper: look, and when nothing came, sleep twice as long as before, up to 5 ms. In a
+ * longer silence the sleep creeps on to 10 ms within half a second: at 5 ms an idle rank was measured at 0.3 % of a
+ * core on a quiet machine but 0.6 % on a loaded one, and who has heard nothing for so long loses nothing by it. */
 #define FARM_SLEEP_LEAST_NS (50 * INT64_C(1000))
-#define FARM_SLEEP_MOST_NS  (5 * INT64_C(1000000))
+#define FARM_SLEEP_USUAL_NS (5 * INT64_C(1000000))
+#define FARM_SLEEP_MOST_NS  (10 * INT64_C(1000000))
+
+static inline int64_t farm_sleep_longer(int64_t sleep_ns) {
+  const int64_t longer = sleep_ns < FARM_SLEEP_USUAL_NS ? 2 * sleep_ns : sleep_ns + sleep_ns / 64;
+  return longer < FARM_SLEEP_MOST_NS ? longer : FARM_SLEEP_MOST_NS;
+}
 
 struct farm_hello {
   int32_t slots, frame_version;

@@ -103,9 +103,7 @@ status farm_serve(struct farm *farm, struct error *error) {
       farm->broken = true;
       return server.failed;
     }
-    sleep_ns = heard || count > 0                  ? FARM_SLEEP_LEAST_NS
-               : sleep_ns * 2 < FARM_SLEEP_MOST_NS ? sleep_ns * 2
-                                                   : FARM_SLEEP_MOST_NS;
+    sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(sleep_ns);
   }
   if (!server.ended) return server.failed;
   if (server.drop) {

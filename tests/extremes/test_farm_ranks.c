@@ -75,9 +75,10 @@ static void idle_ranks_sleep(void **state) {
   assert_true(ended(&it, 20, &out));
   assert_int_equal(orphans(&it, 2), 0);
   assert_int_equal(out.exit_code, STATUS_OK);
-  /* Half a percent of a core each; waiting in MPI_Recv it would be 100 %, with yield 100 % of what is free. */
-  assert_true(out.manager_cpu_s < 0.005 * out.wall_s + 0.002);
-  assert_true(out.waiting_cpu_s / 2 < 0.005 * out.wall_s + 0.002);
+  /* Two percent of a core each. The aim is half a percent, which bench_farm measures; on a loaded machine each waking
+   * costs up to three times as much. Waiting in MPI_Recv would be 100 %, looking every 50 us about 20 %. */
+  assert_true(out.manager_cpu_s < 0.02 * out.wall_s);
+  assert_true(out.waiting_cpu_s / 2 < 0.02 * out.wall_s);
 }
 
 /* A dead rank ends the job in Open MPI 4.1. The manager hears SIGTERM and is called to commit; nothing is left over. */

@@ -214,6 +214,42 @@ static void nobody_waits_behind_a_long_task(void **state) {
   }
 }
 
+static _Atomic int *times_computed; /* set before the slots are forked, shared with them */
+
+static status counting_work(const uint8_t *bytes, size_t size, uint8_t **result, size_t *result_size,
+                            struct error *error) {
+  struct task task;
+  memcpy(&task, bytes, sizeof task);
+  times_computed[task.id]++;
+  return task_work(bytes, size, result, result_size, error);
+}
+
+/* A task taken back from a busy slot and run elsewhere stays in that slot's channel: it must be passed over there. */
+static void computed_once_though_taken_back(void **state) {
+  (void)state;
+  for (int mode = 0; mode < 2; mode++) {
+    times_computed = mmap(NULL, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    assert_true(times_computed != MAP_FAILED);
+    struct farm *farm = NULL;
+    struct error error = {0};
+    assert_int_equal(farm_start(&(struct farm_options){.slots = 2, .in_process = mode}, counting_work, &farm, &error),
+                     STATUS_OK);
+    struct task_list list;
+    task_list_new(&list, 6);
+    for (size_t i = 0; i < list.count; i++)
+      list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 0.3 : 0.01};
+    const struct farm_manager manager = task_list_manager(&list);
+    assert_int_equal(farm_run(farm, &manager, &error), STATUS_OK);
+    task_sleep(0.2); /* the slot reads what is left in its channel */
+    farm_stop(farm, NULL);
+    assert_each_once(&list);
+    for (size_t i = 0; i < list.count; i++)
+      assert_int_equal(times_computed[i], 1);
+    task_list_free(&list);
+    munmap((void *)times_computed, 4096);
+  }
+}
+
 static int open_files(void) {
   int count = 0;
   DIR *directory = opendir("/proc/self/fd");
@@ -283,6 +319,7 @@ int main(void) {
       cmocka_unit_test(the_caller_can_stop),
       cmocka_unit_test(runs_again_after_a_run),
       cmocka_unit_test(nobody_waits_behind_a_long_task),
+      cmocka_unit_test(computed_once_though_taken_back),
       cmocka_unit_test(leaks_nothing),
       cmocka_unit_test(asleep_while_tasks_sleep),
   };
