@@ -7,12 +7,13 @@ ask() { python -c "import sqlite3, sys; print(sqlite3.connect('file:%s?mode=ro' 
 # Runs of many seconds against a limit of a fraction of one: ended, tried again, given up; a raised limit tries again.
 tiny slow "limits: {time: 0.3 s, attempts: 2}"
 sed -i 's/body.diameter: 8 cm/body.diameter: 60 cm/; s/per_point: 3/per_point: 1/; s/\[2 %, 5 %\]/[2 %]/' slow.yaml
+sed -i 's/stop.end_time: 1 ms/stop.end_time: 200 ms, stop.quiet_time: 200 ms/' slow.yaml
 expect 1 "$clast" run slow.yaml -j 2
 says "2 runs failed"
 same "$(ask slow.db "select count(*) || ' ' || group_concat(distinct reason) from attempt")" "4 time_limit" "attempts"
 expect 1 "$clast" run slow.yaml -j 2 # given up: nothing is tried again
 same "$(ask slow.db "select count(*) from attempt")" 4 "attempts after the same command"
-sed -i 's/time: 0.3 s/time: 120 s/; s/60 cm/8 cm/' slow.yaml # (smaller as well, so that this test is quick)
+sed -i 's/limits: {time: 0.3 s/limits: {time: 120 s/; s/60 cm/8 cm/; s/: 200 ms/: 1 ms/g' slow.yaml # (smaller as well, so that this test is quick)
 expect 0 "$clast" run slow.yaml -j 2
 
 # A raised limit alone: the same runs, which the shorter limit had ended.

@@ -7,7 +7,7 @@ slow slow
 rounds=$([ -n "${CLAST_FULL:-}" ] && echo 10 || echo 1)
 expect 0 "$clast" run slow.yaml -j 2 --quiet
 bits slow.db >reference.bits
-same "$(number slow.db 'select count(*) from run')" 36 "runs of the reference"
+same "$(number slow.db 'select count(*) from run')" $((3 * slow_seeds)) "runs of the reference"
 
 # start STORE COMMAND...: in the background, with the signals a terminal would give, until the store has its first runs,
 # which it commits after a second. All on one core, so that the campaign is not over by then.
