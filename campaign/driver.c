@@ -58,6 +58,8 @@ status driver_open(const struct campaign *campaign, struct store *store, const s
              campaign->design.kind, (unsigned long long)design_points(driver->design),
              (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
     code = store_add_campaign(store, campaign->name, campaign->text, plan, &driver->summary.campaign_id, error);
+    if (code == STATUS_OK)
+      code = store_flush(store, error); /* readers see the campaign from its first second */
   }
   if (code != STATUS_OK) {
     driver_free(driver);

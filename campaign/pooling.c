@@ -47,8 +47,9 @@ static status pool(struct store *store, const struct missing_point *which, struc
 
 status pooling_store(struct store *store, int64_t campaign_id, struct error *error) {
   static const char sql[] =
-      "SELECT point_id, results_version FROM point_total AS t WHERE runs > 0 AND point_id IN (SELECT point_id FROM "
-      "campaign_point WHERE campaign_id = :campaign) AND NOT EXISTS (SELECT 1 FROM point_estimate AS e WHERE "
+      "SELECT point_id, results_version FROM point_total AS t WHERE runs > 0 AND (:campaign = 0 OR point_id IN (SELECT "
+      "point_id FROM campaign_point WHERE campaign_id = :campaign)) AND NOT EXISTS (SELECT 1 FROM point_estimate AS e "
+      "WHERE "
       "e.point_id = "
       "t.point_id AND e.results_version = t.results_version) ORDER BY point_id, results_version";
   char number[32];

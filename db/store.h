@@ -125,7 +125,8 @@ status store_check(struct store *store, void (*line)(void *context, const char *
                    struct error *error);
 /* All of `source` that `store` (a writer) lacks, one transaction per source; *added counts the runs. Of a run that both
  * hold, ours stays. Merging twice adds nothing. */
-status store_merge(struct store *store, const char *source, int64_t *added, struct error *error);
+/* *differing: runs that both have with other masses or another state. Ours stay; whoever calls must say so. */
+status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error);
 /* One compact file for hand-over (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 

@@ -3,24 +3,36 @@
 
 #include "analysis/estimates.h"
 #include "campaign/commands/commands.h"
+#include "campaign/pooling.h"
 #include "db/store.h"
 
 static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
+  int64_t disagreeing = 0;
   char warning[512] = "";
   status code = store_open_writer(line->arguments[0], &estimates_table, &store, warning, sizeof warning, error);
-  if (code)
-    return code;
-  if (*warning)
-    fprintf(stderr, "clast: warning: %s\n", warning);
+  if (code) return code;
+  if (*warning) fprintf(stderr, "clast: warning: %s\n", warning);
   for (size_t i = 1; !code && i < line->count; i++) {
-    int64_t added = 0;
-    code = store_merge(store, line->arguments[i], &added, error);
-    if (!code)
-      fprintf(stderr, "%s: %" PRId64 " run%s added\n", line->arguments[i], added, added == 1 ? "" : "s");
+    int64_t added = 0, differing = 0;
+    code = store_merge(store, line->arguments[i], &added, &differing, error);
+    if (!code) fprintf(stderr, "%s: %" PRId64 " run%s added\n", line->arguments[i], added, added == 1 ? "" : "s");
+    if (!code && differing)
+      fprintf(stderr,
+              "clast: warning: %s: %" PRId64
+              " run%s that %s has too gave other results there; those of %s were kept. Runs are the same "
+              "bits on one binary and CPU class only: `clast replay STORE RUN` tells which store can be computed again "
+              "here\n",
+              line->arguments[i], differing, differing == 1 ? "" : "s", line->arguments[0], line->arguments[0]);
+    disagreeing += differing;
   }
+  if (!code) code = pooling_store(store, 0, error);
   status closed = store_close(store, code ? NULL : error);
-  return code ? code : closed;
+  code = code ? code : closed;
+  if (!code && disagreeing)
+    code = status_fail(error, STATUS_CONTENT, "merged, but %" PRId64 " run%s disagree between the stores", disagreeing,
+                       disagreeing == 1 ? "" : "s");
+  return code;
 }
 
 const struct command merge_command = {
@@ -28,8 +40,11 @@ const struct command merge_command = {
     .group = "the store",
     .arguments = "TARGET SOURCE...",
     .summary = "add the runs of other stores to one",
-    .doc = "Adds to TARGET (made if absent) every run of the SOURCES that it lacks, with its point, masses, spectrum and\n"
-           "provenance. Runs are known by identity: merging twice adds nothing, and of a run in both, TARGET's stays.",
+    .doc =
+        "Adds to TARGET (made if absent) every run of the SOURCES that it lacks, with its point, masses, spectrum and\n"
+        "provenance. Runs are known by identity: merging twice adds nothing, and of a run in both, TARGET's stays. "
+        "Should\n"
+        "the two differ in their results, that is said, and the exit code is 65.",
     .examples = "clast merge all.db node1.db node2.db\nclast merge all.db part-*.db",
     .minimum_arguments = 2,
     .maximum_arguments = 10000,

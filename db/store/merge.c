@@ -169,9 +169,19 @@ static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
-status store_merge(struct store *store, const char *source, int64_t *added, struct error *error) {
+/* Runs of one identity must have the same bits: where they have not, another machine or a bug computed otherwise. */
+static status count_differing(sqlite3 *db, int64_t *differing, struct error *error) {
+  return sql_integer(
+      db,
+      "SELECT count(*) FROM main.run a JOIN other.run b USING (identity) WHERE a.state IS NOT b.state OR "
+      "(SELECT masses FROM main.fragment_mass m WHERE m.run_id = a.run_id) IS NOT "
+      "(SELECT masses FROM other.fragment_mass m WHERE m.run_id = b.run_id)",
+      0, differing, error);
+}
+
+status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
   struct store *other = NULL;
-  *added = 0;
+  *added = *differing = 0;
   status result = store_open_reader(source, &other, error); /* refuses what is missing, foreign, newer, older */
   if (result == STATUS_OK) result = store_close(other, error);
   if (result == STATUS_OK) result = store_flush(store, error);
@@ -179,7 +189,8 @@ status store_merge(struct store *store, const char *source, int64_t *added, stru
   if (result != STATUS_OK) return result;
   result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
   if (result == STATUS_OK) {
-    result = merge(store->db, added, error);
+    result = count_differing(store->db, differing, error);
+    if (result == STATUS_OK) result = merge(store->db, added, error);
     if (result == STATUS_OK) result = sql_execute(store->db, "COMMIT", doing, error);
     if (result != STATUS_OK) {
       sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);

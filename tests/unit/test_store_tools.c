@@ -109,13 +109,14 @@ static void points_view_has_the_same_bits(void **state) {
 static void merge_takes_what_is_missing(void **state) {
   (void)state;
   char a[64], b[64], whole[64];
-  int64_t added = 0;
+  int64_t added = 0, differing = -1;
   populated(a, "merge-a", 1, 2, 12, false); /* m = 6 only, 12 replicates */
   populated(b, "merge-b", 2, 2, 10, true);  /* m = 6 and 7, 10 replicates: 20 of them shared */
   struct store *store = writer(a);
-  OK(store_merge(store, b, &added, &error));
+  OK(store_merge(store, b, &added, &differing, &error));
   assert_int_equal(added, 20);
-  OK(store_merge(store, b, &added, &error));
+  assert_int_equal(differing, 0);
+  OK(store_merge(store, b, &added, &differing, &error));
   assert_int_equal(added, 0);
   assert_near(number(store, "SELECT count(*) FROM run"), 44, 0);
   assert_near(number(store, "SELECT count(*) FROM point"), 4, 0);
@@ -136,8 +137,27 @@ static void merge_takes_what_is_missing(void **state) {
   assert_string_equal(x, y);
   free(x);
   free(y);
+  /* a run whose masses differ by one bit is counted, and ours stays */
+  sqlite3 *other = NULL;
+  assert_int_equal(sqlite3_open(b, &other), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(other,
+                                "UPDATE fragment_mass SET masses = CAST(substr(masses, 1, length(masses) - 1) || x'7f' AS BLOB) "
+                                "WHERE run_id = 3",
+                                NULL, NULL, NULL),
+                   SQLITE_OK);
+  sqlite3_close(other);
   store = writer(a);
-  assert_int_equal(store_merge(store, "nothing-here.db", &added, &error), STATUS_MISSING);
+  OK(store_merge(store, b, &added, &differing, &error));
+  assert_int_equal(added, 0);
+  assert_int_equal(differing, 1);
+  OK(store_close(store, &error));
+  x = dump(a);
+  y = dump(whole);
+  assert_string_equal(x, y);
+  free(x);
+  free(y);
+  store = writer(a);
+  assert_int_equal(store_merge(store, "nothing-here.db", &added, &differing, &error), STATUS_MISSING);
   OK(store_close(store, &error));
 }
 
