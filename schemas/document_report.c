@@ -70,18 +70,20 @@ static void write_error(const struct document *document, const struct document_e
       to--;
   }
   if (from == to) return;
+  /* A line that is no UTF-8 may hold anything: its bytes beyond ASCII are shown as '?', one column each. */
+  bool readable = document_guard_text(text + from, to - from) == to - from;
   fprintf(out, "  %s", from > begin ? "..." : "");
   for (size_t i = from; i < to; i++) { /* the guard reports a byte before anything is known of the rest */
     unsigned char byte = (unsigned char)text[i];
-    fputc((byte < 0x20 && byte != '\t') || byte == 0x7F ? '?' : byte, out);
+    fputc((byte < 0x20 && byte != '\t') || byte == 0x7F || (byte >= 0x80 && !readable) ? '?' : byte, out);
   }
   fprintf(out, "%s\n  %s", to < finish ? "..." : "", from > begin ? "   " : "");
   for (size_t i = from; i < start; i++)
-    if (!continues(text[i])) fputc(text[i] == '\t' ? '\t' : ' ', out);
+    if (!readable || !continues(text[i])) fputc(text[i] == '\t' ? '\t' : ' ', out);
   fputc('^', out);
   size_t end = error->end < to ? error->end : to;
   for (size_t i = start + 1; i < end; i++)
-    if (!continues(text[i])) fputc('~', out);
+    if (!readable || !continues(text[i])) fputc('~', out);
   fputc('\n', out);
 }
 

@@ -1,4 +1,6 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
+#include <string.h>
+
 #include "campaign/commands/commands.h"
 #include "campaign/commands/rows.h"
 
@@ -18,7 +20,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   struct rows rows;
   struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = query_group(store, options->by, options->quantity, &sink, error);
+  code = query_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, error);
   code = rows_end(&rows, code, error);
   store_close(store, NULL);
   return code;
@@ -28,8 +30,8 @@ static const struct option_row rows_of_options[] = {
     {"by", 'b', OPTION_TEXT, "AXES", offsetof(struct options, by), 0, 0, "",
      "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs are "
      "pooled."},
-    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, NULL,
-     "Results to average, comma-separated; without it the main ones. `clast explain` lists all."},
+    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, "largest_fraction",
+     "Results to average, comma-separated; main: the five main ones, a wide table. `clast explain` lists all."},
     TABLE_OPTIONS(struct options, table),
 };
 
