@@ -39,11 +39,15 @@ same "$(ask unstable.db "select count(*) from run")" 80 "with failures: 0 it goe
 # Memory: an attempt over its limit costs that run only.
 tiny fat "limits: {memory: 1 MiB, attempts: 1, failures: 0}"
 sed -i 's/body.diameter: 8 cm/body.diameter: 60 cm/; s/per_point: 3/per_point: 1/; s/stop.end_time: 1 ms/stop.end_time: 0.01 ms/' fat.yaml
-expect 1 "$clast" run fat.yaml -j 2
-same "$(ask fat.db "select count(*) || ' ' || group_concat(distinct reason) from attempt")" "4 memory_limit" "attempts"
-sed -i 's/memory: 1 MiB/memory: 1 GiB/' fat.yaml
-expect 0 "$clast" run fat.yaml -j 2
-says "4 runs computed"
+if [ "$sanitized" -eq 0 ]; then
+  expect 1 "$clast" run fat.yaml -j 2
+  same "$(ask fat.db "select count(*) || ' ' || group_concat(distinct reason) from attempt")" "4 memory_limit" "attempts"
+  sed -i 's/memory: 1 MiB/memory: 1 GiB/' fat.yaml
+  expect 0 "$clast" run fat.yaml -j 2
+  says "4 runs computed"
+else # the sanitizers themselves need terabytes of address space
+  ok "(memory limit not tried)"; ok "(its reason neither)"; ok "(nor a raised one)"
+fi
 
 # The store: held by another, foreign, in no folder.
 tiny held
