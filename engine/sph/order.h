@@ -1,0 +1,14 @@
+/* A space-filling order of particles (Morton), so that neighbours are near in memory. Deterministic: ties by id. */
+#ifndef CLAST_ENGINE_SPH_ORDER_H
+#define CLAST_ENGINE_SPH_ORDER_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+/* order[k] = index of the particle that stands at place k. Far-flung particles cost nothing: no grid is allocated.
+ * STATUS_MEMORY. */
+status sph_order_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order, struct error *error);
+
+#endif

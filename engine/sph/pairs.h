@@ -1,0 +1,66 @@
+/* The pair loop: all that two particles do to each other, once a step. Particles stand sorted in space (order.h), so that
+ * neighbours are near in memory, and each pair i < j is visited once: lists of j per i with a skin, reused over steps.
+ *
+ * Per pair, with h = (h_i + h_j)/2, the cubic spline W of support 2h, and sigma the damaged stress with the pressure in it:
+ *   dv_i/dt   = sum_j m_j (sigma_i/rho_i^2 + sigma_j/rho_j^2 - Pi_ij + f^n (R_i + R_j)) . grad_i W      [BA95 eq. 17]
+ *   dv_a/dx_b = sum_j (m_j/rho_i) (v_j - v_i)_a grad_i W_b          [BA95 eq. 18]; m_j/rho_j with `volume_weights`
+ *   heating   = 1/2 sum_j m_j Pi_ij (v_i - v_j) . grad_i W          (viscous, J/kg/s; eq. 4 lacks it)
+ * Pi: Monaghan's viscosity, approaching pairs only (damaged ones included). */
+#ifndef CLAST_ENGINE_SPH_PAIRS_H
+#define CLAST_ENGINE_SPH_PAIRS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+enum sph_precision { SPH_DOUBLE, SPH_FLOAT }; /* float: stored relative positions and pair sums; all else stays double */
+
+struct sph_pair_options {
+  double viscosity_alpha, viscosity_beta;
+  bool strength;            /* stress[] is given; else the pressure alone */
+  bool gradient_correction; /* `moment` is summed and applied to `gradient` */
+  double artificial_stress; /* Monaghan 2000, epsilon of R; 0: absent (not computed) */
+  double spacing_over_h;    /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
+  bool volume_weights;      /* m_j/rho_j instead of m_j/rho_i in the velocity gradient */
+  double periodic[3];       /* m, length of the periodic box along each axis; NaN = open */
+  double skin;              /* share of 2h added to the lists' reach */
+  int precision;            /* enum sph_precision */
+  int threads;              /* OpenMP; the bits do not depend on it */
+};
+
+/* Arrays of n in sorted order; read only. */
+struct sph_pair_fields {
+  const double *x, *y, *z, *h, *vx, *vy, *vz, *mass, *density, *sound_speed;
+  const double *pressure_term; /* -P/rho^2 with the damaged bulk pressure */
+  const double *stress[6];     /* S/rho^2, damaged deviator; NULL without strength. sigma/rho^2 = stress + pressure_term I */
+};
+
+/* Arrays of n in sorted order; overwritten by each pass. */
+struct sph_pair_sums {
+  double *ax, *ay, *az;    /* m/s^2 */
+  double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
+  double *heating;         /* J/kg/s */
+  double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step */
+};
+
+struct sph_pairs; /* opaque: lists, packed records */
+
+/* STATUS_MEMORY. `n` particles at most; nothing is allocated later but by sph_pairs_list when lists must grow. */
+status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error);
+void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
+size_t sph_pairs_bytes(const struct sph_pairs *pairs);
+
+/* Have particles moved (or grown in h) so far that a list may miss a pair? Compares with the positions of the last listing. */
+bool sph_pairs_stale(const struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
+                     const double *h);
+/* New lists for particles in sorted order. Memory is bounded by n, whatever the spatial extent. STATUS_MEMORY. */
+status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
+                      const double *h, struct error *error);
+void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields,
+                   const struct sph_pair_sums *sums);
+/* Mean number of neighbours within 2h at the last pass (both sides counted, itself not). */
+double sph_pairs_neighbours(const struct sph_pairs *pairs);
+
+#endif
