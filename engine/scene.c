@@ -6,6 +6,7 @@
 #include "engine/blake2s.h"
 #include "engine/scene_builtin.h"
 #include "schemas/document.h"
+#include "schemas/near.h"
 
 /* ---- built-in scenes ---- */
 
@@ -30,7 +31,7 @@ static status unknown_builtin(const char *name, struct error *error) {
   const char *near = NULL;
   size_t best = strlen(name) / 2 + 1;
   for (size_t i = 0; scene_builtin_list[i].name; i++) {
-    size_t d = field_distance(name, scene_builtin_list[i].name);
+    size_t d = near_distance(name, strlen(name), scene_builtin_list[i].name);
     if (d < best) best = d, near = scene_builtin_list[i].name;
   }
   if (near)

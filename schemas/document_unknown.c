@@ -1,6 +1,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/near.h"
 
 enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
@@ -14,9 +15,9 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
   char whole[PATH_SIZE], list[LIST_SIZE] = "";
   snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
   const char *near = NULL;
-  size_t best = 1 + (strlen(key->text) / 3 > 2 ? strlen(key->text) / 3 : 2), used = 0;
+  size_t length = strlen(key->text), best = 1 + near_limit(length), used = 0;
   for (size_t i = 0; known && known[i]; i++) {
-    size_t d = field_distance(key->text, known[i]);
+    size_t d = near_distance(key->text, length, known[i]);
     if (d < best && d < strlen(known[i])) best = d, near = known[i];
     if (used < sizeof list) {
       int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);

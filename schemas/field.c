@@ -5,36 +5,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { NAME_LENGTH = 128, QUOTE = 60 };
+#include "schemas/near.h"
+
+enum { QUOTE = 60 };
 
 bool field_is_off(double value) {
   return isnan(value);
 }
 
 /* ---- names ---- */
-
-static size_t distance(const char *a, const char *b) {
-  size_t row[NAME_LENGTH + 1], a_length = strlen(a), b_length = strlen(b);
-  if (a_length > NAME_LENGTH || b_length > NAME_LENGTH) return SIZE_MAX;
-  for (size_t j = 0; j <= b_length; j++)
-    row[j] = j;
-  for (size_t i = 1; i <= a_length; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b_length; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      diagonal = row[j];
-      row[j] = best;
-    }
-  }
-  return row[b_length];
-}
-
-size_t field_distance(const char *a, const char *b) {
-  return distance(a, b);
-}
 
 /* `suffix` is a whole number of trailing words of `path`. */
 static bool ends_with(const char *path, const char *suffix) {
@@ -46,12 +25,12 @@ static bool ends_with(const char *path, const char *suffix) {
 const char *field_nearest(const struct field_table *table, const char *path) {
   /* Compared with every suffix of each path, so that "young_modulos" finds "grain.young_modulus"; a suffix costs a
    * little, so that a whole path wins over one. */
-  size_t best = SIZE_MAX, limit = strlen(path) / 3 > 2 ? strlen(path) / 3 : 2;
+  size_t best = SIZE_MAX, length = strlen(path), limit = near_limit(length);
   const char *found = NULL;
   for (size_t i = 0; i < table->count; i++) {
     for (const char *tail = table->rows[i].path; tail; tail = strchr(tail, '.')) {
       tail += *tail == '.';
-      size_t d = distance(path, tail);
+      size_t d = near_distance(path, length, tail);
       if (d > limit || d >= strlen(tail)) continue;
       d = 2 * d + (tail != table->rows[i].path);
       if (d < best) best = d, found = table->rows[i].path;

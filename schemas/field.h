@@ -71,9 +71,6 @@ bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
  * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
 
-/* Edits (insert, delete, replace) between two names; SIZE_MAX when one is longer than any name of ours. */
-size_t field_distance(const char *a, const char *b);
-
 /* Nearest known path by edit distance, or NULL when nothing is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
 

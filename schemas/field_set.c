@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "schemas/near.h"
+
 enum { QUOTE = 60 };
 
 static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
@@ -56,7 +58,7 @@ static status unknown_choice(const struct field *row, const char *text, struct e
     int n = snprintf(list + used, sizeof list - used, "%s%s", i ? (row->choices[i + 1] ? ", " : " or ") : "",
                      row->choices[i]);
     if (n > 0 && (size_t)n < sizeof list - used) used += (size_t)n;
-    size_t d = field_distance(text, row->choices[i]);
+    size_t d = near_distance(text, strlen(text), row->choices[i]);
     if (d < best && d <= 2 && d < strlen(row->choices[i])) best = d, near = row->choices[i];
   }
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'%s%s%s", row->path, list, QUOTE, text,

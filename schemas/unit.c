@@ -9,6 +9,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "schemas/near.h"
+
 /* Exact definitions: BIPM, The International System of Units, 9th ed. (2019), tables 3, 4, 7 and 8; CGS: dyn, erg. */
 static const struct base {
   const char *name;
@@ -113,26 +115,6 @@ struct parser {
 
 static const struct unit one = {.factor = 1, .times = 1, .per = 1};
 
-static size_t distance(const char *a, size_t a_length, const char *b) {
-  /* Levenshtein, one row; names here are short. */
-  size_t row[32], b_length = strlen(b);
-  if (a_length > 16 || b_length >= 31) return SIZE_MAX;
-  for (size_t j = 0; j <= b_length; j++)
-    row[j] = j;
-  for (size_t i = 1; i <= a_length; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b_length; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      diagonal = row[j];
-      row[j] = best;
-    }
-  }
-  return row[b_length];
-}
-
 /* The nearest known unit to a name that is none, into `out`; false when nothing is near. */
 static bool nearest(const char *name, size_t length, char out[16]) {
   for (size_t i = 0; i < sizeof habits / sizeof habits[0]; i++)
@@ -145,7 +127,7 @@ static bool nearest(const char *name, size_t length, char out[16]) {
     for (size_t p = 0; p < (bases[b].prefixes ? 8u : 1u); p++) {
       char candidate[16];
       snprintf(candidate, sizeof candidate, "%s%s", usual[p], bases[b].name);
-      size_t d = 2 * distance(name, length, candidate);
+      size_t d = 2 * near_distance(name, length, candidate);
       if (strlen(candidate) == length && strncasecmp(candidate, name, length) == 0) d = 1; /* "KM", "gpa" */
       if (d < best && d <= (length > 2 ? 2u : 1u)) best = d, strcpy(out, candidate);
     }

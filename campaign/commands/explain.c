@@ -8,6 +8,7 @@
 #include "campaign/commands/explain.h"
 #include "campaign/commands/table.h"
 #include "engine/scene.h"
+#include "schemas/near.h"
 
 enum { TABLES_MAXIMUM = 24 };
 
@@ -42,7 +43,7 @@ static status explain_path(const char *path, struct error *error) {
     const struct field *row = field_find(list[i], path, &missed);
     if (!row && !has_prefix(list[i], path)) {
       const char *near = field_nearest(list[i], path);
-      if (near && (!nearest || option_distance(path, near) < option_distance(path, nearest)))
+      if (near && (!nearest || near_distance(path, strlen(path), near) < near_distance(path, strlen(path), nearest)))
         nearest = near;
       continue;
     }

@@ -7,37 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, COLUMN = 26, WIDTH = 96, DISTANCE_MAXIMUM = 63 };
+#include "schemas/near.h"
 
-size_t option_distance(const char *a, const char *b) {
-  size_t n = strlen(a), m = strlen(b);
-  if (n > DISTANCE_MAXIMUM || m > DISTANCE_MAXIMUM)
-    return SIZE_MAX;
-  size_t rows[3][DISTANCE_MAXIMUM + 1]; /* the optimal string alignment distance, three rows at a time */
-  for (size_t j = 0; j <= m; j++)
-    rows[0][j] = j;
-  for (size_t i = 1; i <= n; i++) {
-    size_t *row = rows[i % 3], *above = rows[(i + 2) % 3], *second = rows[(i + 1) % 3];
-    row[0] = i;
-    for (size_t j = 1; j <= m; j++) {
-      size_t best = above[j - 1] + (a[i - 1] != b[j - 1]);
-      if (above[j] + 1 < best)
-        best = above[j] + 1;
-      if (row[j - 1] + 1 < best)
-        best = row[j - 1] + 1;
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && second[j - 2] + 1 < best)
-        best = second[j - 2] + 1;
-      row[j] = best;
-    }
-  }
-  return rows[n % 3][m];
-}
+enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, COLUMN = 26, WIDTH = 96, WORD_MAXIMUM = 63 };
 
 const char *option_nearest(const char *typed, size_t count, const char *const *names) {
   const char *nearest = NULL;
-  size_t least = strlen(typed) / 3 + 2; /* must stay below */
+  size_t length = strlen(typed), least = near_limit(length) + 1; /* must stay below */
   for (size_t i = 0; i < count; i++) {
-    size_t distance = option_distance(typed, names[i]);
+    size_t distance = near_distance(typed, length, names[i]);
     if (distance < least) {
       least = distance;
       nearest = names[i];
@@ -92,7 +70,7 @@ static status unknown_option(const struct command *command, const char *typed, i
   if (letter)
     return status_fail(error, STATUS_USAGE, "clast %s has no option -%c; `clast %s --help` lists them", command->name,
                        letter, command->name);
-  char word[DISTANCE_MAXIMUM + 1];
+  char word[WORD_MAXIMUM + 1];
   snprintf(word, sizeof word, "%.*s", (int)strcspn(typed + 2, "="), typed + 2);
   const char *nearest = option_nearest(word, count, names);
   return status_fail(error, STATUS_USAGE, "clast %s has no option --%s%s%s%s `clast %s --help` lists them",

@@ -73,9 +73,7 @@ void option_help(const struct command *command, FILE *out);
 /* The bash completion script of all commands. */
 void option_completion(size_t count, const struct command *const *commands, FILE *out);
 
-/* Edits (insert, delete, replace, swap of neighbours) that turn a into b; for texts longer than 63 it is SIZE_MAX. */
-size_t option_distance(const char *a, const char *b);
-/* The nearest of `count` names to what was typed, or NULL when none is near (at most a third of its letters, +1). */
+/* The nearest of `count` names to what was typed, or NULL when none is near (schemas/near.h). */
 const char *option_nearest(const char *typed, size_t count, const char *const *names);
 
 #endif

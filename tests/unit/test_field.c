@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/near.h"
 
 struct thing {
   double length, limit, angle;
@@ -137,15 +138,19 @@ static void finds_by_suffix(void **state) {
   assert_null(field_find(&table, "", &error));
 }
 
-static void distances_are_levenshtein(void **state) {
+static void distances_count_slips(void **state) {
   (void)state;
-  assert_int_equal(field_distance("kitten", "sitting"), 3);
-  assert_int_equal(field_distance("", "abc"), 3);
-  assert_int_equal(field_distance("abc", "abc"), 0);
+  assert_int_equal(near_distance("kitten", 6, "sitting"), 3);
+  assert_int_equal(near_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
+  assert_int_equal(near_distance("", 0, "abc"), 3);
+  assert_int_equal(near_distance("abc", 3, "abc"), 0);
+  assert_int_equal(near_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
+  assert_int_equal(near_limit(1), 0);
+  assert_int_equal(near_limit(12), 4);
   char lengthy[400];
   memset(lengthy, 'a', sizeof lengthy);
   lengthy[399] = 0;
-  assert_true(field_distance(lengthy, "a") == SIZE_MAX);
+  assert_true(near_distance(lengthy, 399, "a") == SIZE_MAX);
 }
 
 static void conditions_chain(void **state) {
@@ -421,7 +426,7 @@ static void bytes_are_pinned_and_guarded(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(defaults_fill_everything),  cmocka_unit_test(finds_by_suffix),
-      cmocka_unit_test(distances_are_levenshtein), cmocka_unit_test(conditions_chain),
+      cmocka_unit_test(distances_count_slips), cmocka_unit_test(conditions_chain),
       cmocka_unit_test(parses_or_says_why),        cmocka_unit_test(sets_what_suits),
       cmocka_unit_test(json_and_identity),         cmocka_unit_test(explains),
       cmocka_unit_test(bytes_round_trip),          cmocka_unit_test(bytes_are_pinned_and_guarded),
