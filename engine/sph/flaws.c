@@ -59,11 +59,24 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
     code = status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
     goto cleanup;
   }
-  double log_kv = log(law->weibull.k) + log(law->volume);
+  if (!(law->weibull.m > 0 && law->weibull.k > 0 && law->volume > 0) ||
+      !isfinite(law->weibull.m + law->weibull.k + law->volume)) {
+    code = status_fail(error, STATUS_CONTENT, "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.",
+                       law->weibull.m, law->weibull.k, law->volume);
+    goto cleanup;
+  }
+  const double log_kv = log(law->weibull.k) + log(law->volume);
   double gamma = 0; /* cumulative unit exponentials */
   size_t without = n;
+  if (law->exempt)
+    for (size_t i = 0; i < n; i++)
+      without -= has[i] = law->exempt[i] != 0;
+  if (n && !without) {
+    code = status_fail(error, STATUS_CONTENT, "all %zu particles of a body lie where it shall have no flaws.", n);
+    goto cleanup;
+  }
   if (!most) most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
-  for (uint64_t f = 0; without && f < most; f++) {
+  for (uint64_t f = 0; law->number ? f < law->number : without && f < most; f++) {
     double rank = (double)(f + 1);
     if (law->draw == SPH_FLAWS_POISSON) {
       gamma -= log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, f));
@@ -79,13 +92,22 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
     without -= !has[i];
     has[i] = 1;
   }
-  if (without) {
+  if (law->number)
+    for (size_t i = 0; i < n && !code; i++) {
+      if (has[i]) continue;
+      const double wait = -log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, ~(uint64_t)i));
+      const double last = law->draw == SPH_FLAWS_POISSON ? gamma : (double)law->number;
+      const double rank = last + wait * (law->share ? 1 / law->share[i] : (double)n);
+      if (!push(&pile, (struct placed){i, (log(rank) - log_kv) / law->weibull.m}))
+        code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", pile.count);
+    }
+  else if (without) {
     code =
         status_fail(error, STATUS_CONTENT,
                     "%zu of %zu particles got no flaw within %llu flaws: their sizes differ too much for one flaw each",
                     without, n, (unsigned long long)most);
-    goto cleanup;
   }
+  if (code) goto cleanup;
   *out = gather(&pile, n);
   if (!*out) code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", pile.count);
 cleanup:

@@ -22,6 +22,11 @@ struct sph_flaw_law {
   int draw;      /* enum sph_flaw_draw */
   uint64_t seed;
   uint64_t body; /* bodies of one seed have flaws of their own */
+  /* For bodies whose particles differ much in size; 0: draw until every particle has a flaw. Else so many are drawn, and a
+   * particle i that got none is given the first it would get later: at rank last + E / share[i], E a unit exponential. */
+  uint64_t number;
+  const double *share;         /* with `number`: part of the volume of each particle; NULL: 1/n */
+  const unsigned char *exempt; /* particles that have no flaws (owner() must not name them); NULL: none */
 };
 
 /* Flaws by particle: particle i has first[i] .. first[i+1]-1, log_strain ascending within it. */
@@ -37,7 +42,8 @@ typedef size_t (*sph_flaws_owner)(void *context, uint64_t flaw);
 #define SPH_FLAWS_NOBODY ((size_t)-1)
 
 /* Draws until each of n particles has a flaw (owner(), or NULL: a random particle), or `most` flaws are out (0: 64 n ln
- * n). STATUS_MEMORY; STATUS_CONTENT when some particle got none within the limit. */
+ * n). STATUS_MEMORY; STATUS_CONTENT when some particle got none within the limit, when none may have one, or when m, k, or
+ * the volume is no positive number. */
 status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
                       struct sph_flaws **out, struct error *error);
 void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */

@@ -38,4 +38,8 @@ struct sph_particles {
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
 void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
 
+/* Most bytes that this process may ever have: the machine's memory, or its limit of address space. What needs more is
+ * refused before anything is allocated, with the number. */
+size_t sph_particles_memory(void);
+
 #endif

@@ -1,0 +1,318 @@
+#include "engine/sph/lattice.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/random.h"
+#include "engine/sph/particles.h"
+#include "engine/sph/relax.h"
+
+/* A right-angled cell with points at `basis` (fractions of its sides). Sides in spacings: the hexagonal lattice's
+ * neighbours are 2^(1/6) spacings apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
+struct cell {
+  double side[3]; /* of a row's point, of a row, of a layer: in spacings */
+  int rows, layers; /* how many make a period: in y, in z */
+  int count;
+  double basis[4][3];
+};
+static const double hexagonal = 1.122462048309373;
+static const struct cell cells[] = {
+    [SPH_LATTICE_HEXAGONAL] = {{1.122462048309373, 0.9720806486198328, 0.9164864246657354},
+                               2,
+                               2,
+                               4,
+                               {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 1. / 6, 0.5}, {0, 2. / 3, 0.5}}},
+    [SPH_LATTICE_CUBIC] = {{1, 1, 1}, 1, 1, 1, {{0, 0, 0}}},
+};
+
+static double period(const struct cell *cell, int direction) {
+  return cell->side[direction] * (direction == 0 ? 1 : direction == 1 ? cell->rows : cell->layers);
+}
+
+double sph_lattice_period(int kind, double spacing, int direction, double at_least) {
+  const double one = spacing * (kind == SPH_LATTICE_IRREGULAR ? 1 : period(&cells[kind], direction));
+  return one * fmax(1, ceil(at_least / one * (1 - 1e-12)));
+}
+
+void sph_lattice_empty(struct sph_points *points) {
+  free(points->x);
+  free(points->y);
+  free(points->z);
+  free(points->share);
+  *points = (struct sph_points){0};
+}
+
+static status allocate(struct sph_points *points, size_t n, bool graded, struct error *error) {
+  points->n = n;
+  points->x = malloc(n * sizeof *points->x);
+  points->y = malloc(n * sizeof *points->y);
+  points->z = malloc(n * sizeof *points->z);
+  points->share = graded ? malloc(n * sizeof *points->share) : NULL;
+  if (points->x && points->y && points->z && (points->share || !graded)) return STATUS_OK;
+  return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
+}
+
+/* ---- boxes along the axes: whole rows, stretched to fit ---- */
+
+static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box, double wanted,
+                    size_t best[3]) {
+  const double spacing = cbrt(sph_shape_volume(box) / wanted);
+  double ideal[3], least = INFINITY;
+  int step[3];
+  for (int k = 0; k < 3; k++) {
+    ideal[k] = box->side[k] / (spacing * cell->side[k]);
+    step[k] = lattice->periodic[k] ? (k == 1 ? cell->rows : k == 2 ? cell->layers : 1) : 1;
+  }
+  enum { AROUND = 3 };
+  for (int trial = 0; trial < (2 * AROUND) * (2 * AROUND) * (2 * AROUND); trial++) {
+    const int shift[3] = {trial % (2 * AROUND) - AROUND + 1, trial / (2 * AROUND) % (2 * AROUND) - AROUND + 1,
+                          trial / (4 * AROUND * AROUND) - AROUND + 1};
+    double count[3], n = 1, widest = 0, narrowest = INFINITY;
+    for (int k = 0; k < 3; k++) {
+      count[k] = fmax(1, floor(ideal[k] / step[k]) + shift[k]) * step[k];
+      n *= count[k];
+      widest = fmax(widest, ideal[k] / count[k]);
+      narrowest = fmin(narrowest, ideal[k] / count[k]);
+    }
+    /* A number 1 % off counts as much as a lattice 2 % wider one way than another; 0.2 % off costs nothing. */
+    const double off = fmax(0, fabs(log(n / wanted)) - 0.002) / 0.01, uneven = log(widest / narrowest) / 0.02;
+    const double cost = off * off + uneven * uneven;
+    if (cost < least) {
+      least = cost;
+      for (int k = 0; k < 3; k++)
+        best[k] = (size_t)count[k];
+    }
+  }
+}
+
+static status fill_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
+                       double wanted, struct sph_points *points, struct error *error) {
+  size_t count[3];
+  fit_box(lattice, cell, box, wanted, count);
+  status code = allocate(points, count[0] * count[1] * count[2], false, error);
+  if (code) return code;
+  points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
+  double step[3], corner[3];
+  points->stretch = 1;
+  for (int k = 0; k < 3; k++) {
+    step[k] = box->side[k] / (double)count[k];
+    corner[k] = box->centre[k] - 0.5 * box->side[k];
+    const double stretch = step[k] / (points->spacing * cell->side[k]);
+    points->stretch = fmax(points->stretch, fmax(stretch, 1 / stretch));
+  }
+  const bool shifted = cell->rows == 2; /* rows stand in the gaps of their neighbours, half a point to and fro */
+  size_t i = 0;
+  for (size_t layer = 0; layer < count[2]; layer++)
+    for (size_t row = 0; row < count[1]; row++)
+      for (size_t at = 0; at < count[0]; at++, i++) {
+        const double x = shifted ? 0.25 + 0.5 * (double)((row + layer) % 2) : 0.5;
+        const double y = shifted ? 1. / 3 + 1. / 3 * (double)(layer % 2) : 0.5;
+        points->x[i] = corner[0] + ((double)at + x) * step[0];
+        points->y[i] = corner[1] + ((double)row + y) * step[1];
+        points->z[i] = corner[2] + ((double)layer + 0.5) * step[2];
+      }
+  return STATUS_OK;
+}
+
+/* ---- lattices cut by a surface ---- */
+
+struct cut {
+  const struct cell *cell;
+  const struct sph_shape *shape;
+  double frame[3][3]; /* columns: the lattice's axes */
+  double side[3];     /* m, of the cell with all its points */
+  double reach[3];    /* m, of the shape along the lattice's axes */
+  bool layered;       /* layers fitted to a cylinder's length: the frame is the cylinder's */
+  bool local;         /* inside is decided in the lattice's frame */
+};
+
+static bool inside(const struct cut *c, const double p[3], double world[3]) {
+  const struct sph_shape *s = c->shape;
+  if (c->local) {
+    const double across = p[0] * p[0] + p[1] * p[1];
+    if (s->kind == SPH_SHAPE_SPHERE) return across + p[2] * p[2] < s->radius * s->radius;
+    return across < s->radius * s->radius && across >= s->inner_radius * s->inner_radius &&
+           fabs(p[2]) < 0.5 * s->length;
+  }
+  for (int k = 0; k < 3; k++)
+    world[k] = s->centre[k] + c->frame[k][0] * p[0] + c->frame[k][1] * p[1] + c->frame[k][2] * p[2];
+  return sph_shape_inside(s, world);
+}
+
+/* Counts, and with `points` stores (relative to the centre, in the lattice's frame), what lies inside. */
+static size_t cut(const struct cut *c, const double offset[3], struct sph_points *points) {
+  int64_t low[3], high[3];
+  for (int k = 0; k < 3; k++) { /* offset and basis are each within a cell */
+    low[k] = (int64_t)floor(-c->reach[k] / c->side[k]) - 2;
+    high[k] = (int64_t)ceil(c->reach[k] / c->side[k]) + 1;
+  }
+  size_t n = 0;
+  double p[3], world[3];
+  for (int64_t iz = low[2]; iz <= high[2]; iz++)
+    for (int64_t iy = low[1]; iy <= high[1]; iy++)
+      for (int b = 0; b < c->cell->count; b++) {
+        const double *basis = c->cell->basis[b];
+        p[2] = ((double)iz + basis[2] + offset[2]) * c->side[2];
+        p[1] = ((double)iy + basis[1] + offset[1]) * c->side[1];
+        if (fabs(p[2]) >= c->reach[2] || fabs(p[1]) >= c->reach[1]) continue;
+        for (int64_t ix = low[0]; ix <= high[0]; ix++) {
+          p[0] = ((double)ix + basis[0] + offset[0]) * c->side[0];
+          if (fabs(p[0]) >= c->reach[0] || !inside(c, p, world)) continue;
+          if (points) {
+            points->x[n] = p[0];
+            points->y[n] = p[1];
+            points->z[n] = p[2];
+          }
+          n++;
+        }
+      }
+  return n;
+}
+
+/* Three uniforms: from the seed, or (not turned) first the middle of a point, then an even cover of the cell. */
+static void offsets(const struct sph_lattice *lattice, uint64_t trial, double out[3]) {
+  static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  uint64_t bits[4];
+  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, trial + 1, bits);
+  for (int k = 0; k < 3; k++)
+    out[k] = lattice->turned ? random_uniform(bits[k]) : fmod((double)trial * weyl[k], 1);
+}
+
+static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uniform over rotations: Shoemake 1992 */
+  uint64_t bits[4];
+  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, 0, bits);
+  const double u = random_uniform(bits[0]), a = 6.283185307179586 * random_uniform(bits[1]),
+               b = 6.283185307179586 * random_uniform(bits[2]);
+  const double x = sqrt(1 - u) * sin(a), y = sqrt(1 - u) * cos(a), z = sqrt(u) * sin(b), w = sqrt(u) * cos(b);
+  const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      frame[i][j] = matrix[i][j];
+}
+
+static status fill_cut(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *shape,
+                       double wanted, struct sph_points *points, struct error *error) {
+  struct cut c = {.cell = cell, .shape = shape};
+  const double spacing = cbrt(sph_shape_volume(shape) / wanted);
+  c.layered = shape->kind == SPH_SHAPE_CYLINDER && !lattice->turned;
+  c.local = c.layered || shape->kind == SPH_SHAPE_SPHERE;
+  sph_shape_frame(shape, c.frame);
+  if (lattice->turned) turn(lattice, c.frame);
+  points->stretch = 1;
+  for (int k = 0; k < 3; k++)
+    c.side[k] = spacing * period(cell, k);
+  if (c.layered) {
+    const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? cell->layers : 1;
+    const double ideal = shape->length / (spacing * cell->side[2]), layers = fmax(1, round(ideal / step)) * step;
+    const double taller = ideal / layers;
+    c.side[2] *= taller;
+    c.side[0] /= sqrt(taller);
+    c.side[1] /= sqrt(taller);
+    points->stretch = fmax(taller, 1 / taller);
+  }
+  for (int k = 0; k < 3; k++) {
+    const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]};
+    c.reach[k] = sph_shape_reach(shape, axis);
+  }
+  /* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
+   * look until it fits. */
+  const uint64_t trials = wanted < 2000 ? 1000 : 100;
+  double best[3] = {0}, off = INFINITY;
+  size_t n = 0;
+  for (uint64_t trial = 0; trial < trials && off > 0.002; trial++) {
+    double offset[3];
+    offsets(lattice, trial, offset);
+    if (c.layered) { /* half a layer from the end */
+      const double end = (0.5 * c.side[2] / cell->layers - 0.5 * shape->length) / c.side[2];
+      offset[2] = end - floor(end);
+    }
+    const size_t count = cut(&c, offset, NULL);
+    if (count && fabs((double)count - wanted) / wanted < off) {
+      off = fabs((double)count - wanted) / wanted;
+      n = count;
+      for (int k = 0; k < 3; k++)
+        best[k] = offset[k];
+    }
+  }
+  if (!n || (double)n < 0.5 * wanted)
+    return status_fail(error, STATUS_CONTENT,
+                       "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted, spacing);
+  status code = allocate(points, n, false, error);
+  if (code) return code;
+  cut(&c, best, points);
+  points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
+  /* Scale to exactly V/n per particle (layers stay), and put the centre of mass where the shape has it. */
+  const double ratio = wanted / (double)n, across = c.layered ? sqrt(ratio) : cbrt(ratio), along = c.layered ? 1 : across;
+  double mean[3] = {0};
+  for (size_t i = 0; i < n; i++) {
+    mean[0] += points->x[i];
+    mean[1] += points->y[i];
+    mean[2] += c.layered ? 0 : points->z[i];
+  }
+  for (size_t i = 0; i < n; i++) {
+    const double p[3] = {across * (points->x[i] - mean[0] / (double)n), across * (points->y[i] - mean[1] / (double)n),
+                         along * (points->z[i] - mean[2] / (double)n)};
+    double *const out[3] = {&points->x[i], &points->y[i], &points->z[i]};
+    for (int k = 0; k < 3; k++)
+      *out[k] = shape->centre[k] + c.frame[k][0] * p[0] + c.frame[k][1] * p[1] + c.frame[k][2] * p[2];
+  }
+  return STATUS_OK;
+}
+
+static status check(const struct sph_lattice *lattice, const struct sph_shape *shape, double *wanted,
+                    struct error *error) {
+  status code = sph_shape_check(shape, error);
+  if (code) return code;
+  const double volume = sph_shape_volume(shape);
+  *wanted = lattice->particles;
+  if (isnan(*wanted)) {
+    if (!(lattice->spacing > 0 && isfinite(lattice->spacing)))
+      return status_fail(error, STATUS_CONTENT, "the spacing of particles is %g m: give a positive length, or a number of particles.",
+                         lattice->spacing);
+    *wanted = volume / (lattice->spacing * lattice->spacing * lattice->spacing);
+    if (!(*wanted >= 0.5))
+      return status_fail(error, STATUS_CONTENT, "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.",
+                         lattice->spacing, volume);
+  }
+  if (!(*wanted >= 0.5))
+    return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
+  if (!(*wanted * 160 < (double)sph_particles_memory()) || *wanted > 4e9)
+    return status_fail(error, STATUS_MEMORY, "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.",
+                       *wanted, *wanted * 160 / 1e9, (double)sph_particles_memory() / 1e9);
+  *wanted = fmax(1, round(*wanted));
+  for (int k = 0; k < 3; k++)
+    if (lattice->periodic[k]) {
+      const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit);
+      if (shape->kind == SPH_SHAPE_SPHERE || lattice->turned)
+        return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.",
+                           shape->kind == SPH_SHAPE_SPHERE ? "a sphere" : "a turned lattice", "xyz"[k]);
+      const double *axis = shape->axis;
+      if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
+        return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", "xyz"[k]);
+      if (fabs(shape->centre[k] - half) > 1e-9 * half)
+        return status_fail(error, STATUS_CONTENT, "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.",
+                           "xyz"[k], half, shape->centre[k]);
+    }
+  return STATUS_OK;
+}
+
+status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                        struct error *error) {
+  *points = (struct sph_points){0};
+  double wanted;
+  status code = check(lattice, shape, &wanted, error);
+  if (code) return code;
+  if (lattice->kind == SPH_LATTICE_IRREGULAR || lattice->grading.fine > 0)
+    code = sph_relax_fill(lattice, shape, points, error);
+  else if (shape->kind == SPH_SHAPE_BOX && !lattice->turned)
+    code = fill_box(lattice, &cells[lattice->kind], shape, wanted, points, error);
+  else
+    code = fill_cut(lattice, &cells[lattice->kind], shape, wanted, points, error);
+  if (code)
+    sph_lattice_empty(points);
+  else if (lattice->kind != SPH_LATTICE_IRREGULAR && !(lattice->grading.fine > 0))
+    points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
+  return code;
+}

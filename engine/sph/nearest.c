@@ -1,0 +1,186 @@
+#include "engine/sph/nearest.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { LEAF = 8, DEEPEST = 64 };
+
+/* Node k covers a run of points, halved between children 2k + 1 and 2k + 2 by a plane through its widest direction. */
+struct node {
+  double plane;
+  int direction;
+};
+
+struct sph_nearest {
+  size_t n, inner; /* nodes that are halved: 0 .. inner - 1 */
+  struct node *node;
+  double (*at)[3];
+  uint32_t *id; /* of at[k] */
+};
+
+static void swap(struct sph_nearest *t, size_t a, size_t b) {
+  const double x = t->at[a][0], y = t->at[a][1], z = t->at[a][2];
+  const uint32_t id = t->id[a];
+  for (int k = 0; k < 3; k++)
+    t->at[a][k] = t->at[b][k];
+  t->id[a] = t->id[b];
+  t->at[b][0] = x;
+  t->at[b][1] = y;
+  t->at[b][2] = z;
+  t->id[b] = id;
+}
+
+/* Quickselect: afterwards what stands before `middle` is at most, what follows at least, its coordinate. */
+static void halve(struct sph_nearest *t, size_t low, size_t high, size_t middle, int direction) {
+  while (high - low > 1) {
+    const double a = t->at[low][direction], b = t->at[low + (high - low) / 2][direction], c = t->at[high - 1][direction];
+    const double pivot = fmax(fmin(a, b), fmin(fmax(a, b), c));
+    size_t i = low, j = high - 1;
+    while (i <= j) {
+      while (t->at[i][direction] < pivot)
+        i++;
+      while (t->at[j][direction] > pivot)
+        j--;
+      if (i > j) break;
+      swap(t, i, j);
+      i++;
+      if (!j) break;
+      j--;
+    }
+    if (middle <= j)
+      high = j + 1;
+    else if (middle >= i)
+      low = i;
+    else
+      return;
+  }
+}
+
+static void build(struct sph_nearest *t, size_t k, size_t low, size_t high) {
+  if (k >= t->inner) return;
+  double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = low; i < high; i++)
+    for (int d = 0; d < 3; d++) {
+      least[d] = fmin(least[d], t->at[i][d]);
+      most[d] = fmax(most[d], t->at[i][d]);
+    }
+  int direction = 0;
+  for (int d = 1; d < 3; d++)
+    if (most[d] - least[d] > most[direction] - least[direction]) direction = d;
+  const size_t middle = low + (high - low) / 2;
+  halve(t, low, high, middle, direction);
+  t->node[k] = (struct node){t->at[middle][direction], direction};
+  build(t, 2 * k + 1, low, middle);
+  build(t, 2 * k + 2, middle, high);
+}
+
+status sph_nearest_create(size_t n, const double *x, const double *y, const double *z, struct sph_nearest **out,
+                          struct error *error) {
+  *out = NULL;
+  size_t leaves = 1;
+  while (leaves * LEAF < n)
+    leaves *= 2;
+  struct sph_nearest *t = calloc(1, sizeof *t);
+  if (t) {
+    *t = (struct sph_nearest){.n = n, .inner = leaves - 1};
+    t->node = malloc(leaves * sizeof *t->node);
+    t->at = malloc((n ? n : 1) * sizeof *t->at);
+    t->id = malloc((n ? n : 1) * sizeof *t->id);
+  }
+  if (!t || !t->node || !t->at || !t->id) {
+    sph_nearest_free(t);
+    return status_fail(error, STATUS_MEMORY, "no memory to search among %zu particles", n);
+  }
+  for (size_t i = 0; i < n; i++) {
+    t->at[i][0] = x[i];
+    t->at[i][1] = y[i];
+    t->at[i][2] = z[i];
+    t->id[i] = (uint32_t)i;
+  }
+  build(t, 0, 0, n);
+  *out = t;
+  return STATUS_OK;
+}
+
+void sph_nearest_free(struct sph_nearest *t) {
+  if (!t) return;
+  free(t->node);
+  free(t->at);
+  free(t->id);
+  free(t);
+}
+
+/* A part of the tree still to be looked at: squared distance of its box from the point, and per direction. */
+struct part {
+  size_t k, low, high;
+  double squares, away[3];
+};
+
+/* Goes down to a leaf on the point's side, keeping the other halves on the stack. */
+static struct part descend(const struct sph_nearest *t, const double p[3], struct part part, struct part *stack,
+                           int *depth) {
+  while (part.k < t->inner) {
+    const struct node node = t->node[part.k];
+    const double beyond = p[node.direction] - node.plane;
+    const size_t middle = part.low + (part.high - part.low) / 2;
+    struct part other = part;
+    other.squares += beyond * beyond - part.away[node.direction] * part.away[node.direction];
+    other.away[node.direction] = beyond;
+    if (beyond < 0) {
+      other.k = 2 * part.k + 2;
+      other.low = middle;
+      part.k = 2 * part.k + 1;
+      part.high = middle;
+    } else {
+      other.k = 2 * part.k + 1;
+      other.high = middle;
+      part.k = 2 * part.k + 2;
+      part.low = middle;
+    }
+    stack[(*depth)++] = other;
+  }
+  return part;
+}
+
+size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) {
+  struct part stack[DEEPEST];
+  int depth = 0;
+  double best = INFINITY;
+  size_t id = SIZE_MAX;
+  stack[depth++] = (struct part){.high = t->n};
+  while (depth) {
+    struct part part = stack[--depth];
+    /* rounding of the running sum of squares must not hide a tie */
+    if (part.squares > best * (1 + 1e-12)) continue;
+    part = descend(t, p, part, stack, &depth);
+    for (size_t i = part.low; i < part.high; i++) {
+      const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
+      const double squares = dx * dx + dy * dy + dz * dz;
+      if (squares < best || (squares == best && t->id[i] < id)) {
+        best = squares;
+        id = t->id[i];
+      }
+    }
+  }
+  return id;
+}
+
+size_t sph_nearest_within(const struct sph_nearest *t, const double p[3], double radius, uint32_t *out, size_t room) {
+  struct part stack[DEEPEST];
+  int depth = 0;
+  size_t count = 0;
+  const double reach = radius * radius;
+  stack[depth++] = (struct part){.high = t->n};
+  while (depth) {
+    struct part part = stack[--depth];
+    if (part.squares > reach * (1 + 1e-12)) continue;
+    part = descend(t, p, part, stack, &depth);
+    for (size_t i = part.low; i < part.high; i++) {
+      const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
+      if (dx * dx + dy * dy + dz * dz > reach) continue;
+      if (count < room) out[count] = t->id[i];
+      count++;
+    }
+  }
+  return count;
+}
