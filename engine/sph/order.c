@@ -1,0 +1,53 @@
+#include "engine/sph/order.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct key {
+  uint64_t axis[3];
+  uint32_t id;
+};
+
+/* Is the highest set bit of a below that of b? */
+static int lower_bit(uint64_t a, uint64_t b) {
+  return a < b && a < (a ^ b);
+}
+
+static int compare(const void *left, const void *right) {
+  const struct key *a = left, *b = right;
+  int axis = 0;
+  uint64_t highest = 0;
+  for (int d = 0; d < 3; d++) {
+    uint64_t difference = a->axis[d] ^ b->axis[d];
+    if (lower_bit(highest, difference)) highest = difference, axis = d;
+  }
+  if (a->axis[axis] != b->axis[axis]) return a->axis[axis] < b->axis[axis] ? -1 : 1;
+  return a->id < b->id ? -1 : a->id > b->id;
+}
+
+status sph_order_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order, struct error *error) {
+  const double *place[3] = {x, y, z};
+  struct key *keys = malloc((n ? n : 1) * sizeof *keys);
+  if (!keys) return status_fail(error, STATUS_MEMORY, "no memory to sort %zu particles", n);
+  double lowest[3], extent = 0;
+  for (int d = 0; d < 3; d++) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < n; i++)
+      low = fmin(low, place[d][i]), high = fmax(high, place[d][i]);
+    lowest[d] = low;
+    extent = fmax(extent, high - low);
+  }
+  double scale = extent > 0 && isfinite(extent) ? 4.6e18 / extent : 0; /* below 2^62: cells of a millimetre across 1e15 m */
+  for (size_t i = 0; i < n; i++) {
+    keys[i].id = (uint32_t)i;
+    for (int d = 0; d < 3; d++) {
+      double t = (place[d][i] - lowest[d]) * scale;
+      keys[i].axis[d] = t > 0 ? (uint64_t)t : 0; /* what is not finite stands first; the step ends on it elsewhere */
+    }
+  }
+  qsort(keys, n, sizeof *keys, compare);
+  for (size_t i = 0; i < n; i++)
+    order[i] = keys[i].id;
+  free(keys);
+  return STATUS_OK;
+}
