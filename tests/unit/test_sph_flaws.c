@@ -84,17 +84,87 @@ static void scatter_of_the_weakest(void **state) {
   sph_flaws_free(b);
 }
 
-static void extremes_stay_finite(void **state) {
+/* Every m from 1 to 200 and k from 1 to 1e200 that a user may type: ln eps_j = (ln j - ln k - ln V)/m to rounding, against long double. */
+static void extremes_keep_the_law(void **state) {
   (void)state;
-  const double ms[] = {1, 8.5, 200}, ks[] = {1, 1e34, 1e200};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      for (int draw = 0; draw < 2; draw++) {
-        struct sph_flaws *flaws = make(ms[i], ks[j], draw, 1, 50);
-        for (size_t f = 0; f < flaws->count; f++)
-          assert_true(isfinite(flaws->log_strain[f]));
-        sph_flaws_free(flaws);
+  const double ms[] = {1, 3, 8.5, 57, 200}, ks[] = {1, 1e10, 1e34, 1e65, 1e200};
+  for (int i = 0; i < 5; i++)
+    for (int j = 0; j < 5; j++) {
+      struct sph_flaws *poisson = make(ms[i], ks[j], SPH_FLAWS_POISSON, 1, 50), *flaws = make(ms[i], ks[j], SPH_FLAWS_RANKED, 1, 50);
+      for (size_t f = 0; f < poisson->count; f++)
+        assert_true(isfinite(poisson->log_strain[f]));
+      qsort(flaws->log_strain, flaws->count, sizeof *flaws->log_strain, ascending);
+      for (size_t f = 0; f < flaws->count; f++) {
+        long double want = (logl((long double)(f + 1)) - logl(ks[j]) - logl(1e-5L)) / ms[i];
+        assert_true(fabsl(flaws->log_strain[f] - want) < 1e-14L * (1 + logl(ks[j])));
       }
+      sph_flaws_free(poisson);
+      sph_flaws_free(flaws);
+    }
+}
+
+/* Both draws obey n(eps) = k eps^m: flaws below eps in volume V are k V eps^m exactly (ranked) or a Poisson variable of that mean
+ * and variance (poisson); and which particle a flaw goes to is uniform. 2000 seeds: a mean of M is known to sqrt(M/2000), a
+ * variance to M sqrt(2/2000) and a bit for the Poisson's own kurtosis; five standard errors. The body is large enough (N = 300, hence
+ * about 1900 flaws) that the end of the draw never comes before the eps looked at. */
+static void draws_obey_the_law(void **state) {
+  (void)state;
+  enum { SEEDS = 2000, N = 300 };
+  const double m = 8.5, k = 1e30, want[] = {1, 7, 60, 400};
+  double chi2 = 0;
+  for (int e = 0; e < 4; e++) {
+    double sum = 0, squares = 0, log_strain = (log(want[e]) - log(k) - log(1e-5)) / m;
+    size_t in_particle[N] = {0}, all = 0;
+    for (int s = 0; s < SEEDS; s++) {
+      struct sph_flaws *flaws = make(m, k, SPH_FLAWS_POISSON, (uint64_t)s, N);
+      double below = 0;
+      for (size_t i = 0; i < N; i++) {
+        size_t active = sph_flaws_active(flaws, i, log_strain);
+        below += (double)active;
+        in_particle[i] += active;
+        all += active;
+      }
+      sum += below;
+      squares += below * below;
+      sph_flaws_free(flaws);
+    }
+    double mean = sum / SEEDS, variance = squares / SEEDS - mean * mean;
+    assert_true(fabs(mean - want[e]) < 5 * sqrt(want[e] / SEEDS));
+    assert_true(fabs(variance / want[e] - 1) < 5 * sqrt((2 + 1 / want[e]) / SEEDS));
+    for (size_t i = 0; i < N; i++) {
+      double share = (double)all / N;
+      chi2 += ((double)in_particle[i] - share) * ((double)in_particle[i] - share) / share;
+    }
+  }
+  /* four times N-1 degrees of freedom, each with mean 1 and variance 2 (the four nest, at worst adding up: s.d. 4 sqrt(2(N-1))) */
+  assert_true(fabs(chi2 - 4 * (N - 1)) < 5 * 4 * sqrt(2.0 * (N - 1)));
+  struct sph_flaws *ranked = make(m, k, SPH_FLAWS_RANKED, 11, N);
+  for (int e = 0; e < 4; e++) {
+    size_t below = 0;
+    for (size_t i = 0; i < N; i++)
+      below += sph_flaws_active(ranked, i, (log(want[e] + 0.5) - log(k) - log(1e-5)) / m);
+    assert_int_equal(below, (size_t)want[e]);
+  }
+  sph_flaws_free(ranked);
+}
+
+/* Flaws per particle: one body of N = 20 000 particles holds about N (ln N + 0.577) flaws, spread at random over particles but for
+ * the last that ends the draw: mean lambda and variance lambda up to 5 s.e. (of the variance: lambda sqrt(2/N)), lowest 1 by
+ * construction. */
+static void counts_per_particle(void **state) {
+  (void)state;
+  const size_t n = 20000;
+  struct sph_flaws *flaws = make(8.5, 5e34, SPH_FLAWS_RANKED, 5, n);
+  double lambda = (double)flaws->count / (double)n, variance = 0;
+  size_t fewest = n;
+  for (size_t i = 0; i < n; i++) {
+    size_t own = flaws->first[i + 1] - flaws->first[i];
+    variance += ((double)own - lambda) * ((double)own - lambda) / (double)n;
+    fewest = own < fewest ? own : fewest;
+  }
+  assert_int_equal(fewest, 1);
+  assert_true(fabs(variance / lambda - 1) < 5 * sqrt(2.0 / (double)n));
+  sph_flaws_free(flaws);
 }
 
 static size_t only_first(void *context, uint64_t flaw) {
@@ -116,7 +186,8 @@ static void owner_that_starves_a_particle_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ranked_is_the_law),    cmocka_unit_test(count_of_flaws),
-      cmocka_unit_test(scatter_of_the_weakest), cmocka_unit_test(extremes_stay_finite),
+      cmocka_unit_test(scatter_of_the_weakest), cmocka_unit_test(extremes_keep_the_law),
+      cmocka_unit_test(draws_obey_the_law),   cmocka_unit_test(counts_per_particle),
       cmocka_unit_test(owner_that_starves_a_particle_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
