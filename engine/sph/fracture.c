@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "engine/sph/ranges.h"
+
 /* Trigonometric solution of the characteristic cubic (Smith 1961, Commun. ACM 4, 168), scaled by the tensor's size. */
 double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, double yz, double zz) {
   double mean = (xx + yy + zz) / 3;
@@ -20,15 +22,38 @@ double sph_fracture_strain(double tension, double damage, double young_modulus) 
   return tension > 0 && left > 0 ? tension / (left * young_modulus) : 0;
 }
 
+double sph_fracture_rate(size_t active, int growth) {
+  const double n = (double)active;
+  return growth == SPH_GROWTH_LINEAR ? n : cbrt(n);
+}
+
+double sph_fracture_limit(size_t active, size_t total, int cap) {
+  const double share = (double)active / (double)total;
+  return cap == SPH_CAP_BA95 ? cbrt(cbrt(share)) /* D_max = share^(1/3), and the state is its cube root */
+         : cap == SPH_CAP_COUNT ? cbrt(share)
+                                : 1;
+}
+
 double sph_fracture_grow(double damage_cbrt, size_t active, size_t total, int growth, int cap, double rate, double dt) {
   if (!active) return damage_cbrt;
-  double n = (double)active, share = n / (double)total;
-  double grown = damage_cbrt + (growth == SPH_GROWTH_LINEAR ? n : cbrt(n)) * rate * dt;
-  double limit = 1;
-  if (cap == SPH_CAP_BA95)
-    limit = cbrt(cbrt(share)); /* D_max = share^(1/3), and the state is its cube root */
-  else if (cap == SPH_CAP_COUNT)
-    limit = cbrt(share);
+  double grown = damage_cbrt + sph_fracture_rate(active, growth) * rate * dt;
+  const double limit = sph_fracture_limit(active, total, cap);
   if (grown > limit) grown = limit;
   return grown > damage_cbrt ? grown : damage_cbrt;
 }
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
+  (void)parameters;
+  return body->flaws != NULL;
+}
+
+const struct sph_module sph_fracture_module = {
+    .name = "fracture",
+    .doc = "Damage grows from open flaws, D^(1/3) at n^p c_g/R_s up to its cap, and takes tension and shear away: (1-D) S, and (1-D) P "
+           "where P < 0. It never heals.",
+    .source = "Grady & Kipp 1980; Benz & Asphaug 1995, sections 3 and 4.3",
+    .when = "a body whose material has Weibull parameters",
+    .on = on,
+    .bytes = 4 * sizeof(double),
+    .hook = {[SPH_PREDICT] = offsetof(struct sph_ranges, damage_predict), [SPH_RESPOND] = offsetof(struct sph_ranges, crack)},
+};

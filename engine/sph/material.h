@@ -21,7 +21,7 @@ struct sph_material {
   double density; /* kg/m^3 at rest */
   struct sph_tillotson tillotson;
   double shear_modulus; /* Pa */
-  double yield_stress;  /* Pa at u = 0; falls to zero at melt_energy */
+  double yield_stress;  /* Pa at u = 0; falls to zero at melt_energy; INFINITY: never yields */
   double melt_energy;   /* J/kg, NaN: yield does not depend on u */
   double tension_limit; /* Pa: lowest pressure is -tension_limit where no flaws limit tension; NaN = off */
   struct sph_weibull weibull;

@@ -49,12 +49,17 @@ enum sph_limiter { /* what set the time step */
 
 /* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + damped - initial - work_of_held; clamps are booked apart. */
 struct sph_ledger {
-  double kinetic, internal, work_of_held, damped, clamped; /* clamped: put in by u >= 0 and density clamps */
+  double kinetic, internal, work_of_held, damped, clamped; /* clamped: put in by u >= 0 */
+  uint64_t density_held; /* particle-steps at the lowest density; that changes pressures, but puts no energy in by itself */
   double momentum[3], angular_momentum[3];
   double momentum_scale; /* sum |p| */
 };
 
 struct sph_system; /* opaque */
+
+/* CPU class whose loops run: "baseline", "v3" (AVX2 + FMA) or "v4" (AVX-512); CLAST_CPU in the environment asks for one.
+ * The same bits are promised within one class. */
+const char *sph_system_cpu_class(const struct sph_system *system);
 
 /* `particles` is copied. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated when
  * it would not fit; STATUS_CONTENT when a body lacks a material value that its physics needs (named). */
@@ -71,9 +76,10 @@ double sph_system_last_step(const struct sph_system *system); /* s */
 int sph_system_limiter(const struct sph_system *system);      /* enum sph_limiter, of the last step */
 uint64_t sph_system_steps(const struct sph_system *system);
 struct sph_ledger sph_system_ledger(const struct sph_system *system);
-/* Volume-weighted mean damage of bodies with flaws, and its growth in the last step over dt (1/s): is fracture going on? */
+/* Mass-weighted mean damage of bodies with flaws, and how fast it grows now (1/s; NULL is fine): is fracture going on? */
 double sph_system_damage(const struct sph_system *system, double *rate);
-/* Read back in the order of the ids, at one time level; arrays present in *out are filled. */
+/* Read back in the order of the ids, at one time level; arrays present in *out are filled. Positions are wrapped into the box
+ * in periodic directions. The pressure is that of the last evaluation (the predicted state of the same time). */
 void sph_system_read(const struct sph_system *system, struct sph_particles *out);
 double sph_system_neighbours(const struct sph_system *system); /* mean number within 2h */
 

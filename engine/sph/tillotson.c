@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "engine/sph/ranges.h"
+
 struct branch {
   double p, by_rho, by_u;
 };
@@ -64,3 +66,17 @@ void sph_tillotson_range(const struct sph_tillotson *t, double rho0, size_t n, c
     sound_speed[i] = p.sound_speed;
   }
 }
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
+  (void)parameters;
+  return !body->porosity;
+}
+
+const struct sph_module sph_tillotson_module = {
+    .name = "tillotson",
+    .doc = "Pressure and sound speed of rock, ice or metal from the cold solid to its vapour; no pressure-squared term in tension.",
+    .source = "Tillotson 1962; Melosh 1989, appendix II",
+    .when = "every body without pores (in a body with pores it acts behind the distention)",
+    .on = on,
+    .hook = {[SPH_RESPOND] = offsetof(struct sph_ranges, tillotson)},
+};

@@ -1,0 +1,88 @@
+/* Hooke's law in a turning frame, and what damage leaves of the stress.
+ *
+ * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in its own
+ * frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged; the pair loop gets
+ * (1-D) S, and (1-D) P where P < 0. */
+#ifndef CLAST_ENGINE_SPH_ELASTIC_RANGE_H
+#define CLAST_ENGINE_SPH_ELASTIC_RANGE_H
+
+#include "engine/sph/range_tools.h"
+
+RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+  (void)body;
+  const double dt = s->dt;
+  for (int k = 0; k < 5; k++) {
+    double *stress = s->c.stress[k];
+    const double *rate = s->c.stress_rate[k];
+    RANGE_LOOP
+    for (size_t i = b->low; i < b->high; i++)
+      stress[i] += dt * rate[i];
+  }
+}
+
+RANGE_INLINE void elastic_output(struct sph_system *s, struct sph_block *b, bool fracture) {
+  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
+  const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
+  const double *yz = s->c.stress[4];
+  double *term = s->c.pressure_term, *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2];
+  double *oyy = s->c.damaged[3], *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double inverse = 1 / (density[i] * density[i]);
+    const double left = fracture ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
+    const double share = fracture ? left * inverse : inverse, p = pressure[i];
+    term[i] = -p * (p < 0 ? share : inverse);
+    oxx[i] = share * xx[i], oxy[i] = share * xy[i], oxz[i] = share * xz[i];
+    oyy[i] = share * yy[i], oyz[i] = share * yz[i], ozz[i] = -(share * xx[i] + share * yy[i]);
+  }
+}
+
+RANGE_HOOK void elastic_output_whole(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+  (void)body;
+  elastic_output(s, b, false);
+}
+RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+  (void)body;
+  elastic_output(s, b, true);
+}
+
+/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]. */
+RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+  const double half = 0.5 * s->dt, two_mu = 2 * body->physics.material.shear_modulus;
+  double *const *g = s->c.gradient;
+  const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];
+  const double *density = s->c.density, *term = s->c.pressure_term, *heating = s->c.heating;
+  const double *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2], *oyy = s->c.damaged[3];
+  const double *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
+  double *energy = s->c.energy, *energy_rate = s->c.energy_rate;
+  double *sxx = s->c.stress[0], *sxy = s->c.stress[1], *sxz = s->c.stress[2], *syy = s->c.stress[3], *syz = s->c.stress[4];
+  double *rxx = s->c.stress_rate[0], *rxy = s->c.stress_rate[1], *rxz = s->c.stress_rate[2], *ryy = s->c.stress_rate[3];
+  double *ryz = s->c.stress_rate[4];
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double exx = g0[i], eyy = g4[i], ezz = g8[i], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
+    const double exy = 0.5 * (g1[i] + g3[i]), exz = 0.5 * (g2[i] + g6[i]), eyz = 0.5 * (g5[i] + g7[i]);
+    const double wxy = 0.5 * (g1[i] - g3[i]), wxz = 0.5 * (g2[i] - g6[i]), wyz = 0.5 * (g5[i] - g7[i]);
+    const double work = term[i] * divergence + oxx[i] * exx + oyy[i] * eyy + ozz[i] * ezz +
+                        2 * (oxy[i] * exy + oxz[i] * exz + oyz[i] * eyz);
+    const double heat = density[i] * work + heating[i];
+    energy[i] += half * (heat - energy_rate[i]);
+    energy_rate[i] = heat;
+    const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
+    /* (R S - S R)_ab = sum_c R_ac S_cb + R_bc S_ca */
+    const double txx = 2 * (wxy * xy + wxz * xz);
+    const double tyy = 2 * (-wxy * xy + wyz * yz);
+    const double txy = wxy * (yy - xx) + wxz * yz + wyz * xz;
+    const double txz = wxz * (zz - xx) + wxy * yz - wyz * xy;
+    const double tyz = wyz * (zz - yy) - wxy * xz - wxz * xy;
+    const double nxx = two_mu * (exx - third) + txx, nyy = two_mu * (eyy - third) + tyy;
+    const double nxy = two_mu * exy + txy, nxz = two_mu * exz + txz, nyz = two_mu * eyz + tyz;
+    sxx[i] = xx + half * (nxx - rxx[i]), rxx[i] = nxx;
+    sxy[i] = xy + half * (nxy - rxy[i]), rxy[i] = nxy;
+    sxz[i] = xz + half * (nxz - rxz[i]), rxz[i] = nxz;
+    syy[i] = yy + half * (nyy - ryy[i]), ryy[i] = nyy;
+    syz[i] = yz + half * (nyz - ryz[i]), ryz[i] = nyz;
+  }
+}
+
+#endif

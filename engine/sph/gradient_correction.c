@@ -1,0 +1,18 @@
+#include "engine/sph/ranges.h"
+
+#include <math.h>
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
+  (void)body, (void)p;
+  return p->gradient_correction;
+}
+
+const struct sph_module sph_gradient_correction_module = {
+    .name = "gradient_correction",
+    .doc = "The velocity gradient is exact for linear fields, also at surfaces: a rigid rotation strains nothing.",
+    .source = "Randles & Libersky 1996",
+    .when = "gradient_correction is asked for",
+    .on = on,
+    .bytes = 0,
+    .hook = {0},
+};

@@ -1,0 +1,4 @@
+/* The range loops for CPU class baseline. */
+#define RANGES_TABLE sph_ranges_baseline
+#define RANGES_NAME  "baseline"
+#include "engine/sph/ranges_body.h"

@@ -1,0 +1,28 @@
+/* Instantiates the range loops for one CPU class: the including file sets RANGES_TABLE and RANGES_NAME. */
+#include "engine/sph/ranges.h"
+
+#include "engine/sph/crack_range.h"
+#include "engine/sph/elastic_range.h"
+#include "engine/sph/motion_range.h"
+#include "engine/sph/tillotson_range.h"
+#include "engine/sph/yield_range.h"
+
+const struct sph_ranges RANGES_TABLE = {
+    .name = RANGES_NAME,
+    .motion_predict = motion_predict,
+    .elastic_predict = elastic_predict,
+    .damage_predict = crack_damage_predict,
+    .tillotson = tillotson_range,
+    .tension_limit = tillotson_tension_limit,
+    .yield = yield_range,
+    .crack = crack_range,
+    .output_fluid = motion_output_fluid,
+    .output_whole = elastic_output_whole,
+    .output_damaged = elastic_output_damaged,
+    .hold = motion_hold,
+    .fluid_rates = motion_fluid_rates,
+    .elastic_rates = elastic_rates,
+    .correct_fluid = motion_correct_fluid,
+    .correct_whole = motion_correct_whole,
+    .correct_damaged = motion_correct_damaged,
+};

@@ -1,0 +1,126 @@
+#include "engine/sph/system.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/sph/ranges.h"
+#include "engine/sph/system_step.h"
+
+struct sph_parameters sph_parameters_default(void) {
+  return (struct sph_parameters){
+      .viscosity_alpha = 1.5,
+      .viscosity_beta = 3,
+      .spacing_over_h = 0.95,
+      .cfl = 0.3,
+      .damage_step = 0.2,
+      .distention_step = 0.01,
+      .largest_time_step = NAN,
+      .growth = SPH_GROWTH_CUBE_ROOT,
+      .cap = SPH_CAP_BA95,
+      .h_lowest = 0.5,
+      .h_highest = 2,
+      .density_lowest = 1e-3,
+      .skin = 0.15,
+      .periodic = {NAN, NAN, NAN},
+      .precision = SPH_DOUBLE,
+      .threads = 1,
+  };
+}
+
+void sph_system_free(struct sph_system *s) {
+  if (!s) return;
+  for (size_t b = 0; s->body && b < s->body_count; b++)
+    sph_weibull_free(s->body[b].weibull);
+  sph_pairs_free(s->pairs);
+  free(s->arena);
+  free(s->id);
+  free(s->active);
+  free(s->held);
+  free(s->listed[0]);
+  free(s->order);
+  free(s->body);
+  free(s->block);
+  free(s);
+}
+
+size_t sph_system_bytes(const struct sph_system *s) {
+  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (4 * sizeof(double) + 2 * sizeof(uint32_t)) +
+                 s->body_count * sizeof *s->body + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
+  if (s->active) bytes += s->n * sizeof *s->active;
+  if (s->held) bytes += s->n * sizeof *s->held;
+  for (size_t b = 0; b < s->body_count; b++)
+    bytes += sph_weibull_bytes(s->body[b].weibull);
+  return bytes;
+}
+
+const char *sph_system_cpu_class(const struct sph_system *s) {
+  return s->ranges->name;
+}
+const char *sph_system_failure(const struct sph_system *s) {
+  return s->failure;
+}
+double sph_system_time(const struct sph_system *s) {
+  return s->now.time;
+}
+double sph_system_last_step(const struct sph_system *s) {
+  return s->now.last_step;
+}
+int sph_system_limiter(const struct sph_system *s) {
+  return (int)s->now.limiter;
+}
+uint64_t sph_system_steps(const struct sph_system *s) {
+  return s->now.steps;
+}
+double sph_system_neighbours(const struct sph_system *s) {
+  return sph_pairs_neighbours(s->pairs);
+}
+
+static double wrapped(double x, double length) {
+  if (!(length > 0)) return x;
+  x -= length * floor(x / length);
+  return x < length ? x : 0;
+}
+
+void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
+  for (size_t i = 0; i < s->n; i++) {
+    const size_t to = s->id[i];
+    out->x[to] = wrapped(s->c.x[i], s->p.periodic[0]);
+    out->y[to] = wrapped(s->c.y[i], s->p.periodic[1]);
+    out->z[to] = wrapped(s->c.z[i], s->p.periodic[2]);
+    out->vx[to] = s->c.vx[i];
+    out->vy[to] = s->c.vy[i];
+    out->vz[to] = s->c.vz[i];
+    out->mass[to] = s->c.mass[i];
+    out->density[to] = s->c.density[i];
+    out->energy[to] = s->c.energy[i];
+    out->h[to] = s->c.h[i];
+    out->pressure[to] = s->c.pressure[i];
+    if (out->stress[0] && s->strength) {
+      for (int k = 0; k < 5; k++)
+        out->stress[k][to] = s->c.stress[k][i];
+      out->stress[5][to] = -(s->c.stress[0][i] + s->c.stress[3][i]);
+    }
+    if (out->damage_cbrt && s->fracture) out->damage_cbrt[to] = s->c.damage[i];
+    if (out->damping && s->c.damping) out->damping[to] = s->c.damping[i];
+    if (out->distention) out->distention[to] = s->c.distention ? s->c.distention[i] : 1;
+    if (out->held && s->held) out->held[to] = s->held[i];
+  }
+  for (size_t b = 0; b < s->body_count; b++)
+    memset(out->body + s->body[b].first, (int)b, s->body[b].last - s->body[b].first);
+}
+
+double sph_system_damage(const struct sph_system *s, double *rate) {
+  double volume = 0, damage = 0, growth = 0;
+  for (size_t b = 0; s->fracture && b < s->body_count; b++) {
+    if (!s->body[b].weibull) continue;
+    for (size_t i = s->body[b].first; i < s->body[b].last; i++) {
+      const double v = s->c.mass[i], d = s->c.damage[i];
+      volume += v;
+      damage += v * d * d * d;
+      growth += v * 3 * d * d * s->c.damage_rate[i];
+    }
+  }
+  if (rate) *rate = volume > 0 ? growth / volume : 0;
+  return volume > 0 ? damage / volume : 0;
+}

@@ -1,0 +1,365 @@
+/* Builds a moving system from particles at rest on their lattices: checks, bodies with their constants and hooks, columns. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "engine/sph/ranges.h"
+#include "engine/sph/system_step.h"
+
+enum need { ALWAYS, STRENGTH, FRACTURE, DAMPING, DISTENTION };
+
+#define COLUMN(name) offsetof(struct sph_columns, name)
+static const struct {
+  size_t offset;
+  enum need need;
+} rows[] = {
+    {COLUMN(x), ALWAYS},
+    {COLUMN(y), ALWAYS},
+    {COLUMN(z), ALWAYS},
+    {COLUMN(vx), ALWAYS},
+    {COLUMN(vy), ALWAYS},
+    {COLUMN(vz), ALWAYS},
+    {COLUMN(mass), ALWAYS},
+    {COLUMN(density), ALWAYS},
+    {COLUMN(energy), ALWAYS},
+    {COLUMN(h), ALWAYS},
+    {COLUMN(h_initial), ALWAYS},
+    {COLUMN(ax), ALWAYS},
+    {COLUMN(ay), ALWAYS},
+    {COLUMN(az), ALWAYS},
+    {COLUMN(density_rate), ALWAYS},
+    {COLUMN(energy_rate), ALWAYS},
+    {COLUMN(pressure), ALWAYS},
+    {COLUMN(sound_speed), ALWAYS},
+    {COLUMN(pressure_term), ALWAYS},
+    {COLUMN(stress[0]), STRENGTH},
+    {COLUMN(stress[1]), STRENGTH},
+    {COLUMN(stress[2]), STRENGTH},
+    {COLUMN(stress[3]), STRENGTH},
+    {COLUMN(stress[4]), STRENGTH},
+    {COLUMN(stress_rate[0]), STRENGTH},
+    {COLUMN(stress_rate[1]), STRENGTH},
+    {COLUMN(stress_rate[2]), STRENGTH},
+    {COLUMN(stress_rate[3]), STRENGTH},
+    {COLUMN(stress_rate[4]), STRENGTH},
+    {COLUMN(damaged[0]), STRENGTH},
+    {COLUMN(damaged[1]), STRENGTH},
+    {COLUMN(damaged[2]), STRENGTH},
+    {COLUMN(damaged[3]), STRENGTH},
+    {COLUMN(damaged[4]), STRENGTH},
+    {COLUMN(damaged[5]), STRENGTH},
+    {COLUMN(damage), FRACTURE},
+    {COLUMN(damage_rate), FRACTURE},
+    {COLUMN(damage_cap), FRACTURE},
+    {COLUMN(weakest), FRACTURE},
+    {COLUMN(crack_rate), FRACTURE},
+    {COLUMN(damping), DAMPING},
+    {COLUMN(distention), DISTENTION},
+    {COLUMN(distention_rate), DISTENTION},
+    /* scratch of the pair loop, not kept */
+    {COLUMN(new_ax), ALWAYS},
+    {COLUMN(new_ay), ALWAYS},
+    {COLUMN(new_az), ALWAYS},
+    {COLUMN(gradient[0]), ALWAYS},
+    {COLUMN(gradient[1]), ALWAYS},
+    {COLUMN(gradient[2]), ALWAYS},
+    {COLUMN(gradient[3]), ALWAYS},
+    {COLUMN(gradient[4]), ALWAYS},
+    {COLUMN(gradient[5]), ALWAYS},
+    {COLUMN(gradient[6]), ALWAYS},
+    {COLUMN(gradient[7]), ALWAYS},
+    {COLUMN(gradient[8]), ALWAYS},
+    {COLUMN(heating), ALWAYS},
+    {COLUMN(signal), ALWAYS},
+};
+_Static_assert(sizeof rows / sizeof *rows == SPH_COLUMNS, "a row per column");
+
+static bool is_there(enum need need, const struct sph_particles *p, const struct sph_system *s) {
+  switch (need) {
+  case STRENGTH: return s->strength;
+  case FRACTURE: return s->fracture;
+  case DAMPING: return p->damping != NULL;
+  case DISTENTION: return s->pores;
+  case ALWAYS: break;
+  }
+  return true;
+}
+
+static double **slot_of(struct sph_system *s, size_t row) {
+  return (double **)((char *)&s->c + rows[row].offset);
+}
+
+size_t sph_system_create_columns(struct sph_system *s, double **slot[SPH_COLUMNS], size_t *kept) {
+  size_t count = 0;
+  *kept = 0;
+  for (size_t r = 0; r < SPH_COLUMNS; r++) {
+    double **column = slot_of(s, r);
+    if (!*column) continue;
+    if (rows[r].offset < COLUMN(new_ax)) ++*kept;
+    slot[count++] = column;
+  }
+  return count;
+}
+
+static status take_columns(struct sph_system *s, const struct sph_particles *p, struct error *error) {
+  size_t count = 0;
+  for (size_t r = 0; r < SPH_COLUMNS; r++)
+    count += is_there(rows[r].need, p, s);
+  s->stride = (s->n + 7) / 8 * 8 + 8; /* an odd number of cache lines would be better still: columns must not share sets */
+  s->arena_doubles = count * s->stride;
+  s->arena = aligned_alloc(64, s->arena_doubles * sizeof(double));
+  s->listed[0] = calloc(4 * s->n, sizeof(double));
+  s->id = malloc(s->n * sizeof *s->id);
+  s->order = malloc(s->n * sizeof *s->order);
+  if (s->fracture) s->active = calloc(s->n, sizeof *s->active);
+  if (p->held) s->held = malloc(s->n * sizeof *s->held);
+  if (!s->arena || !s->listed[0] || !s->id || !s->order || (s->fracture && !s->active) || (p->held && !s->held))
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu particles of %zu columns (%.3g GB)", s->n, count,
+                       (double)(s->arena_doubles * sizeof(double)) / 1e9);
+  memset(s->arena, 0, s->arena_doubles * sizeof(double));
+  for (int k = 1; k < 4; k++)
+    s->listed[k] = s->listed[0] + (size_t)k * s->n;
+  double *next = s->arena;
+  for (size_t r = 0; r < SPH_COLUMNS; r++)
+    if (is_there(rows[r].need, p, s)) {
+      *slot_of(s, r) = next;
+      next += s->stride;
+    }
+  return STATUS_OK;
+}
+
+/* Material values that the body's physics needs. */
+static status check_body(size_t index, const struct sph_body_physics *b, size_t particles, struct error *error) {
+  const struct sph_material *m = &b->material;
+  const struct {
+    const char *name;
+    double value;
+    bool needed, may_be_zero;
+  } needs[] = {
+      {"density", m->density, true, false},
+      {"tillotson.A", m->tillotson.A, true, false},
+      {"tillotson.B", m->tillotson.B, true, true},
+      {"tillotson.a", m->tillotson.a, true, true},
+      {"tillotson.b", m->tillotson.b, true, true},
+      {"tillotson.alpha", m->tillotson.alpha, true, true},
+      {"tillotson.beta", m->tillotson.beta, true, true},
+      {"tillotson.E0", m->tillotson.E0, true, false},
+      {"tillotson.E_iv", m->tillotson.E_iv, true, false},
+      {"tillotson.E_cv", m->tillotson.E_cv, true, false},
+      {"shear_modulus", m->shear_modulus, b->strength, true},
+  };
+  for (size_t k = 0; k < sizeof needs / sizeof *needs; k++) {
+    const double v = needs[k].value;
+    if (needs[k].needed && !(isfinite(v) && (needs[k].may_be_zero ? v >= 0 : v > 0)))
+      return status_fail(error, STATUS_CONTENT, "body %zu: %s is %g; its physics needs a number %s", index,
+                         needs[k].name, v, needs[k].may_be_zero ? "not below 0" : "above 0");
+  }
+  if (b->strength && !(m->yield_stress >= 0)) /* infinite: never yields */
+    return status_fail(error, STATUS_CONTENT, "body %zu: yield_stress is %g; a body with strength needs one", index,
+                       m->yield_stress);
+  if (b->flaws && !(b->strength && m->shear_modulus > 0))
+    return status_fail(error, STATUS_CONTENT, "body %zu has flaws but no strength: only a solid cracks", index);
+  if (b->flaws && b->flaws->particles != particles)
+    return status_fail(error, STATUS_CONTENT, "body %zu has %zu particles, but flaws for %zu", index, particles,
+                       b->flaws->particles);
+  return STATUS_OK;
+}
+
+static status check_parameters(const struct sph_parameters *p, struct error *error) {
+  const struct {
+    const char *name;
+    double value, low, high;
+  } range[] = {
+      {"viscosity_alpha", p->viscosity_alpha, 0, 1e3},
+      {"viscosity_beta", p->viscosity_beta, 0, 1e3},
+      {"artificial_stress", p->artificial_stress, 0, 10},
+      {"spacing_over_h", p->spacing_over_h, 0.1, 2},
+      {"cfl", p->cfl, 1e-6, 1},
+      {"damage_step", p->damage_step, 1e-9, INFINITY},
+      {"distention_step", p->distention_step, 1e-9, INFINITY},
+      {"h_lowest", p->h_lowest, 1e-3, 1},
+      {"h_highest", p->h_highest, 1, 1e3},
+      {"density_lowest", p->density_lowest, 1e-12, 1},
+      {"skin", p->skin, 0, 1},
+  };
+  for (size_t k = 0; k < sizeof range / sizeof *range; k++)
+    if (!(range[k].value >= range[k].low && range[k].value <= range[k].high))
+      return status_fail(error, STATUS_CONTENT, "%s is %g; it must lie between %g and %g", range[k].name, range[k].value,
+                         range[k].low, range[k].high);
+  return STATUS_OK;
+}
+
+static status check_particles(const struct sph_particles *p, size_t body_count, struct error *error) {
+  if (p->n == 0 || p->n >= UINT32_MAX) return status_fail(error, STATUS_CONTENT, "there are %zu particles", p->n);
+  for (size_t i = 0; i < p->n; i++) {
+    const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) + fabs(p->vz[i]);
+    if (!(motion < 1e30) || !(p->mass[i] > 0 && p->density[i] > 0 && p->h[i] > 0 && p->energy[i] >= 0) ||
+        !(p->mass[i] + p->density[i] + p->h[i] + p->energy[i] < 1e60))
+      return status_fail(error, STATUS_CONTENT,
+                         "particle %zu is no matter: mass %g, density %g, h %g, energy %g, at %g %g %g m", i, p->mass[i],
+                         p->density[i], p->h[i], p->energy[i], p->x[i], p->y[i], p->z[i]);
+    if (p->body[i] >= body_count || (i > 0 && p->body[i] < p->body[i - 1]))
+      return status_fail(error, STATUS_CONTENT, "particle %zu belongs to body %u of %zu, or out of order", i,
+                         (unsigned)p->body[i], body_count);
+  }
+  return STATUS_OK;
+}
+
+/* Refused before anything is allocated: what the columns, lists and flaws of n particles take is about this. */
+static status check_memory(const struct sph_particles *p, struct error *error) {
+  const double bytes = (double)p->n * (SPH_COLUMNS * sizeof(double) + 60.0 * sizeof(uint32_t) + 400);
+  const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+  if (there > 0 && bytes > there)
+    return status_fail(error, STATUS_MEMORY, "%zu particles need about %.3g GB; this machine has %.3g GB", p->n,
+                       bytes / 1e9, there / 1e9);
+  return STATUS_OK;
+}
+
+static void choose_hooks(struct sph_system *s, struct sph_body *b, const struct sph_body_physics *physics) {
+  const struct sph_ranges *r = s->ranges;
+  const bool fracture = physics->flaws != NULL;
+  b->before[b->before_count++] = r->motion_predict;
+  for (int stage = SPH_PREDICT; stage <= SPH_RATES; stage++) {
+    sph_hook *to = stage == SPH_RATES ? b->after : b->before;
+    size_t *count = stage == SPH_RATES ? &b->after_count : &b->before_count;
+    if (stage == SPH_RATES) {
+      if (s->held || s->c.damping) to[(*count)++] = r->hold;
+      if (!physics->strength) to[(*count)++] = r->fluid_rates;
+    }
+    for (size_t m = 0; m < sph_modules_count(); m++) {
+      const struct sph_module *module = sph_modules_at(m);
+      if (module->hook[stage] && module->on(physics, &s->p))
+        memcpy(&to[(*count)++], (const char *)r + module->hook[stage], sizeof(sph_hook));
+    }
+  }
+  b->before[b->before_count++] = fracture ? r->output_damaged : physics->strength ? r->output_whole : r->output_fluid;
+  b->after[b->after_count++] = fracture ? r->correct_damaged : physics->strength ? r->correct_whole : r->correct_fluid;
+}
+
+static status make_body(struct sph_system *s, size_t index, const struct sph_body_physics *physics, struct error *error) {
+  struct sph_body *b = &s->body[index];
+  const struct sph_material *m = &physics->material;
+  b->physics = *physics;
+  if (physics->porosity) {
+    b->porosity = *physics->porosity;
+    b->physics.porosity = &b->porosity;
+  }
+  b->density = m->density / (physics->porosity ? physics->porosity->distention : 1);
+  b->lowest_density = s->p.density_lowest * b->density;
+  const double K = m->tillotson.A, mu = physics->strength ? m->shear_modulus : 0;
+  b->young = 9 * K * mu / (3 * K + mu);
+  b->crack_speed = 0.4 * sqrt((K + 4 * mu / 3) / m->density);
+  choose_hooks(s, b, physics);
+  if (!physics->flaws) return STATUS_OK;
+  b->physics.flaws = NULL; /* the caller's; ours are the lists */
+  return sph_weibull_make(physics->flaws, s->p.compact_flaws, &b->weibull, error);
+}
+
+static void fill(struct sph_system *s, const struct sph_particles *p) {
+  double *const to[] = {s->c.x, s->c.y, s->c.z, s->c.vx, s->c.vy, s->c.vz, s->c.mass, s->c.density, s->c.energy, s->c.h,
+                        s->c.h_initial};
+  const double *const from[] = {p->x, p->y, p->z, p->vx, p->vy, p->vz, p->mass, p->density, p->energy, p->h, p->h};
+  for (size_t k = 0; k < sizeof to / sizeof *to; k++)
+    memcpy(to[k], from[k], s->n * sizeof(double));
+  if (s->held) memcpy(s->held, p->held, s->n);
+  if (s->c.damping) memcpy(s->c.damping, p->damping, s->n * sizeof(double));
+  for (size_t i = 0; i < s->n; i++) {
+    s->id[i] = (uint32_t)i;
+    const struct sph_body *b = &s->body[p->body[i]];
+    if (s->strength && b->physics.strength && p->stress[0]) {
+      const double third = (p->stress[0][i] + p->stress[3][i] + p->stress[5][i]) / 3;
+      for (int k = 0; k < 5; k++)
+        s->c.stress[k][i] = p->stress[k][i] - (k == 0 || k == 3 ? third : 0);
+    }
+    if (s->c.distention) s->c.distention[i] = b->physics.porosity && p->distention ? p->distention[i] : 1;
+    if (!s->fracture) continue;
+    s->c.weakest[i] = INFINITY;
+    if (!b->weibull) continue;
+    const double volume = p->mass[i] / p->density[i], pi = acos(-1.0);
+    const double radius = s->p.crack_radius_support ? 2 * p->h[i] : cbrt(3 * volume / (4 * pi));
+    s->c.damage[i] = p->damage_cbrt ? p->damage_cbrt[i] : 0;
+    s->c.crack_rate[i] = b->crack_speed / radius;
+    s->c.weakest[i] = b->young * sph_weibull_lowest(b->weibull, i - b->first);
+  }
+}
+
+static status make_blocks(struct sph_system *s, struct error *error) {
+  for (size_t b = 0; b < s->body_count; b++)
+    s->block_count += (s->body[b].last - s->body[b].first + SPH_BLOCK - 1) / SPH_BLOCK;
+  s->block = calloc(s->block_count ? s->block_count : 1, sizeof *s->block);
+  if (!s->block) return status_fail(error, STATUS_MEMORY, "no memory for %zu blocks", s->block_count);
+  size_t k = 0;
+  for (size_t b = 0; b < s->body_count; b++)
+    for (size_t low = s->body[b].first; low < s->body[b].last; low += SPH_BLOCK) {
+      const size_t high = low + SPH_BLOCK < s->body[b].last ? low + SPH_BLOCK : s->body[b].last;
+      s->block[k++] = (struct sph_block){.low = low, .high = high, .body = (uint32_t)b};
+    }
+  return STATUS_OK;
+}
+
+static status make_pairs(struct sph_system *s, struct error *error) {
+  struct sph_pair_options o = {
+      .viscosity_alpha = s->p.viscosity_alpha,
+      .viscosity_beta = s->p.viscosity_beta,
+      .strength = s->strength,
+      .gradient_correction = s->p.gradient_correction,
+      .artificial_stress = s->p.artificial_stress,
+      .spacing_over_h = s->p.spacing_over_h,
+      .volume_weights = s->p.volume_weights,
+      .skin = s->p.skin,
+      .precision = s->p.precision,
+      .threads = s->p.threads,
+  };
+  memcpy(o.periodic, s->p.periodic, sizeof o.periodic);
+  return sph_pairs_create(s->n, &o, &s->pairs, error);
+}
+
+static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
+                    struct error *error) {
+  status done = STATUS_OK;
+  for (size_t i = 0; i < p->n; i++) {
+    struct sph_body *b = &s->body[p->body[i]];
+    if (b->last == 0) b->first = i;
+    b->last = i + 1;
+  }
+  for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++) {
+    done = check_body(b, &bodies[b], s->body[b].last - s->body[b].first, error);
+    s->strength |= bodies[b].strength;
+    s->fracture |= bodies[b].flaws != NULL;
+    s->pores |= bodies[b].porosity != NULL;
+  }
+  if (done == STATUS_OK) done = take_columns(s, p, error);
+  for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++)
+    done = make_body(s, b, &bodies[b], error);
+  if (done == STATUS_OK) done = make_blocks(s, error);
+  if (done == STATUS_OK) done = make_pairs(s, error);
+  if (done != STATUS_OK) return done;
+  fill(s, p);
+  if (!sph_system_step_begin(s)) return status_fail(error, STATUS_CONTENT, "at the start: %s", s->failure);
+  return STATUS_OK;
+}
+
+status sph_system_create(const struct sph_particles *particles, size_t body_count,
+                         const struct sph_body_physics *bodies, const struct sph_parameters *parameters,
+                         struct sph_system **out, struct error *error) {
+  *out = NULL;
+  status done = check_parameters(parameters, error);
+  if (done == STATUS_OK) done = check_particles(particles, body_count, error);
+  if (done == STATUS_OK) done = check_memory(particles, error);
+  if (done != STATUS_OK) return done;
+  struct sph_system *s = calloc(1, sizeof *s);
+  if (!s) return status_fail(error, STATUS_MEMORY, "no memory for a system");
+  s->p = *parameters;
+  s->n = particles->n;
+  s->body_count = body_count;
+  s->ranges = sph_ranges_choose();
+  s->body = calloc(body_count, sizeof *s->body);
+  done = s->body ? build(s, particles, bodies, error) : status_fail(error, STATUS_MEMORY, "no memory for a system");
+  if (done != STATUS_OK) {
+    sph_system_free(s);
+    return done;
+  }
+  *out = s;
+  return STATUS_OK;
+}

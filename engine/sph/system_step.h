@@ -1,0 +1,12 @@
+/* One time step; for engine/sph/ only. */
+#ifndef CLAST_ENGINE_SPH_SYSTEM_STEP_H
+#define CLAST_ENGINE_SPH_SYSTEM_STEP_H
+
+#include "engine/sph/system_layout.h"
+
+/* Sorts, lists and evaluates at the initial state. False (see failure): as sph_system_step. */
+bool sph_system_step_begin(struct sph_system *system);
+/* Lists for the positions of s->listed, after a restart. */
+bool sph_system_step_relist(struct sph_system *system);
+
+#endif

@@ -1,0 +1,18 @@
+#include "engine/sph/ranges.h"
+
+#include <math.h>
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
+  (void)body, (void)p;
+  return !body->flaws && body->material.tension_limit >= 0 && isfinite(body->material.tension_limit);
+}
+
+const struct sph_module sph_tension_limit_module = {
+    .name = "tension_limit",
+    .doc = "Pressure is not below -tension_limit: a spall strength for matter without flaws.",
+    .source = "Asphaug & Melosh 1993",
+    .when = "a material with a tension_limit in a body without flaws",
+    .on = on,
+    .bytes = 0,
+    .hook = {[SPH_RESPOND] = offsetof(struct sph_ranges, tension_limit)},
+};

@@ -1,0 +1,23 @@
+/* Von Mises: S -> f S, f = min(1, Y/sqrt(3 J2)), J2 = S:S/2 [BA95 eqs. 8-10; eq. 9 lacks the root: only with it does S land
+ * on the yield surface]. Y = Y0 (1 - u/u_melt), zero beyond. */
+#ifndef CLAST_ENGINE_SPH_YIELD_RANGE_H
+#define CLAST_ENGINE_SPH_YIELD_RANGE_H
+
+#include "engine/sph/range_tools.h"
+
+RANGE_HOOK void yield_range(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+  const double y0 = body->physics.material.yield_stress, melt = body->physics.material.melt_energy;
+  const double softening = melt > 0 ? 1 / melt : 0; /* NaN: none */
+  const double *energy = s->c.energy;
+  double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3], *yz = s->c.stress[4];
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double y = range_larger(y0 * (1 - energy[i] * softening), 0);
+    const double J2 = xx[i] * xx[i] + yy[i] * yy[i] + xx[i] * yy[i] + xy[i] * xy[i] + xz[i] * xz[i] + yz[i] * yz[i];
+    const double size2 = 3 * J2;
+    const double f = size2 > y * y ? y / sqrt(size2) : 1;
+    xx[i] *= f, xy[i] *= f, xz[i] *= f, yy[i] *= f, yz[i] *= f;
+  }
+}
+
+#endif
