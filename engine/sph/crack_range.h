@@ -35,7 +35,7 @@ RANGE_INLINE double crack_largest(double xx, double xy, double xz, double yy, do
   return 2 * size * crack_third_cosine(sqrt(0.5 + 0.5 * cosine));
 }
 
-RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   const double dt = s->dt, *rate = s->c.damage_rate, *cap = s->c.damage_cap;
   double *d = s->c.damage;
@@ -45,7 +45,7 @@ RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_body
 }
 
 /* One particle whose strain (times E) is known. */
-RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_body *body, size_t i, double stress) {
+RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body, size_t i, double stress) {
   const size_t own = s->id[i] - body->first;
   const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young);
   if (open != s->active[i]) {
@@ -57,7 +57,7 @@ RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_body *body, 
   if (s->c.damage[i] >= 1) s->c.weakest[i] = INFINITY; /* nothing left to open */
 }
 
-RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = s->c.damage;
   const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
   const double *yz = s->c.stress[4];

@@ -8,7 +8,7 @@
 
 #include "engine/sph/range_tools.h"
 
-RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   const double dt = s->dt;
   for (int k = 0; k < 5; k++) {
@@ -37,17 +37,17 @@ RANGE_INLINE void elastic_output(struct sph_system *s, struct sph_block *b, bool
   }
 }
 
-RANGE_HOOK void elastic_output_whole(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void elastic_output_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   elastic_output(s, b, false);
 }
-RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   elastic_output(s, b, true);
 }
 
 /* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]. */
-RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double half = 0.5 * s->dt, two_mu = 2 * body->physics.material.shear_modulus;
   double *const *g = s->c.gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];

@@ -14,7 +14,7 @@ RANGE_INLINE double motion_cube_root(double e) {
 }
 
 /* Internal energy does not fall below zero, density not below the body's bound. What the first puts in is booked. */
-RANGE_INLINE void motion_clamp(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_INLINE void motion_clamp(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   double *energy = s->c.energy, *density = s->c.density;
   const double lowest = body->lowest_density;
   int64_t below = 0;
@@ -34,7 +34,7 @@ RANGE_INLINE void motion_clamp(struct sph_system *s, const struct sph_body *body
   }
 }
 
-RANGE_HOOK void motion_predict(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double dt = s->dt, half = 0.5 * dt;
   double *const position[3] = {s->c.x, s->c.y, s->c.z}, *const velocity[3] = {s->c.vx, s->c.vy, s->c.vz};
   double *const acceleration[3] = {s->c.ax, s->c.ay, s->c.az};
@@ -61,7 +61,7 @@ RANGE_HOOK void motion_predict(struct sph_system *s, const struct sph_body *body
   motion_clamp(s, body, b);
 }
 
-RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   const double *pressure = s->c.pressure, *density = s->c.density;
   double *term = s->c.pressure_term;
@@ -72,7 +72,7 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_body 
 
 /* Held freedoms keep their velocity: the force that takes is the hold's, and its power is booked, half with the old and
  * half with the new acceleration, as the step itself uses them. Damping likewise. */
-RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   double *const a[3] = {s->c.new_ax, s->c.new_ay, s->c.new_az};
   const double *const v[3] = {s->c.vx, s->c.vy, s->c.vz};
@@ -97,7 +97,7 @@ RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_body *body, s
 }
 
 /* BA95 eq. 4 without the deviator, and viscous heating. */
-RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   const double half = 0.5 * s->dt;
   const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8], *heating = s->c.heating;
@@ -119,7 +119,7 @@ enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
  *   damage    damage_step over the rate of D^(1/3) */
-RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_body *body, struct sph_block *b, bool strength,
+RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool strength,
                                  bool fracture) {
   const double half = 0.5 * s->dt;
   const size_t low = b->low, n = b->high - b->low;
@@ -181,13 +181,13 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_body *bo
   }
 }
 
-RANGE_HOOK void motion_correct_fluid(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_correct_fluid(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   motion_correct(s, body, b, false, false);
 }
-RANGE_HOOK void motion_correct_whole(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_correct_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   motion_correct(s, body, b, true, false);
 }
-RANGE_HOOK void motion_correct_damaged(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void motion_correct_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   motion_correct(s, body, b, true, true);
 }
 

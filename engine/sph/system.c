@@ -7,31 +7,10 @@
 #include "engine/sph/ranges.h"
 #include "engine/sph/system_step.h"
 
-struct sph_parameters sph_parameters_default(void) {
-  return (struct sph_parameters){
-      .viscosity_alpha = 1.5,
-      .viscosity_beta = 3,
-      .spacing_over_h = 0.95,
-      .cfl = 0.3,
-      .damage_step = 0.2,
-      .distention_step = 0.01,
-      .largest_time_step = NAN,
-      .growth = SPH_GROWTH_CUBE_ROOT,
-      .cap = SPH_CAP_BA95,
-      .h_lowest = 0.5,
-      .h_highest = 2,
-      .density_lowest = 1e-3,
-      .skin = 0.15,
-      .periodic = {NAN, NAN, NAN},
-      .precision = SPH_DOUBLE,
-      .threads = 1,
-  };
-}
-
 void sph_system_free(struct sph_system *s) {
   if (!s) return;
-  for (size_t b = 0; s->body && b < s->body_count; b++)
-    sph_weibull_free(s->body[b].weibull);
+  for (size_t b = 0; s->solid && b < s->body_count; b++)
+    sph_weibull_free(s->solid[b].weibull);
   sph_pairs_free(s->pairs);
   free(s->arena);
   free(s->id);
@@ -39,18 +18,18 @@ void sph_system_free(struct sph_system *s) {
   free(s->held);
   free(s->listed[0]);
   free(s->order);
-  free(s->body);
+  free(s->solid);
   free(s->block);
   free(s);
 }
 
 size_t sph_system_bytes(const struct sph_system *s) {
   size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (4 * sizeof(double) + 2 * sizeof(uint32_t)) +
-                 s->body_count * sizeof *s->body + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
+                 s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
   if (s->active) bytes += s->n * sizeof *s->active;
   if (s->held) bytes += s->n * sizeof *s->held;
   for (size_t b = 0; b < s->body_count; b++)
-    bytes += sph_weibull_bytes(s->body[b].weibull);
+    bytes += sph_weibull_bytes(s->solid[b].weibull);
   return bytes;
 }
 
@@ -107,14 +86,14 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
     if (out->held && s->held) out->held[to] = s->held[i];
   }
   for (size_t b = 0; b < s->body_count; b++)
-    memset(out->body + s->body[b].first, (int)b, s->body[b].last - s->body[b].first);
+    memset(out->body + s->solid[b].first, (int)b, s->solid[b].last - s->solid[b].first);
 }
 
 double sph_system_damage(const struct sph_system *s, double *rate) {
   double volume = 0, damage = 0, growth = 0;
   for (size_t b = 0; s->fracture && b < s->body_count; b++) {
-    if (!s->body[b].weibull) continue;
-    for (size_t i = s->body[b].first; i < s->body[b].last; i++) {
+    if (!s->solid[b].weibull) continue;
+    for (size_t i = s->solid[b].first; i < s->solid[b].last; i++) {
       const double v = s->c.mass[i], d = s->c.damage[i];
       volume += v;
       damage += v * d * d * d;

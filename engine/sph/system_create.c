@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "engine/sph/ranges.h"
 #include "engine/sph/system_step.h"
@@ -209,14 +208,14 @@ static status check_particles(const struct sph_particles *p, size_t body_count, 
 /* Refused before anything is allocated: what the columns, lists and flaws of n particles take is about this. */
 static status check_memory(const struct sph_particles *p, struct error *error) {
   const double bytes = (double)p->n * (SPH_COLUMNS * sizeof(double) + 60.0 * sizeof(uint32_t) + 400);
-  const double there = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
-  if (there > 0 && bytes > there)
-    return status_fail(error, STATUS_MEMORY, "%zu particles need about %.3g GB; this machine has %.3g GB", p->n,
+  const double there = (double)sph_particles_memory();
+  if (bytes > there)
+    return status_fail(error, STATUS_MEMORY, "%zu particles need about %.3g GB; this machine, or the limit set, has %.3g GB", p->n,
                        bytes / 1e9, there / 1e9);
   return STATUS_OK;
 }
 
-static void choose_hooks(struct sph_system *s, struct sph_body *b, const struct sph_body_physics *physics) {
+static void choose_hooks(struct sph_system *s, struct sph_solid *b, const struct sph_body_physics *physics) {
   const struct sph_ranges *r = s->ranges;
   const bool fracture = physics->flaws != NULL;
   b->before[b->before_count++] = r->motion_predict;
@@ -238,7 +237,7 @@ static void choose_hooks(struct sph_system *s, struct sph_body *b, const struct 
 }
 
 static status make_body(struct sph_system *s, size_t index, const struct sph_body_physics *physics, struct error *error) {
-  struct sph_body *b = &s->body[index];
+  struct sph_solid *b = &s->solid[index];
   const struct sph_material *m = &physics->material;
   b->physics = *physics;
   if (physics->porosity) {
@@ -266,7 +265,7 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
   if (s->c.damping) memcpy(s->c.damping, p->damping, s->n * sizeof(double));
   for (size_t i = 0; i < s->n; i++) {
     s->id[i] = (uint32_t)i;
-    const struct sph_body *b = &s->body[p->body[i]];
+    const struct sph_solid *b = &s->solid[p->body[i]];
     if (s->strength && b->physics.strength && p->stress[0]) {
       const double third = (p->stress[0][i] + p->stress[3][i] + p->stress[5][i]) / 3;
       for (int k = 0; k < 5; k++)
@@ -286,13 +285,13 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
 
 static status make_blocks(struct sph_system *s, struct error *error) {
   for (size_t b = 0; b < s->body_count; b++)
-    s->block_count += (s->body[b].last - s->body[b].first + SPH_BLOCK - 1) / SPH_BLOCK;
+    s->block_count += (s->solid[b].last - s->solid[b].first + SPH_BLOCK - 1) / SPH_BLOCK;
   s->block = calloc(s->block_count ? s->block_count : 1, sizeof *s->block);
   if (!s->block) return status_fail(error, STATUS_MEMORY, "no memory for %zu blocks", s->block_count);
   size_t k = 0;
   for (size_t b = 0; b < s->body_count; b++)
-    for (size_t low = s->body[b].first; low < s->body[b].last; low += SPH_BLOCK) {
-      const size_t high = low + SPH_BLOCK < s->body[b].last ? low + SPH_BLOCK : s->body[b].last;
+    for (size_t low = s->solid[b].first; low < s->solid[b].last; low += SPH_BLOCK) {
+      const size_t high = low + SPH_BLOCK < s->solid[b].last ? low + SPH_BLOCK : s->solid[b].last;
       s->block[k++] = (struct sph_block){.low = low, .high = high, .body = (uint32_t)b};
     }
   return STATUS_OK;
@@ -319,12 +318,12 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
                     struct error *error) {
   status done = STATUS_OK;
   for (size_t i = 0; i < p->n; i++) {
-    struct sph_body *b = &s->body[p->body[i]];
+    struct sph_solid *b = &s->solid[p->body[i]];
     if (b->last == 0) b->first = i;
     b->last = i + 1;
   }
   for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++) {
-    done = check_body(b, &bodies[b], s->body[b].last - s->body[b].first, error);
+    done = check_body(b, &bodies[b], s->solid[b].last - s->solid[b].first, error);
     s->strength |= bodies[b].strength;
     s->fracture |= bodies[b].flaws != NULL;
     s->pores |= bodies[b].porosity != NULL;
@@ -354,8 +353,8 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
   s->n = particles->n;
   s->body_count = body_count;
   s->ranges = sph_ranges_choose();
-  s->body = calloc(body_count, sizeof *s->body);
-  done = s->body ? build(s, particles, bodies, error) : status_fail(error, STATUS_MEMORY, "no memory for a system");
+  s->solid = calloc(body_count, sizeof *s->solid);
+  done = s->solid ? build(s, particles, bodies, error) : status_fail(error, STATUS_MEMORY, "no memory for a system");
   if (done != STATUS_OK) {
     sph_system_free(s);
     return done;

@@ -34,9 +34,9 @@ struct sph_columns {
   double *new_ax, *new_ay, *new_az, *gradient[9], *heating, *signal;
 };
 
-struct sph_body;
+struct sph_solid;
 struct sph_block;
-typedef void (*sph_hook)(struct sph_system *system, const struct sph_body *body, struct sph_block *block);
+typedef void (*sph_hook)(struct sph_system *system, const struct sph_solid *body, struct sph_block *block);
 
 /* A fixed piece of a body, and what its hooks found there in this step. */
 struct sph_block {
@@ -50,7 +50,7 @@ struct sph_block {
 };
 
 /* A body's constants, made once from its material. */
-struct sph_body {
+struct sph_solid {
   struct sph_body_physics physics; /* porosity points at `porosity`, flaws is NULL (see weibull) */
   struct sph_palpha porosity;
   struct sph_weibull_lists *weibull;
@@ -89,7 +89,7 @@ struct sph_system {
   double *listed[4]; /* x y z h at the last listing: a restart makes the same lists */
   uint32_t *order;
   size_t body_count, block_count;
-  struct sph_body *body;
+  struct sph_solid *solid; /* its bodies */
   struct sph_block *block;
   bool strength, fracture, pores; /* some body has it */
   struct sph_pairs *pairs;

@@ -22,7 +22,7 @@ static void run_blocks(struct sph_system *s, bool after) {
 #endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
-    const struct sph_body *body = &s->body[block->body];
+    const struct sph_solid *body = &s->solid[block->body];
     const sph_hook *hook = after ? body->after : body->before;
     const size_t count = after ? body->after_count : body->before_count;
     for (size_t m = 0; m < count; m++)
@@ -58,7 +58,7 @@ static void permute(struct sph_system *s) {
 static bool sort(struct sph_system *s) {
   struct error error = {0};
   for (size_t b = 0; b < s->body_count; b++) {
-    const size_t first = s->body[b].first, count = s->body[b].last - first;
+    const size_t first = s->solid[b].first, count = s->solid[b].last - first;
     if (!count) continue;
     if (sph_order_find(count, s->c.x + first, s->c.y + first, s->c.z + first, s->order + first, &error) != STATUS_OK) {
       snprintf(s->failure, sizeof s->failure, "%.200s", error.message);

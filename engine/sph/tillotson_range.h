@@ -6,7 +6,7 @@
 #include "engine/sph/range_tools.h"
 #include "engine/sph/tillotson.h"
 
-RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const struct sph_tillotson t = body->physics.material.tillotson;
   const double density0 = body->physics.material.density, inverse0 = 1 / density0, floor2 = t.A / (4 * density0);
   const double *density = s->c.density, *energy = s->c.energy;
@@ -34,7 +34,7 @@ RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_body *bod
     }
 }
 
-RANGE_HOOK void tillotson_tension_limit(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void tillotson_tension_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double lowest = -body->physics.material.tension_limit;
   double *pressure = s->c.pressure;
   RANGE_LOOP

@@ -5,7 +5,7 @@
 
 #include "engine/sph/range_tools.h"
 
-RANGE_HOOK void yield_range(struct sph_system *s, const struct sph_body *body, struct sph_block *b) {
+RANGE_HOOK void yield_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double y0 = body->physics.material.yield_stress, melt = body->physics.material.melt_energy;
   const double softening = melt > 0 ? 1 / melt : 0; /* NaN: none */
   const double *energy = s->c.energy;

@@ -1,0 +1,91 @@
+/* Small solids for the tests of the moving system: cubic blocks, basalt, and a few measures. */
+#ifndef CLAST_TESTS_SPH_CASE_H
+#define CLAST_TESTS_SPH_CASE_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "engine/sph/system.h"
+
+#define CASE_UNUSED __attribute__((unused))
+
+static const struct sph_material case_basalt = {.density = 2700,
+                                                .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7},
+                                                .shear_modulus = 2.27e10,
+                                                .yield_stress = 3.5e9,
+                                                .melt_energy = 3.4e6,
+                                                .tension_limit = NAN,
+                                                .weibull = {8.5, 5e34}};
+
+struct case_block { /* particles at the centres of cubes of `spacing`, from `corner` on */
+  size_t count[3];
+  double corner[3], velocity[3], spacing;
+};
+
+static CASE_UNUSED struct sph_particles *case_make(const struct case_block *blocks, size_t count, double density,
+                                                   double h_over_spacing, int arrays) {
+  size_t n = 0;
+  for (size_t b = 0; b < count; b++)
+    n += blocks[b].count[0] * blocks[b].count[1] * blocks[b].count[2];
+  struct sph_particles *p = NULL;
+  assert_int_equal(sph_particles_make(n, arrays, &p, NULL), STATUS_OK);
+  size_t i = 0;
+  for (size_t b = 0; b < count; b++) {
+    const struct case_block *k = &blocks[b];
+    for (size_t z = 0; z < k->count[2]; z++)
+      for (size_t y = 0; y < k->count[1]; y++)
+        for (size_t x = 0; x < k->count[0]; x++, i++) {
+          const double s = k->spacing;
+          p->x[i] = k->corner[0] + s * ((double)x + 0.5);
+          p->y[i] = k->corner[1] + s * ((double)y + 0.5);
+          p->z[i] = k->corner[2] + s * ((double)z + 0.5);
+          p->vx[i] = k->velocity[0];
+          p->vy[i] = k->velocity[1];
+          p->vz[i] = k->velocity[2];
+          p->mass[i] = density * s * s * s;
+          p->density[i] = density;
+          p->h[i] = h_over_spacing * s;
+          p->body[i] = (uint8_t)b;
+        }
+  }
+  return p;
+}
+
+static CASE_UNUSED struct sph_flaws *case_flaws(size_t n, double volume, uint64_t seed, uint64_t body) {
+  struct sph_flaw_law law = {.weibull = case_basalt.weibull, .volume = volume, .seed = seed, .body = body};
+  struct sph_flaws *flaws = NULL;
+  assert_int_equal(sph_flaws_make(&law, n, NULL, NULL, 0, &flaws, NULL), STATUS_OK);
+  return flaws;
+}
+
+static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p, size_t bodies,
+                                                  const struct sph_body_physics *physics,
+                                                  const struct sph_parameters *parameters) {
+  struct sph_system *s = NULL;
+  struct error error = {0};
+  if (sph_system_create(p, bodies, physics, parameters, &s, &error) != STATUS_OK) fail_msg("%s", error.message);
+  return s;
+}
+
+static CASE_UNUSED void case_steps(struct sph_system *s, int steps) {
+  for (int k = 0; k < steps; k++)
+    if (!sph_system_step(s, HUGE_VAL)) fail_msg("step %d: %s", k, sph_system_failure(s));
+}
+
+static CASE_UNUSED void case_run(struct sph_system *s, double until) {
+  while (sph_system_time(s) < until)
+    if (!sph_system_step(s, until)) fail_msg("at %g s: %s", sph_system_time(s), sph_system_failure(s));
+}
+
+static CASE_UNUSED double case_total(struct sph_ledger l) {
+  return l.kinetic + l.internal + l.damped - l.work_of_held;
+}
+
+#endif
