@@ -14,6 +14,9 @@ struct engine_kind {
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */
   const struct field_table *results; /* what this engine reports beyond struct outcome; table result_<engine> */
 
+  /* Fills inputs that were not given (one flag per input row) and follow from others: values of a named material, a time
+   * that scales with a size. A pure function of the given ones, called again after every change. NULL: there are none. */
+  void (*complete)(void *inputs, const bool *given);
   /* Conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "engine/blake2s.h"
-#include "engine/scene_builtin.h"
+#include "engine/builtin.h"
 #include "schemas/document.h"
 #include "schemas/near.h"
 
@@ -12,27 +12,27 @@
 
 size_t scene_builtin_count(void) {
   size_t count = 0;
-  while (scene_builtin_list[count].name)
+  while (builtin_scene_list[count].name)
     count++;
   return count;
 }
 
 const char *scene_builtin_name(size_t index) {
-  return index < scene_builtin_count() ? scene_builtin_list[index].name : NULL;
+  return index < scene_builtin_count() ? builtin_scene_list[index].name : NULL;
 }
 
 const char *scene_builtin_text(const char *name) {
-  for (size_t i = 0; scene_builtin_list[i].name; i++)
-    if (strcmp(scene_builtin_list[i].name, name) == 0) return scene_builtin_list[i].text;
+  for (size_t i = 0; builtin_scene_list[i].name; i++)
+    if (strcmp(builtin_scene_list[i].name, name) == 0) return builtin_scene_list[i].text;
   return NULL;
 }
 
 static status unknown_builtin(const char *name, struct error *error) {
   const char *near = NULL;
   size_t best = strlen(name) / 2 + 1;
-  for (size_t i = 0; scene_builtin_list[i].name; i++) {
-    size_t d = near_distance(name, strlen(name), scene_builtin_list[i].name);
-    if (d < best) best = d, near = scene_builtin_list[i].name;
+  for (size_t i = 0; builtin_scene_list[i].name; i++) {
+    size_t d = near_distance(name, strlen(name), builtin_scene_list[i].name);
+    if (d < best) best = d, near = builtin_scene_list[i].name;
   }
   if (near)
     return status_fail(error, STATUS_MISSING,
@@ -53,23 +53,6 @@ static const struct field head_rows[] = {
     {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"},
     {.path = "source", .kind = FIELD_TEXT, .doc = "Where it comes from: paper, section, figure"},
 };
-
-/* Which rows the document gives; reads nothing, so that it may run after document_read. */
-static void mark_given(struct scene *scene, document_node *root) {
-  const struct field_table *table = scene->kind->inputs;
-  for (size_t i = 0; i < table->count; i++) {
-    document_node *node = root;
-    for (const char *at = table->rows[i].path; node; at++) {
-      char word[128];
-      size_t length = strcspn(at, ".");
-      snprintf(word, sizeof word, "%.*s", (int)length, at);
-      node = document_key(node, word);
-      at += length;
-      if (!*at) break;
-    }
-    scene->given[i] = node != NULL;
-  }
-}
 
 static struct scene *create(const struct engine_kind *kind) {
   struct scene *scene = calloc(1, sizeof *scene);
@@ -110,8 +93,7 @@ static status read_document(struct document *document, const char *fallback, str
       code = status_fail(error, STATUS_MEMORY, "no memory for a scene");
       goto cleanup;
     }
-    document_read(root, kind->inputs, own_keys, scene->inputs);
-    mark_given(scene, root);
+    document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
     snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
   }
   code = document_finish(document, &report);
@@ -191,8 +173,10 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   const struct field *row = field_find(table, path, error);
   if (!row) return STATUS_CONTENT;
   status code = field_set(row, scene->inputs, value, error);
-  if (!code) scene->given[row - table->rows] = true;
-  return code;
+  if (code) return code;
+  scene->given[row - table->rows] = true;
+  if (scene->kind->complete) scene->kind->complete(scene->inputs, scene->given);
+  return STATUS_OK;
 }
 
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error) {

@@ -24,7 +24,8 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
 
-/* Override one input by path or unique suffix, from text ("5 km/s") or as a value. Not checked across fields. */
+/* Override one input by path or unique suffix, from text ("5 km/s") or as a value; what follows from it and was not given
+ * follows anew. Not checked across fields. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
 /* After the last override: inactive inputs that were set are refused, cross-field conditions checked. */

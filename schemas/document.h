@@ -40,6 +40,12 @@ bool document_value(document_node *node, const struct field *row, struct field_v
  * (NULL-terminated, may be NULL) belong to the caller and are left alone; every other unknown key is reported.
  * `when` conditions are judged after all keys are read. Returns false when anything was reported. */
 bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object);
+/* The same, and tells which rows the document gives, good or bad (`given`, one per row; NULL is fine). `complete` (NULL is
+ * fine) is called when all keys are read and before conditions are judged: it fills in what was not given and follows from
+ * what was. */
+typedef void (*document_complete)(void *object, const bool *given);
+bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
+                         bool *given, document_complete complete);
 
 /* Add a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
 void document_report(document_node *node, const char *path, const char *format, ...) __attribute__((format(printf, 3, 4)));

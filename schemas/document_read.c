@@ -125,6 +125,21 @@ static bool judgeable(const struct reading *r, const struct field *row) {
 }
 
 bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object) {
+  return document_read_given(node, table, also, object, NULL, NULL);
+}
+
+static bool complete_object(const struct reading *r, bool *given, document_complete complete) {
+  bool *mine = given ? given : calloc(r->table->count + 1, sizeof *mine);
+  if (!mine) return false;
+  for (size_t i = 0; i < r->table->count; i++)
+    mine[i] = r->places[i].key != NULL;
+  if (complete) complete(r->object, mine);
+  if (!given) free(mine);
+  return true;
+}
+
+bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
+                         bool *given, document_complete complete) {
   struct document *document = node->document;
   size_t before = document->error_count;
   if (node->faulty) return false;
@@ -141,6 +156,7 @@ bool document_read(document_node *node, const struct field_table *table, const c
     return false;
   }
   walk(&r, node, "");
+  if (!complete_object(&r, given, complete)) document_report(node, NULL, "no memory to read it");
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char why[600], path[PATH_SIZE], whole[2 * PATH_SIZE];

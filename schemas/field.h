@@ -27,6 +27,8 @@ enum field_flags {
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
   FIELD_VOLATILE = 16,     /* results only: times, host...: differs between identical runs; not compared by tests */
   FIELD_LOG = 32,          /* a positive quantity usually varied over decades (hint for plots and designs) */
+  FIELD_DERIVED = 64,      /* inputs only: where it is not given, it follows from other inputs (engine_kind.complete); `number`
+                            * only stands in until then, and the doc text says what it follows from */
 };
 
 struct field {

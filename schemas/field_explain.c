@@ -43,6 +43,8 @@ static void explain_row(const struct field *row, FILE *out) {
   }
   if (row->flags & FIELD_REQUIRED) {
     fputs("; required\n", out);
+  } else if (row->flags & FIELD_DERIVED) {
+    fputs("; default follows from other inputs\n", out);
   } else {
     struct field_value value = {.kind = row->kind, .number = row->number, .integer = 0};
     if (row->kind == FIELD_INTEGER) value.integer = (int64_t)row->number;

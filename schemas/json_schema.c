@@ -98,7 +98,7 @@ static void description(const struct field *row, FILE *out) {
 
 static void default_value(const struct field *row, FILE *out) {
   struct field_value value = {.kind = row->kind, .number = row->number};
-  if (row->flags & FIELD_REQUIRED) return;
+  if (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)) return;
   if (row->kind == FIELD_INTEGER) value.integer = (int64_t)row->number;
   if (row->kind == FIELD_TEXT && row->text) memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
   if (row->kind == FIELD_CHOICE) snprintf(value.text, sizeof value.text, "%s", row->choices[(size_t)row->number]);

@@ -85,7 +85,7 @@ static status list_paths(const struct explain_options *options, struct error *er
       table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
       void *object = calloc(1, list[i]->size);
       struct field_value value;
-      bool input = list[i] != &outcome_table && list[i] != &estimates_table && !(row->flags & FIELD_REQUIRED);
+      bool input = list[i] != &outcome_table && list[i] != &estimates_table && !(row->flags & (FIELD_REQUIRED | FIELD_DERIVED));
       if (object && input) {
         field_defaults(list[i], object);
         field_get(row, object, &value);

@@ -1,0 +1,112 @@
+/* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c. SI throughout. */
+#ifndef CLAST_ENGINE_SPH_INPUTS_H
+#define CLAST_ENGINE_SPH_INPUTS_H
+
+#include "engine/sph/material.h"
+#include "engine/sph/shape.h"
+#include "schemas/field.h"
+
+enum sph_kind {
+  SPH_IMPACT,    /* a projectile into a target */
+  SPH_STRETCH,   /* a cylinder pulled by its ends at a constant rate */
+  SPH_VIBRATION, /* a free cylinder ringing along its axis in its first mode */
+  SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
+};
+enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
+enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
+
+struct sph_body_inputs {
+  int shape;                            /* enum sph_shape_kind */
+  double radius, inner_radius, length;  /* m */
+  double width, depth, height;          /* m: box along x, y, z */
+  double spin;                          /* rad/s about z */
+  int lattice;                          /* enum sph_lattice_kind */
+  bool turned;
+  bool strength;
+  int fracture;                         /* enum sph_fracture_choice */
+  int material_name;                    /* index of builtin_material_names */
+  struct sph_material material;
+};
+
+struct sph_inputs {
+  int kind; /* enum sph_kind: the protocol */
+  struct sph_body_inputs target, projectile;
+  struct {
+    int far;       /* 0 free, 1 damped */
+    double depth;  /* m */
+  } sides;
+  struct {
+    int projectile; /* enum sph_projectile_by */
+    double mass, specific_energy;
+    double speed, angle, gap;
+  } impact;
+  struct {
+    double rate, grip, flaw_free;
+  } stretch;
+  struct {
+    double speed;
+  } vibration;
+  struct {
+    double speed, gap;
+  } collision;
+  struct {
+    int draw, growth, cap, crack_radius;
+  } fracture;
+  struct {
+    double alpha, beta;
+  } viscosity;
+  struct {
+    double artificial_stress;
+    bool gradient_correction, volume_weights;
+  } method;
+  struct {
+    double static_strength, damage, link_length;
+    int link_h; /* 0 initial, 1 current */
+    bool veneer;
+  } fragments;
+  struct {
+    double end_time, quiet_time, quiet_growth;
+  } stop;
+  struct {
+    int64_t particles;
+    double projectile_spacing;
+    bool graded;
+    double fine_spacing, fine_radius;
+    double neighbours, cfl, damage_step, skin;
+    int precision, flaws;
+    int64_t threads;
+    double energy_bound; /* NaN = off */
+  } fidelity;
+};
+
+extern const struct field_table sph_inputs;
+
+/* inputs_complete.c: what was not given and follows from what was (engine_kind.complete). */
+void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
+/* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
+status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
+
+/* What follows from the inputs alone. */
+bool sph_inputs_has_projectile(const struct sph_inputs *inputs);
+int sph_inputs_bodies(const struct sph_inputs *inputs);
+/* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
+bool sph_inputs_cracks(const struct sph_body_inputs *body);
+double sph_inputs_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
+double sph_inputs_young_modulus(const struct sph_material *material); /* Pa */
+double sph_inputs_poisson_ratio(const struct sph_material *material);
+double sph_inputs_wave_speed(const struct sph_body_inputs *body);     /* m/s, longitudinal */
+double sph_inputs_crack_speed(const struct sph_material *material);   /* m/s, c_g */
+/* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
+struct sph_shape sph_inputs_target(const struct sph_inputs *inputs);
+struct sph_shape sph_inputs_projectile(const struct sph_inputs *inputs);
+double sph_inputs_target_mass(const struct sph_inputs *inputs);     /* kg */
+double sph_inputs_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
+double sph_inputs_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
+double sph_inputs_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+double sph_inputs_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
+double sph_inputs_crossing(const struct sph_inputs *inputs);        /* s, of a wave through the target's longest extent */
+double sph_inputs_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
+/* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
+double sph_inputs_specific_energy(const struct sph_inputs *inputs);
+
+#endif

@@ -1,0 +1,178 @@
+/* Conditions across the inputs: what cannot be run is refused here, with a remedy. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/bodies.h"
+#include "engine/sph/inputs.h"
+#include "engine/sph/material_rows.h"
+
+#define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
+
+/* ---- materials ---- */
+
+enum need { ALWAYS, STRENGTH, FRACTURE };
+static const struct {
+  const char *name;
+  size_t offset;
+  enum need need;
+  bool may_be_off;
+} values[] = {
+#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
+  {#member_, offsetof(struct sph_material, member_), need_, ((flags_) & FIELD_MAY_BE_OFF) != 0},
+    SPH_MATERIAL_ROWS(VALUE)};
+
+static bool needed(size_t k, const struct sph_body_inputs *body) {
+  if (values[k].need == FRACTURE)
+    return body->strength && body->fracture == SPH_FRACTURE_ON;
+  if (values[k].need == STRENGTH)
+    return body->strength && strcmp(values[k].name, "shear_modulus") == 0;
+  return !values[k].may_be_off;
+}
+
+static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const char *name = builtin_material_names[body->material_name];
+  const struct sph_material *m = &body->material;
+  for (size_t k = 0; k < sizeof values / sizeof values[0]; k++) {
+    double value;
+    memcpy(&value, (const char *)m + values[k].offset, sizeof value);
+    if (!isnan(value) || !needed(k, body))
+      continue;
+    const char *remedy = "give it, or name another material";
+    char text[200];
+    if (values[k].need != ALWAYS) {
+      snprintf(text, sizeof text, "give it, or set %s.%s", body_name,
+               values[k].need == STRENGTH ? "strength: false" : "fracture: off");
+      remedy = text;
+    }
+    REFUSE("%s.material.%s is needed%s, and the material '%s' has none: %s", body_name, values[k].name,
+           values[k].need == FRACTURE   ? " because fracture is on"
+           : values[k].need == STRENGTH ? " because the body has strength"
+                                        : "",
+           name, remedy);
+  }
+  if (!(m->tillotson.E_cv > m->tillotson.E_iv))
+    REFUSE("%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: vaporisation begins before it is "
+           "complete", body_name, m->tillotson.E_cv, m->tillotson.E_iv);
+  bool m_off = field_is_off(m->weibull.m), k_off = field_is_off(m->weibull.k);
+  if (body->strength && body->fracture == SPH_FRACTURE_AUTO && m_off != k_off)
+    REFUSE("%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
+           body_name, m_off ? "k" : "m", m_off ? "m" : "k");
+  return STATUS_OK;
+}
+
+/* ---- sizes ---- */
+
+static status check_shape(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape, struct error *error) {
+  if (body->shape == SPH_SHAPE_CYLINDER && shape->kind == SPH_SHAPE_CYLINDER && body->inner_radius >= body->radius)
+    REFUSE("%s.inner_radius is %.4g m, the radius %.4g m: a ring needs a smaller hole", name, body->inner_radius, body->radius);
+  if (!(sph_shape_volume(shape) > 0) || !isfinite(sph_shape_volume(shape)))
+    REFUSE("%s has a volume of %.4g m^3: give other sizes", name, sph_shape_volume(shape));
+  return STATUS_OK;
+}
+
+static status check_cylinder(const struct sph_inputs *in, const char *protocol, struct error *error) {
+  if (in->target.shape != SPH_SHAPE_CYLINDER)
+    REFUSE("%s is done to a cylinder: set target.shape: cylinder", protocol);
+  return STATUS_OK;
+}
+
+static status check_impact(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape target = sph_inputs_target(in), projectile;
+  if (in->impact.projectile == SPH_BY_ENERGY && !(in->impact.speed > 0))
+    REFUSE("impact.specific_energy at impact.speed 0 would need a projectile without end: give a speed, or impact.projectile: "
+           "size");
+  projectile = sph_inputs_projectile(in);
+  status code = in->impact.projectile == SPH_BY_SIZE ? check_shape("projectile", &in->projectile, &projectile, error) : STATUS_OK;
+  if (code)
+    return code;
+  if (!(projectile.kind == SPH_SHAPE_SPHERE ? projectile.radius > 1e-12 && projectile.radius < 1e9 : true))
+    REFUSE("a projectile of radius %.4g m (from %s) is out of range", projectile.radius,
+           in->impact.projectile == SPH_BY_MASS ? "impact.mass" : "impact.specific_energy");
+  if (target.kind == SPH_SHAPE_CYLINDER && target.inner_radius > 0)
+    REFUSE("a projectile comes down along the axis of a ring and misses it: give target.inner_radius: 0");
+  if (in->impact.speed > 0) {
+    double arrival = in->impact.gap / (in->impact.speed * cos(in->impact.angle));
+    if (arrival >= in->stop.end_time)
+      REFUSE("the projectile needs %.4g s over impact.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or lower the gap",
+             arrival, in->impact.gap, in->stop.end_time);
+    double direction[3] = {0, 0, 1}, flight[3];
+    if ((code = sph_bodies_aim(&target, &projectile, direction, in->impact.angle, in->impact.gap, flight, error)))
+      return code;
+    for (int k = 0; k < 3; k++)
+      flight[k] *= in->impact.speed;
+    if (sph_shape_approach(&target, &projectile, flight, NULL) > 0)
+      REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)", in->impact.angle,
+             in->impact.gap);
+  }
+  double pieces = sph_inputs_particles(in) - (double)in->fidelity.particles;
+  if (pieces < 1)
+    REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise fidelity.particles, or "
+           "take a larger projectile", pieces, in->fidelity.projectile_spacing);
+  if (in->fidelity.graded && in->fidelity.fine_spacing > sph_inputs_spacing(in))
+    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, or set "
+           "fidelity.graded: false", in->fidelity.fine_spacing, sph_inputs_spacing(in));
+  return STATUS_OK;
+}
+
+static status check_protocol(const struct sph_inputs *in, struct error *error) {
+  status code;
+  double spacing = sph_inputs_spacing(in);
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    return check_impact(in, error);
+  case SPH_STRETCH:
+    if ((code = check_cylinder(in, "stretch", error)))
+      return code;
+    if (2 * in->stretch.grip >= 0.9 * in->target.length)
+      REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more fidelity.particles or a longer "
+             "target.length", in->stretch.grip, in->target.length);
+    if (2 * in->stretch.flaw_free >= 0.95 * in->target.length)
+      REFUSE("ends of %.4g m without flaws leave too little of a rod of %.4g m: give a shorter stretch.flaw_free",
+             in->stretch.flaw_free, in->target.length);
+    return STATUS_OK;
+  case SPH_VIBRATION:
+    return check_cylinder(in, "vibration", error);
+  case SPH_COLLISION:
+    if ((code = check_cylinder(in, "collision", error)))
+      return code;
+    if (in->collision.gap / in->collision.speed >= in->stop.end_time)
+      REFUSE("the bodies need %.4g s over collision.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or lower the gap",
+             in->collision.gap / in->collision.speed, in->collision.gap, in->stop.end_time);
+    if (in->collision.gap < spacing / 2)
+      REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap", in->collision.gap, spacing);
+    return STATUS_OK;
+  }
+  return STATUS_OK;
+}
+
+status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape target = sph_inputs_target(in);
+  status code = check_material("target", &in->target, error);
+  if (!code)
+    code = check_shape("target", &in->target, &target, error);
+  if (!code && sph_inputs_has_projectile(in))
+    code = check_material("projectile", &in->projectile, error);
+  if (!code)
+    code = check_protocol(in, error);
+  if (code)
+    return code;
+  bool cracks = sph_inputs_cracks(&in->target) || (sph_inputs_has_projectile(in) && sph_inputs_cracks(&in->projectile));
+  if (cracks && in->method.artificial_stress > 0)
+    REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
+  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
+      2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
+    REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side", in->sides.depth);
+  double particles = sph_inputs_particles(in);
+  if (!(particles <= 2e9))
+    REFUSE("%.3g particles are too many (at most 2e9): lower fidelity.particles or raise fidelity.projectile_spacing", particles);
+  if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
+    REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
+  double step = in->fidelity.cfl * sph_inputs_smallest_spacing(in) / sph_inputs_wave_speed(&in->target);
+  double steps = in->stop.end_time / step;
+  if (!(steps <= 1e10))
+    REFUSE("the run could take %.3g time steps (at most 1e10): end it earlier (stop.end_time %.4g s) or take larger particles", steps,
+           in->stop.end_time);
+  return STATUS_OK;
+}
