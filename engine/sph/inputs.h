@@ -3,7 +3,6 @@
 #define CLAST_ENGINE_SPH_INPUTS_H
 
 #include "engine/sph/material.h"
-#include "engine/sph/shape.h"
 #include "schemas/field.h"
 
 enum sph_kind {
@@ -85,28 +84,5 @@ extern const struct field_table sph_inputs;
 void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
-
-/* What follows from the inputs alone. */
-bool sph_inputs_has_projectile(const struct sph_inputs *inputs);
-int sph_inputs_bodies(const struct sph_inputs *inputs);
-/* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
-bool sph_inputs_cracks(const struct sph_body_inputs *body);
-double sph_inputs_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
-double sph_inputs_young_modulus(const struct sph_material *material); /* Pa */
-double sph_inputs_poisson_ratio(const struct sph_material *material);
-double sph_inputs_wave_speed(const struct sph_body_inputs *body);     /* m/s, longitudinal */
-double sph_inputs_crack_speed(const struct sph_material *material);   /* m/s, c_g */
-/* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
-struct sph_shape sph_inputs_target(const struct sph_inputs *inputs);
-struct sph_shape sph_inputs_projectile(const struct sph_inputs *inputs);
-double sph_inputs_target_mass(const struct sph_inputs *inputs);     /* kg */
-double sph_inputs_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
-double sph_inputs_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
-double sph_inputs_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
-double sph_inputs_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
-double sph_inputs_crossing(const struct sph_inputs *inputs);        /* s, of a wave through the target's longest extent */
-double sph_inputs_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
-/* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
-double sph_inputs_specific_energy(const struct sph_inputs *inputs);
 
 #endif

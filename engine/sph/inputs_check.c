@@ -7,6 +7,7 @@
 #include "engine/sph/bodies.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/material_rows.h"
+#include "engine/sph/scale.h"
 
 #define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
 
@@ -79,11 +80,11 @@ static status check_cylinder(const struct sph_inputs *in, const char *protocol, 
 }
 
 static status check_impact(const struct sph_inputs *in, struct error *error) {
-  struct sph_shape target = sph_inputs_target(in), projectile;
+  struct sph_shape target = sph_scale_target(in), projectile;
   if (in->impact.projectile == SPH_BY_ENERGY && !(in->impact.speed > 0))
     REFUSE("impact.specific_energy at impact.speed 0 would need a projectile without end: give a speed, or impact.projectile: "
            "size");
-  projectile = sph_inputs_projectile(in);
+  projectile = sph_scale_projectile(in);
   status code = in->impact.projectile == SPH_BY_SIZE ? check_shape("projectile", &in->projectile, &projectile, error) : STATUS_OK;
   if (code)
     return code;
@@ -106,19 +107,19 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
       REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)", in->impact.angle,
              in->impact.gap);
   }
-  double pieces = sph_inputs_particles(in) - (double)in->fidelity.particles;
+  double pieces = sph_scale_particles(in) - (double)in->fidelity.particles;
   if (pieces < 1)
     REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise fidelity.particles, or "
            "take a larger projectile", pieces, in->fidelity.projectile_spacing);
-  if (in->fidelity.graded && in->fidelity.fine_spacing > sph_inputs_spacing(in))
+  if (in->fidelity.graded && in->fidelity.fine_spacing > sph_scale_spacing(in))
     REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, or set "
-           "fidelity.graded: false", in->fidelity.fine_spacing, sph_inputs_spacing(in));
+           "fidelity.graded: false", in->fidelity.fine_spacing, sph_scale_spacing(in));
   return STATUS_OK;
 }
 
 static status check_protocol(const struct sph_inputs *in, struct error *error) {
   status code;
-  double spacing = sph_inputs_spacing(in);
+  double spacing = sph_scale_spacing(in);
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
     return check_impact(in, error);
@@ -148,28 +149,28 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
 }
 
 status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
-  struct sph_shape target = sph_inputs_target(in);
+  struct sph_shape target = sph_scale_target(in);
   status code = check_material("target", &in->target, error);
   if (!code)
     code = check_shape("target", &in->target, &target, error);
-  if (!code && sph_inputs_has_projectile(in))
+  if (!code && sph_scale_has_projectile(in))
     code = check_material("projectile", &in->projectile, error);
   if (!code)
     code = check_protocol(in, error);
   if (code)
     return code;
-  bool cracks = sph_inputs_cracks(&in->target) || (sph_inputs_has_projectile(in) && sph_inputs_cracks(&in->projectile));
+  bool cracks = sph_scale_cracks(&in->target) || (sph_scale_has_projectile(in) && sph_scale_cracks(&in->projectile));
   if (cracks && in->method.artificial_stress > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
   if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
       2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side", in->sides.depth);
-  double particles = sph_inputs_particles(in);
+  double particles = sph_scale_particles(in);
   if (!(particles <= 2e9))
     REFUSE("%.3g particles are too many (at most 2e9): lower fidelity.particles or raise fidelity.projectile_spacing", particles);
   if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
     REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
-  double step = in->fidelity.cfl * sph_inputs_smallest_spacing(in) / sph_inputs_wave_speed(&in->target);
+  double step = in->fidelity.cfl * sph_scale_smallest_spacing(in) / sph_scale_wave_speed(&in->target);
   double steps = in->stop.end_time / step;
   if (!(steps <= 1e10))
     REFUSE("the run could take %.3g time steps (at most 1e10): end it earlier (stop.end_time %.4g s) or take larger particles", steps,

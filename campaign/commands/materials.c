@@ -1,0 +1,76 @@
+/* `clast materials [NAME]`: the built-in materials, or one as a document with its sources. */
+#include <string.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/table.h"
+#include "engine/sph/materials.h"
+
+struct options {
+  struct table_options table;
+};
+
+/* The document's first comment line says what the material is. */
+static void headline(const char *text, char *line, size_t size) {
+  text += strspn(text, "# ");
+  snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+static status list(enum table_format format, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  status code = STATUS_OK;
+  table_column(table, "name", NULL);
+  table_column(table, "density", "kg/m^3");
+  table_column(table, "bulk_modulus", "Pa");
+  table_column(table, "shear_modulus", "Pa");
+  table_column(table, "weibull_m", NULL);
+  table_column(table, "weibull_k", "1/m^3");
+  table_column(table, "what", NULL);
+  for (size_t i = 0; !code && i < sph_materials_count(); i++) {
+    struct sph_material material;
+    char what[256];
+    code = sph_materials_load(sph_materials_name(i), &material, error);
+    if (code)
+      break;
+    headline(sph_materials_text(sph_materials_name(i)), what, sizeof what);
+    table_text(table, sph_materials_name(i));
+    table_real(table, material.density);
+    table_real(table, material.tillotson.A);
+    table_real(table, material.shear_modulus);
+    table_real(table, material.weibull.m);
+    table_real(table, material.weibull.k);
+    table_text(table, what);
+  }
+  status ended = table_end(table, code ? NULL : error);
+  return code ? code : ended;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  if (code || line->count == 0)
+    return code ? code : list(format, error);
+  struct sph_material material;
+  code = sph_materials_load(line->arguments[0], &material, error); /* names the nearest one */
+  if (!code)
+    fputs(sph_materials_text(line->arguments[0]), stdout);
+  return code;
+}
+
+static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
+
+const struct command materials_command = {
+    .name = "materials",
+    .group = "scenes and inputs",
+    .arguments = "[NAME]",
+    .summary = "the built-in materials; with a name, its document with sources",
+    .doc = "Lists the materials that a scene of engine sph can name (target.material.name: basalt). With a NAME it prints that\n"
+           "material's document, with its sources; any of its values can be overridden in the scene or be a sweep axis\n"
+           "(target.material.weibull.m).",
+    .examples = "clast materials\nclast materials basalt",
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,128 @@
+#include "engine/sph/scale.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+double sph_scale_bulk_modulus(const struct sph_material *m) {
+  return field_is_off(m->bulk_modulus) ? m->tillotson.A : m->bulk_modulus;
+}
+
+double sph_scale_young_modulus(const struct sph_material *m) {
+  double K = sph_scale_bulk_modulus(m);
+  return 9 * K * m->shear_modulus / (3 * K + m->shear_modulus);
+}
+
+double sph_scale_poisson_ratio(const struct sph_material *m) {
+  double K = sph_scale_bulk_modulus(m);
+  return (3 * K - 2 * m->shear_modulus) / (2 * (3 * K + m->shear_modulus));
+}
+
+double sph_scale_wave_speed(const struct sph_body_inputs *b) { /* pressure answers with A, whatever K says */
+  double modulus = b->material.tillotson.A + (b->strength ? 4.0 / 3 * b->material.shear_modulus : 0);
+  return sqrt(modulus / b->material.density);
+}
+
+double sph_scale_crack_speed(const struct sph_material *m) {
+  return 0.4 * sqrt((sph_scale_bulk_modulus(m) + 4.0 / 3 * m->shear_modulus) / m->density);
+}
+
+bool sph_scale_cracks(const struct sph_body_inputs *b) {
+  if (!b->strength || b->fracture == SPH_FRACTURE_OFF)
+    return false;
+  bool known = !field_is_off(b->material.weibull.m) && !field_is_off(b->material.weibull.k);
+  return b->fracture == SPH_FRACTURE_ON || known;
+}
+
+bool sph_scale_has_projectile(const struct sph_inputs *in) { return in->kind == SPH_IMPACT; }
+
+int sph_scale_bodies(const struct sph_inputs *in) { return in->kind == SPH_IMPACT || in->kind == SPH_COLLISION ? 2 : 1; }
+
+static struct sph_shape shape_of(const struct sph_body_inputs *b) {
+  struct sph_shape shape = {.kind = b->shape, .axis = {0, 0, 1}};
+  switch ((enum sph_shape_kind)b->shape) {
+  case SPH_SHAPE_CYLINDER:
+    shape.inner_radius = b->inner_radius;
+    shape.length = b->length;
+    shape.radius = b->radius;
+    break;
+  case SPH_SHAPE_SPHERE:
+    shape.radius = b->radius;
+    break;
+  case SPH_SHAPE_BOX:
+    memcpy(shape.side, (const double[]){b->width, b->depth, b->height}, sizeof shape.side);
+    break;
+  }
+  return shape;
+}
+
+struct sph_shape sph_scale_target(const struct sph_inputs *in) { return shape_of(&in->target); }
+
+double sph_scale_target_mass(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_scale_target(in);
+  return in->target.material.density * sph_shape_volume(&shape);
+}
+
+struct sph_shape sph_scale_projectile(const struct sph_inputs *in) {
+  if (in->impact.projectile == SPH_BY_SIZE)
+    return shape_of(&in->projectile);
+  double mass = in->impact.mass, speed = in->impact.speed;
+  if (in->impact.projectile == SPH_BY_ENERGY)
+    mass = 2 * in->impact.specific_energy * sph_scale_target_mass(in) / (speed * speed);
+  return (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .axis = {0, 0, 1},
+                            .radius = cbrt(3 * mass / (4 * pi * in->projectile.material.density))};
+}
+
+double sph_scale_projectile_mass(const struct sph_inputs *in) {
+  if (!sph_scale_has_projectile(in))
+    return 0;
+  struct sph_shape shape = sph_scale_projectile(in);
+  return in->projectile.material.density * sph_shape_volume(&shape);
+}
+
+double sph_scale_specific_energy(const struct sph_inputs *in) {
+  double v = in->impact.speed;
+  return sph_scale_has_projectile(in) ? 0.5 * sph_scale_projectile_mass(in) * v * v / sph_scale_target_mass(in) : (double)NAN;
+}
+
+double sph_scale_spacing(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_scale_target(in);
+  return cbrt(sph_shape_volume(&shape) / (double)in->fidelity.particles);
+}
+
+double sph_scale_fine_spacing(const struct sph_inputs *in) {
+  bool graded = in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.fine_spacing > 0;
+  return graded ? in->fidelity.fine_spacing : sph_scale_spacing(in);
+}
+
+double sph_scale_smallest_spacing(const struct sph_inputs *in) {
+  double fine = sph_scale_fine_spacing(in);
+  return sph_scale_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;
+}
+
+double sph_scale_particles(const struct sph_inputs *in) {
+  double target = (double)in->fidelity.particles;
+  if (in->kind == SPH_COLLISION)
+    return 2 * target;
+  if (!sph_scale_has_projectile(in))
+    return target;
+  struct sph_shape shape = sph_scale_projectile(in);
+  double spacing = sph_scale_fine_spacing(in) * in->fidelity.projectile_spacing;
+  return target + sph_shape_volume(&shape) / (spacing * spacing * spacing);
+}
+
+static double longest(const struct sph_shape *shape) {
+  if (shape->kind == SPH_SHAPE_SPHERE)
+    return 2 * shape->radius;
+  if (shape->kind == SPH_SHAPE_CYLINDER)
+    return fmax(2 * shape->radius, shape->length);
+  return fmax(shape->side[0], fmax(shape->side[1], shape->side[2]));
+}
+
+double sph_scale_crossing(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_scale_target(in);
+  double extent = in->kind == SPH_COLLISION ? 2 * shape.radius : longest(&shape);
+  return extent / sph_scale_wave_speed(&in->target);
+}
+

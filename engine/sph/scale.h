@@ -1,0 +1,30 @@
+/* Sizes, masses, speeds and times of a scene: what follows from the inputs alone. */
+#ifndef CLAST_ENGINE_SPH_SCALE_H
+#define CLAST_ENGINE_SPH_SCALE_H
+
+#include "engine/sph/inputs.h"
+#include "engine/sph/shape.h"
+
+bool sph_scale_has_projectile(const struct sph_inputs *inputs);
+int sph_scale_bodies(const struct sph_inputs *inputs);
+/* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
+bool sph_scale_cracks(const struct sph_body_inputs *body);
+double sph_scale_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
+double sph_scale_young_modulus(const struct sph_material *material); /* Pa */
+double sph_scale_poisson_ratio(const struct sph_material *material);
+double sph_scale_wave_speed(const struct sph_body_inputs *body);     /* m/s, longitudinal */
+double sph_scale_crack_speed(const struct sph_material *material);   /* m/s, c_g */
+/* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
+struct sph_shape sph_scale_target(const struct sph_inputs *inputs);
+struct sph_shape sph_scale_projectile(const struct sph_inputs *inputs);
+double sph_scale_target_mass(const struct sph_inputs *inputs);     /* kg */
+double sph_scale_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
+double sph_scale_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
+double sph_scale_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+double sph_scale_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
+double sph_scale_crossing(const struct sph_inputs *inputs);        /* s, of a wave through the target's longest extent */
+double sph_scale_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
+/* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
+double sph_scale_specific_energy(const struct sph_inputs *inputs);
+
+#endif

@@ -1,0 +1,224 @@
+/* Inputs and materials of engine sph: tables, defaults from a named material, what is refused and with which remedy. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/inputs.h"
+#include "engine/sph/materials.h"
+#include "engine/sph/scale.h"
+#include "schemas/document.h"
+
+static void complete(void *inputs, const bool *given) { sph_inputs_complete(inputs, given); }
+
+struct read_scene {
+  struct sph_inputs inputs;
+  bool given[200];
+  char report[2000];
+  bool good;
+};
+
+static struct read_scene read_text(const char *text) {
+  struct read_scene r = {0};
+  struct document *document;
+  struct error error = {0};
+  const char *report = NULL;
+  field_defaults(&sph_inputs, &r.inputs);
+  assert_int_equal(document_parse("scene", text, strlen(text), &document, &error), STATUS_OK);
+  assert_true(sph_inputs.count < sizeof r.given / sizeof r.given[0]);
+  r.good = document_read_given(document_root(document), &sph_inputs, NULL, &r.inputs, r.given, complete);
+  document_finish(document, &report);
+  snprintf(r.report, sizeof r.report, "%s", report ? report : "");
+  document_free(document);
+  return r;
+}
+
+static struct sph_inputs good(const char *text) {
+  struct read_scene r = read_text(text);
+  if (!r.good)
+    fail_msg("%s", r.report);
+  return r.inputs;
+}
+
+static void refused(const char *text, const char *word) { /* by the conditions across fields */
+  struct sph_inputs inputs = good(text);
+  struct error error = {0};
+  assert_int_equal(sph_inputs_check(&inputs, &error), STATUS_CONTENT);
+  if (!strstr(error.message, word))
+    fail_msg("no '%s' in: %s", word, error.message);
+}
+
+static void accepted(const char *text) {
+  struct sph_inputs inputs = good(text);
+  struct error error = {0};
+  if (sph_inputs_check(&inputs, &error))
+    fail_msg("%s: %s", text, error.message);
+}
+
+static void table_is_whole(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sph_inputs.count; i++) {
+    const struct field *row = &sph_inputs.rows[i];
+    assert_non_null(row->doc);
+    assert_true(strlen(row->doc) > 10);
+    assert_true(row->offset < sph_inputs.size);
+    if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
+      assert_non_null(row->unit);
+    for (size_t j = 0; j < i; j++) { /* no row twice, neither by name nor by place */
+      assert_string_not_equal(row->path, sph_inputs.rows[j].path);
+      assert_true(row->offset != sph_inputs.rows[j].offset);
+    }
+  }
+  struct sph_inputs inputs = good("kind: impact"); /* every default is in its own range once it has followed */
+  for (size_t i = 0; i < sph_inputs.count; i++) {
+    const struct field *row = &sph_inputs.rows[i];
+    struct field_value value;
+    struct error error = {0};
+    field_get(row, &inputs, &value);
+    if (!(row->flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) && field_set(row, &inputs, &value, &error))
+      fail_msg("%s", error.message);
+  }
+  accepted("kind: impact");
+}
+
+static void every_material_is_sound(void **state) {
+  (void)state;
+  assert_true(sph_materials_count() >= 10);
+  for (size_t i = 0; i < sph_materials_count(); i++) {
+    struct sph_material m;
+    struct error error = {0};
+    const char *name = sph_materials_name(i);
+    if (sph_materials_load(name, &m, &error))
+      fail_msg("%s", error.message);
+    assert_non_null(strstr(sph_materials_text(name), "source: "));
+    char key[100];
+    snprintf(key, sizeof key, "\nmaterial: %s\n", name); /* the document says its own name */
+    assert_non_null(strstr(sph_materials_text(name), key));
+    double nu = sph_scale_poisson_ratio(&m);
+    assert_true(nu > 0 && nu < 0.5);
+    assert_true(isnan(m.weibull.m) == isnan(m.weibull.k));
+    /* Something must limit tension, or the cold curve reaches -A: flaws or a limit. Rubber is elastic on purpose. */
+    assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit) || strcmp(name, "rubber") == 0 || strcmp(name, "pumice") == 0);
+  }
+  struct sph_material basalt, granite, gabbro;
+  assert_int_equal(sph_materials_load("basalt", &basalt, NULL), STATUS_OK);
+  assert_int_equal(sph_materials_load("granite", &granite, NULL), STATUS_OK);
+  assert_int_equal(sph_materials_load("gabbro", &gabbro, NULL), STATUS_OK);
+  assert_true(basalt.density == 2700 && basalt.tillotson.E0 == 4.87e8 && basalt.weibull.m == 8.5 && basalt.weibull.k == 5e34);
+  /* physics notes T1: E 53.06 GPa, c_g 1837 m/s of basalt; granite would have nu 0 without a bulk modulus of its own */
+  assert_true(fabs(sph_scale_young_modulus(&basalt) / 53.06e9 - 1) < 1e-4);
+  assert_true(fabs(sph_scale_crack_speed(&basalt) / 1837 - 1) < 1e-3);
+  assert_true(sph_scale_poisson_ratio(&granite) > 0.2);
+  assert_true(gabbro.weibull.k == 1.39e18); /* the paper's 1.39e12 is per cm^3 */
+  struct error error = {0};
+  struct sph_material m;
+  assert_int_equal(sph_materials_load("basalr", &m, &error), STATUS_MISSING);
+  assert_non_null(strstr(error.message, "'basalt'"));
+  assert_int_equal(sph_materials_parse("mine", "density: 3 g/cm^3\n", &m, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "tillotson.A"));
+}
+
+static void a_name_gives_the_values(void **state) {
+  (void)state;
+  struct sph_inputs in = good("kind: impact"), ice;
+  assert_string_equal(builtin_material_names[in.target.material_name], "basalt");
+  assert_string_equal(builtin_material_names[in.projectile.material_name], "nylon");
+  assert_true(in.target.material.density == 2700 && in.projectile.material.density == 1185);
+  assert_true(isnan(in.projectile.material.weibull.m) && !sph_scale_cracks(&in.projectile) && sph_scale_cracks(&in.target));
+
+  in = good("target: {material: {name: ice, weibull: {m: 7}}}"); /* given values stay, the others are ice's */
+  assert_true(in.target.material.density == 917 && in.target.material.weibull.m == 7 && in.target.material.weibull.k == 1.4e38);
+
+  /* The name set later, as a sweep axis does: all that was not given follows, times and strengths too. */
+  struct read_scene r = read_text("target: {radius: 5 cm, material: {weibull: {m: 7}}}");
+  double crossing = sph_scale_crossing(&r.inputs), end = r.inputs.stop.end_time;
+  const struct field *row = field_find(&sph_inputs, "target.material.name", NULL);
+  struct field_value value = {.kind = FIELD_TEXT};
+  strcpy(value.text, "ice");
+  assert_int_equal(field_set(row, &r.inputs, &value, NULL), STATUS_OK);
+  r.given[row - sph_inputs.rows] = true;
+  complete(&r.inputs, r.given);
+  ice = good("target: {radius: 5 cm, material: {name: ice, weibull: {m: 7}}}");
+  assert_true(sph_scale_crossing(&r.inputs) > crossing && r.inputs.stop.end_time > end);
+  char *a = field_identity(&sph_inputs, &r.inputs), *b = field_identity(&sph_inputs, &ice);
+  assert_string_equal(a, b);
+  assert_non_null(strstr(a, "target.material.tillotson.E0=0x")); /* the values are in the identity, not only the name */
+  free(a);
+  free(b);
+
+  in = good("target: {material: {name: custom, density: 1000}}");
+  assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
+}
+
+static void missing_values_are_named(void **state) {
+  (void)state;
+  refused("target: {material: {name: custom, density: 1000}}", "target.material.tillotson.A is needed");
+  refused("target: {fracture: on, material: {name: aluminium}}",
+          "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, or set "
+          "target.fracture: off");
+  refused("target: {fracture: on, material: {name: aluminium, weibull: {m: 9}}}", "target.material.weibull.k");
+  refused("target: {material: {name: aluminium, weibull: {m: 9}}}", "weibull.m is given without weibull.k");
+  refused("target: {material: {shear_modulus: off}}", "target.strength: false");
+  accepted("target: {fracture: on, material: {name: aluminium, weibull: {m: 9, k: 1e35}}}");
+  accepted("target: {strength: false}\nprojectile: {strength: false}");
+  refused("projectile: {material: {name: custom}}", "projectile.material.density");
+  refused("target: {material: {tillotson: {E_cv: 1 MJ/kg}}}", "E_cv");
+  /* off means absent: its parameters are refused */
+  assert_non_null(strstr(read_text("target: {strength: false, material: {yield_stress: 1 GPa}}").report, "target.strength is true"));
+  assert_non_null(strstr(read_text("target: {fracture: off}\nfracture: {growth: linear}").report, "target.fracture is auto or on"));
+  assert_non_null(strstr(read_text("kind: stretch\nprojectile: {radius: 1 cm}").report, "kind is impact"));
+  assert_non_null(strstr(read_text("target: {material: {density: 3 GPa}}").report, "kg/m^3"));
+  assert_non_null(strstr(read_text("impact: {speed: 3 cm}").report, "m/s"));
+}
+
+static void what_cannot_be_run_is_refused(void **state) {
+  (void)state;
+  refused("kind: stretch", "target.shape: cylinder");
+  refused("target: {shape: cylinder, radius: 1 cm, inner_radius: 2 cm}", "smaller hole");
+  refused("target: {shape: cylinder, radius: 2 cm, inner_radius: 1 cm}", "misses");
+  refused("impact: {projectile: mass, mass: 1e-12 kg}", "fidelity.projectile_spacing");
+  refused("impact: {projectile: specific-energy, speed: 0}", "impact.speed 0");
+  refused("impact: {speed: 1 km/s, gap: 1 m}\nstop: {end_time: 1 us}", "impact.gap");
+  refused("impact: {speed: 1e-9}", "time steps");
+  refused("method: {artificial_stress: 0.3}", "artificial_stress");
+  refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
+  refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}", "stretch.grip");
+  refused("fidelity: {projectile_spacing: 0.001}", "too many");
+  refused("fidelity: {graded: true, fine_spacing: 1 cm}", "fine_spacing");
+  accepted("impact: {speed: 0}");
+  accepted("impact: {speed: 70 km/s}");
+  accepted("target: {radius: 1e-6 m}\nprojectile: {radius: 1e-7 m}");
+  accepted("target: {radius: 1e6 m}\nprojectile: {radius: 1e5 m}");
+  for (double m = 1; m <= 200; m *= 1.9)
+    for (double k = 0; k <= 200; k += 40) {
+      char text[200];
+      snprintf(text, sizeof text, "target: {material: {weibull: {m: %g, k: 1e%g}}}", m, k);
+      accepted(text);
+    }
+}
+
+static void sizes_follow(void **state) {
+  (void)state;
+  struct sph_inputs in = good("impact: {projectile: mass, mass: 0.2 g}");
+  assert_true(fabs(sph_scale_projectile_mass(&in) / 2e-4 - 1) < 1e-12);
+  in = good("impact: {projectile: specific-energy, specific_energy: 3 kJ/kg, speed: 3.2 km/s}");
+  double mass = 4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 2700;
+  assert_true(fabs(sph_scale_projectile_mass(&in) / (2 * 3000 * mass / (3200.0 * 3200)) - 1) < 1e-12);
+  assert_true(fabs(sph_scale_specific_energy(&in) / 3000 - 1) < 1e-12);
+  /* weakest flaw of kV = 5e34 x 1.131e-4 at m = 8.5: E Gamma(1 + 1/8.5) (kV)^(-1/8.5) */
+  assert_true(fabs(in.fragments.static_strength / (53.06e9 * tgamma(1 + 1 / 8.5) * pow(5e34 * mass / 2700, -1 / 8.5)) - 1) < 1e-4);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(table_is_whole),
+                                     cmocka_unit_test(every_material_is_sound),
+                                     cmocka_unit_test(a_name_gives_the_values),
+                                     cmocka_unit_test(missing_values_are_named),
+                                     cmocka_unit_test(what_cannot_be_run_is_refused),
+                                     cmocka_unit_test(sizes_follow)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
