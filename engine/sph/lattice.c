@@ -4,8 +4,8 @@
 #include <stdlib.h>
 
 #include "engine/random.h"
+#include "engine/sph/irregular.h"
 #include "engine/sph/particles.h"
-#include "engine/sph/relax.h"
 
 /* A right-angled cell with points at `basis` (fractions of its sides). Sides in spacings: the hexagonal lattice's
  * neighbours are 2^(1/6) spacings apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
@@ -42,13 +42,12 @@ void sph_lattice_empty(struct sph_points *points) {
   *points = (struct sph_points){0};
 }
 
-static status allocate(struct sph_points *points, size_t n, bool graded, struct error *error) {
+static status allocate(struct sph_points *points, size_t n, struct error *error) {
   points->n = n;
   points->x = malloc(n * sizeof *points->x);
   points->y = malloc(n * sizeof *points->y);
   points->z = malloc(n * sizeof *points->z);
-  points->share = graded ? malloc(n * sizeof *points->share) : NULL;
-  if (points->x && points->y && points->z && (points->share || !graded)) return STATUS_OK;
+  if (points->x && points->y && points->z) return STATUS_OK;
   return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
 }
 
@@ -74,8 +73,8 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
       widest = fmax(widest, ideal[k] / count[k]);
       narrowest = fmin(narrowest, ideal[k] / count[k]);
     }
-    /* A number 1 % off counts as much as a lattice 2 % wider one way than another; 0.2 % off costs nothing. */
-    const double off = fmax(0, fabs(log(n / wanted)) - 0.002) / 0.01, uneven = log(widest / narrowest) / 0.02;
+    /* A number 1 % off costs as much as a lattice 4 % wider one way than another; 0.2 % off costs nothing. */
+    const double off = fmax(0, fabs(log(n / wanted)) - 0.002) / 0.004, uneven = log(widest / narrowest) / 0.02;
     const double cost = off * off + uneven * uneven;
     if (cost < least) {
       least = cost;
@@ -89,7 +88,7 @@ static status fill_box(const struct sph_lattice *lattice, const struct cell *cel
                        double wanted, struct sph_points *points, struct error *error) {
   size_t count[3];
   fit_box(lattice, cell, box, wanted, count);
-  status code = allocate(points, count[0] * count[1] * count[2], false, error);
+  status code = allocate(points, count[0] * count[1] * count[2], error);
   if (code) return code;
   points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
   double step[3], corner[3];
@@ -192,6 +191,55 @@ static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uni
       frame[i][j] = matrix[i][j];
 }
 
+static void stack_layers(struct cut *c, double spacing, double layers) { /* along a cylinder, whole layers */
+  const double taller = c->shape->length / layers / (spacing * c->cell->side[2]);
+  c->side[0] = spacing * period(c->cell, 0) / sqrt(taller);
+  c->side[1] = spacing * period(c->cell, 1) / sqrt(taller);
+  c->side[2] = spacing * period(c->cell, 2) * taller;
+}
+
+/* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
+ * look until it fits. Returns the number, 0 when the lattice misses the shape. */
+static size_t search(const struct sph_lattice *lattice, const struct cut *c, double wanted, double best[3]) {
+  const uint64_t trials = wanted < 2000 ? 1000 : 100;
+  double off = HUGE_VAL;
+  size_t n = 0;
+  for (uint64_t trial = 0; trial < trials && off > 0.002; trial++) {
+    double offset[3];
+    offsets(lattice, trial, offset);
+    if (c->layered) { /* half a layer from the end */
+      const double end = (0.5 * c->side[2] / c->cell->layers - 0.5 * c->shape->length) / c->side[2];
+      offset[2] = end - floor(end);
+    }
+    const size_t count = cut(c, offset, NULL);
+    if (!count || fabs((double)count - wanted) / wanted >= off) continue;
+    off = fabs((double)count - wanted) / wanted;
+    n = count;
+    for (int k = 0; k < 3; k++)
+      best[k] = offset[k];
+  }
+  return n;
+}
+
+/* Scale to exactly V/n per particle (layers stay), put the centre of mass where the shape has it, turn into the world. */
+static void settle(const struct cut *c, double wanted, struct sph_points *points) {
+  const size_t n = points->n;
+  const double ratio = wanted / (double)n, across = c->layered ? sqrt(ratio) : cbrt(ratio), along = c->layered ? 1 : across;
+  double mean[3] = {0};
+  for (size_t i = 0; i < n; i++) {
+    mean[0] += points->x[i] / (double)n;
+    mean[1] += points->y[i] / (double)n;
+    mean[2] += c->layered ? 0 : points->z[i] / (double)n;
+  }
+  for (size_t i = 0; i < n; i++) {
+    const double p[3] = {across * (points->x[i] - mean[0]), across * (points->y[i] - mean[1]),
+                         along * (points->z[i] - mean[2])};
+    double *const out[3] = {&points->x[i], &points->y[i], &points->z[i]};
+    for (int k = 0; k < 3; k++)
+      *out[k] = c->shape->centre[k] + c->frame[k][0] * p[0] + c->frame[k][1] * p[1] + c->frame[k][2] * p[2];
+  }
+}
+
 static status fill_cut(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *shape,
                        double wanted, struct sph_points *points, struct error *error) {
   struct cut c = {.cell = cell, .shape = shape};
@@ -200,119 +248,106 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
   c.local = c.layered || shape->kind == SPH_SHAPE_SPHERE;
   sph_shape_frame(shape, c.frame);
   if (lattice->turned) turn(lattice, c.frame);
-  points->stretch = 1;
-  for (int k = 0; k < 3; k++)
-    c.side[k] = spacing * period(cell, k);
-  if (c.layered) {
-    const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? cell->layers : 1;
-    const double ideal = shape->length / (spacing * cell->side[2]), layers = fmax(1, round(ideal / step)) * step;
-    const double taller = ideal / layers;
-    c.side[2] *= taller;
-    c.side[0] /= sqrt(taller);
-    c.side[1] /= sqrt(taller);
-    points->stretch = fmax(taller, 1 / taller);
-  }
   for (int k = 0; k < 3; k++) {
     const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]};
+    c.side[k] = spacing * period(cell, k);
     c.reach[k] = sph_shape_reach(shape, axis);
   }
-  /* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
-   * look until it fits. */
-  const uint64_t trials = wanted < 2000 ? 1000 : 100;
-  double best[3] = {0}, off = INFINITY;
+  double offset[3] = {0}, layers = 0;
   size_t n = 0;
-  for (uint64_t trial = 0; trial < trials && off > 0.002; trial++) {
-    double offset[3];
-    offsets(lattice, trial, offset);
-    if (c.layered) { /* half a layer from the end */
-      const double end = (0.5 * c.side[2] / cell->layers - 0.5 * shape->length) / c.side[2];
-      offset[2] = end - floor(end);
+  if (c.layered) { /* the number of layers nearest to the ideal one, or the next if that fits the number better */
+    const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? cell->layers : 1;
+    const double ideal = shape->length / (spacing * cell->side[2]) / step, nearest = fmax(1, round(ideal));
+    const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
+    layers = nearest * step;
+    stack_layers(&c, spacing, layers);
+    n = search(lattice, &c, wanted, offset);
+    if (fabs((double)n - wanted) > 0.01 * wanted) {
+      double second[3];
+      stack_layers(&c, spacing, other * step);
+      const size_t m = search(lattice, &c, wanted, second);
+      if (fabs((double)m - wanted) < fabs((double)n - wanted)) {
+        n = m;
+        layers = other * step;
+        for (int k = 0; k < 3; k++)
+          offset[k] = second[k];
+      }
+      stack_layers(&c, spacing, layers);
     }
-    const size_t count = cut(&c, offset, NULL);
-    if (count && fabs((double)count - wanted) / wanted < off) {
-      off = fabs((double)count - wanted) / wanted;
-      n = count;
-      for (int k = 0; k < 3; k++)
-        best[k] = offset[k];
-    }
+  } else {
+    n = search(lattice, &c, wanted, offset);
   }
-  if (!n || (double)n < 0.5 * wanted)
+  if ((double)n < 0.5 * wanted || !n)
     return status_fail(error, STATUS_CONTENT,
                        "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted, spacing);
-  status code = allocate(points, n, false, error);
+  status code = allocate(points, n, error);
   if (code) return code;
-  cut(&c, best, points);
+  cut(&c, offset, points);
   points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
-  /* Scale to exactly V/n per particle (layers stay), and put the centre of mass where the shape has it. */
-  const double ratio = wanted / (double)n, across = c.layered ? sqrt(ratio) : cbrt(ratio), along = c.layered ? 1 : across;
-  double mean[3] = {0};
-  for (size_t i = 0; i < n; i++) {
-    mean[0] += points->x[i];
-    mean[1] += points->y[i];
-    mean[2] += c.layered ? 0 : points->z[i];
-  }
-  for (size_t i = 0; i < n; i++) {
-    const double p[3] = {across * (points->x[i] - mean[0] / (double)n), across * (points->y[i] - mean[1] / (double)n),
-                         along * (points->z[i] - mean[2] / (double)n)};
-    double *const out[3] = {&points->x[i], &points->y[i], &points->z[i]};
-    for (int k = 0; k < 3; k++)
-      *out[k] = shape->centre[k] + c.frame[k][0] * p[0] + c.frame[k][1] * p[1] + c.frame[k][2] * p[2];
-  }
+  const double taller = c.layered ? shape->length / layers / (spacing * cell->side[2]) : 1;
+  points->stretch = fmax(taller, 1 / taller);
+  settle(&c, wanted, points);
   return STATUS_OK;
 }
 
-static status check(const struct sph_lattice *lattice, const struct sph_shape *shape, double *wanted,
-                    struct error *error) {
-  status code = sph_shape_check(shape, error);
-  if (code) return code;
-  const double volume = sph_shape_volume(shape);
+/* ---- what is asked for ---- */
+
+static status check_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape, int k,
+                             struct error *error) {
+  const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit), *axis = shape->axis;
+  const char name = "xyz"[k];
+  const char *what = lattice->grading.fine > 0           ? "a graded body"
+                     : lattice->turned                   ? "a turned lattice"
+                     : shape->kind == SPH_SHAPE_SPHERE ? "a sphere"
+                                                         : NULL;
+  if (what) return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what, name);
+  if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
+    return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", name);
+  if (fabs(shape->centre[k] - half) > 1e-9 * half)
+    return status_fail(error, STATUS_CONTENT, "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.",
+                       name, half, shape->centre[k]);
+  return STATUS_OK;
+}
+
+/* The number of particles, when no grading decides it. */
+static status decide(const struct sph_lattice *lattice, double volume, double *wanted, struct error *error) {
+  const double s = lattice->spacing, bytes = lattice->kind == SPH_LATTICE_IRREGULAR ? 640 : 160;
   *wanted = lattice->particles;
   if (isnan(*wanted)) {
-    if (!(lattice->spacing > 0 && isfinite(lattice->spacing)))
-      return status_fail(error, STATUS_CONTENT, "the spacing of particles is %g m: give a positive length, or a number of particles.",
-                         lattice->spacing);
-    *wanted = volume / (lattice->spacing * lattice->spacing * lattice->spacing);
+    if (!(s > 0 && isfinite(s)))
+      return status_fail(error, STATUS_CONTENT, "the spacing of particles is %g m: give a positive length, or a number.", s);
+    *wanted = volume / s / s / s;
     if (!(*wanted >= 0.5))
-      return status_fail(error, STATUS_CONTENT, "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.",
-                         lattice->spacing, volume);
+      return status_fail(error, STATUS_CONTENT,
+                         "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.", s, volume);
   }
-  if (!(*wanted >= 0.5))
-    return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
-  if (!(*wanted * 160 < (double)sph_particles_memory()) || *wanted > 4e9)
-    return status_fail(error, STATUS_MEMORY, "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.",
-                       *wanted, *wanted * 160 / 1e9, (double)sph_particles_memory() / 1e9);
+  if (!(*wanted >= 0.5)) return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
+  if (!(*wanted * bytes < (double)sph_particles_memory()) || *wanted > 4e9)
+    return status_fail(error, STATUS_MEMORY,
+                       "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.",
+                       *wanted, *wanted * bytes / 1e9, (double)sph_particles_memory() / 1e9);
   *wanted = fmax(1, round(*wanted));
-  for (int k = 0; k < 3; k++)
-    if (lattice->periodic[k]) {
-      const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit);
-      if (shape->kind == SPH_SHAPE_SPHERE || lattice->turned)
-        return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.",
-                           shape->kind == SPH_SHAPE_SPHERE ? "a sphere" : "a turned lattice", "xyz"[k]);
-      const double *axis = shape->axis;
-      if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
-        return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", "xyz"[k]);
-      if (fabs(shape->centre[k] - half) > 1e-9 * half)
-        return status_fail(error, STATUS_CONTENT, "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.",
-                           "xyz"[k], half, shape->centre[k]);
-    }
   return STATUS_OK;
 }
 
 status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
                         struct error *error) {
   *points = (struct sph_points){0};
-  double wanted;
-  status code = check(lattice, shape, &wanted, error);
+  const bool graded = lattice->grading.fine > 0;
+  double wanted = 0;
+  status code = sph_shape_check(shape, error);
+  if (!code && !graded) code = decide(lattice, sph_shape_volume(shape), &wanted, error);
+  for (int k = 0; k < 3 && !code; k++)
+    if (lattice->periodic[k]) code = check_periodic(lattice, shape, k, error);
   if (code) return code;
-  if (lattice->kind == SPH_LATTICE_IRREGULAR || lattice->grading.fine > 0)
-    code = sph_relax_fill(lattice, shape, points, error);
-  else if (shape->kind == SPH_SHAPE_BOX && !lattice->turned)
-    code = fill_box(lattice, &cells[lattice->kind], shape, wanted, points, error);
-  else
-    code = fill_cut(lattice, &cells[lattice->kind], shape, wanted, points, error);
-  if (code)
-    sph_lattice_empty(points);
-  else if (lattice->kind != SPH_LATTICE_IRREGULAR && !(lattice->grading.fine > 0))
+  if (lattice->kind == SPH_LATTICE_IRREGULAR || graded) {
+    code = sph_irregular_fill(lattice, shape, wanted, points, error);
+  } else {
+    const struct cell *cell = &cells[lattice->kind];
+    code = shape->kind == SPH_SHAPE_BOX && !lattice->turned ? fill_box(lattice, cell, shape, wanted, points, error)
+                                                            : fill_cut(lattice, cell, shape, wanted, points, error);
     points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
+  }
+  if (code) sph_lattice_empty(points);
   return code;
 }

@@ -142,7 +142,7 @@ static struct part descend(const struct sph_nearest *t, const double p[3], struc
   return part;
 }
 
-size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) {
+size_t sph_nearest_other(const struct sph_nearest *t, const double p[3], size_t self) {
   struct part stack[DEEPEST];
   int depth = 0;
   double best = INFINITY;
@@ -156,7 +156,7 @@ size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) {
     for (size_t i = part.low; i < part.high; i++) {
       const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
       const double squares = dx * dx + dy * dy + dz * dz;
-      if (squares < best || (squares == best && t->id[i] < id)) {
+      if (t->id[i] != self && (squares < best || (squares == best && t->id[i] < id))) {
         best = squares;
         id = t->id[i];
       }
@@ -164,6 +164,8 @@ size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) {
   }
   return id;
 }
+
+size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) { return sph_nearest_other(t, p, SIZE_MAX); }
 
 size_t sph_nearest_within(const struct sph_nearest *t, const double p[3], double radius, uint32_t *out, size_t room) {
   struct part stack[DEEPEST];

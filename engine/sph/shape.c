@@ -133,6 +133,42 @@ double sph_shape_distance(const struct sph_shape *s, const double point[3], doub
   return distance;
 }
 
+int sph_shape_walls(const struct sph_shape *s, const double point[3], double depth[SPH_SHAPE_WALLS],
+                    double normal[SPH_SHAPE_WALLS][3]) {
+  double p[3], w[3], across[3], outward[3] = {0}; /* on the axis: far from the barrel, and in no hole */
+  for (int k = 0; k < 3; k++)
+    p[k] = point[k] - s->centre[k];
+  if (s->kind == SPH_SHAPE_SPHERE) {
+    depth[0] = -sph_shape_distance(s, point, normal[0]);
+    return 1;
+  }
+  if (s->kind == SPH_SHAPE_BOX) {
+    for (int wall = 0; wall < 6; wall++) { /* as enum sph_side of bodies.h: low x, high x, low y, ... */
+      const int sign = wall % 2 ? 1 : -1;
+      depth[wall] = 0.5 * s->side[wall / 2] - sign * p[wall / 2];
+      for (int k = 0; k < 3; k++)
+        normal[wall][k] = k == wall / 2 ? sign : 0;
+    }
+    return 6;
+  }
+  unit(s->axis, w);
+  const double along = dot(p, w);
+  for (int k = 0; k < 3; k++)
+    across[k] = p[k] - along * w[k];
+  const double r = unit(across, outward);
+  for (int k = 0; k < 3; k++) {
+    normal[0][k] = -w[k];
+    normal[1][k] = w[k];
+    normal[2][k] = outward[k];
+    normal[3][k] = -outward[k];
+  }
+  depth[0] = 0.5 * s->length + along;
+  depth[1] = 0.5 * s->length - along;
+  depth[2] = s->radius - r;
+  depth[3] = r - s->inner_radius;
+  return s->inner_radius > 0 ? 4 : 3;
+}
+
 bool sph_shape_inside(const struct sph_shape *s, const double point[3]) {
   const double p[3] = {point[0] - s->centre[0], point[1] - s->centre[1], point[2] - s->centre[2]};
   if (s->kind == SPH_SHAPE_SPHERE) return dot(p, p) < s->radius * s->radius;

@@ -26,6 +26,11 @@ bool sph_shape_inside(const struct sph_shape *shape, const double point[3]);
 /* Signed distance to the nearest surface, m, positive outside (exact inside; outside, too); `normal` (NULL is fine) points
  * outwards there. */
 double sph_shape_distance(const struct sph_shape *shape, const double point[3], double normal[3]);
+/* Depth below each of the surfaces (faces, barrel, hole), m, negative outside, and their outward normals; returns how many,
+ * up to SPH_SHAPE_WALLS. */
+enum { SPH_SHAPE_WALLS = 6 };
+int sph_shape_walls(const struct sph_shape *shape, const double point[3], double depth[SPH_SHAPE_WALLS],
+                    double normal[SPH_SHAPE_WALLS][3]);
 /* How far the shape reaches from its centre along a unit direction (of a ring: its hull), m. */
 double sph_shape_reach(const struct sph_shape *shape, const double direction[3]);
 /* Where the ray from the centre along `direction` leaves the hull, and the outward normal there. */
