@@ -1,0 +1,72 @@
+#include "engine/sph/results.h"
+
+#include <math.h>
+
+static const char *const reasons[] = {"running", "quiet", "end-time", "fault", NULL};
+
+#define ROW(path_, kind_, unit_, ...)                                                                                  \
+  {.path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct sph_results, path_), __VA_ARGS__}
+#define COUNT(path_, doc_) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, .doc = doc_)
+#define REAL(path_, unit_, low, ...)                                                                                   \
+  ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, .number = NAN, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
+#define SHARE(path_, ...)                                                                                              \
+  ROW(path_, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .number = NAN, .flags = FIELD_MAY_BE_OFF, __VA_ARGS__)
+
+static const struct field rows[] = {
+    ROW(stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
+        .choice_docs = "the run has not ended\n"
+                       "damage had ceased to grow by the scene's rule\n"
+                       "the hard end came\n"
+                       "a numerical fault: the outcome's state says which",
+        .doc = "Why the run ended."),
+    COUNT(particles, "Particles of the target (of a collision: of both bodies)."),
+    COUNT(projectile_particles, "Particles of the projectile."),
+    COUNT(flaws, "Explicit flaws in all bodies."),
+    REAL(target_mass, "kg", 0, .doc = "Mass of the target: M of all mass fractions, which leave the projectile out."),
+    REAL(projectile_mass, "kg", 0, .doc = "Mass of the projectile; off without one."),
+    REAL(specific_energy, "J/kg", 0, .doc = "Q: kinetic energy of the projectile over the target's mass; off without one."),
+    ROW(fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
+        .doc = "Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break."),
+    REAL(first_damage, "s", 0, .doc = "Time at which damage began; off when there is none."),
+    REAL(cease_time, "s", 0, .doc = "Time since which damage has grown by less than stop.quiet_growth; off when it still grows."),
+    SHARE(mean_damage, .doc = "Mean damage of the target at the end, by mass.", .source = "BA95 eq. 14"),
+    SHARE(undamaged_fraction, .doc = "Mass share of the target's particles below fragments.damage, before the static pass."),
+    SHARE(largest.bare_fraction, .doc = "M_1/M with the static pass and without the veneer of damaged particles.",
+          .source = "BA95 section 4.4"),
+    SHARE(largest.veneer_fraction, .doc = "M_1/M with the static pass and with the veneer.", .source = "BA95 section 4.4"),
+    SHARE(largest.dynamic_fraction, .doc = "M_1/M without the static pass, with the veneer."),
+    SHARE(largest.axis_middle, .doc = "Middle over longest axis of the ellipsoid with the largest fragment's moments of inertia."),
+    SHARE(largest.axis_short, .doc = "Shortest over longest axis of that ellipsoid: 1 is a sphere."),
+    REAL(largest.speed, "m/s", 0, .doc = "Speed of the largest fragment."),
+    REAL(second.mass, "kg", 0, .doc = "Mass of the second largest fragment; off when there is none."),
+    REAL(second.angle, "rad", 0,
+         .doc = "Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.",
+         .source = "BA95 section 5.2"),
+    REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
+    REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
+    REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy taken by damped sides."),
+    REAL(energy.work_of_held, "J", -HUGE_VAL, .doc = "Work done by grips."),
+    REAL(energy.clamped, "J", -HUGE_VAL, .doc = "Energy put in where internal energy would have become negative."),
+    REAL(energy_input, "J", 0, .doc = "Energy put in: kinetic energy at the start, and the size of the grips' work."),
+    REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input: booked apart, not credited in energy_error."),
+    SHARE(density_held_share, .doc = "Particle-steps at the lowest density allowed, over all: clamps that put in no energy."),
+    REAL(angular_momentum_error, "1", 0,
+         .doc = "Change of angular momentum over the larger of its first size and the sum of momenta times the target's reach; off "
+                "with grips or damped sides."),
+    SHARE(limited.courant, .doc = "Share of the steps whose length the speed of sound and the viscosity set."),
+    SHARE(limited.force, .doc = "Share of the steps whose length the acceleration set."),
+    SHARE(limited.damage, .doc = "Share of the steps whose length the growth of damage set."),
+    SHARE(limited.distention, .doc = "Share of the steps whose length the closing of pores set."),
+    SHARE(limited.energy, .doc = "Share of the steps whose length the change of internal energy set."),
+    SHARE(limited.density, .doc = "Share of the steps whose length the change of density set."),
+    REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
+    REAL(peak.stress, "Pa", -HUGE_VAL, .doc = "Stretch: largest mean axial stress between the grips."),
+    REAL(peak.strain, "1", 0, .doc = "Stretch: strain rate times time, then."),
+    REAL(peak.time, "s", 0, .doc = "Stretch: that time."),
+    REAL(cracks, "1", 0, .doc = "Stretch: pieces of more than 1 % of the rod, less one (without the veneer)."),
+    REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
+    REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed at which the bodies part over the speed of approach."),
+};
+
+const struct field_table sph_results =
+    FIELD_TABLE(rows, struct sph_results, "sph results", "What engine sph reports beyond the common outcome.");
