@@ -39,25 +39,37 @@ double sph_palpha_elastic_slope(const struct sph_palpha_law *law, double alpha) 
   return alpha * alpha / law->solid.A * (1 - 1 / (h * h));
 }
 
-/* alpha - rest after P, for an end `alpha` of the branch that is itself unknown: Simpson's rule with the middle by
- * Hermite. Slopes outside 1..alpha_0 are not asked for. */
-static double elastic_change(const struct sph_palpha_law *law, double rest, double alpha, double p) {
-  double from = sph_palpha_elastic_slope(law, rest), to = sph_palpha_elastic_slope(law, alpha);
-  double middle = (rest + alpha) / 2 + p / 8 * (from - to);
-  if (middle < 1) middle = 1;
-  if (middle > law->given.distention) middle = law->given.distention;
-  return p / 6 * (from + 4 * sph_palpha_elastic_slope(law, middle) + to);
-}
-
 static double within(double value, double low, double high) {
   return value < low ? low : value > high ? high : value;
 }
 
+/* What the elastic branch adds to `rest` up to P, for an end `alpha` that is itself unknown: Simpson's rule with the
+ * middle by Hermite (Lobatto IIIA), and its derivatives. */
+struct elastic {
+  double change, by_alpha, by_pressure;
+};
+
+static double slope_and_growth(const struct sph_palpha_law *law, double alpha, double *growth) {
+  double h = 1 / (1 - law->stiffness_slope * (alpha - 1)), soft = (1 - h * h) / law->solid.A;
+  *growth = 2 * alpha * (soft - alpha * law->stiffness_slope * h * h * h / law->solid.A);
+  return alpha * alpha * soft;
+}
+
+static struct elastic elastic_change(const struct sph_palpha_law *law, double rest, double alpha, double p) {
+  if (law->stiffness_slope == 0) return (struct elastic){0, 0, 0};
+  double growth_to, growth_middle, from = sph_palpha_elastic_slope(law, rest);
+  double to = slope_and_growth(law, alpha, &growth_to);
+  double half = within((rest + alpha) / 2 + p / 8 * (from - to), 1, law->given.distention);
+  double middle = slope_and_growth(law, half, &growth_middle);
+  double mean = (from + 4 * middle + to) / 6;
+  return (struct elastic){p * mean, p / 6 * (growth_to + growth_middle * (2 - p / 2 * growth_to)),
+                          mean + p / 12 * growth_middle * (from - to)};
+}
+
 double sph_palpha_elastic(const struct sph_palpha_law *law, double rest, double p) {
-  if (law->stiffness_slope == 0) return rest;
   double high = law->given.distention, alpha = rest;
   for (int i = 0; i < 100; i++) {
-    double next = within(rest + elastic_change(law, rest, alpha, p), 1, high);
+    double next = within(rest + elastic_change(law, rest, alpha, p).change, 1, high);
     if (fabs(next - alpha) < 1e-15) return next;
     alpha = next;
   }
@@ -65,10 +77,11 @@ double sph_palpha_elastic(const struct sph_palpha_law *law, double rest, double 
 }
 
 double sph_palpha_rest(const struct sph_palpha_law *law, double alpha, double p) {
-  if (law->stiffness_slope == 0) return alpha;
-  double high = law->given.distention, rest = alpha;
+  double rest = alpha;
   for (int i = 0; i < 100; i++) {
-    double next = within(alpha - elastic_change(law, rest, alpha, p), 1, high);
+    /* by symmetry: alpha is where the branch from `rest` at P comes to, going back to 0 */
+    struct elastic e = elastic_change(law, alpha, rest, -p);
+    double next = within(rest - (rest - alpha - e.change) / (1 - e.by_alpha), 1, law->given.distention);
     if (fabs(next - rest) < 1e-15) return next;
     rest = next;
   }
@@ -168,39 +181,45 @@ static struct trial try_distention(const struct sph_palpha_law *law, double alph
   return t;
 }
 
-/* Both branches fall with P, and P rises with alpha: alpha - branch(P(alpha)) rises, so that its only zero lies between
- * `low` and `high`. Newton, kept within the bracket (from below it climbs steadily: the curves are convex). A last step
- * from a miss below 1e-11 is taken, but not evaluated again. */
-static double solve(const struct sph_palpha_law *law, bool crush, double rest, double low, double high, double alpha,
-                    double rho, double u, struct trial *at) {
-  double top = law->given.distention;
+/* Both branches fall with P, and P rises with alpha, so alpha - min(elastic, crush)(P(alpha)) rises: its only zero lies
+ * between 1 and alpha_0. Newton, kept within that bracket (on the crush curve, which is convex, it climbs steadily from
+ * below). A last step from a miss below 1e-9 leaves the square of that: it is taken, but not evaluated again. */
+static double solve(const struct sph_palpha_law *law, double rest, double alpha, double rho, double u, struct trial *at,
+                    bool *crush) {
+  double low = 1, high = law->given.distention;
   for (int i = 0; i < 200; i++) {
     struct trial t = try_distention(law, alpha, rho, u);
-    *at = t;
-    double target, slope;
-    if (crush) {
-      target = sph_palpha_crush(law, t.pressure);
-      slope = sph_palpha_crush_slope(law, t.pressure);
-    } else {
-      target = law->stiffness_slope == 0 ? rest : rest + elastic_change(law, rest, alpha, t.pressure);
-      slope = law->stiffness_slope == 0 ? 0 : sph_palpha_elastic_slope(law, alpha);
-      if (target >= top) target = top, slope = 0;
+    double target = 1, rise = 1;
+    *crush = t.pressure >= law->given.solid_pressure;
+    if (!*crush) {
+      struct elastic e = elastic_change(law, rest, alpha, t.pressure);
+      target = rest + e.change;
+      rise = 1 - e.by_alpha - e.by_pressure * t.slope;
+      if (target >= law->given.distention) target = law->given.distention, rise = 1;
     }
+    if (!*crush && t.pressure > law->given.elastic_pressure) {
+      double bound = sph_palpha_crush(law, t.pressure);
+      if (bound < target) {
+        *crush = true;
+        target = bound;
+        rise = 1 - sph_palpha_crush_slope(law, t.pressure) * t.slope;
+      }
+    }
+    *at = t;
     double miss = alpha - target;
     if (miss == 0) return alpha;
     if (miss > 0)
       high = alpha;
     else
       low = alpha;
-    double next = alpha - miss / (1 - slope * t.slope);
+    double next = alpha - miss / (rise > 0.1 ? rise : 0.1);
     bool inside = next >= low && next <= high;
-    if (fabs(miss) < 1e-11 || high - low < 1e-15) {
+    if (fabs(miss) < 1e-9 || high - low < 1e-15) {
       if (!inside) return alpha;
       at->pressure += t.slope * (next - alpha);
       return next;
     }
-    if (!inside || i % 32 == 31) next = low + (high - low) / 2;
-    alpha = next;
+    alpha = inside && i % 32 < 31 ? next : low + (high - low) / 2;
   }
   return alpha;
 }
@@ -213,16 +232,17 @@ static struct sph_palpha_state without_pores(const struct sph_palpha_law *law, d
 struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, double rest, double guess, double rho,
                                           double u) {
   if (!(rest > 1)) return without_pores(law, rho, u);
-  double top = law->given.distention;
+  double top = law->given.distention, slope = 0;
   struct trial t;
-  double alpha = solve(law, false, rest, 1, top, within(guess, 1, top), rho, u, &t);
-  double slope = law->stiffness_slope == 0 || alpha >= top ? 0 : sph_palpha_elastic_slope(law, alpha);
-  if (t.pressure > law->given.elastic_pressure && alpha > sph_palpha_crush(law, t.pressure)) {
-    alpha = solve(law, true, rest, 1, alpha, within(guess, 1, alpha), rho, u, &t);
+  bool crush;
+  double alpha = solve(law, rest, within(guess, 1, top), rho, u, &t, &crush);
+  if (crush) {
     if (!(alpha > 1)) return without_pores(law, rho, u);
     slope = sph_palpha_crush_slope(law, t.pressure);
     double now = sph_palpha_rest(law, alpha, t.pressure);
     if (now < rest) rest = now;
+  } else if (law->stiffness_slope != 0 && alpha < top) {
+    slope = sph_palpha_elastic_slope(law, alpha);
   }
   /* Along a branch: dP (1 - slope (rho dP_s/drho_s - P)/alpha) = dP_s/drho_s drho + dP_s/du du/alpha */
   double below = alpha + slope * (t.pressure - rho * t.solid.by_density);

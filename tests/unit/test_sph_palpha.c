@@ -319,6 +319,20 @@ static void heat(void **state) {
   assert_true(cold.rest == rest && cold.pressure < 0);
 }
 
+/* c_e at alpha_0, the solid's at 1, linear between, the solid's taken at rho_s = alpha rho. */
+static void sound_speeds(void **state) {
+  (void)state;
+  struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium), p = law_of(&pumice, &pumice_matrix);
+  near(sph_palpha_update(&law, 1.275, 1.275, 2700 / 1.275, 0).sound_speed, 4110, 1e-9, "c at alpha_0");
+  near(sph_palpha_update(&law, 1, 1, 2700, 0).sound_speed, sqrt(7.52e10 / 2700), 1e-9, "c of the solid");
+  struct sph_palpha_state s = sph_palpha_update(&law, 1.1375, 1.1375, 2700 / 1.1375, 0);
+  near(s.sound_speed, (4110 + sqrt(7.52e10 / 2700)) / 2, 1e-6, "c half way");
+  s = sph_palpha_update(&law, 1.275, 1.275, 2700 / 1.275 * 1.15, 3e4);
+  struct sph_pressure solid = sph_tillotson(&law.solid, 2700, s.distention * 2700 / 1.275 * 1.15, 3e4);
+  near(s.sound_speed, solid.sound_speed + (4110 - solid.sound_speed) * (s.distention - 1) / 0.275, 1e-6, "c under pressure");
+  near(sph_palpha_update(&p, 4.64, 4.64, 2327 / 4.64, 0).sound_speed, sqrt(2.67e10 / 2327), 1e-9, "c_e not given: the solid's");
+}
+
 static void compaction_damage(void **state) {
   (void)state;
   struct sph_palpha_law law = law_of(&porous_aluminium, &aluminium);
@@ -415,7 +429,7 @@ int main(void) {
                                      cmocka_unit_test(jump),
                                      cmocka_unit_test(solid_limit),
                                      cmocka_unit_test(heat),
-                                     cmocka_unit_test(compaction_damage),
+                                     cmocka_unit_test(compaction_damage), cmocka_unit_test(sound_speeds),
                                      cmocka_unit_test(random_paths),
                                      cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
