@@ -35,10 +35,14 @@ RANGE_INLINE double crack_largest(double xx, double xy, double xz, double yy, do
   return 2 * size * crack_third_cosine(sqrt(0.5 + 0.5 * cosine));
 }
 
+/* What flaws have done: all damage, unless pores close in this body, too (palpha_range adds the two up). */
+RANGE_INLINE double *crack_own_damage(const struct sph_system *s, const struct sph_solid *body) {
+  return body->physics.porosity ? s->c.tension : s->c.damage;
+}
+
 RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  (void)body;
   const double dt = s->dt, *rate = s->c.damage_rate, *cap = s->c.damage_cap;
-  double *d = s->c.damage;
+  double *d = crack_own_damage(s, body);
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++)
     d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
@@ -52,7 +56,7 @@ RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body,
     s->active[i] = open;
     s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->p.cap) : 0;
   }
-  const bool grows = open && s->c.damage[i] < s->c.damage_cap[i];
+  const bool grows = open && crack_own_damage(s, body)[i] < s->c.damage_cap[i];
   s->c.damage_rate[i] = grows ? sph_fracture_rate(open, s->p.growth) * s->c.crack_rate[i] : 0;
   if (s->c.damage[i] >= 1) s->c.weakest[i] = INFINITY; /* nothing left to open */
 }

@@ -47,8 +47,9 @@ RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_so
 }
 
 /* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]. */
-RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double half = 0.5 * s->dt, two_mu = 2 * body->physics.material.shear_modulus;
+RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool pores) {
+  const double half = 0.5 * s->dt, solid_two_mu = 2 * body->physics.material.shear_modulus;
+  const double *f = s->c.shear_factor, *alpha = s->c.distention;
   double *const *g = s->c.gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];
   const double *density = s->c.density, *term = s->c.pressure_term, *heating = s->c.heating;
@@ -62,6 +63,7 @@ RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body
   for (size_t i = b->low; i < b->high; i++) {
     const double exx = g0[i], eyy = g4[i], ezz = g8[i], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
     const double exy = 0.5 * (g1[i] + g3[i]), exz = 0.5 * (g2[i] + g6[i]), eyz = 0.5 * (g5[i] + g7[i]);
+    const double two_mu = pores ? solid_two_mu * f[i] / alpha[i] : solid_two_mu;
     const double wxy = 0.5 * (g1[i] - g3[i]), wxz = 0.5 * (g2[i] - g6[i]), wyz = 0.5 * (g5[i] - g7[i]);
     const double work = term[i] * divergence + oxx[i] * exx + oyy[i] * eyy + ozz[i] * ezz +
                         2 * (oxy[i] * exy + oxz[i] * exz + oyz[i] * eyz);
@@ -83,6 +85,15 @@ RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body
     syy[i] = yy + half * (nyy - ryy[i]), ryy[i] = nyy;
     syz[i] = yz + half * (nyz - ryz[i]), ryz[i] = nyz;
   }
+}
+
+/* With pores: dS/dt = (f/alpha) 2 mu dev(eps) + R S - S R; the share of alpha's change, -(S/alpha) dalpha/dt, is in
+ * palpha_range. */
+RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  if (body->physics.porosity)
+    elastic_rates_loop(s, body, b, true);
+  else
+    elastic_rates_loop(s, body, b, false);
 }
 
 #endif

@@ -26,9 +26,12 @@ struct sph_module {
   size_t hook[SPH_STAGES];      /* offset of its loop in struct sph_ranges (ranges.h); 0 = none */
 };
 
-extern const struct sph_module sph_elastic_module, sph_tillotson_module, sph_tension_limit_module, sph_yield_module,
+extern const struct sph_module sph_elastic_module, sph_tillotson_module, sph_palpha_module, sph_tension_limit_module, sph_yield_module,
     sph_weibull_module, sph_fracture_module, sph_viscosity_module, sph_artificial_stress_module,
     sph_gradient_correction_module;
+
+/* Do pores that close damage this body? Every body with pores and strength. */
+bool sph_palpha_harms(const struct sph_body_physics *body);
 
 /* In the order in which they act; modules.c says why. */
 size_t sph_modules_count(void);

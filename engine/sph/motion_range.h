@@ -171,7 +171,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->p.cfl;
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
-  if (fracture) b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->p.damage_step;
+  if (fracture && s->c.damage_rate) b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->p.damage_step;
   if (!lost) return;
   for (size_t k = n; k-- > 0;) { /* the first of them, by place */
     const size_t i = low + k;

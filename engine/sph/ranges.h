@@ -15,12 +15,14 @@ struct sph_ranges {
   sph_hook damage_predict;  /* D^(1/3) */
   /* respond */
   sph_hook tillotson;     /* P and c of rho and u */
+  sph_hook palpha;        /* the same with pores: alpha, P, c, f, S, damage by compaction */
   sph_hook tension_limit; /* P >= -limit */
   sph_hook yield;         /* S back to the yield surface */
   sph_hook crack;         /* open flaws: rate and cap of D^(1/3) */
   /* what the pair loop takes */
   sph_hook output_fluid, output_whole, output_damaged;
   /* rates */
+  sph_hook palpha_limit;  /* of the time step, by alpha */
   sph_hook hold;          /* held freedoms and damping: the new accelerations */
   sph_hook fluid_rates;   /* u */
   sph_hook elastic_rates; /* u and S */

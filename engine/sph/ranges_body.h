@@ -4,6 +4,7 @@
 #include "engine/sph/crack_range.h"
 #include "engine/sph/elastic_range.h"
 #include "engine/sph/motion_range.h"
+#include "engine/sph/palpha_range.h"
 #include "engine/sph/tillotson_range.h"
 #include "engine/sph/yield_range.h"
 
@@ -13,6 +14,8 @@ const struct sph_ranges RANGES_TABLE = {
     .elastic_predict = elastic_predict,
     .damage_predict = crack_damage_predict,
     .tillotson = tillotson_range,
+    .palpha = palpha_range,
+    .palpha_limit = palpha_limit,
     .tension_limit = tillotson_tension_limit,
     .yield = yield_range,
     .crack = crack_range,

@@ -80,7 +80,7 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
         out->stress[k][to] = s->c.stress[k][i];
       out->stress[5][to] = -(s->c.stress[0][i] + s->c.stress[3][i]);
     }
-    if (out->damage_cbrt && s->fracture) out->damage_cbrt[to] = s->c.damage[i];
+    if (out->damage_cbrt && s->damage) out->damage_cbrt[to] = s->c.damage[i];
     if (out->damping && s->c.damping) out->damping[to] = s->c.damping[i];
     if (out->distention) out->distention[to] = s->c.distention ? s->c.distention[i] : 1;
     if (out->held && s->held) out->held[to] = s->held[i];
@@ -97,7 +97,8 @@ double sph_system_damage(const struct sph_system *s, double *rate) {
       const double v = s->c.mass[i], d = s->c.damage[i];
       volume += v;
       damage += v * d * d * d;
-      growth += v * 3 * d * d * s->c.damage_rate[i];
+      const double own = s->c.tension && s->solid[b].physics.porosity ? s->c.tension[i] : d; /* what flaws have done */
+      growth += v * 3 * own * own * s->c.damage_rate[i];
     }
   }
   if (rate) *rate = volume > 0 ? growth / volume : 0;

@@ -5,8 +5,9 @@
 
 #include "engine/sph/ranges.h"
 #include "engine/sph/system_step.h"
+#include "engine/sph/tillotson.h"
 
-enum need { ALWAYS, STRENGTH, FRACTURE, DAMPING, DISTENTION };
+enum need { ALWAYS, STRENGTH, DAMAGE, FRACTURE, DAMPING, DISTENTION, COMPACTION, TENSION };
 
 #define COLUMN(name) offsetof(struct sph_columns, name)
 static const struct {
@@ -48,14 +49,17 @@ static const struct {
     {COLUMN(damaged[3]), STRENGTH},
     {COLUMN(damaged[4]), STRENGTH},
     {COLUMN(damaged[5]), STRENGTH},
-    {COLUMN(damage), FRACTURE},
+    {COLUMN(damage), DAMAGE},
     {COLUMN(damage_rate), FRACTURE},
     {COLUMN(damage_cap), FRACTURE},
     {COLUMN(weakest), FRACTURE},
     {COLUMN(crack_rate), FRACTURE},
     {COLUMN(damping), DAMPING},
     {COLUMN(distention), DISTENTION},
-    {COLUMN(distention_rate), DISTENTION},
+    {COLUMN(rest_distention), DISTENTION},
+    {COLUMN(shear_factor), DISTENTION},
+    {COLUMN(compaction), COMPACTION},
+    {COLUMN(tension), TENSION},
     /* scratch of the pair loop, not kept */
     {COLUMN(new_ax), ALWAYS},
     {COLUMN(new_ay), ALWAYS},
@@ -79,7 +83,10 @@ static bool is_there(enum need need, const struct sph_particles *p, const struct
   case STRENGTH: return s->strength;
   case FRACTURE: return s->fracture;
   case DAMPING: return p->damping != NULL;
+  case DAMAGE: return s->damage;
   case DISTENTION: return s->pores;
+  case COMPACTION: return s->pores && s->damage;
+  case TENSION: return s->pores && s->fracture;
   case ALWAYS: break;
   }
   return true;
@@ -189,7 +196,7 @@ static status check_parameters(const struct sph_parameters *p, struct error *err
   return STATUS_OK;
 }
 
-static status check_particles(const struct sph_particles *p, size_t body_count, struct error *error) {
+static status check_particles(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies, struct error *error) {
   if (p->n == 0 || p->n >= UINT32_MAX) return status_fail(error, STATUS_CONTENT, "there are %zu particles", p->n);
   for (size_t i = 0; i < p->n; i++) {
     const double motion = fabs(p->x[i]) + fabs(p->y[i]) + fabs(p->z[i]) + fabs(p->vx[i]) + fabs(p->vy[i]) + fabs(p->vz[i]);
@@ -201,6 +208,10 @@ static status check_particles(const struct sph_particles *p, size_t body_count, 
     if (p->body[i] >= body_count || (i > 0 && p->body[i] < p->body[i - 1]))
       return status_fail(error, STATUS_CONTENT, "particle %zu belongs to body %u of %zu, or out of order", i,
                          (unsigned)p->body[i], body_count);
+    const struct sph_palpha *pores = bodies[p->body[i]].porosity;
+    if (pores && p->distention && !(p->distention[i] >= 1 && p->distention[i] <= pores->distention))
+      return status_fail(error, STATUS_CONTENT, "particle %zu has distention %g; it must lie between 1 and its body's %g", i,
+                         p->distention[i], pores->distention);
   }
   return STATUS_OK;
 }
@@ -217,7 +228,7 @@ static status check_memory(const struct sph_particles *p, struct error *error) {
 
 static void choose_hooks(struct sph_system *s, struct sph_solid *b, const struct sph_body_physics *physics) {
   const struct sph_ranges *r = s->ranges;
-  const bool fracture = physics->flaws != NULL;
+  const bool damage = sph_palpha_harms(physics) || physics->flaws;
   b->before[b->before_count++] = r->motion_predict;
   for (int stage = SPH_PREDICT; stage <= SPH_RATES; stage++) {
     sph_hook *to = stage == SPH_RATES ? b->after : b->before;
@@ -232,8 +243,8 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b, const struct
         memcpy(&to[(*count)++], (const char *)r + module->hook[stage], sizeof(sph_hook));
     }
   }
-  b->before[b->before_count++] = fracture ? r->output_damaged : physics->strength ? r->output_whole : r->output_fluid;
-  b->after[b->after_count++] = fracture ? r->correct_damaged : physics->strength ? r->correct_whole : r->correct_fluid;
+  b->before[b->before_count++] = damage ? r->output_damaged : physics->strength ? r->output_whole : r->output_fluid;
+  b->after[b->after_count++] = damage ? r->correct_damaged : physics->strength ? r->correct_whole : r->correct_fluid;
 }
 
 static status make_body(struct sph_system *s, size_t index, const struct sph_body_physics *physics, struct error *error) {
@@ -241,8 +252,9 @@ static status make_body(struct sph_system *s, size_t index, const struct sph_bod
   const struct sph_material *m = &physics->material;
   b->physics = *physics;
   if (physics->porosity) {
-    b->porosity = *physics->porosity;
-    b->physics.porosity = &b->porosity;
+    const status done = sph_palpha_prepare(physics->porosity, m, &b->porosity, error);
+    if (done != STATUS_OK) return done;
+    b->physics.porosity = &b->porosity.given;
   }
   b->density = m->density / (physics->porosity ? physics->porosity->distention : 1);
   b->lowest_density = s->p.density_lowest * b->density;
@@ -253,6 +265,22 @@ static status make_body(struct sph_system *s, size_t index, const struct sph_bod
   if (!physics->flaws) return STATUS_OK;
   b->physics.flaws = NULL; /* the caller's; ours are the lists */
   return sph_weibull_make(physics->flaws, s->p.compact_flaws, &b->weibull, error);
+}
+
+/* Distention as given (or alpha_0), at the pressure that goes with it. */
+static void fill_pores(struct sph_system *s, const struct sph_particles *p, const struct sph_solid *b, size_t i) {
+  if (!s->pores) return;
+  double alpha = 1, rest = 1;
+  if (b->physics.porosity) {
+    const struct sph_palpha_law *law = &b->porosity;
+    alpha = p->distention ? p->distention[i] : law->given.distention;
+    const struct sph_pressure solid = sph_tillotson(&law->solid, law->solid_density, alpha * p->density[i], p->energy[i]);
+    rest = sph_palpha_rest(law, alpha, solid.pressure / alpha);
+    if (s->damage && b->physics.strength) s->c.compaction[i] = s->c.damage[i] = sph_palpha_damage_cbrt(law, rest);
+  }
+  s->c.distention[i] = alpha;
+  s->c.rest_distention[i] = rest;
+  s->c.shear_factor[i] = 1;
 }
 
 static void fill(struct sph_system *s, const struct sph_particles *p) {
@@ -271,13 +299,15 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
       for (int k = 0; k < 5; k++)
         s->c.stress[k][i] = p->stress[k][i] - (k == 0 || k == 3 ? third : 0);
     }
-    if (s->c.distention) s->c.distention[i] = b->physics.porosity && p->distention ? p->distention[i] : 1;
+    fill_pores(s, p, b, i);
     if (!s->fracture) continue;
     s->c.weakest[i] = INFINITY;
     if (!b->weibull) continue;
     const double volume = p->mass[i] / p->density[i], pi = acos(-1.0);
     const double radius = s->p.crack_radius_support ? 2 * p->h[i] : cbrt(3 * volume / (4 * pi));
-    s->c.damage[i] = p->damage_cbrt ? p->damage_cbrt[i] : 0;
+    const double damage = p->damage_cbrt ? p->damage_cbrt[i] : 0;
+    s->c.damage[i] = damage;
+    if (s->c.tension) s->c.tension[i] = cbrt(fmax(0, pow(damage, 3) - pow(s->c.compaction[i], 3)));
     s->c.crack_rate[i] = b->crack_speed / radius;
     s->c.weakest[i] = b->young * sph_weibull_lowest(b->weibull, i - b->first);
   }
@@ -327,6 +357,7 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
     s->strength |= bodies[b].strength;
     s->fracture |= bodies[b].flaws != NULL;
     s->pores |= bodies[b].porosity != NULL;
+    s->damage |= bodies[b].flaws != NULL || sph_palpha_harms(&bodies[b]);
   }
   if (done == STATUS_OK) done = take_columns(s, p, error);
   for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++)
@@ -344,7 +375,7 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
                          struct sph_system **out, struct error *error) {
   *out = NULL;
   status done = check_parameters(parameters, error);
-  if (done == STATUS_OK) done = check_particles(particles, body_count, error);
+  if (done == STATUS_OK) done = check_particles(particles, body_count, bodies, error);
   if (done == STATUS_OK) done = check_memory(particles, error);
   if (done != STATUS_OK) return done;
   struct sph_system *s = calloc(1, sizeof *s);

@@ -29,7 +29,10 @@ struct sph_columns {
   double *weakest;                  /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
   double *crack_rate;               /* c_g / R_s, 1/s */
   double *damping;
-  double *distention, *distention_rate; /* alpha */
+  /* pores */
+  double *distention, *rest_distention; /* alpha, now and at P = 0 (palpha.h) */
+  double *shear_factor;             /* f of the last evaluation */
+  double *tension, *compaction;     /* D^(1/3) by flaws and by closed pores, of which `damage` is made */
   /* overwritten by each pair loop */
   double *new_ax, *new_ay, *new_az, *gradient[9], *heating, *signal;
 };
@@ -52,7 +55,7 @@ struct sph_block {
 /* A body's constants, made once from its material. */
 struct sph_solid {
   struct sph_body_physics physics; /* porosity points at `porosity`, flaws is NULL (see weibull) */
-  struct sph_palpha porosity;
+  struct sph_palpha_law porosity;
   struct sph_weibull_lists *weibull;
   size_t first, last;      /* its particles */
   double young;            /* Pa, 9 K mu/(3 K + mu) */
@@ -92,6 +95,7 @@ struct sph_system {
   struct sph_solid *solid; /* its bodies */
   struct sph_block *block;
   bool strength, fracture, pores; /* some body has it */
+  bool damage;                    /* of flaws, or of pores that close */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
   char failure[256];

@@ -5,19 +5,27 @@
 
 #include "engine/sph/range_tools.h"
 
-RANGE_HOOK void yield_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+RANGE_INLINE void yield_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool pores) {
   const double y0 = body->physics.material.yield_stress, melt = body->physics.material.melt_energy;
   const double softening = melt > 0 ? 1 / melt : 0; /* NaN: none */
-  const double *energy = s->c.energy;
+  const double *energy = s->c.energy, *alpha = s->c.distention;
   double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3], *yz = s->c.stress[4];
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++) {
-    const double y = range_larger(y0 * (1 - energy[i] * softening), 0);
+    const double y = range_larger(y0 * (1 - energy[i] * softening), 0) / (pores ? alpha[i] : 1);
     const double J2 = xx[i] * xx[i] + yy[i] * yy[i] + xx[i] * yy[i] + xy[i] * xy[i] + xz[i] * xz[i] + yz[i] * yz[i];
     const double size2 = 3 * J2;
     const double f = size2 > y * y ? y / sqrt(size2) : 1;
     xx[i] *= f, xy[i] *= f, xz[i] *= f, yy[i] *= f, yz[i] *= f;
   }
+}
+
+/* With pores the stored S is the bulk one: |S| <= Y/alpha. */
+RANGE_HOOK void yield_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  if (body->physics.porosity)
+    yield_loop(s, body, b, true);
+  else
+    yield_loop(s, body, b, false);
 }
 
 #endif
