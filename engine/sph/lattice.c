@@ -73,8 +73,9 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
       widest = fmax(widest, ideal[k] / count[k]);
       narrowest = fmin(narrowest, ideal[k] / count[k]);
     }
-    /* A number 1 % off costs as much as a lattice 4 % wider one way than another; 0.2 % off costs nothing. */
-    const double off = fmax(0, fabs(log(n / wanted)) - 0.002) / 0.004, uneven = log(widest / narrowest) / 0.02;
+    /* Up to 1 % off the number costs as much as a lattice 2 % wider one way than another; beyond, each 0.2 % as much. */
+    const double miss = fabs(log(n / wanted)), off = miss <= 0.01 ? miss / 0.01 : 1 + (miss - 0.01) / 0.002;
+    const double uneven = log(widest / narrowest) / 0.02;
     const double cost = off * off + uneven * uneven;
     if (cost < least) {
       least = cost;

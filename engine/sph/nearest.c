@@ -1,6 +1,7 @@
 #include "engine/sph/nearest.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 enum { LEAF = 8, DEEPEST = 64 };
@@ -116,51 +117,56 @@ struct part {
   double squares, away[3];
 };
 
-/* Goes down to a leaf on the point's side, keeping the other halves on the stack. */
-static struct part descend(const struct sph_nearest *t, const double p[3], struct part part, struct part *stack,
-                           int *depth) {
+/* Goes down to a leaf on the point's side, keeping what of the other halves is within `reach` (squared) on the stack. */
+static inline struct part descend(const struct sph_nearest *t, const double p[3], struct part part, double reach,
+                                  struct part *stack, int *depth) {
   while (part.k < t->inner) {
     const struct node node = t->node[part.k];
-    const double beyond = p[node.direction] - node.plane;
+    const double beyond = p[node.direction] - node.plane, before = part.away[node.direction];
+    const double squares = part.squares + beyond * beyond - before * before;
     const size_t middle = part.low + (part.high - part.low) / 2;
-    struct part other = part;
-    other.squares += beyond * beyond - part.away[node.direction] * part.away[node.direction];
-    other.away[node.direction] = beyond;
-    if (beyond < 0) {
-      other.k = 2 * part.k + 2;
-      other.low = middle;
-      part.k = 2 * part.k + 1;
-      part.high = middle;
-    } else {
-      other.k = 2 * part.k + 1;
-      other.high = middle;
-      part.k = 2 * part.k + 2;
-      part.low = middle;
+    const bool upper = beyond >= 0;
+    if (squares <= reach) {
+      struct part *other = &stack[(*depth)++];
+      *other = part;
+      other->k = 2 * part.k + (upper ? 1 : 2);
+      *(upper ? &other->high : &other->low) = middle;
+      other->squares = squares;
+      other->away[node.direction] = beyond;
     }
-    stack[(*depth)++] = other;
+    part.k = 2 * part.k + (upper ? 2 : 1);
+    *(upper ? &part.low : &part.high) = middle;
   }
   return part;
 }
 
+static inline void best_of(const struct sph_nearest *t, const double p[3], size_t low, size_t high, size_t self,
+                           double *best, size_t *id) {
+  for (size_t i = low; i < high; i++) {
+    const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
+    const double squares = dx * dx + dy * dy + dz * dz;
+    if (squares > *best || t->id[i] == self || (squares == *best && t->id[i] > *id)) continue;
+    *best = squares;
+    *id = t->id[i];
+  }
+}
+
+static const double rounding = 1 + 1e-12; /* of the running sum of squares: it must not hide a tie */
+
 size_t sph_nearest_other(const struct sph_nearest *t, const double p[3], size_t self) {
   struct part stack[DEEPEST];
   int depth = 0;
-  double best = INFINITY;
+  double best = HUGE_VAL;
   size_t id = SIZE_MAX;
-  stack[depth++] = (struct part){.high = t->n};
-  while (depth) {
-    struct part part = stack[--depth];
-    /* rounding of the running sum of squares must not hide a tie */
-    if (part.squares > best * (1 + 1e-12)) continue;
-    part = descend(t, p, part, stack, &depth);
-    for (size_t i = part.low; i < part.high; i++) {
-      const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
-      const double squares = dx * dx + dy * dy + dz * dz;
-      if (t->id[i] != self && (squares < best || (squares == best && t->id[i] < id))) {
-        best = squares;
-        id = t->id[i];
-      }
-    }
+  const struct part all = {.high = t->n};
+  /* First down to the point's own leaf: its best is near, so that the search proper keeps few other halves. */
+  struct part part = descend(t, p, all, -1, stack, &depth);
+  best_of(t, p, part.low, part.high, self, &best, &id);
+  for (part = descend(t, p, all, best * rounding, stack, &depth); depth;) {
+    part = stack[--depth];
+    if (part.squares > best * rounding) continue;
+    part = descend(t, p, part, best * rounding, stack, &depth);
+    best_of(t, p, part.low, part.high, self, &best, &id);
   }
   return id;
 }
@@ -174,9 +180,7 @@ size_t sph_nearest_within(const struct sph_nearest *t, const double p[3], double
   const double reach = radius * radius;
   stack[depth++] = (struct part){.high = t->n};
   while (depth) {
-    struct part part = stack[--depth];
-    if (part.squares > reach * (1 + 1e-12)) continue;
-    part = descend(t, p, part, stack, &depth);
+    const struct part part = descend(t, p, stack[--depth], reach * rounding, stack, &depth);
     for (size_t i = part.low; i < part.high; i++) {
       const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
       if (dx * dx + dy * dy + dz * dz > reach) continue;
