@@ -247,10 +247,10 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b, const struct
   b->after[b->after_count++] = damage ? r->correct_damaged : physics->strength ? r->correct_whole : r->correct_fluid;
 }
 
-static status make_body(struct sph_system *s, size_t index, const struct sph_body_physics *physics, struct error *error) {
+static status make_body(struct sph_system *s, size_t index, struct error *error) {
   struct sph_solid *b = &s->solid[index];
+  const struct sph_body_physics *physics = &b->physics;
   const struct sph_material *m = &physics->material;
-  b->physics = *physics;
   if (physics->porosity) {
     const status done = sph_palpha_prepare(physics->porosity, m, &b->porosity, error);
     if (done != STATUS_OK) return done;
@@ -262,9 +262,10 @@ static status make_body(struct sph_system *s, size_t index, const struct sph_bod
   b->young = 9 * K * mu / (3 * K + mu);
   b->crack_speed = 0.4 * sqrt((K + 4 * mu / 3) / m->density);
   choose_hooks(s, b, physics);
-  if (!physics->flaws) return STATUS_OK;
+  const struct sph_flaws *flaws = physics->flaws;
+  if (!flaws) return STATUS_OK;
   b->physics.flaws = NULL; /* the caller's; ours are the lists */
-  return sph_weibull_make(physics->flaws, s->p.compact_flaws, &b->weibull, error);
+  return sph_weibull_make(flaws, s->p.compact_flaws, &b->weibull, error);
 }
 
 /* Distention as given (or alpha_0), at the pressure that goes with it. */
@@ -353,15 +354,18 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
     b->last = i + 1;
   }
   for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++) {
-    done = check_body(b, &bodies[b], s->solid[b].last - s->solid[b].first, error);
-    s->strength |= bodies[b].strength;
-    s->fracture |= bodies[b].flaws != NULL;
-    s->pores |= bodies[b].porosity != NULL;
-    s->damage |= bodies[b].flaws != NULL || sph_palpha_harms(&bodies[b]);
+    struct sph_body_physics *physics = &s->solid[b].physics;
+    *physics = bodies[b];
+    if (physics->porosity && physics->porosity->distention == 1) physics->porosity = NULL; /* no pores: the solid itself */
+    done = check_body(b, physics, s->solid[b].last - s->solid[b].first, error);
+    s->strength |= physics->strength;
+    s->fracture |= physics->flaws != NULL;
+    s->pores |= physics->porosity != NULL;
+    s->damage |= physics->flaws != NULL || sph_palpha_harms(physics);
   }
   if (done == STATUS_OK) done = take_columns(s, p, error);
   for (size_t b = 0; b < s->body_count && done == STATUS_OK; b++)
-    done = make_body(s, b, &bodies[b], error);
+    done = make_body(s, b, error);
   if (done == STATUS_OK) done = make_blocks(s, error);
   if (done == STATUS_OK) done = make_pairs(s, error);
   if (done != STATUS_OK) return done;
