@@ -4,12 +4,22 @@
 #include <stdlib.h>
 
 /* Root of i with path halving; roots are the lowest index of their set, so labels do not depend on the links' order. */
-static uint32_t find(uint32_t *parent, uint32_t i) {
+uint32_t fragments_root(uint32_t *parent, uint32_t i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
     i = parent[i];
   }
   return i;
+}
+
+bool fragments_join(uint32_t *parent, uint32_t a, uint32_t b) {
+  a = fragments_root(parent, a);
+  b = fragments_root(parent, b);
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
+  return a != b;
 }
 
 struct component {
@@ -27,13 +37,8 @@ static int by_descending_mass(const void *a, const void *b) {
 size_t fragments_label(size_t n, const double *mass, size_t link_count, const uint32_t (*links)[2], uint32_t *label) {
   for (size_t i = 0; i < n; i++)
     label[i] = (uint32_t)i;
-  for (size_t k = 0; k < link_count; k++) {
-    uint32_t a = find(label, links[k][0]), b = find(label, links[k][1]);
-    if (a < b)
-      label[b] = a;
-    else
-      label[a] = b;
-  }
+  for (size_t k = 0; k < link_count; k++)
+    fragments_join(label, links[k][0], links[k][1]);
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     count += label[i] == i;
@@ -47,7 +52,7 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   }
   size_t next = 0;
   for (size_t i = 0; i < n; i++) {
-    uint32_t root = find(label, (uint32_t)i);
+    uint32_t root = fragments_root(label, (uint32_t)i);
     if (root == i) {
       number[i] = (uint32_t)next;
       components[next++] = (struct component){.mass = 0, .root = root};
@@ -60,38 +65,31 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   /* A root is the lowest index of its set, so label[root] is read as a root before it is overwritten only if members
    * come after it: go downwards. */
   for (size_t i = n; i-- > 0;)
-    label[i] = number[find(label, (uint32_t)i)];
+    label[i] = number[fragments_root(label, (uint32_t)i)];
   free(components);
   free(number);
   return count;
 }
 
-status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error) {
-  *out = NULL;
-  *count = 0;
-  if (n == 0)
-    return STATUS_OK;
+/* Labels, masses, centres of mass, velocities, kinetic energies, counts: what plane and space have in common. */
+static status gather(size_t n, const struct fragment_member *members, size_t link_count, const uint32_t (*links)[2],
+                     uint32_t *label, struct fragment **out, size_t *count, struct error *error) {
   status code = STATUS_OK;
-  uint32_t *own = label ? NULL : malloc(n * sizeof *own);
   double *mass = malloc(n * sizeof *mass);
   struct fragment *fragments = NULL;
-  uint32_t *labels = label ? label : own;
-  if (!labels || !mass) {
+  size_t found = 0;
+  if (mass) {
+    for (size_t i = 0; i < n; i++)
+      mass[i] = members[i].mass;
+    found = fragments_label(n, mass, link_count, links, label);
+  }
+  fragments = found ? calloc(found, sizeof *fragments) : NULL;
+  if (!fragments) {
     code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
     goto cleanup;
   }
-  for (size_t i = 0; i < n; i++)
-    mass[i] = members[i].mass;
-  size_t found = fragments_label(n, mass, link_count, links, labels);
-  fragments = found ? calloc(found, sizeof *fragments) : NULL;
-  if (!fragments) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the fragments of %zu grains", n);
-    goto cleanup;
-  }
   for (size_t i = 0; i < n; i++) {
-    struct fragment *f = &fragments[labels[i]];
+    struct fragment *f = &fragments[label[i]];
     const struct fragment_member *m = &members[i];
     if (f->count++ == 0)
       f->first = (uint32_t)i;
@@ -108,22 +106,160 @@ status fragments_find_plane(size_t n, const struct fragment_member *members, siz
       fragments[k].position[d] /= fragments[k].mass;
       fragments[k].velocity[d] /= fragments[k].mass;
     }
+  *out = fragments;
+  *count = found;
+cleanup:
+  free(mass);
+  return code;
+}
+
+/* Spin and moment about z. */
+static void turn_in_plane(size_t n, const struct fragment_member *members, const uint32_t *label, size_t count,
+                          struct fragment *fragments) {
   for (size_t i = 0; i < n; i++) { /* parallel axes: about the fragment's centre of mass */
-    struct fragment *f = &fragments[labels[i]];
+    struct fragment *f = &fragments[label[i]];
     const struct fragment_member *m = &members[i];
     double x = m->position[0] - f->position[0], y = m->position[1] - f->position[1];
     double vx = m->velocity[0] - f->velocity[0], vy = m->velocity[1] - f->velocity[1];
     f->moment_of_inertia += m->moment_of_inertia + m->mass * (x * x + y * y);
     f->spin[2] += m->moment_of_inertia * m->spin + m->mass * (x * vy - y * vx);
   }
-  for (size_t k = 0; k < found; k++)
+  for (size_t k = 0; k < count; k++)
     fragments[k].spin[2] /= fragments[k].moment_of_inertia;
-  *out = fragments;
-  *count = found;
-  fragments = NULL;
+}
+
+status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error) {
+  *out = NULL;
+  *count = 0;
+  if (n == 0)
+    return STATUS_OK;
+  uint32_t *labels = label ? label : malloc(n * sizeof *labels);
+  status code = labels ? gather(n, members, link_count, links, labels, out, count, error)
+                       : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
+  if (!code)
+    turn_in_plane(n, members, labels, *count, *out);
+  if (!label)
+    free(labels);
+  return code;
+}
+
+/* One rotation that makes a[p][q] zero; axes are the rows of `axis` (Golub & Van Loan, section 8.5). */
+static void rotate(double a[3][3], double axis[3][3], int p, int q) {
+  if (a[p][q] == 0)
+    return;
+  double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+  double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + hypot(theta, 1)), c = 1 / hypot(t, 1), s = t * c;
+  for (int k = 0; k < 3; k++) {
+    double left = a[k][p], right = a[k][q];
+    a[k][p] = c * left - s * right;
+    a[k][q] = s * left + c * right;
+  }
+  for (int k = 0; k < 3; k++) {
+    double left = a[p][k], right = a[q][k];
+    a[p][k] = c * left - s * right;
+    a[q][k] = s * left + c * right;
+    left = axis[p][k], right = axis[q][k];
+    axis[p][k] = c * left - s * right;
+    axis[q][k] = s * left + c * right;
+  }
+  a[p][q] = a[q][p] = 0;
+}
+
+void fragments_principal(const double tensor[6], double value[3], double axis[3][3]) {
+  double a[3][3] = {{tensor[0], tensor[1], tensor[2]}, {tensor[1], tensor[3], tensor[4]}, {tensor[2], tensor[4], tensor[5]}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      axis[i][j] = i == j;
+  for (int sweep = 0; sweep < 12; sweep++) { /* quadratic: five are enough in doubles */
+    rotate(a, axis, 0, 1);
+    rotate(a, axis, 0, 2);
+    rotate(a, axis, 1, 2);
+  }
+  for (int i = 0; i < 3; i++)
+    value[i] = a[i][i];
+  for (int pass = 0; pass < 2; pass++)
+    for (int i = 0; i < 2 - pass; i++)
+      if (value[i] > value[i + 1]) {
+        double v = value[i];
+        value[i] = value[i + 1];
+        value[i + 1] = v;
+        for (int k = 0; k < 3; k++) {
+          v = axis[i][k];
+          axis[i][k] = axis[i + 1][k];
+          axis[i + 1][k] = v;
+        }
+      }
+}
+
+/* Spin from angular momentum L and inertia tensor, along each principal axis that has inertia. */
+static void solve_spin(const double tensor[6], const double momentum[3], double spin[3]) {
+  double value[3], axis[3][3];
+  fragments_principal(tensor, value, axis);
+  spin[0] = spin[1] = spin[2] = 0;
+  for (int k = 0; k < 3; k++)
+    if (value[k] > 1e-12 * value[2]) { /* below: rounding of particles in a line */
+      double along = (axis[k][0] * momentum[0] + axis[k][1] * momentum[1] + axis[k][2] * momentum[2]) / value[k];
+      for (int d = 0; d < 3; d++)
+        spin[d] += along * axis[k][d];
+    }
+}
+
+struct turning {
+  double inertia[6], momentum[3];
+};
+
+status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error) {
+  *out = NULL;
+  *count = 0;
+  if (n == 0)
+    return STATUS_OK;
+  uint32_t *labels = label ? label : malloc(n * sizeof *labels);
+  struct turning *turning = NULL;
+  status code = labels ? gather(n, members, link_count, links, labels, out, count, error)
+                       : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", n);
+  if (code)
+    goto cleanup;
+  turning = calloc(*count, sizeof *turning);
+  if (!turning) {
+    free(*out);
+    *out = NULL;
+    *count = 0;
+    code = status_fail(error, STATUS_MEMORY, "no memory for the fragments of %zu particles", n);
+    goto cleanup;
+  }
+  for (size_t i = 0; i < n; i++) {
+    const struct fragment *f = &(*out)[labels[i]];
+    const struct fragment_member *m = &members[i];
+    struct turning *t = &turning[labels[i]];
+    if (f->count == 1 && m->moment_of_inertia == 0)
+      continue; /* dust, most of a shattered body: it stands in its own centre */
+    double r[3], v[3], own = m->moment_of_inertia;
+    for (int d = 0; d < 3; d++) {
+      r[d] = m->position[d] - f->position[d];
+      v[d] = m->velocity[d] - f->velocity[d];
+    }
+    double xx = m->mass * r[0] * r[0], yy = m->mass * r[1] * r[1], zz = m->mass * r[2] * r[2];
+    const double tensor[6] = {yy + zz + own, -m->mass * r[0] * r[1], -m->mass * r[0] * r[2],
+                              zz + xx + own, -m->mass * r[1] * r[2], xx + yy + own};
+    for (int k = 0; k < 6; k++)
+      t->inertia[k] += tensor[k];
+    t->momentum[0] += m->mass * (r[1] * v[2] - r[2] * v[1]);
+    t->momentum[1] += m->mass * (r[2] * v[0] - r[0] * v[2]);
+    t->momentum[2] += m->mass * (r[0] * v[1] - r[1] * v[0]) + own * m->spin;
+  }
+  for (size_t k = 0; k < *count; k++) {
+    const double *tensor = turning[k].inertia;
+    (*out)[k].moment_of_inertia = (tensor[0] + tensor[3] + tensor[5]) / 3;
+    if ((*out)[k].moment_of_inertia > 0)
+      solve_spin(tensor, turning[k].momentum, (*out)[k].spin);
+  }
 cleanup:
-  free(own);
-  free(mass);
-  free(fragments);
+  if (!label)
+    free(labels);
+  free(turning);
   return code;
 }

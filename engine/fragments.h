@@ -3,6 +3,7 @@
 #ifndef CLAST_ENGINE_FRAGMENTS_H
 #define CLAST_ENGINE_FRAGMENTS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -36,5 +37,21 @@ struct fragment_member {
 status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
                             struct error *error);
+
+/* The same in space. Spin is I^-1 L with the whole inertia tensor I about the centre of mass, so that a rigidly turning
+ * piece of any shape gives its own angular velocity; about axes without inertia (one particle, particles in a line) it is
+ * 0. moment_of_inertia is trace(I)/3. Members' own moments count as spheres', their own spins about z. */
+status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error);
+
+/* Principal axes of a symmetric tensor xx xy xz yy yz zz: values ascending, axis[k] the unit vector of value[k]. Jacobi's
+ * rotations: good to rounding for any tensor of finite numbers. */
+void fragments_principal(const double tensor[6], double value[3], double axis[3][3]);
+
+/* Union-find by hand: parent[i] = i at first. The root is the lowest index of the set. */
+uint32_t fragments_root(uint32_t *parent, uint32_t i);
+/* True when a and b were apart until now. */
+bool fragments_join(uint32_t *parent, uint32_t a, uint32_t b);
 
 #endif
