@@ -141,7 +141,7 @@ UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double l
     b->shape.side[d] = d == along ? length : sph_lattice_period(kind, spacing, d, reach);
     b->shape.centre[d] = b->shape.side[d] / 2;
     b->lattice.periodic[d] = d != along || endless;
-    c->parameters.periodic[d] = b->lattice.periodic[d] ? b->shape.side[d] : NAN;
+    c->parameters.periodic[d] = b->lattice.periodic[d] ? b->shape.side[d] : (double)NAN;
   }
 }
 

@@ -9,7 +9,7 @@
  * the time from the first zero to the third. Amplitudes are 1e-4 of the sound speed: what is not linear (B, the change of
  * density) is of that order, 1e-4.
  *
- * CLAST_FULL=1: one more doubling of each. */
+ * CLAST_FULL=1: every axis, with the gradient correction, too, and one more doubling of each. */
 #include "tests/sph_solid.h"
 
 enum polarisation { PRESSURE_WAVE, SHEAR_WAVE };
@@ -26,17 +26,17 @@ struct wave {
   double speed;  /* m/s */
   double decay;  /* share of amplitude lost in the first period (by viscosity) */
   size_t n;
+  double spacings; /* in a wave */
 };
 
-static struct wave plane_wave(int lattice, enum polarisation kind, int along, double spacings, bool correction, double viscosity) {
-  const double length = 0.04;
+/* The wave is `periods` of the lattice long, so that no level is stretched differently. */
+static struct wave plane_wave(int lattice, enum polarisation kind, int along, double periods, bool correction) {
+  const double spacing = 1e-3, length = periods * sph_lattice_period(lattice, spacing, along, 0.1 * spacing);
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
   c.parameters.gradient_correction = correction;
-  c.parameters.viscosity_alpha *= viscosity;
-  c.parameters.viscosity_beta *= viscosity;
-  solid_bar(&c, lattice, along, length, length / spacings, true);
+  solid_bar(&c, lattice, along, length, spacing, true);
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
@@ -58,7 +58,7 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
     solid_swing_add(&swing, sph_system_time(c.system), sum);
     solid_step(&c, INFINITY);
   }
-  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n};
+  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n, length / spacing};
   free(shape);
   solid_end(&c);
   return w;
@@ -68,27 +68,34 @@ static void plane_waves(void **state) {
   (void)state;
   static const double exact[] = {4593.3, 2899.6};
   static const char *const name[] = {"P", "S"};
-  const int levels = solid_full() ? 4 : SOLID_SLOW ? 1 : 3;
-  print_message("lattice correction wave axis: m/s at 12, 24, 48 ... spacings a wave; order; lost in a period\n");
+  const int levels = SOLID_SLOW ? 1 : solid_full() ? 4 : 3;
+  print_message("m/s at about 24, 48, 96 spacings a wave; order; amplitude lost to viscosity in a period at the finest\n");
   for (int lattice = 0; lattice < 2; lattice++)
     for (int correction = 0; correction < 2; correction++)
       for (int kind = 0; kind < 2; kind++)
         for (int along = 0; along < 3; along++) {
-          struct wave w[4] = {0};
-          if (along > 0 && (lattice == SPH_LATTICE_CUBIC || !correction))
-            continue; /* the cubic lattice looks alike along all axes; once per axis is enough */
-          for (int l = 0; l < levels; l++)
-            w[l] = plane_wave(lattice ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL, kind, along, 12 << l, correction, 1);
-          double order = levels > 2 ? solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2) : NAN;
-          print_message("%-9s %-9s %s %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off", name[kind], 'x' + along);
-          for (int l = 0; l < levels; l++)
+          const int which = lattice ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL;
+          const double periods = round(24 / sph_lattice_period(which, 1, along, 0.1));
+          struct wave w[4];
+          if (lattice && along > 0)
+            continue; /* the cubic lattice looks alike along all axes */
+          if (!solid_full() && (correction || along == 1))
+            continue; /* to save time: nothing that the others do not have */
+          print_message("%-9s correction %-3s %s along %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off", name[kind], 'x' + along);
+          for (int l = 0; l < levels; l++) {
+            w[l] = plane_wave(which, kind, along, periods * (1 << l), correction);
             print_message(" %7.1f (%+.2f %%)", w[l].speed, 100 * (w[l].speed / exact[kind] - 1));
-          print_message("  order %.2f, decay %.3f\n", order, w[levels - 1].decay);
-          if (levels > 2) {
-            /* 1 % is the issue's; the scheme is of second order in the smooth interior */
-            assert_true(fabs(w[levels - 1].speed / exact[kind] - 1) < 0.01);
-            assert_true(order > 1.5 && order < 2.5);
           }
+          if (levels < 3) {
+            print_message("\n");
+            continue;
+          }
+          const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
+          print_message("  order %.2f, decay %.3f\n", order, w[levels - 1].decay);
+          /* 1 % is the issue's. A kernel sum is of second order in the smooth interior: 2 but for the next even term (and the time
+           * step's error, of second order, too), which at 24 spacings is some per cent of the first */
+          assert_true(fabs(w[levels - 1].speed / exact[kind] - 1) < 0.01);
+          assert_true(order > 1.8 && order < 2.2);
         }
 }
 
@@ -169,7 +176,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
     solid_swing_add(&swing, sph_system_time(c.system), sum);
     solid_step(&c, INFINITY);
   }
-  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n};
+  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n, length / (radius / radius_over_h / SPH_BODIES_H)};
   free(shape);
   solid_end(&c);
   return w;
@@ -179,7 +186,7 @@ static void bar_wave(void **state) {
   (void)state;
   struct sph_material m = solid_basalt();
   const double exact = rod_speed(&m, 1, 4), bar = sqrt(solid_young(&m) / m.density);
-  const int levels = solid_full() ? 4 : SOLID_SLOW ? 1 : 3;
+  const int levels = SOLID_SLOW ? 1 : solid_full() ? 4 : 3;
   print_message("round rod, wave of 4 radii: Pochhammer %.1f m/s (bar speed %.1f)\n", exact, bar);
   for (int correction = 0; correction < 2; correction++) {
     struct wave w[4] = {0};
@@ -188,11 +195,17 @@ static void bar_wave(void **state) {
       print_message("  correction %s, R/h %4.1f, n %6zu: %7.1f m/s (%+.2f %%), as bar speed %7.1f; decay %.3f\n", correction ? "on " : "off",
                     2.5 * (1 << l), w[l].n, w[l].speed, 100 * (w[l].speed / exact - 1), w[l].speed * bar / exact, w[l].decay);
     }
-    if (levels > 2) {
-      double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
-      double limit = 2 * w[levels - 1].speed - w[levels - 2].speed; /* of first order: the soft skin of a free side is ~ h thick */
-      print_message("  order %.2f; to the limit %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));
-    }
+    if (levels < 3)
+      continue;
+    const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
+    const double limit = w[levels - 1].speed + (w[levels - 1].speed - w[levels - 2].speed) / (pow(2, order) - 1);
+    print_message("  order %.2f; extrapolated with it %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));
+    /* The sums of a particle at a free side miss what would be outside: a soft skin of about h, hence first order; the interior is of
+     * second. 1 % (the issue's) is asked of the limit, and at 20 h a radius of the run itself. */
+    assert_true(order > 1 && order < 2);
+    assert_true(fabs(limit / exact - 1) < 0.01);
+    if (levels == 4 && correction)
+      assert_true(fabs(w[3].speed / exact - 1) < 0.01);
   }
 }
 
