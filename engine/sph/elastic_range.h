@@ -46,13 +46,14 @@ RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_so
   elastic_output(s, b, true);
 }
 
-/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]. */
+/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]; with the gradient correction eps of
+ * the uncorrected gradient, which is conjugate to the forces (pairs.h). */
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool pores) {
   const double half = 0.5 * s->dt, solid_two_mu = 2 * body->physics.material.shear_modulus;
   const double *f = s->c.shear_factor, *alpha = s->c.distention;
   double *const *g = s->c.gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];
-  const double *density = s->c.density, *term = s->c.pressure_term, *heating = s->c.heating;
+  const double *density = s->c.density, *term = s->c.pressure_term, *heating = s->c.heating, *power = s->c.power;
   const double *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2], *oyy = s->c.damaged[3];
   const double *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
   double *energy = s->c.energy, *energy_rate = s->c.energy_rate;
@@ -67,7 +68,7 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
     const double wxy = 0.5 * (g1[i] - g3[i]), wxz = 0.5 * (g2[i] - g6[i]), wyz = 0.5 * (g5[i] - g7[i]);
     const double work = term[i] * divergence + oxx[i] * exx + oyy[i] * eyy + ozz[i] * ezz +
                         2 * (oxy[i] * exy + oxz[i] * exz + oyz[i] * eyz);
-    const double heat = density[i] * work + heating[i];
+    const double heat = (power ? power[i] : density[i] * work) + heating[i];
     energy[i] += half * (heat - energy_rate[i]);
     energy_rate[i] = heat;
     const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);

@@ -102,10 +102,11 @@ RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_solid 
   const double half = 0.5 * s->dt;
   const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8], *heating = s->c.heating;
   const double *density = s->c.density, *term = s->c.pressure_term;
+  const double *power = s->c.power;
   double *energy = s->c.energy, *rate = s->c.energy_rate;
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++) {
-    const double now = density[i] * term[i] * (xx[i] + yy[i] + zz[i]) + heating[i];
+    const double now = (power ? power[i] : density[i] * term[i] * (xx[i] + yy[i] + zz[i])) + heating[i];
     energy[i] += half * (now - rate[i]);
     rate[i] = now;
   }

@@ -81,6 +81,16 @@ static void apply(const double *m, const double w[3], double v[3]) {
   v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
 }
 
+static double power(size_t i, const struct sph_pair_fields *f, const struct sph_pair_sums *sums, bool strength) {
+  double *const *g = sums->gradient;
+  double sum = f->pressure_term[i] * (g[0][i] + g[4][i] + g[8][i]);
+  if (strength)
+    sum += f->stress[0][i] * g[0][i] + f->stress[3][i] * g[4][i] + f->stress[5][i] * g[8][i] +
+           f->stress[1][i] * (g[1][i] + g[3][i]) + f->stress[2][i] * (g[2][i] + g[6][i]) +
+           f->stress[4][i] * (g[5][i] + g[7][i]);
+  return f->density[i] * sum;
+}
+
 static void correct(size_t i, const double *m, const struct sph_pair_sums *sums) {
   double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
   double determinant = m[0] * a + m[1] * b + m[2] * c;
@@ -150,8 +160,10 @@ void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fiel
         }
     }
   if (pairs->moment)
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++) {
+      if (sums->power) sums->power[i] = power(i, f, sums, o->strength);
       correct(i, pairs->moment + 6 * i, sums);
+    }
 }
 
 double sph_pairs_neighbours(const struct sph_pairs *pairs) {

@@ -42,6 +42,10 @@ struct sph_pair_sums {
   double *ax, *ay, *az;    /* m/s^2 */
   double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
   double *heating;         /* J/kg/s */
+  /* J/kg/s, only with gradient_correction, else NULL: rho_i (pressure_term tr(g) + stress : g) of the velocity gradient g
+   * *before* its correction. That one is conjugate to the forces: with it total energy is conserved, with the corrected one
+   * it is not (by 10 % in a collision of bodies six particles wide). */
+  double *power;
   double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step */
 };
 

@@ -7,7 +7,7 @@
 #include "engine/sph/system_step.h"
 #include "engine/sph/tillotson.h"
 
-enum need { ALWAYS, STRENGTH, DAMAGE, FRACTURE, DAMPING, DISTENTION, COMPACTION, TENSION };
+enum need { ALWAYS, STRENGTH, DAMAGE, FRACTURE, DAMPING, DISTENTION, COMPACTION, TENSION, CORRECTION };
 
 #define COLUMN(name) offsetof(struct sph_columns, name)
 static const struct {
@@ -75,6 +75,7 @@ static const struct {
     {COLUMN(gradient[8]), ALWAYS},
     {COLUMN(heating), ALWAYS},
     {COLUMN(signal), ALWAYS},
+    {COLUMN(power), CORRECTION},
 };
 _Static_assert(sizeof rows / sizeof *rows == SPH_COLUMNS, "a row per column");
 
@@ -86,6 +87,7 @@ static bool is_there(enum need need, const struct sph_particles *p, const struct
   case DAMAGE: return s->damage;
   case DISTENTION: return s->pores;
   case COMPACTION: return s->pores && s->damage;
+  case CORRECTION: return s->p.gradient_correction;
   case TENSION: return s->pores && s->fracture;
   case ALWAYS: break;
   }

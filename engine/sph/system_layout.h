@@ -35,6 +35,7 @@ struct sph_columns {
   double *tension, *compaction;     /* D^(1/3) by flaws and by closed pores, of which `damage` is made */
   /* overwritten by each pair loop */
   double *new_ax, *new_ay, *new_az, *gradient[9], *heating, *signal;
+  double *power; /* NULL without gradient correction */
 };
 
 struct sph_solid;

@@ -112,7 +112,7 @@ static void sum_pairs(struct sph_system *s) {
                                    .density = c->density,
                                    .sound_speed = c->sound_speed,
                                    .pressure_term = c->pressure_term};
-  struct sph_pair_sums sums = {.ax = c->new_ax, .ay = c->new_ay, .az = c->new_az, .heating = c->heating, .signal = c->signal};
+  struct sph_pair_sums sums = {.ax = c->new_ax, .ay = c->new_ay, .az = c->new_az, .heating = c->heating, .power = c->power, .signal = c->signal};
   for (int k = 0; k < 6; k++)
     fields.stress[k] = c->damaged[k];
   for (int k = 0; k < 9; k++)

@@ -57,7 +57,7 @@ static void sum(struct cloud *c, const struct sph_pair_options *options, struct 
   assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], &error), STATUS_OK);
   assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3], c->a[4], c->a[5], c->a[6], c->a[7], c->a[8], c->a[9], c->a[10], {0}};
-  struct sph_pair_sums s = {out->ax, out->ay, out->az, {0}, out->heating, out->signal};
+  struct sph_pair_sums s = {.ax = out->ax, .ay = out->ay, .az = out->az, .heating = out->heating, .signal = out->signal};
   for (int k = 0; k < 6; k++)
     f.stress[k] = c->stress[k];
   for (int k = 0; k < 9; k++)
