@@ -1,0 +1,254 @@
+/* Bodies before the first step: masses, ids, placement, overlap, motion, grips, damped sides; refusals. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#include "engine/sph/bodies.h"
+
+static struct sph_body sphere(double radius, double particles, double density) {
+  return (struct sph_body){.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
+                           .lattice = {.particles = particles},
+                           .density = density,
+                           .h_over_spacing = NAN};
+}
+
+static const struct sph_body bar = {.shape = {.kind = SPH_SHAPE_BOX, .centre = {0, 0, 0}, .side = {0.1, 0.2, 0.4}},
+                                    .lattice = {.kind = SPH_LATTICE_CUBIC, .particles = 1000},
+                                    .density = 2000,
+                                    .h_over_spacing = 1.3};
+
+/* The sum is density x true volume to rounding: 2000 equal addends lose at most 2000 ulp, some 1e-13 of it. */
+static void masses_add_up_and_ids_follow_bodies(void **state) {
+  (void)state;
+  struct sph_body bodies[3] = {sphere(0.03, 2000, 2700), sphere(0.003, 37, 1185), bar};
+  bodies[1].shape.centre[0] = 0.0331;
+  bodies[2].shape.centre[1] = 1;
+  bodies[1].lattice.turned = true; /* no corner, but a body like others */
+  struct sph_range range[3];
+  struct sph_particles *p = NULL;
+  assert_int_equal(sph_bodies_make(bodies, 3, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &p, range, NULL), STATUS_OK);
+  size_t next = 0;
+  for (size_t b = 0; b < 3; b++) {
+    const double volume = sph_shape_volume(&bodies[b].shape);
+    double mass = 0;
+    assert_true(range[b].first == next && range[b].n > 0);
+    for (size_t i = next; i < next + range[b].n; i++) {
+      mass += p->mass[i];
+      assert_true(p->mass[i] == p->mass[next] && p->body[i] == b && p->density[i] == bodies[b].density);
+      assert_true(p->h[i] == (b == 2 ? 1.3 : SPH_BODIES_H) * range[b].spacing);
+      assert_true(p->vx[i] == 0 && p->energy[i] == 0);
+    }
+    assert_true(fabs(mass / (bodies[b].density * volume) - 1) < 1e-12 && fabs(range[b].mass / mass - 1) < 1e-12);
+    next += range[b].n;
+  }
+  assert_int_equal(next, p->n);
+  assert_int_equal(range[1].n, 37);
+  assert_true(p->stress[5] && p->damage_cbrt && !p->held && !p->damping && !p->distention);
+  sph_particles_free(p);
+}
+
+static void one_particle_is_a_body(void **state) {
+  (void)state;
+  struct sph_range range;
+  struct sph_particles *p = NULL;
+  for (int kind = 0; kind < 3; kind++)
+    for (int shape = 0; shape < 3; shape++) {
+      struct sph_body one = sphere(2, 1, 1000);
+      one.lattice.kind = kind;
+      one.shape = (struct sph_shape){.kind = shape, .centre = {1, 2, 3}, .radius = 1, .length = 2, .axis = {0, 1, 0}, .side = {1, 1, 1}};
+      assert_int_equal(sph_bodies_make(&one, 1, SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION, &p, &range, NULL), STATUS_OK);
+      assert_true(p->n == 1 && p->distention[0] == 1 && !p->held[0] && p->damping[0] == 0);
+      assert_true(fabs(p->mass[0] / (1000 * sph_shape_volume(&one.shape)) - 1) < 1e-14);
+      assert_true(sph_shape_inside(&one.shape, (double[3]){p->x[0], p->y[0], p->z[0]}));
+      sph_particles_free(p);
+    }
+}
+
+static void the_same_bits_each_time(void **state) {
+  (void)state;
+  for (int kind = 0; kind < 3; kind++) {
+    struct sph_body body = sphere(1, 700, 1);
+    body.lattice = (struct sph_lattice){.kind = kind, .particles = 700, .turned = true, .seed = 12, .body = 1};
+    struct sph_particles *p = NULL, *again = NULL, *other = NULL, *next = NULL;
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, NULL), STATUS_OK);
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &again, NULL, NULL), STATUS_OK);
+    body.lattice.seed = 13;
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &other, NULL, NULL), STATUS_OK);
+    body.lattice.seed = 12;
+    body.lattice.body = 2;
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &next, NULL, NULL), STATUS_OK);
+    assert_memory_equal(p->x, again->x, p->n * sizeof *p->x);
+    assert_memory_equal(p->y, again->y, p->n * sizeof *p->y);
+    assert_memory_equal(p->z, again->z, p->n * sizeof *p->z);
+    assert_true(p->x[3] != other->x[3] && p->x[3] != next->x[3]);
+    sph_particles_free(p);
+    sph_particles_free(again);
+    sph_particles_free(other);
+    sph_particles_free(next);
+  }
+}
+
+/* The gap of the surfaces is the one asked for, the angle is that between flight and inward normal, and it hits. */
+static void projectiles_are_aimed(void **state) {
+  (void)state;
+  const struct sph_shape targets[] = {
+      {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 0.03},
+      {.kind = SPH_SHAPE_BOX, .centre = {1, 2, 3}, .side = {0.2, 0.2, 0.2}},
+      {.kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 0.1, .length = 0.4, .axis = {0, 0, 1}},
+  };
+  const double directions[][3] = {{0, 0, 1}, {0, 0, -4}, {-1, 0, 0}, {0.9, 0.1, -0.2}};
+  const double angles[] = {0, 0.5235987755982988, 1.2}, gaps[] = {0, 1e-4};
+  for (int t = 0; t < 3; t++)
+    for (int d = 0; d < 4; d++)
+      for (int a = 0; a < 3; a++)
+        for (int g = 0; g < 2; g++) {
+          struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
+          double flight[3], point[3], normal[3];
+          assert_int_equal(sph_bodies_aim(&targets[t], &shot, directions[d], angles[a], gaps[g], flight, NULL), STATUS_OK);
+          sph_shape_surface(&targets[t], directions[d], point, normal);
+          assert_true(fabs(sph_shape_gap(&targets[t], &shot) - gaps[g]) < 1e-12);
+          double along = 0, length = 0;
+          for (int k = 0; k < 3; k++) {
+            along -= flight[k] * normal[k];
+            length += flight[k] * flight[k];
+          }
+          assert_true(fabs(length - 1) < 1e-12 && fabs(acos(fmin(1, along)) - angles[a]) < 1e-7);
+          /* turned aside, never straight on, and towards +x or +y */
+          if (a) assert_true(fabs(normal[0]) > cos(0.1) ? flight[1] > 0 : flight[0] > -along * normal[0]);
+          if (g && a < 2) assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) <= 0);
+          for (int k = 0; k < 3; k++)
+            flight[k] = -flight[k];
+          if (g) assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
+        }
+  struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
+  double flight[3];
+  struct error error;
+  assert_int_equal(sph_bodies_aim(&targets[0], &shot, (double[3]){0, 0, 0}, 0, 0, flight, &error), STATUS_CONTENT);
+  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], 1.5708, 0, flight, &error), STATUS_CONTENT);
+  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], NAN, 0, flight, &error), STATUS_CONTENT);
+  assert_int_equal(sph_bodies_aim(&targets[0], &shot, directions[0], 0, -1e-9, flight, &error), STATUS_CONTENT);
+}
+
+static void overlaps_are_refused_by_name(void **state) {
+  (void)state;
+  struct sph_body bodies[3] = {sphere(0.03, 500, 2700), sphere(0.003, 20, 1185), sphere(0.01, 20, 1000)};
+  bodies[1].shape.centre[2] = 0.0325; /* 0.5 mm too near */
+  bodies[2].shape.centre[0] = -0.04;
+  struct sph_particles *p = NULL;
+  struct error error = {0};
+  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
+  assert_null(p);
+  assert_string_equal(error.message, "the target and the projectile overlap by 0.0005 m: move one of them, or give a gap.");
+  bodies[1].shape.centre[2] = 0.033; /* they touch */
+  bodies[2].shape.centre[0] = -0.0399;
+  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "the target and body 002 overlap by 0.0001 m: move one of them, or give a gap.");
+  bodies[2].shape.centre[0] = -0.04;
+  assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_OK);
+  sph_particles_free(p);
+}
+
+static void bodies_move(void **state) {
+  (void)state;
+  struct sph_body bodies[2] = {bar, sphere(0.05, 300, 1000)};
+  bodies[1].shape.centre[0] = 3;
+  struct sph_range range[2];
+  struct sph_particles *p = NULL;
+  assert_int_equal(sph_bodies_make(bodies, 2, 0, &p, range, NULL), STATUS_OK);
+  const double velocity[3] = {1, -2, 3}, centre[3] = {0, 0, 0.1}, axis[3] = {0, 0, 2}, spin[3] = {5, 6, 7};
+  sph_bodies_move(p, range[1], velocity);
+  sph_bodies_stretch(p, range[0], centre, axis, 60, 0.25);
+  for (size_t i = 0; i < p->n; i++) {
+    const bool moved = i >= range[1].first;
+    assert_true(fabs(p->vx[i] - (moved ? 1 : -15 * p->x[i])) < 1e-12);
+    assert_true(fabs(p->vy[i] - (moved ? -2 : -15 * p->y[i])) < 1e-12);
+    assert_true(fabs(p->vz[i] - (moved ? 3 : 60 * (p->z[i] - 0.1))) < 1e-12);
+  }
+  sph_bodies_spin(p, range[1], bodies[1].shape.centre, spin); /* adds */
+  double momentum[3] = {0}, turn = 0;
+  for (size_t i = range[1].first; i < p->n; i++) {
+    const double r[3] = {p->x[i] - 3, p->y[i], p->z[i]}, v[3] = {p->vx[i] - 1, p->vy[i] + 2, p->vz[i] - 3};
+    assert_true(fabs(v[0] * r[0] + v[1] * r[1] + v[2] * r[2]) < 1e-12);
+    assert_true(fabs(v[0] * spin[0] + v[1] * spin[1] + v[2] * spin[2]) < 1e-11);
+    for (int k = 0; k < 3; k++)
+      momentum[k] += v[k];
+    turn += r[0] * v[1] - r[1] * v[0]; /* about z: right-handed, mostly spin z x (x^2 + y^2) */
+  }
+  assert_true(turn > 0);
+  for (int k = 0; k < 3; k++)
+    assert_true(fabs(momentum[k]) < 1e-9); /* about the centre of mass */
+  sph_particles_free(p);
+}
+
+static void ends_are_held_and_sides_damped(void **state) {
+  (void)state;
+  struct sph_range range;
+  struct sph_particles *p = NULL;
+  assert_int_equal(sph_bodies_make(&bar, 1, SPH_WITH_HELD | SPH_WITH_DAMPING, &p, &range, NULL), STATUS_OK);
+  const struct sph_middle middle = {.axis = {0, 0, -3}, .half = 0.15};
+  const size_t held = sph_bodies_hold(p, range, &middle, SPH_HELD_Z | SPH_HELD_X);
+  /* all sides but the upper z: the impact's */
+  sph_bodies_damp(p, range, &bar.shape, SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, 0.04, 1e5);
+  size_t count = 0, damped = 0, free_top = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    const bool end = fabs(p->z[i]) > 0.15;
+    count += end;
+    assert_int_equal(p->held[i], end ? SPH_HELD_X | SPH_HELD_Z : 0);
+    const double from = fmin(fmin(0.05 - fabs(p->x[i]), 0.1 - fabs(p->y[i])), 0.2 + p->z[i]);
+    const double want = from < 0.04 ? 1e5 * pow(1 - from / 0.04, 2) : 0;
+    assert_true(fabs(p->damping[i] - want) < 1e-6);
+    damped += p->damping[i] > 0;
+    free_top += p->z[i] > 0.17 && p->damping[i] == 0;
+  }
+  assert_true(held == count && held > 100 && held < p->n);
+  assert_true(damped > 100 && damped < p->n && free_top > 0);
+  sph_particles_free(p);
+}
+
+static void absurd_bodies_are_refused(void **state) {
+  (void)state;
+  struct sph_particles *p = NULL;
+  struct error error = {0};
+  struct sph_body body = sphere(1, 1e12, 1000);
+  assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_MEMORY);
+  assert_non_null(strstr(error.message, "1e+12 particles"));
+  assert_null(p);
+  const double bad[] = {0, -1, NAN, HUGE_VAL};
+  for (int k = 0; k < 4; k++) {
+    body = sphere(1, 10, bad[k]);
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_CONTENT);
+    body = sphere(bad[k], 10, 1);
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), STATUS_CONTENT);
+    body = sphere(1, 10, 1);
+    body.h_over_spacing = bad[k];
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, NULL, &error), isnan(bad[k]) ? STATUS_OK : STATUS_CONTENT);
+    sph_particles_free(p);
+  }
+  assert_int_equal(sph_bodies_make(&body, 0, 0, &p, NULL, &error), STATUS_CONTENT);
+  assert_int_equal(sph_particles_make((size_t)1e13, 0, &p, &error), STATUS_MEMORY);
+  assert_null(p);
+  /* from grains of dust to moons */
+  for (double size = 1e-6; size < 1e7; size *= 100) {
+    body = sphere(size, 300, 1000);
+    struct sph_range range;
+    assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, &error), STATUS_OK);
+    assert_int_equal(p->n, 300);
+    assert_true(fabs(range.nearest / size - range.nearest / range.spacing * cbrt(4 * 3.141592653589793 / 900)) < 1e-9);
+    sph_particles_free(p);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(masses_add_up_and_ids_follow_bodies), cmocka_unit_test(one_particle_is_a_body),
+      cmocka_unit_test(the_same_bits_each_time),             cmocka_unit_test(projectiles_are_aimed),
+      cmocka_unit_test(overlaps_are_refused_by_name),        cmocka_unit_test(bodies_move),
+      cmocka_unit_test(ends_are_held_and_sides_damped),      cmocka_unit_test(absurd_bodies_are_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
