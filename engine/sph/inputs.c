@@ -21,6 +21,7 @@ static const char *const caps[] = {"ba95", "count", "none", NULL};
 static const char *const crack_radii[] = {"volume", "support", NULL};
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
+static const char *const curves[] = SPH_POROSITY_CURVES;
 static const char *const flaw_lists[] = {"exact", "compact", NULL};
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
@@ -49,6 +50,14 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
 #define WHEN_ALWAYS(B, exists) exists
 #define WHEN_STRENGTH(B, exists) #B ".strength=true"
 #define WHEN_FRACTURE(B, exists) #B ".fracture=auto|on"
+#define WHEN_POROSITY(B, exists) #B ".material.porosity.curve=quadratic|two-power"
+#define WHEN_TWO_POWER(B, exists) #B ".material.porosity.curve=two-power"
+#define MATERIAL_PORES(B, exists)                                                                                      \
+  {.path = #B ".material.porosity.curve", .kind = FIELD_CHOICE,                                                        \
+   .offset = offsetof(struct sph_inputs, B.material.porosity.curve), .choices = curves, .flags = FIELD_DERIVED,        \
+   .choice_docs = SPH_POROSITY_CURVE_DOCS, .when = exists,                                                             \
+   .doc = SPH_POROSITY_CURVE_DOC " The named material's unless given.",                                                \
+   .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
 #define TARGET_MATERIAL(...) MATERIAL_ROW(target, NULL, __VA_ARGS__)
 #define PROJECTILE_MATERIAL(...) MATERIAL_ROW(projectile, "kind=impact", __VA_ARGS__)
 
@@ -103,6 +112,8 @@ static const struct field rows[] = {
                 "back keeps about 3 %."),
     BODY_MATTER(target, NULL, "basalt"),
     SPH_MATERIAL_ROWS(TARGET_MATERIAL)
+    MATERIAL_PORES(target, NULL)
+    SPH_POROSITY_ROWS(TARGET_MATERIAL)
 
     CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
            .choice_docs = "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
@@ -124,6 +135,8 @@ static const struct field rows[] = {
     BODY_SIZES(projectile, 0.0035),
     BODY_MATTER(projectile, "kind=impact", "nylon"),
     SPH_MATERIAL_ROWS(PROJECTILE_MATERIAL)
+    MATERIAL_PORES(projectile, "kind=impact")
+    SPH_POROSITY_ROWS(PROJECTILE_MATERIAL)
 
     REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_LOG | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
          .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
@@ -208,6 +221,9 @@ static const struct field rows[] = {
     REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Time step over h/(c + viscous)."),
     REAL(fidelity.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
          .doc = "Largest change of D^(1/3) in a time step."),
+    REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material.porosity.curve=quadratic|two-power",
+         .doc = "Largest change of a porous particle's distention in a time step.",
+         .source = "Jutzi, Benz & Michel 2008"),
     REAL(fidelity.skin, "1", 0.1, 0, 1, .doc = "Skin of the neighbour lists over 2h: longer lists last for more steps. It "
                                                "changes the order of sums, not the physics."),
     CHOICE(fidelity.precision, precisions, .choice_docs = "double throughout\nstored relative positions and pair sums are float",

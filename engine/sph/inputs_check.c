@@ -7,13 +7,14 @@
 #include "engine/sph/bodies.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/material_rows.h"
+#include "engine/sph/palpha.h"
 #include "engine/sph/scale.h"
 
 #define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
 
 /* ---- materials ---- */
 
-enum need { ALWAYS, STRENGTH, FRACTURE };
+enum need { ALWAYS, STRENGTH, FRACTURE, POROSITY, TWO_POWER };
 static const struct {
   const char *name;
   size_t offset;
@@ -22,14 +23,33 @@ static const struct {
 } values[] = {
 #define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
   {#member_, offsetof(struct sph_material, member_), need_, ((flags_) & FIELD_MAY_BE_OFF) != 0},
-    SPH_MATERIAL_ROWS(VALUE)};
+    SPH_MATERIAL_ROWS(VALUE) SPH_POROSITY_ROWS(VALUE)};
 
 static bool needed(size_t k, const struct sph_body_inputs *body) {
   if (values[k].need == FRACTURE)
     return body->strength && body->fracture == SPH_FRACTURE_ON;
   if (values[k].need == STRENGTH)
     return body->strength && strcmp(values[k].name, "shear_modulus") == 0;
+  if (values[k].need >= POROSITY && body->material.porosity.curve == SPH_CRUSH_NONE)
+    return false;
+  if (values[k].need == TWO_POWER && body->material.porosity.curve != SPH_CRUSH_TWO_POWER)
+    return false;
   return !values[k].may_be_off;
+}
+
+/* Distention and fraction agree (they do unless both were given), and the values make a crush curve. */
+static status check_porosity(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const struct sph_palpha *p = &body->material.porosity;
+  struct sph_palpha_law law;
+  struct error why = {0};
+  if (p->curve == SPH_CRUSH_NONE)
+    return STATUS_OK;
+  if (!(fabs(p->fraction - (1 - 1 / p->distention)) < 1e-9))
+    REFUSE("%s.material.porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two", body_name,
+           p->distention, 1 - 1 / p->distention, p->fraction);
+  if (p->distention > 1 && sph_palpha_prepare(p, &body->material, &law, &why))
+    REFUSE("%s.material.%.3000s", body_name, why.message);
+  return STATUS_OK;
 }
 
 static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
@@ -44,12 +64,15 @@ static status check_material(const char *body_name, const struct sph_body_inputs
     char text[200];
     if (values[k].need != ALWAYS) {
       snprintf(text, sizeof text, "give it, or set %s.%s", body_name,
-               values[k].need == STRENGTH ? "strength: false" : "fracture: off");
+               values[k].need == STRENGTH   ? "strength: false"
+               : values[k].need == FRACTURE ? "fracture: off"
+                                            : "material.porosity.curve: none");
       remedy = text;
     }
     REFUSE("%s.material.%s is needed%s, and the material '%s' has none: %s", body_name, values[k].name,
            values[k].need == FRACTURE   ? " because fracture is on"
            : values[k].need == STRENGTH ? " because the body has strength"
+           : values[k].need >= POROSITY ? " by the crush curve"
                                         : "",
            name, remedy);
   }
@@ -60,7 +83,7 @@ static status check_material(const char *body_name, const struct sph_body_inputs
   if (body->strength && body->fracture == SPH_FRACTURE_AUTO && m_off != k_off)
     REFUSE("%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
            body_name, m_off ? "k" : "m", m_off ? "m" : "k");
-  return STATUS_OK;
+  return check_porosity(body_name, body, error);
 }
 
 /* ---- sizes ---- */

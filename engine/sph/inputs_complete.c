@@ -29,8 +29,16 @@ static void complete_material(struct sph_inputs *in, struct sph_body_inputs *bod
   for (size_t i = 0; i < sph_inputs.count; i++) {
     size_t offset = sph_inputs.rows[i].offset;
     if (!given[i] && offset >= first && offset < first + sizeof material)
-      memcpy((char *)in + offset, (char *)&material + (offset - first), sizeof(double));
+      memcpy((char *)in + offset, (char *)&material + (offset - first),
+             sph_inputs.rows[i].kind == FIELD_CHOICE ? sizeof(int) : sizeof(double));
   }
+  /* porosity by whichever of its two names was given; the material's own distention otherwise */
+  struct sph_palpha *pores = &body->material.porosity;
+  size_t distention = (size_t)((char *)&pores->distention - (char *)in), fraction = (size_t)((char *)&pores->fraction - (char *)in);
+  if (given[row_at(fraction)] && !given[row_at(distention)])
+    pores->distention = 1 / (1 - pores->fraction);
+  else if (!given[row_at(fraction)])
+    pores->fraction = 1 - 1 / pores->distention;
 }
 
 /* Young's modulus times the mean strength of the weakest of kV flaws: Gamma(1 + 1/m) (kV)^(-1/m). */
@@ -39,7 +47,7 @@ static double static_strength(const struct sph_inputs *in) {
     return NAN;
   struct sph_shape shape = sph_scale_target(in);
   double m = in->target.material.weibull.m;
-  double log_strain = lgamma(1 + 1 / m) - (log(in->target.material.weibull.k) + log(sph_shape_volume(&shape))) / m;
+  double log_strain = lgamma(1 + 1 / m) - (log(in->target.material.weibull.k) + log(sph_shape_volume(&shape) * sph_scale_density(&in->target) / in->target.material.density)) / m; /* solid volume */
   double strength = sph_scale_young_modulus(&in->target.material) * exp(log_strain);
   return strength > 0 && strength <= 1e15 ? strength : (double)NAN;
 }

@@ -17,6 +17,21 @@ struct sph_weibull {
   double k; /* m^-3 */
 };
 
+/* Pores: P-alpha (palpha.h). */
+enum sph_palpha_curve { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER };
+struct sph_palpha {
+  int curve;                /* enum sph_palpha_curve; none: a material without pores, and nothing else here counts */
+  double distention;        /* alpha_0; 1: no pores, the solid itself */
+  double fraction;          /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
+  double elastic_pressure;  /* Pa, P_e: plastic crushing begins */
+  double solid_pressure;    /* Pa, P_s: all pores are closed */
+  double sound_speed;       /* m/s, c_e of the porous matter at alpha_0; NaN: no elastic change of alpha */
+  /* two-power curve */
+  double elastic_distention, transition_distention; /* alpha_e, alpha_t */
+  double transition_pressure;                       /* Pa, P_t */
+  double exponent_low, exponent_high;               /* n1, n2 */
+};
+
 struct sph_material {
   double density; /* kg/m^3 at rest */
   struct sph_tillotson tillotson;
@@ -26,6 +41,7 @@ struct sph_material {
   double melt_energy;   /* J/kg, NaN: yield does not depend on u */
   double tension_limit; /* Pa: lowest pressure is -tension_limit where no flaws limit tension; NaN = off */
   struct sph_weibull weibull;
+  struct sph_palpha porosity; /* whether a body has pores is said by sph_body_physics.porosity */
 };
 
 #endif

@@ -1,7 +1,7 @@
 /* The values of a material, one row each: SPH_MATERIAL_ROWS(R) is R(member of struct sph_material, unit, minimum, maximum,
  * flags, need, doc, source) for every one. The documents of engine/sph/materials/ are read through them (materials.c), and
  * each body of a scene has them as inputs (inputs.c), there with the named material's values as defaults.
- * `need` says what asks for a value: ALWAYS, STRENGTH, FRACTURE. Flags: OFF, it may be off; LOG; ABOVE its minimum. */
+ * `need` says what asks for a value: ALWAYS, STRENGTH, FRACTURE, POROSITY, TWO_POWER (a crush curve). Flags: OFF, it may be off; LOG; ABOVE its minimum. */
 #ifndef CLAST_ENGINE_SPH_MATERIAL_ROWS_H
 #define CLAST_ENGINE_SPH_MATERIAL_ROWS_H
 
@@ -44,5 +44,36 @@
     "flaws.", "Benz & Asphaug 1995, eq. 11")                                                                           \
   R(weibull.k, "1/m^3", 1, 1e200, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG, FRACTURE,                                       \
     "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.", "Benz & Asphaug 1995, eq. 11")
+
+/* Pores (P-alpha): the values that go with the choice porosity.curve. */
+#define SPH_POROSITY_ROWS(R)                                                                                           \
+  R(porosity.distention, "1", 1, 100, 0, POROSITY,                                                                     \
+    "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the bit. In a scene "  \
+    "porosity.fraction may be given instead.", "Herrmann 1969")                                                        \
+  R(porosity.fraction, "1", 0, 0.99, SPH_MATERIAL_OFF, POROSITY,                                                       \
+    "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)                     \
+  R(porosity.elastic_pressure, "Pa", 0, 1e15, 0, POROSITY, "P_e: from here on pores are crushed for good.",            \
+    "Jutzi, Benz & Michel 2008")                                                                                       \
+  R(porosity.solid_pressure, "Pa", 0, 1e15, SPH_MATERIAL_LOG | SPH_MATERIAL_ABOVE, POROSITY,                           \
+    "P_s: from here on all pores are closed.", "Jutzi, Benz & Michel 2008")                                            \
+  R(porosity.sound_speed, "m/s", 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, POROSITY,                              \
+    "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way elastically, and the "  \
+    "solid's speed is taken.", "Herrmann 1969; Jutzi, Benz & Michel 2008")                                             \
+  R(porosity.elastic_distention, "1", 1, 100, SPH_MATERIAL_ABOVE, TWO_POWER,                                           \
+    "alpha_e: where the crush curve begins, at P_e. A body of lower alpha_0 keeps it until it meets the curve.",         \
+    "Jutzi et al. 2009")                                                                                               \
+  R(porosity.transition_distention, "1", 1, 100, 0, TWO_POWER, "alpha_t: below it, and above P_t, the first power law "  \
+    "has ended.", "Jutzi et al. 2009")                                                                                 \
+  R(porosity.transition_pressure, "Pa", 0, 1e15, SPH_MATERIAL_LOG | SPH_MATERIAL_ABOVE, TWO_POWER,                     \
+    "P_t: where the first power law ends.", "Jutzi et al. 2009")                                                       \
+  R(porosity.exponent_low, "1", 1, 100, 0, TWO_POWER, "n1: exponent of the law between P_e and P_t.", "Jutzi et al. 2009") \
+  R(porosity.exponent_high, "1", 1, 100, 0, TWO_POWER, "n2: exponent of the law up to P_s.", "Jutzi et al. 2009")
+
+/* The choice itself: names and what they mean, for both tables. */
+#define SPH_POROSITY_CURVES {"none", "quadratic", "two-power", NULL}
+#define SPH_POROSITY_CURVE_DOCS                                                                                        \
+  "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"                                                     \
+  "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice"
+#define SPH_POROSITY_CURVE_DOC "Crush curve: how pores far below the resolution close under pressure (P-alpha)."
 
 #endif

@@ -18,10 +18,25 @@
    .maximum = high_,                                                                                                   \
    .number = NAN,                                                                                                      \
    .flags = (flags_) | ((flags_) & FIELD_MAY_BE_OFF ? 0 : FIELD_REQUIRED),                                             \
+   .when = WHEN_##need_,                                                                                               \
    .doc = doc_,                                                                                                        \
    .source = source_},
 
-static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW)};
+#define WHEN_ALWAYS   NULL
+#define WHEN_STRENGTH NULL
+#define WHEN_FRACTURE NULL
+#define WHEN_POROSITY "porosity.curve=quadratic|two-power"
+#define WHEN_TWO_POWER "porosity.curve=two-power"
+
+static const char *const curves[] = SPH_POROSITY_CURVES;
+static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW){.path = "porosity.curve",
+                                                           .kind = FIELD_CHOICE,
+                                                           .offset = offsetof(struct sph_material, porosity.curve),
+                                                           .choices = curves,
+                                                           .choice_docs = SPH_POROSITY_CURVE_DOCS,
+                                                           .doc = SPH_POROSITY_CURVE_DOC,
+                                                           .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
+                                    SPH_POROSITY_ROWS(ROW)};
 
 const struct field_table sph_materials_table =
     FIELD_TABLE(rows, struct sph_material, "sph material", "The values of a solid that the scene's physics may ask for.");

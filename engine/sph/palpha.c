@@ -98,10 +98,12 @@ double sph_palpha_damage_cbrt(const struct sph_palpha_law *law, double rest) {
 /* 2. A law from what is given */
 
 static status refuse(struct error *error, const char *what, double value, const char *remedy) {
-  return status_fail(error, STATUS_CONTENT, "porosity: %s is %.9g: %s", what, value, remedy);
+  return status_fail(error, STATUS_CONTENT, "porosity.%s is %.9g: %s", what, value, remedy);
 }
 
 static status check_curve(const struct sph_palpha *g, struct error *error) {
+  if (g->curve != SPH_CRUSH_QUADRATIC && g->curve != SPH_CRUSH_TWO_POWER)
+    return refuse(error, "curve", g->curve, "it must be quadratic or two-power");
   if (!(g->distention > 1) || !isfinite(g->distention))
     return refuse(error, "distention", g->distention, "it must be above 1 (1 is a solid: leave the porosity out)");
   if (!(g->elastic_pressure >= 0) || !isfinite(g->elastic_pressure))
@@ -143,7 +145,7 @@ status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_mater
   double ratio = isnan(given->sound_speed) ? 1 : given->sound_speed / solid_speed;
   if (!(ratio > 0) || !(ratio <= 1))
     return status_fail(error, STATUS_CONTENT,
-                       "porosity: sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s",
+                       "porosity.sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s",
                        given->sound_speed, solid_speed);
   const char *soft = "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed or a "
                      "lower elastic_pressure";

@@ -22,24 +22,9 @@
 #include "engine/sph/material.h"
 #include "schemas/status.h"
 
-enum sph_palpha_curve { SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER };
-
-/* As given. */
-struct sph_palpha {
-  double distention;       /* alpha_0 > 1 */
-  int curve;               /* enum sph_palpha_curve */
-  double elastic_pressure; /* Pa, P_e: plastic crushing begins */
-  double solid_pressure;   /* Pa, P_s: all pores are closed */
-  double sound_speed;      /* m/s, c_e of the porous matter at alpha_0; NaN: no elastic change of alpha below P_e */
-  /* two-power curve */
-  double elastic_distention, transition_distention; /* alpha_e, alpha_t */
-  double transition_pressure;                       /* Pa, P_t */
-  double exponent_low, exponent_high;               /* n1, n2 */
-};
-
 /* Ready for use: with what follows from it and from the solid. */
 struct sph_palpha_law {
-  struct sph_palpha given;
+  struct sph_palpha given;   /* material.h */
   struct sph_tillotson solid;
   double solid_density;      /* kg/m^3, rho_s0 */
   double elastic_distention; /* alpha_e: where the crush curve begins, at P_e */

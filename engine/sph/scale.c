@@ -20,8 +20,11 @@ double sph_scale_poisson_ratio(const struct sph_material *m) {
 }
 
 double sph_scale_wave_speed(const struct sph_body_inputs *b) { /* pressure answers with A, whatever K says */
-  double modulus = b->material.tillotson.A + (b->strength ? 4.0 / 3 * b->material.shear_modulus : 0);
-  return sqrt(modulus / b->material.density);
+  const struct sph_material *m = &b->material;
+  double bulk2 = m->tillotson.A / m->density, shear2 = b->strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
+  if (sph_scale_porous(b) && !field_is_off(m->porosity.sound_speed))
+    bulk2 = m->porosity.sound_speed * m->porosity.sound_speed;
+  return sqrt(bulk2 + shear2);
 }
 
 double sph_scale_crack_speed(const struct sph_material *m) {
@@ -33,6 +36,14 @@ bool sph_scale_cracks(const struct sph_body_inputs *b) {
     return false;
   bool known = !field_is_off(b->material.weibull.m) && !field_is_off(b->material.weibull.k);
   return b->fracture == SPH_FRACTURE_ON || known;
+}
+
+bool sph_scale_porous(const struct sph_body_inputs *b) {
+  return b->material.porosity.curve != SPH_CRUSH_NONE && b->material.porosity.distention > 1;
+}
+
+double sph_scale_density(const struct sph_body_inputs *b) {
+  return sph_scale_porous(b) ? b->material.density / b->material.porosity.distention : b->material.density;
 }
 
 bool sph_scale_has_projectile(const struct sph_inputs *in) { return in->kind == SPH_IMPACT; }
@@ -61,7 +72,7 @@ struct sph_shape sph_scale_target(const struct sph_inputs *in) { return shape_of
 
 double sph_scale_target_mass(const struct sph_inputs *in) {
   struct sph_shape shape = sph_scale_target(in);
-  return in->target.material.density * sph_shape_volume(&shape);
+  return sph_scale_density(&in->target) * sph_shape_volume(&shape);
 }
 
 struct sph_shape sph_scale_projectile(const struct sph_inputs *in) {
@@ -71,14 +82,14 @@ struct sph_shape sph_scale_projectile(const struct sph_inputs *in) {
   if (in->impact.projectile == SPH_BY_ENERGY)
     mass = 2 * in->impact.specific_energy * sph_scale_target_mass(in) / (speed * speed);
   return (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .axis = {0, 0, 1},
-                            .radius = cbrt(3 * mass / (4 * pi * in->projectile.material.density))};
+                            .radius = cbrt(3 * mass / (4 * pi * sph_scale_density(&in->projectile)))};
 }
 
 double sph_scale_projectile_mass(const struct sph_inputs *in) {
   if (!sph_scale_has_projectile(in))
     return 0;
   struct sph_shape shape = sph_scale_projectile(in);
-  return in->projectile.material.density * sph_shape_volume(&shape);
+  return sph_scale_density(&in->projectile) * sph_shape_volume(&shape);
 }
 
 double sph_scale_specific_energy(const struct sph_inputs *in) {

@@ -9,6 +9,9 @@ bool sph_scale_has_projectile(const struct sph_inputs *inputs);
 int sph_scale_bodies(const struct sph_inputs *inputs);
 /* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
 bool sph_scale_cracks(const struct sph_body_inputs *body);
+/* Has it pores? A crush curve and a distention above 1. */
+bool sph_scale_porous(const struct sph_body_inputs *body);
+double sph_scale_density(const struct sph_body_inputs *body);        /* kg/m^3, with the pores */
 double sph_scale_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
 double sph_scale_young_modulus(const struct sph_material *material); /* Pa */
 double sph_scale_poisson_ratio(const struct sph_material *material);

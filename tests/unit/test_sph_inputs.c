@@ -17,7 +17,7 @@ static void complete(void *inputs, const bool *given) { sph_inputs_complete(inpu
 
 struct read_scene {
   struct sph_inputs inputs;
-  bool given[200];
+  bool given[300];
   char report[2000];
   bool good;
 };
@@ -79,7 +79,8 @@ static void table_is_whole(void **state) {
     struct field_value value;
     struct error error = {0};
     field_get(row, &inputs, &value);
-    if (!(row->flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) && field_set(row, &inputs, &value, &error))
+    if (field_is_active(&sph_inputs, row, &inputs) && !(row->flags & FIELD_MAY_BE_OFF && field_is_off(value.number)) &&
+        field_set(row, &inputs, &value, &error))
       fail_msg("%s", error.message);
   }
   accepted("kind: impact");
@@ -102,7 +103,8 @@ static void every_material_is_sound(void **state) {
     assert_true(nu > 0 && nu < 0.5);
     assert_true(isnan(m.weibull.m) == isnan(m.weibull.k));
     /* Something must limit tension, or the cold curve reaches -A: flaws or a limit. Rubber is elastic on purpose. */
-    assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit) || strcmp(name, "rubber") == 0 || strcmp(name, "pumice") == 0);
+    assert_true(!isnan(m.weibull.m) || !isnan(m.tension_limit) || strcmp(name, "rubber") == 0);
+    assert_true(m.porosity.curve == SPH_CRUSH_NONE || m.porosity.distention > 1);
   }
   struct sph_material basalt, granite, gabbro;
   assert_int_equal(sph_materials_load("basalt", &basalt, NULL), STATUS_OK);
@@ -213,12 +215,50 @@ static void sizes_follow(void **state) {
   assert_true(fabs(in.fragments.static_strength / (53.06e9 * tgamma(1 + 1 / 8.5) * pow(5e34 * mass / 2700, -1 / 8.5)) - 1) < 1e-4);
 }
 
+/* Pores: by distention or by fraction, as the material gives them or as the scene does; 1 is the solid. */
+static void pores(void **state) {
+  (void)state;
+  struct sph_inputs in = good("target: {material: {name: porous-ice}}");
+  assert_true(in.target.material.porosity.distention == 1.5 && sph_scale_porous(&in.target));
+  assert_true(fabs(in.target.material.porosity.fraction - 1.0 / 3) < 1e-15);
+  assert_true(fabs(sph_scale_density(&in.target) - 917 / 1.5) < 1e-12);
+  assert_true(fabs(sph_scale_target_mass(&in) / (4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
+  accepted("target: {material: {name: porous-ice}}");
+  in = good("target: {material: {name: porous-ice, porosity: {fraction: 0.6}}}");
+  assert_true(fabs(in.target.material.porosity.distention - 2.5) < 1e-12);
+  in = good("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
+  assert_true(fabs(in.target.material.porosity.fraction - 0.6) < 1e-12);
+  accepted("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
+  refused("target: {material: {name: porous-ice, porosity: {distention: 2.5, fraction: 0.5}}}", "give one of the two");
+  in = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
+  assert_true(!sph_scale_porous(&in.target) && sph_scale_density(&in.target) == 917);
+  accepted("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
+  in = good("projectile: {material: {name: pumice, porosity: {distention: 3}}}\nimpact: {projectile: mass, mass: 1 g}");
+  assert_true(fabs(sph_scale_projectile_mass(&in) / 1e-3 - 1) < 1e-12 && in.projectile.material.porosity.curve == SPH_CRUSH_TWO_POWER);
+  refused("target: {material: {porosity: {curve: quadratic, distention: 1.5}}}",
+          "target.material.porosity.elastic_pressure is needed by the crush curve, and the material 'basalt' has none: give it, or set "
+          "target.material.porosity.curve: none");
+  accepted("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 MPa, solid_pressure: 1 GPa}}}");
+  refused("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 GPa, solid_pressure: 1 MPa}}}",
+          "target.material.porosity.solid_pressure is 1000000: it must be above elastic_pressure");
+  refused("target: {material: {name: pumice, porosity: {distention: 5}}}", "elastic_distention");
+  refused("target: {material: {name: porous-ice, porosity: {sound_speed: 5 km/s}}}", "porosity.sound_speed");
+  /* off means absent */
+  assert_non_null(strstr(read_text("target: {material: {porosity: {distention: 2}}}").report, "porosity.curve is quadratic or two-power"));
+  assert_non_null(strstr(read_text("target: {material: {name: porous-ice, porosity: {exponent_low: 2}}}").report, "two-power"));
+  assert_non_null(strstr(read_text("target: {material: {name: porous-ice, porosity: {distention: 0.9}}}").report, "at least 1"));
+  char *identity = field_identity(&sph_inputs, &in);
+  assert_null(strstr(identity, "target.material.porosity.distention"));
+  free(identity);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(table_is_whole),
                                      cmocka_unit_test(every_material_is_sound),
                                      cmocka_unit_test(a_name_gives_the_values),
                                      cmocka_unit_test(missing_values_are_named),
                                      cmocka_unit_test(what_cannot_be_run_is_refused),
-                                     cmocka_unit_test(sizes_follow)};
+                                     cmocka_unit_test(sizes_follow),
+                                     cmocka_unit_test(pores)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,7 +16,7 @@
 static const struct sph_material aluminium = {.density = 2700,
                                               .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
 static const struct sph_palpha porous_aluminium = {
-    .distention = 1.275, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
+    .distention = 1.275, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
 static const struct sph_material pumice_matrix = {
     .density = 2327, .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7}};
 static const struct sph_palpha pumice = {.distention = 4.64,
@@ -32,7 +32,7 @@ static const struct sph_palpha pumice = {.distention = 4.64,
 static const struct sph_material ice = {.density = 917,
                                         .tillotson = {9.47e9, 9.47e9, 0.3, 0.1, 10, 5, 1e7, 7.73e5, 3.04e6}};
 static const struct sph_palpha porous_ice = {
-    .distention = 1.5, .elastic_pressure = 1e6, .solid_pressure = 100e6, .sound_speed = 1600};
+    .distention = 1.5, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 1e6, .solid_pressure = 100e6, .sound_speed = 1600};
 
 static struct sph_palpha_law law_of(const struct sph_palpha *given, const struct sph_material *solid) {
   struct sph_palpha_law law;

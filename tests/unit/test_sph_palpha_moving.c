@@ -7,7 +7,7 @@
 #include "engine/sph/tillotson.h"
 
 static const struct sph_palpha porous_basalt = {
-    .distention = 1.5, .elastic_pressure = 5e6, .solid_pressure = 3e8, .sound_speed = 1800};
+    .distention = 1.5, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 5e6, .solid_pressure = 3e8, .sound_speed = 1800};
 static const struct sph_palpha two_power = {.distention = 1.5, .curve = SPH_CRUSH_TWO_POWER, .elastic_pressure = 1e6,
     .solid_pressure = 213e6, .sound_speed = NAN, .elastic_distention = 1.5, .transition_distention = 1.2,
     .transition_pressure = 68e6, .exponent_low = 12, .exponent_high = 3};

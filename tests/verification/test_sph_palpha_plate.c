@@ -21,7 +21,7 @@ static const struct sph_material aluminium = {.density = 2700,
                                               .melt_energy = NAN,
                                               .tension_limit = NAN};
 static const struct sph_palpha porous = {
-    .distention = 1.275, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
+    .distention = 1.275, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
 
 enum { ACROSS = 5, PISTON = 4 }; /* particles across the bar; layers of the piston */
 static const double length = 0.02;
