@@ -1,21 +1,12 @@
 #include "engine/dem/kernels.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "engine/cpu_class.h"
 
 const struct dem_kernels *dem_kernels_choose(void) {
-  const struct dem_kernels *best = &dem_kernels_baseline;
 #ifdef __x86_64__
-  const char *wanted = getenv("CLAST_CPU");
-  const int limit = !wanted ? 4 : !strcmp(wanted, "baseline") ? 1 : !strcmp(wanted, "v3") ? 3 : 4;
-  __builtin_cpu_init();
-  const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2") &&
-                  __builtin_cpu_supports("bmi");
-  const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-                  __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
-                  __builtin_cpu_supports("avx512vl");
-  if (v3 && limit >= 3) best = &dem_kernels_v3;
-  if (v4 && limit >= 4) best = &dem_kernels_v4;
+  const enum cpu_class best = cpu_class_choose();
+  if (best == CPU_V4) return &dem_kernels_v4;
+  if (best == CPU_V3) return &dem_kernels_v3;
 #endif
-  return best;
+  return &dem_kernels_baseline;
 }

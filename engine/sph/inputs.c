@@ -224,7 +224,7 @@ static const struct field rows[] = {
     REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material.porosity.curve=quadratic|two-power",
          .doc = "Largest change of a porous particle's distention in a time step.",
          .source = "Jutzi, Benz & Michel 2008"),
-    REAL(fidelity.skin, "1", 0.1, 0, 1, .doc = "Skin of the neighbour lists over 2h: longer lists last for more steps. It "
+    REAL(fidelity.skin, "1", 0.05, 0, 1, .doc = "Least slack of the neighbour lists over h (fast particles have more): longer lists last for more steps. It "
                                                "changes the order of sums, not the physics."),
     CHOICE(fidelity.precision, precisions, .choice_docs = "double throughout\nstored relative positions and pair sums are float",
            .doc = "Arithmetic of the pair loop."),

@@ -5,135 +5,257 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct cell {
-  int64_t at[3];
-};
+enum { LEVELS = 64, PAD = 8, CELLS = 27 };
 
-struct grid {
-  double size[3];
+/* Particles whose reach is within a factor of 2, in cells of twice the largest reach among them. */
+struct level {
+  double reach, size[3];
   int64_t wrap[3]; /* cells round a periodic axis; 0 = open */
-  size_t mask;
-  uint32_t *start, *item; /* by bucket */
-  struct cell *cell;      /* by particle */
+  size_t first, count, mask, bucket; /* its particles in `sorted`; its buckets in `start` */
 };
 
-static size_t bucket_of(const struct grid *grid, const int64_t at[3]) {
-  uint64_t key = (uint64_t)at[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)at[1] * 0xc2b2ae3d27d4eb4fu ^ (uint64_t)at[2] * 0x165667b19e3779f9u;
-  key ^= key >> 32;
-  key *= 0xd6e8feb86659fd93u;
-  return (size_t)(key >> 20) & grid->mask;
-}
+/* Particles in the order of levels and buckets: candidates stand side by side. */
+struct search {
+  size_t n, levels;
+  struct level level[LEVELS];
+  double *x, *y, *z, *reach;
+  uint32_t *id, *start;
+  uint8_t *level_of; /* by particle */
+  uint32_t (*across)[2]; /* pairs of different levels, lower number first */
+  size_t across_count, across_capacity;
+};
 
-static int64_t cell_along(const struct grid *grid, int axis, double x) {
-  double t = floor(x / grid->size[axis]);
-  int64_t at = t > -9e18 && t < 9e18 ? (int64_t)t : 0;
-  if (grid->wrap[axis]) {
-    at %= grid->wrap[axis];
-    if (at < 0) at += grid->wrap[axis];
+static int64_t cell_along(const struct level *level, int axis, double x) {
+  double t = floor(x / level->size[axis]);
+  int64_t at = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* what is not finite: its distances are not below any reach */
+  if (level->wrap[axis]) {
+    at %= level->wrap[axis];
+    if (at < 0) at += level->wrap[axis];
   }
   return at;
 }
 
-static int ascending(const void *a, const void *b) {
-  uint32_t left = *(const uint32_t *)a, right = *(const uint32_t *)b;
-  return left < right ? -1 : left > right;
+static size_t bucket_of(const struct level *level, const int64_t at[3]) {
+  uint64_t key = (uint64_t)at[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)at[1] * 0xc2b2ae3d27d4eb4fu ^
+                 (uint64_t)at[2] * 0x165667b19e3779f9u;
+  key = (key ^ key >> 32) * 0xd6e8feb86659fd93u;
+  return level->bucket + ((size_t)(key >> 20) & level->mask);
 }
 
-static status grow(struct sph_neighbours *lists, struct error *error) {
-  size_t capacity = lists->capacity ? lists->capacity + lists->capacity / 2 : 64 * (lists->n + 16);
-  uint32_t *j = realloc(lists->j, capacity * sizeof *j);
-  if (!j) return status_fail(error, STATUS_MEMORY, "no memory for %zu neighbours", capacity);
-  lists->j = j;
-  lists->capacity = capacity;
-  return STATUS_OK;
+/* The buckets of a cell and those round it, each once. */
+static size_t buckets_round(const struct level *level, const int64_t cell[3], size_t out[CELLS]) {
+  size_t count = 0;
+  for (int k = 0; k < CELLS; k++) {
+    int64_t at[3];
+    const int64_t offset[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+    for (int d = 0; d < 3; d++) {
+      at[d] = (int64_t)((uint64_t)cell[d] + (uint64_t)offset[d]);
+      if (level->wrap[d]) at[d] = (at[d] + level->wrap[d]) % level->wrap[d];
+    }
+    const size_t bucket = bucket_of(level, at);
+    bool again = false;
+    for (size_t m = 0; m < count; m++)
+      again |= out[m] == bucket;
+    if (!again) out[count++] = bucket;
+  }
+  return count;
 }
 
-status sph_neighbours_find(size_t n, const double *x, const double *y, const double *z, const double *h, double skin,
-                           const double periodic[3], struct sph_neighbours *lists, struct error *error) {
-  const double *place[3] = {x, y, z};
-  struct grid grid = {.mask = 1};
+static status set_levels(struct search *s, const double *reach, const double periodic[3], struct error *error) {
+  double least = INFINITY;
+  for (size_t i = 0; i < s->n; i++)
+    if (reach[i] > 0 && reach[i] < least) least = reach[i];
+  size_t count[LEVELS] = {0}, buckets = 0, first = 0;
+  double largest[LEVELS] = {0};
+  for (size_t i = 0; i < s->n; i++) {
+    const double ratio = reach[i] / least;
+    const int k = ratio >= 1 && isfinite(ratio) ? ilogb(ratio) : 0;
+    s->level_of[i] = (uint8_t)(k < LEVELS ? k : LEVELS - 1);
+    count[s->level_of[i]]++;
+    if (reach[i] > largest[s->level_of[i]] && isfinite(reach[i])) largest[s->level_of[i]] = reach[i];
+  }
+  uint8_t number[LEVELS] = {0}; /* empty levels are left out */
+  for (int k = 0; k < LEVELS; k++) {
+    if (!count[k]) continue;
+    struct level *level = &s->level[s->levels];
+    *level = (struct level){.reach = largest[k] > 0 ? largest[k] : 1, .first = first, .count = count[k], .mask = 1, .bucket = buckets};
+    number[k] = (uint8_t)s->levels++;
+    while (level->mask < level->count)
+      level->mask = 2 * level->mask + 1;
+    buckets += level->mask + 1;
+    first += level->count;
+    for (int d = 0; d < 3; d++) {
+      level->size[d] = 2 * level->reach;
+      if (isnan(periodic[d])) continue;
+      if (periodic[d] < 4 * level->reach)
+        return status_fail(error, STATUS_CONTENT,
+                           "a periodic box of %.4g m is too thin for its particles: it must hold twice their reach, %.4g m",
+                           periodic[d], 4 * level->reach);
+      level->wrap[d] = (int64_t)fmin(floor(periodic[d] / level->size[d]), 1e15);
+      level->size[d] = periodic[d] / (double)level->wrap[d];
+    }
+  }
+  for (size_t i = 0; i < s->n; i++)
+    s->level_of[i] = number[s->level_of[i]];
+  s->start = calloc(buckets + 2, sizeof *s->start);
+  return s->start ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", s->n);
+}
+
+static void cell_of(const struct level *level, double x, double y, double z, int64_t cell[3]) {
+  cell[0] = cell_along(level, 0, x);
+  cell[1] = cell_along(level, 1, y);
+  cell[2] = cell_along(level, 2, z);
+}
+
+static void sort(struct search *s, const double *x, const double *y, const double *z, const double *reach) {
+  const struct level *last = &s->level[s->levels - 1];
+  const size_t buckets = last->bucket + last->mask + 1;
+  int64_t cell[3];
+  for (size_t i = 0; i < s->n; i++) {
+    const struct level *level = &s->level[s->level_of[i]];
+    cell_of(level, x[i], y[i], z[i], cell);
+    s->start[bucket_of(level, cell) + 1]++;
+  }
+  for (size_t b = 0; b <= buckets; b++)
+    s->start[b + 1] += s->start[b];
+  for (size_t i = s->n; i-- > 0;) { /* downwards: within a bucket by number. start[b + 1] becomes the start of b */
+    const struct level *level = &s->level[s->level_of[i]];
+    cell_of(level, x[i], y[i], z[i], cell);
+    const size_t k = --s->start[bucket_of(level, cell) + 1];
+    s->x[k] = x[i], s->y[k] = y[i], s->z[k] = z[i], s->reach[k] = reach[i];
+    s->id[k] = (uint32_t)i;
+  }
+}
+
+static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
+  if (wanted <= *capacity) return true;
+  const size_t more = wanted + wanted / 4 + 1024;
+  void *grown = realloc(*array, more * size);
+  if (!grown) return false;
+  *array = grown;
+  *capacity = more;
+  return true;
+}
+
+/* Of particle k (in the sorted order) with those of one level: pairs of equals go to `lists`, others aside. */
+static bool look(struct search *s, size_t k, const struct level *level, const size_t *bucket, size_t buckets,
+                 const double periodic[3], const struct sph_pair_kernels *kernels, struct sph_neighbours *lists,
+                 uint32_t **found, size_t *found_capacity) {
+  const uint32_t i = s->id[k];
+  const bool equals = level == &s->level[s->level_of[i]];
+  const double at[3] = {s->x[k], s->y[k], s->z[k]};
+  size_t used = 0;
+  for (size_t b = 0; b < buckets; b++) {
+    const size_t first = s->start[bucket[b] + 1], count = s->start[bucket[b] + 2] - first;
+    if (!grow((void **)found, found_capacity, used + count + PAD, sizeof **found)) return false;
+    used += kernels->within(count, s->x + first, s->y + first, s->z + first, s->reach + first, s->id + first, at, s->reach[k],
+                            periodic, equals ? i + 1 : 0, *found + used);
+  }
+  if (equals) {
+    if (!grow((void **)&lists->j, &lists->capacity, lists->used + used, sizeof *lists->j)) return false;
+    memcpy(lists->j + lists->used, *found, used * sizeof **found);
+    lists->start[i] = lists->used;
+    lists->count[i] = (uint32_t)used;
+    lists->used += used;
+    return true;
+  }
+  if (!grow((void **)&s->across, &s->across_capacity, s->across_count + used, sizeof *s->across)) return false;
+  for (size_t m = 0; m < used; m++, s->across_count++) {
+    const uint32_t j = (*found)[m];
+    s->across[s->across_count][0] = i < j ? i : j;
+    s->across[s->across_count][1] = i < j ? j : i;
+  }
+  return true;
+}
+
+/* Pairs of different levels join the list of the lower number. */
+static bool merge(const struct search *s, struct sph_neighbours *lists) {
+  const size_t total = lists->used + s->across_count;
+  size_t *start = malloc((s->n + 1) * sizeof *start), at = 0;
+  uint32_t *more = calloc(s->n + 1, sizeof *more), *j = malloc((total + 1) * sizeof *j);
+  const bool enough = start && more && j;
+  if (enough) {
+    for (size_t m = 0; m < s->across_count; m++)
+      more[s->across[m][0]]++;
+    for (size_t i = 0; i < s->n; i++) {
+      start[i] = at;
+      memcpy(j + at, lists->j + lists->start[i], lists->count[i] * sizeof *j);
+      at += lists->count[i] + more[i];
+    }
+    for (size_t m = 0; m < s->across_count; m++) {
+      const uint32_t i = s->across[m][0];
+      j[start[i] + lists->count[i]++] = s->across[m][1];
+    }
+    free(lists->j);
+    lists->j = j;
+    lists->used = total;
+    lists->capacity = total + 1;
+    memcpy(lists->start, start, s->n * sizeof *start);
+  } else {
+    free(j);
+  }
+  free(start);
+  free(more);
+  return enough;
+}
+
+static bool make_lists(struct sph_neighbours *lists, size_t n) {
+  if (lists->n >= n && lists->start) return true;
+  size_t *start = realloc(lists->start, (n + 1) * sizeof *start);
+  if (start) lists->start = start;
+  uint32_t *count = realloc(lists->count, (n + 1) * sizeof *count);
+  if (count) lists->count = count;
+  if (start && count) lists->n = n;
+  return start && count;
+}
+
+status sph_neighbours_find(size_t n, const double *x, const double *y, const double *z, const double *reach,
+                           const double periodic[3], const struct sph_pair_kernels *kernels, struct sph_neighbours *lists,
+                           struct error *error) {
+  struct search s = {.n = n};
+  uint32_t *found = NULL;
+  size_t found_capacity = 0;
   status code = STATUS_OK;
-  double largest = 0;
-  for (size_t i = 0; i < n; i++)
-    largest = fmax(largest, h[i]);
-  double reach = 2 * largest * (1 + skin);
-  if (!(reach > 0)) reach = 1;
-  for (int d = 0; d < 3; d++) {
-    grid.size[d] = reach;
-    if (isnan(periodic[d])) continue;
-    if (periodic[d] < 2 * reach)
-      return status_fail(error, STATUS_CONTENT,
-                         "a periodic box of %.4g m is too thin: it must hold twice the reach of the largest particle, %.4g m",
-                         periodic[d], 2 * reach);
-    grid.wrap[d] = (int64_t)fmin(floor(periodic[d] / reach), 1e15);
-    grid.size[d] = periodic[d] / (double)grid.wrap[d];
-  }
-  while (grid.mask < 2 * n)
-    grid.mask = 2 * grid.mask + 1;
-  grid.start = calloc(grid.mask + 2, sizeof *grid.start);
-  grid.item = malloc((n + 1) * sizeof *grid.item);
-  grid.cell = malloc((n + 1) * sizeof *grid.cell);
-  if (lists->n != n || !lists->first) {
-    size_t *first = realloc(lists->first, (n + 1) * sizeof *first);
-    if (first) lists->first = first, lists->n = n;
-  }
-  if (!grid.start || !grid.item || !grid.cell || !lists->first || lists->n != n) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < n; i++) {
-    for (int d = 0; d < 3; d++)
-      grid.cell[i].at[d] = cell_along(&grid, d, place[d][i]);
-    grid.start[bucket_of(&grid, grid.cell[i].at) + 1]++;
-  }
-  for (size_t b = 0; b <= grid.mask; b++)
-    grid.start[b + 1] += grid.start[b];
-  for (size_t i = n; i-- > 0;) /* from the end, so that start[b + 1] becomes the start of b, particles ascending */
-    grid.item[--grid.start[bucket_of(&grid, grid.cell[i].at) + 1]] = (uint32_t)i;
-  /* now start[b + 1] is the start of bucket b and start[b + 2] its end */
-  lists->count = 0;
-  for (size_t i = 0; i < n && !code; i++) {
-    lists->first[i] = lists->count;
-    for (int64_t step = 0; step < 27 && !code; step++) {
-      int64_t at[3], offset[3] = {step % 3 - 1, step / 3 % 3 - 1, step / 9 - 1};
-      bool again = false;
-      for (int d = 0; d < 3; d++) {
-        at[d] = grid.cell[i].at[d] + offset[d];
-        if (grid.wrap[d]) {
-          at[d] = (at[d] + grid.wrap[d]) % grid.wrap[d];
-          again = again || (grid.wrap[d] < 3 && offset[d] >= (int64_t)grid.wrap[d] - 1 && offset[d] > 0); /* 2 cells: once */
+  double *reals = malloc(4 * (n + PAD) * sizeof *reals);
+  s.id = calloc(n + PAD, sizeof *s.id);
+  s.level_of = malloc(n + 1);
+  lists->used = 0;
+  bool enough = reals && s.id && s.level_of && make_lists(lists, n);
+  if (enough && n) code = set_levels(&s, reach, periodic, error);
+  if (!enough || code || !n) goto cleanup;
+  memset(reals, 0, 4 * (n + PAD) * sizeof *reals);
+  s.x = reals, s.y = s.x + n + PAD, s.z = s.y + n + PAD, s.reach = s.z + n + PAD;
+  sort(&s, x, y, z, reach);
+  for (size_t l = 0; l < s.levels && enough; l++)
+    for (size_t m = l; m < s.levels && enough; m++) {
+      const struct level *level = &s.level[m];
+      int64_t last[3] = {INT64_MIN, 0, 0};
+      size_t bucket[CELLS], buckets = 0;
+      for (size_t k = s.level[l].first; k < s.level[l].first + s.level[l].count && enough; k++) {
+        int64_t cell[3];
+        cell_of(level, s.x[k], s.y[k], s.z[k], cell);
+        if (memcmp(cell, last, sizeof cell) != 0) {
+          buckets = buckets_round(level, cell, bucket);
+          memcpy(last, cell, sizeof cell);
         }
-      }
-      if (again) continue;
-      size_t bucket = bucket_of(&grid, at);
-      size_t end = bucket == grid.mask ? n : grid.start[bucket + 2];
-      for (size_t k = grid.start[bucket + 1]; k < end; k++) {
-        uint32_t j = grid.item[k];
-        if (j <= i || memcmp(grid.cell[j].at, at, sizeof at) != 0) continue;
-        double square = 0;
-        for (int d = 0; d < 3; d++) {
-          double along = place[d][i] - place[d][j];
-          if (grid.wrap[d]) along -= periodic[d] * nearbyint(along / periodic[d]);
-          square += along * along;
-        }
-        double within = (h[i] + h[j]) * (1 + skin);
-        if (!(square < within * within)) continue;
-        if (lists->count == lists->capacity && (code = grow(lists, error))) break;
-        lists->j[lists->count++] = j;
+        enough = look(&s, k, level, bucket, buckets, periodic, kernels, lists, &found, &found_capacity);
       }
     }
-    if (!code) qsort(lists->j + lists->first[i], lists->count - lists->first[i], sizeof *lists->j, ascending);
-  }
-  lists->first[n] = lists->count;
+  if (enough && s.across_count) enough = merge(&s, lists);
 cleanup:
-  free(grid.start);
-  free(grid.item);
-  free(grid.cell);
+  if (!code && !enough) code = status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
+  free(reals);
+  free(s.id);
+  free(s.level_of);
+  free(s.start);
+  free(s.across);
+  free(found);
   return code;
 }
 
 void sph_neighbours_clear(struct sph_neighbours *lists) {
-  free(lists->first);
+  free(lists->start);
+  free(lists->count);
   free(lists->j);
   *lists = (struct sph_neighbours){0};
 }

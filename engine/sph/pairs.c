@@ -1,77 +1,292 @@
+/* Chunks of particles that stand together in space, each with records of its own particles and of the foreign ones that they
+ * meet: a chunk's records stay in the cache while it is summed, and what foreign particles get is added afterwards in the
+ * order of chunks, so that bits depend on neither the number of threads nor their timing. */
 #include "engine/sph/pairs.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #include "engine/sph/neighbours.h"
+#include "engine/sph/pairs_kernels.h"
 #include "engine/sph/spline.h"
+#include "engine/sph/tension.h"
+
+enum { CHUNK = 4096, LANES_MOST = 16, LINE = 64, RECORD_LINES_MOST = PAIR_WIDE * sizeof(double) / LINE };
+
+struct chunk {
+  size_t first, own, foreign; /* foreign: how many */
+  size_t foreign_at;          /* its first in pairs->foreign */
+  size_t start_at;            /* its own + 1 in pairs->start */
+  size_t list_at;             /* its lists in pairs->neighbour */
+  size_t record_at;           /* its first record of sums */
+};
 
 struct sph_pairs {
   struct sph_pair_options options;
-  size_t n;
-  struct sph_neighbours lists;
-  double *listed[4]; /* x y z h when the lists were made */
-  double *moment;    /* 6 n, gradient correction */
-  size_t within;     /* pairs inside the support at the last pass */
+  const struct sph_pair_kernels *kernels;
+  size_t n, chunks, in_columns, out_columns, real; /* real: bytes of a number in records */
+  double *listed[5]; /* x y z h slack when the lists were made */
+  double *reach;
+  struct sph_neighbours found; /* global lists, between listings only */
+  struct chunk *chunk;
+  uint32_t *slot;    /* by particle: its place among the foreign ones of the chunk at work */
+  uint32_t *foreign; /* by chunk: numbers of foreign particles, ascending, all above the chunk's own */
+  uint32_t *start, *count, *neighbour;
+  size_t foreign_capacity, neighbour_capacity, record_capacity, most_slots;
+  void *in;          /* records, per thread */
+  size_t in_capacity;
+  void *out;         /* records of sums, of all chunks */
+  double quantum[3];
+  size_t within;     /* pairs inside the support at the last pass, twice */
 };
 
+static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
+  if (wanted <= *capacity) return true;
+  const size_t more = wanted + wanted / 8 + LANES_MOST;
+  void *grown = aligned_alloc(LINE, (more * size + LINE - 1) / LINE * LINE);
+  if (!grown) return false;
+  if (*array && *capacity) memcpy(grown, *array, *capacity * size);
+  free(*array);
+  *array = grown;
+  *capacity = more;
+  return true;
+}
+
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error) {
-  struct sph_pairs *pairs = calloc(1, sizeof *pairs);
+  struct sph_pairs *p = calloc(1, sizeof *p);
   *out = NULL;
-  bool whole = pairs != NULL;
-  if (pairs) {
-    pairs->options = *options;
-    pairs->n = n;
-    for (int k = 0; k < 4 && whole; k++)
-      whole = (pairs->listed[k] = malloc((n + 1) * sizeof(double))) != NULL;
-    if (options->gradient_correction && whole) whole = (pairs->moment = malloc((6 * n + 1) * sizeof(double))) != NULL;
+  if (p) {
+    p->options = *options;
+    p->n = n;
+    p->kernels = sph_pairs_kernels_choose();
+    p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
+    p->in_columns = options->artificial_stress > 0 && options->strength ? PAIR_WIDE : PAIR_NARROW;
+    p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
+    p->chunks = (n + CHUNK - 1) / CHUNK;
+    p->listed[0] = malloc(6 * (n + 1) * sizeof(double));
+    p->chunk = calloc(p->chunks + 1, sizeof *p->chunk);
+    p->slot = calloc(n + 1, sizeof *p->slot);
+    p->start = malloc((n + p->chunks + 1) * sizeof *p->start);
+    p->count = malloc((n + 1) * sizeof *p->count);
   }
-  if (!whole) {
-    sph_pairs_free(pairs);
+  if (!p || !p->listed[0] || !p->chunk || !p->slot || !p->start || !p->count) {
+    sph_pairs_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
   }
-  *out = pairs;
+  for (size_t k = 1; k < 5; k++)
+    p->listed[k] = p->listed[0] + k * (n + 1);
+  p->reach = p->listed[0] + 5 * (n + 1);
+  *out = p;
   return STATUS_OK;
 }
 
-void sph_pairs_free(struct sph_pairs *pairs) {
-  if (!pairs) return;
-  sph_neighbours_clear(&pairs->lists);
-  for (int k = 0; k < 4; k++)
-    free(pairs->listed[k]);
-  free(pairs->moment);
-  free(pairs);
+void sph_pairs_free(struct sph_pairs *p) {
+  if (!p) return;
+  sph_neighbours_clear(&p->found);
+  free(p->listed[0]);
+  free(p->chunk);
+  free(p->slot);
+  free(p->start);
+  free(p->count);
+  free(p->foreign);
+  free(p->neighbour);
+  free(p->in);
+  free(p->out);
+  free(p);
 }
 
-size_t sph_pairs_bytes(const struct sph_pairs *pairs) {
-  size_t n = pairs->n, reals = pairs->moment ? 10 : 4;
-  return sizeof *pairs + reals * n * sizeof(double) + (n + 1) * sizeof(size_t) + pairs->lists.capacity * sizeof(uint32_t);
+size_t sph_pairs_bytes(const struct sph_pairs *p) {
+  return sizeof *p + (6 * sizeof(double) + 3 * sizeof(uint32_t)) * p->n + (sizeof(size_t) + sizeof(uint32_t)) * p->found.n +
+         (p->found.capacity + p->foreign_capacity + p->neighbour_capacity) * sizeof(uint32_t) +
+         p->record_capacity * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real;
 }
 
 static double image(double along, double length) {
   return isnan(length) ? along : along - length * nearbyint(along / length);
 }
 
-bool sph_pairs_stale(const struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
+bool sph_pairs_stale(const struct sph_pairs *p, size_t n, const double *x, const double *y, const double *z,
                      const double *h) {
-  if (pairs->lists.n != n || !pairs->lists.first) return true;
-  const double *periodic = pairs->options.periodic;
-  for (size_t i = 0; i < n; i++) { /* (h + h') (1 + skin) covers (h_new + h_new') + both moves when this holds for each */
-    double dx = image(x[i] - pairs->listed[0][i], periodic[0]), dy = image(y[i] - pairs->listed[1][i], periodic[1]),
-           dz = image(z[i] - pairs->listed[2][i], periodic[2]);
-    if (!(sqrt(dx * dx + dy * dy + dz * dz) + h[i] <= pairs->listed[3][i] * (1 + pairs->options.skin))) return true;
+  const double *periodic = p->options.periodic;
+  const bool open = isnan(periodic[0]) && isnan(periodic[1]) && isnan(periodic[2]);
+  if (!p->neighbour) return true;
+  for (size_t i = 0; i < n; i++) { /* both partners of a pair within their slack: r_listed < h_i + h_j + both slacks */
+    double dx = x[i] - p->listed[0][i], dy = y[i] - p->listed[1][i], dz = z[i] - p->listed[2][i];
+    if (!open) dx = image(dx, periodic[0]), dy = image(dy, periodic[1]), dz = image(dz, periodic[2]);
+    const double left = p->listed[4][i] - (h[i] - p->listed[3][i]);
+    if (!(left >= 0 && dx * dx + dy * dy + dz * dz <= left * left)) return true;
   }
   return false;
 }
 
-status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
-                      const double *h, struct error *error) {
-  const double *now[4] = {x, y, z, h};
-  status code = sph_neighbours_find(n, x, y, z, h, pairs->options.skin, pairs->options.periodic, &pairs->lists, error);
-  for (int k = 0; k < 4 && !code; k++)
-    memcpy(pairs->listed[k], now[k], n * sizeof(double));
-  return code;
+static int ascending(const void *a, const void *b) {
+  const uint32_t left = *(const uint32_t *)a, right = *(const uint32_t *)b;
+  return left < right ? -1 : left > right;
+}
+
+/* From numbers of particles to slots of a chunk, padded to whole registers with the particle itself. */
+static bool fill(struct sph_pairs *p, struct chunk *c) {
+  const size_t end = c->first + c->own;
+  size_t padded = 0;
+  c->foreign = 0;
+  for (size_t i = c->first; i < end; i++) {
+    const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
+    padded += (count + LANES_MOST - 1) / LANES_MOST * LANES_MOST;
+    if (!grow((void **)&p->foreign, &p->foreign_capacity, c->foreign_at + c->foreign + count, sizeof *p->foreign)) return false;
+    for (size_t k = 0; k < count; k++)
+      if (j[k] >= end && p->slot[j[k]] == 0) {
+        p->slot[j[k]] = 1;
+        p->foreign[c->foreign_at + c->foreign++] = j[k];
+      }
+  }
+  uint32_t *foreign = p->foreign + c->foreign_at;
+  qsort(foreign, c->foreign, sizeof *foreign, ascending);
+  for (size_t k = 0; k < c->foreign; k++)
+    p->slot[foreign[k]] = (uint32_t)(c->own + k);
+  if (!grow((void **)&p->neighbour, &p->neighbour_capacity, c->list_at + padded, sizeof *p->neighbour)) return false;
+  uint32_t *to = p->neighbour + c->list_at, at = 0;
+  for (size_t i = c->first; i < end; i++) {
+    const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
+    p->start[c->start_at + i - c->first] = at;
+    p->count[i] = count;
+    for (size_t k = 0; k < count; k++)
+      to[at + k] = j[k] < end ? j[k] - (uint32_t)c->first : p->slot[j[k]];
+    qsort(to + at, count, sizeof *to, ascending);
+    at += count;
+    for (; at % LANES_MOST; at++)
+      to[at] = (uint32_t)(i - c->first);
+  }
+  for (size_t k = 0; k < c->foreign; k++)
+    p->slot[foreign[k]] = 0;
+  return true;
+}
+
+static void choose_quantum(struct sph_pairs *p, size_t n, const double *h) {
+  double least = INFINITY;
+  for (size_t i = 0; i < n; i++)
+    if (h[i] > 0 && h[i] < least) least = h[i];
+  for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
+    p->quantum[d] = isnan(p->options.periodic[d]) ? least * 0x1p-20 : p->options.periodic[d] * 0x1p-32;
+}
+
+status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const double *y, const double *z, const double *h,
+                      const double *slack, struct error *error) {
+  const double *const now[5] = {x, y, z, h, slack};
+  for (size_t i = 0; i < n; i++)
+    p->reach[i] = h[i] + slack[i];
+  status code = sph_neighbours_find(n, x, y, z, p->reach, p->options.periodic, p->kernels, &p->found, error);
+  if (code) return code;
+  struct chunk at = {0};
+  bool enough = grow((void **)&p->neighbour, &p->neighbour_capacity, LANES_MOST, sizeof *p->neighbour);
+  p->most_slots = 0;
+  for (size_t k = 0; k < p->chunks && enough; k++) {
+    struct chunk *c = &p->chunk[k];
+    *c = at;
+    c->own = n - c->first < CHUNK ? n - c->first : CHUNK;
+    enough = fill(p, c);
+    if (c->own + c->foreign > p->most_slots) p->most_slots = c->own + c->foreign;
+    size_t padded = 0;
+    for (size_t i = c->first; i < c->first + c->own; i++)
+      padded += (p->count[i] + LANES_MOST - 1) / LANES_MOST * LANES_MOST;
+    at = (struct chunk){.first = c->first + c->own,
+                        .foreign_at = c->foreign_at + c->foreign,
+                        .start_at = c->start_at + c->own + 1,
+                        .list_at = c->list_at + padded,
+                        .record_at = c->record_at + c->own + c->foreign};
+  }
+  const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
+  enough = enough && grow(&p->out, &p->record_capacity, at.record_at, p->out_columns * p->real) &&
+           grow(&p->in, &p->in_capacity, threads * p->most_slots, p->in_columns * p->real);
+  if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
+  choose_quantum(p, n, h);
+  for (int k = 0; k < 5; k++)
+    memcpy(p->listed[k], now[k], n * sizeof(double));
+  return STATUS_OK;
+}
+
+/* Units in which the numbers of float records are of the order of 1; in double all are 1. */
+struct units {
+  double length, mass, velocity, density;
+};
+
+static struct units choose_units(const struct sph_pairs *p, size_t n, const struct sph_pair_fields *f) {
+  struct units u = {1, 1, 1, 1};
+  if (p->options.precision != SPH_FLOAT) return u;
+  double h = 0, density = 0, sound = 0;
+  for (size_t i = 0; i < n; i++) {
+    h = f->h[i] > h ? f->h[i] : h;
+    density = f->density[i] > density ? f->density[i] : density;
+    sound = f->sound_speed[i] > sound ? f->sound_speed[i] : sound;
+  }
+  u.length = h > 0 && isfinite(h) ? h : 1;
+  u.density = density > 0 && isfinite(density) ? density : 1;
+  u.velocity = sound > 0 && isfinite(sound) ? sound : 1;
+  u.mass = u.density * u.length * u.length * u.length;
+  return u;
+}
+
+/* The record of particle i but for its position. */
+static inline __attribute__((always_inline)) void record(const struct sph_pair_fields *f, const struct units *u, bool strength,
+                                                         size_t i, double out[PAIR_NARROW]) {
+  const double specific = u->density / (u->velocity * u->velocity), pressure = f->pressure_term[i] * specific;
+  out[PAIR_X] = f->x[i], out[PAIR_Y] = f->y[i], out[PAIR_Z] = f->z[i];
+  out[PAIR_H] = f->h[i] / u->length;
+  out[PAIR_VX] = f->vx[i] / u->velocity, out[PAIR_VY] = f->vy[i] / u->velocity, out[PAIR_VZ] = f->vz[i] / u->velocity;
+  out[PAIR_MASS] = f->mass[i] / u->mass;
+  for (int k = 0; k < 6; k++)
+    out[PAIR_XX + k] = strength ? f->stress[k][i] * specific : 0;
+  out[PAIR_XX] += pressure, out[PAIR_YY] += pressure, out[PAIR_ZZ] += pressure;
+  out[PAIR_SOUND] = f->sound_speed[i] / u->velocity;
+  out[PAIR_DENSITY] = f->density[i] / u->density;
+}
+
+static int32_t quanta(double x, double quantum) {
+  double t = x / quantum;
+  t -= 0x1p32 * floor(t * 0x1p-32 + 0.5);
+  return t >= 0x1p31 ? INT32_MIN : t >= -0x1p31 ? (int32_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
+}
+
+static void pack(const struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
+                 void *in) {
+  const uint32_t *foreign = p->foreign + c->foreign_at;
+  const bool artificial = p->in_columns == PAIR_WIDE;
+  for (size_t k = 0; k < c->own + c->foreign; k++) {
+    const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
+    double real[PAIR_WIDE] = {0};
+    record(f, u, p->options.strength, i, real);
+    if (artificial) sph_tension_opposed(p->options.artificial_stress, real + PAIR_XX, real + PAIR_ARTIFICIAL);
+    if (p->real == sizeof(double)) {
+      memcpy((double *)in + k * p->in_columns, real, p->in_columns * sizeof(double));
+      continue;
+    }
+    float *to = (float *)in + k * p->in_columns;
+    for (size_t column = PAIR_H; column < p->in_columns; column++)
+      to[column] = (float)real[column];
+    const int32_t at[3] = {quanta(real[PAIR_X], p->quantum[0]), quanta(real[PAIR_Y], p->quantum[1]),
+                           quanta(real[PAIR_Z], p->quantum[2])};
+    memcpy(to, at, sizeof at);
+  }
+}
+
+static void sum_chunk(struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
+                      const struct sph_pair_constants *constants, void *in) {
+  const struct sph_pair_chunk view = {.own = c->own,
+                                      .slots = c->own + c->foreign,
+                                      .start = p->start + c->start_at,
+                                      .count = p->count + c->first,
+                                      .neighbour = p->neighbour + c->list_at};
+  char *out = (char *)p->out + c->record_at * p->out_columns * p->real;
+  const bool corrected = p->out_columns == PAIR_WIDE, artificial = p->in_columns == PAIR_WIDE;
+  pack(p, c, f, u, in);
+  memset(out, 0, view.slots * p->out_columns * p->real);
+  if (p->real == sizeof(double))
+    p->kernels->sum_double[corrected][artificial](&view, constants, in, (double *)(void *)out);
+  else
+    p->kernels->sum_float[corrected][artificial](&view, constants, in, (float *)(void *)out);
 }
 
 /* v = M w for a symmetric M (xx xy xz yy yz zz). */
@@ -81,91 +296,128 @@ static void apply(const double *m, const double w[3], double v[3]) {
   v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
 }
 
-static double power(size_t i, const struct sph_pair_fields *f, const struct sph_pair_sums *sums, bool strength) {
-  double *const *g = sums->gradient;
-  double sum = f->pressure_term[i] * (g[0][i] + g[4][i] + g[8][i]);
-  if (strength)
-    sum += f->stress[0][i] * g[0][i] + f->stress[3][i] * g[4][i] + f->stress[5][i] * g[8][i] +
-           f->stress[1][i] * (g[1][i] + g[3][i]) + f->stress[2][i] * (g[2][i] + g[6][i]) +
-           f->stress[4][i] * (g[5][i] + g[7][i]);
-  return f->density[i] * sum;
-}
-
-static void correct(size_t i, const double *m, const struct sph_pair_sums *sums) {
+/* The gradient times the inverse of sum V (x_i - x_j) grad W: exact for linear fields. */
+static void correct(const double *m, double gradient[9]) {
   double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
-  double determinant = m[0] * a + m[1] * b + m[2] * c;
-  double mean = (m[0] + m[3] + m[5]) / 3; /* 1 inside, 1/8 in a corner */
+  double determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3; /* 1 inside, 1/8 in a corner */
   if (!(mean > 0.02 && determinant > 0.02 * mean * mean * mean)) return; /* too few neighbours, or all in a plane */
   double s = 1 / determinant;
   double inverse[6] = {s * a, s * b, s * c, s * (m[0] * m[5] - m[2] * m[2]), s * (m[1] * m[2] - m[0] * m[4]),
                        s * (m[0] * m[3] - m[1] * m[1])};
   for (int row = 0; row < 3; row++) {
-    double g[3] = {sums->gradient[3 * row][i], sums->gradient[3 * row + 1][i], sums->gradient[3 * row + 2][i]}, v[3];
-    apply(inverse, g, v);
-    for (int k = 0; k < 3; k++)
-      sums->gradient[3 * row + k][i] = v[k];
+    double v[3];
+    apply(inverse, gradient + 3 * row, v);
+    memcpy(gradient + 3 * row, v, sizeof v);
   }
 }
 
-void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
-  const struct sph_pair_options *o = &pairs->options;
-  for (int k = 0; k < 9; k++)
-    memset(sums->gradient[k], 0, n * sizeof(double));
-  double *plain[] = {sums->ax, sums->ay, sums->az, sums->heating, sums->signal};
-  for (size_t k = 0; k < sizeof plain / sizeof plain[0]; k++)
-    memset(plain[k], 0, n * sizeof(double));
-  if (pairs->moment) memset(pairs->moment, 0, 6 * n * sizeof(double));
-  pairs->within = 0;
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = pairs->lists.first[i]; k < pairs->lists.first[i + 1]; k++) {
-      size_t j = pairs->lists.j[k];
-      double d[3] = {image(f->x[i] - f->x[j], o->periodic[0]), image(f->y[i] - f->y[j], o->periodic[1]),
-                     image(f->z[i] - f->z[j], o->periodic[2])};
-      double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], h = 0.5 * (f->h[i] + f->h[j]);
-      if (!(square < 4 * h * h)) continue;
-      pairs->within++;
-      double slope = sph_spline_slope(sqrt(square), h);
-      double w[3] = {slope * d[0], slope * d[1], slope * d[2]};
-      double v[3] = {f->vx[i] - f->vx[j], f->vy[i] - f->vy[j], f->vz[i] - f->vz[j]};
-      double closing = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-      double mu = h * fmin(closing, 0) / (square + 0.01 * h * h);
-      double viscous = mu * (2 * o->viscosity_beta * mu - o->viscosity_alpha * (f->sound_speed[i] + f->sound_speed[j])) /
-                       (f->density[i] + f->density[j]);
-      double along = f->pressure_term[i] + f->pressure_term[j] - viscous, force[3] = {along * w[0], along * w[1], along * w[2]};
-      if (o->strength) {
-        double t[6], s[3];
-        for (int c = 0; c < 6; c++)
-          t[c] = f->stress[c][i] + f->stress[c][j];
-        apply(t, w, s);
-        for (int c = 0; c < 3; c++)
-          force[c] += s[c];
-      }
-      double mi = f->mass[i], mj = f->mass[j], heat = 0.5 * viscous * slope * closing;
-      sums->ax[i] += mj * force[0], sums->ay[i] += mj * force[1], sums->az[i] += mj * force[2];
-      sums->ax[j] -= mi * force[0], sums->ay[j] -= mi * force[1], sums->az[j] -= mi * force[2];
-      sums->heating[i] += mj * heat, sums->heating[j] += mi * heat;
-      sums->signal[i] = fmax(sums->signal[i], -mu), sums->signal[j] = fmax(sums->signal[j], -mu);
-      double wi = o->volume_weights ? mj / f->density[j] : mj / f->density[i];
-      double wj = o->volume_weights ? mi / f->density[i] : mi / f->density[j];
-      for (int a = 0; a < 3; a++)
-        for (int b = 0; b < 3; b++) {
-          sums->gradient[3 * a + b][i] -= wi * v[a] * w[b];
-          sums->gradient[3 * a + b][j] -= wj * v[a] * w[b];
-        }
-      if (pairs->moment)
-        for (int c = 0; c < 6; c++) {
-          static const int row[] = {0, 0, 0, 1, 1, 2}, column[] = {0, 1, 2, 1, 2, 2};
-          pairs->moment[6 * i + (size_t)c] -= wi * d[row[c]] * w[column[c]];
-          pairs->moment[6 * j + (size_t)c] -= wj * d[row[c]] * w[column[c]];
-        }
-    }
-  if (pairs->moment)
-    for (size_t i = 0; i < n; i++) {
-      if (sums->power) sums->power[i] = power(i, f, sums, o->strength);
-      correct(i, pairs->moment + 6 * i, sums);
-    }
+/* rho (sigma/rho^2) : gradient, J/kg/s. */
+static double power(const struct sph_pair_fields *f, bool strength, size_t i, const double g[9]) {
+  double sum = f->pressure_term[i] * (g[0] + g[4] + g[8]);
+  if (strength)
+    sum += f->stress[0][i] * g[0] + f->stress[3][i] * g[4] + f->stress[5][i] * g[8] + f->stress[1][i] * (g[1] + g[3]) +
+           f->stress[2][i] * (g[2] + g[6]) + f->stress[4][i] * (g[5] + g[7]);
+  return f->density[i] * sum;
 }
 
-double sph_pairs_neighbours(const struct sph_pairs *pairs) {
-  return pairs->n ? 2 * (double)pairs->within / (double)pairs->n : 0;
+static double at(const struct sph_pairs *p, const void *record, size_t column) {
+  return p->real == sizeof(double) ? ((const double *)record)[column] : (double)((const float *)record)[column];
+}
+
+/* Of all chunks before it, what the own particles of chunk `k` got there; then the sums in SI units. */
+static size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
+                     const struct sph_pair_sums *sums) {
+  const struct chunk *c = &p->chunk[k];
+  const size_t size = p->out_columns * p->real, columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : SUM_COUNT + 1;
+  char *own = (char *)p->out + c->record_at * size;
+  for (size_t before = 0; before < k; before++) {
+    const struct chunk *b = &p->chunk[before];
+    const uint32_t *foreign = p->foreign + b->foreign_at;
+    size_t low = 0, high = b->foreign;
+    while (low < high) { /* the first that is mine */
+      const size_t middle = (low + high) / 2;
+      if (foreign[middle] < c->first)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    for (size_t m = low; m < b->foreign && foreign[m] < c->first + c->own; m++) {
+      char *to = own + (foreign[m] - c->first) * size;
+      const char *from = (const char *)p->out + (b->record_at + b->own + m) * size;
+      if (p->real == sizeof(double)) {
+        double *t = (double *)(void *)to;
+        const double *s = (const double *)(const void *)from, signal = fmax(t[SUM_SIGNAL], s[SUM_SIGNAL]);
+        for (size_t column = 0; column < columns; column++)
+          t[column] += s[column];
+        t[SUM_SIGNAL] = signal;
+      } else {
+        float *t = (float *)(void *)to;
+        const float *s = (const float *)(const void *)from, signal = fmaxf(t[SUM_SIGNAL], s[SUM_SIGNAL]);
+        for (size_t column = 0; column < columns; column++)
+          t[column] += s[column];
+        t[SUM_SIGNAL] = signal;
+      }
+    }
+  }
+  const double acceleration = u->velocity * u->velocity / u->length, rate = u->velocity / u->length;
+  size_t within = 0;
+  for (size_t i = c->first; i < c->first + c->own; i++, own += size) {
+    const double weight = p->options.volume_weights ? 1 : u->density / f->density[i]; /* m_j/rho_i */
+    double gradient[9], moment[6];
+    sums->ax[i] = at(p, own, 0) * acceleration;
+    sums->ay[i] = at(p, own, 1) * acceleration;
+    sums->az[i] = at(p, own, 2) * acceleration;
+    sums->heating[i] = at(p, own, SUM_HEATING) * acceleration * u->velocity;
+    sums->signal[i] = at(p, own, SUM_SIGNAL) * u->velocity;
+    within += (size_t)at(p, own, SUM_COUNT);
+    for (size_t m = 0; m < 9; m++)
+      gradient[m] = at(p, own, SUM_GRADIENT + m) * weight * rate;
+    if (p->out_columns == PAIR_WIDE) {
+      for (size_t m = 0; m < 6; m++)
+        moment[m] = at(p, own, SUM_MOMENT + m) * weight;
+      if (sums->power) sums->power[i] = power(f, p->options.strength, i, gradient);
+      correct(moment, gradient);
+    }
+    for (int m = 0; m < 9; m++)
+      sums->gradient[m][i] = gradient[m];
+  }
+  return within;
+}
+
+void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+  const struct sph_pair_options *o = &p->options;
+  const struct units u = choose_units(p, n, f);
+  struct sph_pair_constants constants = {.alpha = o->viscosity_alpha,
+                                         .twice_beta = 2 * o->viscosity_beta,
+                                         .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
+                                         .strength = o->strength,
+                                         .volume_weights = o->volume_weights};
+  for (int d = 0; d < 3; d++) {
+    constants.periodic[d] = o->periodic[d];
+    constants.per_period[d] = 1 / o->periodic[d];
+    constants.quantum[d] = p->quantum[d] / u.length;
+    constants.wrapped |= !isnan(o->periodic[d]);
+  }
+  size_t within = 0;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
+#endif
+  for (size_t k = 0; k < p->chunks; k++) {
+#ifdef _OPENMP
+    const size_t thread = (size_t)omp_get_thread_num();
+#else
+    const size_t thread = 0;
+#endif
+    sum_chunk(p, &p->chunk[k], f, &u, &constants, (char *)p->in + thread * p->most_slots * p->in_columns * p->real);
+  }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : within) num_threads(o->threads) if (o->threads > 1)
+#endif
+  for (size_t k = 0; k < p->chunks; k++)
+    within += unpack(p, k, &u, f, sums);
+  p->within = within;
+}
+
+double sph_pairs_neighbours(const struct sph_pairs *p) {
+  return p->n ? (double)p->within / (double)p->n : 0;
 }

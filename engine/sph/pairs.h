@@ -15,7 +15,9 @@
 
 #include "schemas/status.h"
 
-enum sph_precision { SPH_DOUBLE, SPH_FLOAT }; /* float: stored relative positions and pair sums; all else stays double */
+/* float: what the pair loop reads and sums. All else stays double; positions are read as integers in units of h/2^20, so that
+ * a scene of kilometres is as accurate as a small one. */
+enum sph_precision { SPH_DOUBLE, SPH_FLOAT };
 
 struct sph_pair_options {
   double viscosity_alpha, viscosity_beta;
@@ -25,7 +27,6 @@ struct sph_pair_options {
   double spacing_over_h;    /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
   bool volume_weights;      /* m_j/rho_j instead of m_j/rho_i in the velocity gradient */
   double periodic[3];       /* m, length of the periodic box along each axis; NaN = open */
-  double skin;              /* share of 2h added to the lists' reach */
   int precision;            /* enum sph_precision */
   int threads;              /* OpenMP; the bits do not depend on it */
 };
@@ -49,19 +50,21 @@ struct sph_pair_sums {
   double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step */
 };
 
-struct sph_pairs; /* opaque: lists, packed records */
+struct sph_pairs; /* opaque: lists and records */
 
 /* STATUS_MEMORY. `n` particles at most; nothing is allocated later but by sph_pairs_list when lists must grow. */
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error);
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);
 
-/* Have particles moved (or grown in h) so far that a list may miss a pair? Compares with the positions of the last listing. */
+/* Have particles moved (or grown in h) by more than their slack, so that a list may miss a pair? */
 bool sph_pairs_stale(const struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
                      const double *h);
-/* New lists for particles in sorted order. Memory is bounded by n, whatever the spatial extent. STATUS_MEMORY. */
+/* New lists for particles in sorted order: pairs with r < h_i + h_j + slack_i + slack_j. `slack` (m) is how far each may go
+ * before the lists are stale; fast particles are given more. Memory is bounded by n, whatever the spatial extent.
+ * STATUS_MEMORY; STATUS_CONTENT when a periodic box is thinner than twice the reach of a pair. */
 status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
-                      const double *h, struct error *error);
+                      const double *h, const double *slack, struct error *error);
 void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields,
                    const struct sph_pair_sums *sums);
 /* Mean number of neighbours within 2h at the last pass (both sides counted, itself not). */

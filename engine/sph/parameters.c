@@ -16,7 +16,7 @@ struct sph_parameters sph_parameters_default(void) {
       .h_lowest = 0.5,
       .h_highest = 2,
       .density_lowest = 1e-3,
-      .skin = 0.15,
+      .skin = 0.05,
       .periodic = {NAN, NAN, NAN},
       .precision = SPH_DOUBLE,
       .threads = 1,

@@ -24,7 +24,7 @@ void sph_system_free(struct sph_system *s) {
 }
 
 size_t sph_system_bytes(const struct sph_system *s) {
-  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (4 * sizeof(double) + 2 * sizeof(uint32_t)) +
+  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (5 * sizeof(double) + 2 * sizeof(uint32_t)) +
                  s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
   if (s->active) bytes += s->n * sizeof *s->active;
   if (s->held) bytes += s->n * sizeof *s->held;

@@ -35,7 +35,7 @@ struct sph_parameters {
   bool compact_flaws;                     /* (lowest, highest, number) per particle instead of the exact list */
   double h_lowest, h_highest;             /* bounds of h over its initial value */
   double density_lowest;                  /* over the initial one: below, the density is held and what that does is booked */
-  double skin;                            /* of the neighbour lists, share of 2h */
+  double skin;                            /* least slack of the neighbour lists over h; fast particles have more */
   double periodic[3];                     /* m, length of the periodic box per direction; NaN = open */
   int precision;                          /* enum sph_precision */
   int threads;                            /* OpenMP, 1 = none; same bits whatever the number */

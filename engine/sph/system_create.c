@@ -117,7 +117,7 @@ static status take_columns(struct sph_system *s, const struct sph_particles *p, 
   s->stride = (s->n + 7) / 8 * 8 + 8; /* an odd number of cache lines would be better still: columns must not share sets */
   s->arena_doubles = count * s->stride;
   s->arena = aligned_alloc(64, s->arena_doubles * sizeof(double));
-  s->listed[0] = calloc(4 * s->n, sizeof(double));
+  s->listed[0] = calloc(5 * s->n, sizeof(double));
   s->id = malloc(s->n * sizeof *s->id);
   s->order = malloc(s->n * sizeof *s->order);
   if (s->fracture) s->active = calloc(s->n, sizeof *s->active);
@@ -126,7 +126,7 @@ static status take_columns(struct sph_system *s, const struct sph_particles *p, 
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles of %zu columns (%.3g GB)", s->n, count,
                        (double)(s->arena_doubles * sizeof(double)) / 1e9);
   memset(s->arena, 0, s->arena_doubles * sizeof(double));
-  for (int k = 1; k < 4; k++)
+  for (int k = 1; k < 5; k++)
     s->listed[k] = s->listed[0] + (size_t)k * s->n;
   double *next = s->arena;
   for (size_t r = 0; r < SPH_COLUMNS; r++)
@@ -339,7 +339,6 @@ static status make_pairs(struct sph_system *s, struct error *error) {
       .artificial_stress = s->p.artificial_stress,
       .spacing_over_h = s->p.spacing_over_h,
       .volume_weights = s->p.volume_weights,
-      .skin = s->p.skin,
       .precision = s->p.precision,
       .threads = s->p.threads,
   };

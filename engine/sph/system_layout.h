@@ -90,7 +90,7 @@ struct sph_system {
   uint32_t *active; /* open flaws at the last step; NULL without fracture */
   uint8_t *held;    /* enum sph_freedom bits; NULL when none is */
   double dt;        /* s, of the step under way */
-  double *listed[4]; /* x y z h at the last listing: a restart makes the same lists */
+  double *listed[5]; /* x y z h slack at the last listing: a restart makes the same lists */
   uint32_t *order;
   size_t body_count, block_count;
   struct sph_solid *solid; /* its bodies */

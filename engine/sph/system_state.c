@@ -9,7 +9,7 @@ struct section {
   size_t bytes;
 };
 
-enum { SECTIONS = SPH_COLUMNS + 8 };
+enum { SECTIONS = SPH_COLUMNS + 10 };
 
 static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   double **slot[SPH_COLUMNS];
@@ -19,7 +19,7 @@ static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   out[count++] = (struct section){&s->now, sizeof s->now};
   for (size_t k = 0; k < kept; k++)
     out[count++] = (struct section){*slot[k], s->n * sizeof(double)};
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < 5; k++)
     out[count++] = (struct section){s->listed[k], s->n * sizeof(double)};
   out[count++] = (struct section){s->id, s->n * sizeof *s->id};
   if (s->active) out[count++] = (struct section){s->active, s->n * sizeof *s->active};

@@ -13,7 +13,7 @@
 #include "engine/sph/limits.h"
 #include "engine/sph/order.h"
 
-enum { LISTINGS_PER_SORT = 8 };
+enum { LISTINGS_PER_SORT = 8, STEPS_PER_LISTING = 12 };
 static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
 
 static void run_blocks(struct sph_system *s, bool after) {
@@ -81,9 +81,20 @@ static void wrap(double *x, size_t n, double length) {
 
 bool sph_system_step_relist(struct sph_system *s) {
   struct error error = {0};
-  if (sph_pairs_list(s->pairs, s->n, s->listed[0], s->listed[1], s->listed[2], s->listed[3], &error) == STATUS_OK) return true;
+  if (sph_pairs_list(s->pairs, s->n, s->listed[0], s->listed[1], s->listed[2], s->listed[3], s->listed[4], &error) == STATUS_OK) return true;
   snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
   return false;
+}
+
+/* How far each particle may go before lists are stale: fast ones have more room, so that a spray of debris does not make new
+ * lists at every step, and slow ones have little, so that their lists are short. */
+static void set_slack(struct sph_system *s) {
+  const struct sph_columns *c = &s->c;
+  const double horizon = STEPS_PER_LISTING * s->dt, room = 1;
+  for (size_t i = 0; i < s->n; i++) {
+    const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
+    s->listed[4][i] = c->h[i] * fmin(room, fmax(s->p.skin, way / c->h[i]));
+  }
 }
 
 /* New lists when the old ones may miss a pair; now and then sorted anew, by the count of listings alone. */
@@ -96,6 +107,7 @@ static bool list(struct sph_system *s) {
   const double *const from[4] = {s->c.x, s->c.y, s->c.z, s->c.h};
   for (int k = 0; k < 4; k++)
     memcpy(s->listed[k], from[k], s->n * sizeof(double));
+  set_slack(s);
   return sph_system_step_relist(s);
 }
 

@@ -1,4 +1,5 @@
-/* The pair loop: lists against brute force, conservation, and fields whose gradient is known. */
+/* The pair loop: lists against brute force, kernels of every CPU class and precision against plain C, conservation, and
+ * fields whose gradient is known. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -12,11 +13,14 @@
 #include "engine/sph/neighbours.h"
 #include "engine/sph/order.h"
 #include "engine/sph/pairs.h"
+#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/tension.h"
+#include "tests/bench/reference_sph.h"
 
-enum { SIDE = 9, MOST = SIDE * SIDE * SIDE };
+enum { SIDE = 22, MOST = SIDE * SIDE * SIDE, COLUMNS = 11, SUMS = 14 }; /* three chunks */
 
 struct cloud {
-  double a[12][MOST], stress[6][MOST];
+  double a[COLUMNS][MOST], stress[6][MOST], slack[MOST]; /* a: x y z h vx vy vz m rho c p */
   size_t n;
 };
 
@@ -27,145 +31,333 @@ static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
   return (double)((z ^ z >> 31) >> 11) * 0x1p-53 - 0.5;
 }
 
-/* A jittered cubic lattice of spacing 1 with all fields drawn; every tenth particle is up to 3 times larger when `mixed`. */
-static struct cloud *cloud_make(bool mixed, uint64_t seed) {
+/* A jittered cubic lattice of `spacing` with all fields drawn; when `mixed` every 50th particle is up to 10 times larger. */
+static struct cloud *cloud_make(int side, double spacing, bool mixed, uint64_t seed) {
   struct cloud *c = calloc(1, sizeof *c);
   assert_non_null(c);
-  for (int i = 0; i < MOST; i++, c->n++) {
-    c->a[0][i] = i % SIDE + 0.2 * noise(&seed), c->a[1][i] = i / SIDE % SIDE + 0.2 * noise(&seed);
-    c->a[2][i] = i / SIDE / SIDE + 0.2 * noise(&seed);
-    c->a[3][i] = 1.2 * (mixed && i % 10 == 0 ? 2 + noise(&seed) : 1);
+  for (int i = 0; i < side * side * side; i++, c->n++) {
+    const int at[3] = {i % side, i / side % side, i / side / side};
+    for (int d = 0; d < 3; d++)
+      c->a[d][i] = spacing * (at[d] + 0.5 + 0.2 * noise(&seed));
+    c->a[3][i] = 1.2 * spacing * (mixed && i % 50 == 0 ? 5.5 + 9 * noise(&seed) : 1);
     for (int k = 4; k < 7; k++)
       c->a[k][i] = noise(&seed);
-    c->a[7][i] = 1 + noise(&seed), c->a[8][i] = 1 + 0.1 * noise(&seed), c->a[9][i] = 1 + 0.2 * noise(&seed);
+    c->a[7][i] = pow(spacing, 3) * (1 + noise(&seed)), c->a[8][i] = 1 + 0.1 * noise(&seed), c->a[9][i] = 1 + 0.2 * noise(&seed);
     c->a[10][i] = noise(&seed);
     for (int k = 0; k < 6; k++)
       c->stress[k][i] = noise(&seed);
+    c->slack[i] = 0.05 * c->a[3][i];
   }
   return c;
 }
 
 struct summed {
-  double ax[MOST], ay[MOST], az[MOST], gradient[9][MOST], heating[MOST], signal[MOST];
+  double a[SUMS][MOST]; /* ax ay az, gradient, heating, signal */
+  double neighbours;
 };
 
-static void sum(struct cloud *c, const struct sph_pair_options *options, struct summed *out) {
-  struct sph_pairs *pairs;
-  struct error error = {0};
-  assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
-  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
-  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], &error), STATUS_OK);
-  assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+static struct sph_pair_fields fields_of(const struct cloud *c) {
   struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3], c->a[4], c->a[5], c->a[6], c->a[7], c->a[8], c->a[9], c->a[10], {0}};
-  struct sph_pair_sums s = {.ax = out->ax, .ay = out->ay, .az = out->az, .heating = out->heating, .signal = out->signal};
   for (int k = 0; k < 6; k++)
     f.stress[k] = c->stress[k];
-  for (int k = 0; k < 9; k++)
-    s.gradient[k] = out->gradient[k];
-  sph_pairs_sum(pairs, c->n, &f, &s);
-  sph_pairs_free(pairs);
+  return f;
 }
 
-static const struct sph_pair_options usual = {
-    .viscosity_alpha = 1.5, .viscosity_beta = 3, .strength = true, .periodic = {NAN, NAN, NAN}, .skin = 0.1, .threads = 1};
+static struct sph_pair_sums sums_of(struct summed *s) {
+  struct sph_pair_sums out = {.ax = s->a[0], .ay = s->a[1], .az = s->a[2], .heating = s->a[12], .signal = s->a[13]};
+  for (int k = 0; k < 9; k++)
+    out.gradient[k] = s->a[3 + k];
+  return out;
+}
+
+static struct summed *sum(const struct cloud *c, const struct sph_pair_options *options) {
+  struct sph_pairs *pairs;
+  struct error error = {0};
+  struct summed *s = calloc(1, sizeof *s);
+  assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
+  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  struct sph_pair_fields f = fields_of(c);
+  struct sph_pair_sums sums = sums_of(s);
+  sph_pairs_sum(pairs, c->n, &f, &sums);
+  s->neighbours = sph_pairs_neighbours(pairs);
+  sph_pairs_free(pairs);
+  return s;
+}
+
+static const struct sph_pair_options usual = {.viscosity_alpha = 1.5, .viscosity_beta = 3, .strength = true, .spacing_over_h = 0.9,
+                                              .periodic = {NAN, NAN, NAN}, .threads = 1};
+
+/* Largest difference over the largest value of each kind: acceleration, gradient, heating, signal. */
+static void compare(const struct cloud *c, const struct summed *s, const struct summed *t, double worst[4]) {
+  static const int kind[SUMS] = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 2, 3};
+  double scale[4] = {0}, difference[4] = {0};
+  for (int k = 0; k < SUMS; k++)
+    for (size_t i = 0; i < c->n; i++) {
+      scale[kind[k]] = fmax(scale[kind[k]], fabs(t->a[k][i]));
+      difference[kind[k]] = fmax(difference[kind[k]], fabs(s->a[k][i] - t->a[k][i]));
+    }
+  for (int k = 0; k < 4; k++)
+    worst[k] = difference[k] / scale[k];
+}
+
+static struct summed *reference(const struct cloud *c, const struct sph_pair_options *options) {
+  struct summed *s = calloc(1, sizeof *s);
+  struct sph_neighbours lists = {0};
+  struct error error = {0};
+  double *artificial[6];
+  for (int k = 0; k < 6; k++)
+    artificial[k] = calloc(MOST, sizeof(double));
+  for (size_t i = 0; i < c->n; i++) {
+    double sigma[6], r[6];
+    for (int k = 0; k < 6; k++)
+      sigma[k] = c->stress[k][i] + (k == 0 || k == 3 || k == 5 ? c->a[10][i] : 0);
+    sph_tension_opposed(options->artificial_stress, sigma, r);
+    for (int k = 0; k < 6; k++)
+      artificial[k][i] = r[k];
+  }
+  assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->a[3], options->periodic, &sph_pairs_kernels_baseline, &lists,
+                                       &error), STATUS_OK);
+  struct sph_pair_fields f = fields_of(c);
+  struct sph_pair_sums sums = sums_of(s);
+  reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f,
+                    options->artificial_stress > 0 ? (const double *const *)artificial : NULL, &sums);
+  sph_neighbours_clear(&lists);
+  for (int k = 0; k < 6; k++)
+    free(artificial[k]);
+  return s;
+}
+
+/* All variants without the correction, in every class this machine has, to rounding: sums of 60 terms of either sign in another
+ * order, and approximations within 2 ulp, stay within 1e-13 of the largest. Float: 60 terms of relative error 2^-24 and positions
+ * in units of h/2^20 give some 1e-5. */
+static void kernels_equal_plain_c(void **state) {
+  (void)state;
+  static const char *const classes[] = {"baseline", "v3", "v4"};
+  static const double scales[] = {1, 1e-7, 1e6};
+  for (int variant = 0; variant < 16; variant++) {
+    const double spacing = scales[variant % 3], length = 18 * spacing;
+    struct cloud *c = cloud_make(18, spacing, variant % 4 == 3, (uint64_t)variant + 1);
+    struct sph_pair_options options = usual;
+    options.strength = variant & 1;
+    options.volume_weights = variant & 2;
+    if (variant & 4 && variant % 4 != 3) options.periodic[0] = options.periodic[2] = length;
+    if (variant & 8 && options.strength) options.artificial_stress = 0.3;
+    struct summed *exact = reference(c, &options);
+    for (int k = 0; k < 3; k++)
+      for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
+        double worst[4];
+        assert_int_equal(setenv("CLAST_CPU", classes[k], 1), 0);
+        options.precision = precision;
+        struct summed *s = sum(c, &options);
+        compare(c, s, exact, worst);
+        for (int q = 0; q < 4; q++)
+          if (!(worst[q] < (precision == SPH_FLOAT ? 3e-5 : 1e-13)))
+            fail_msg("variant %d, class %s, %s, kind %d: %g", variant, classes[k], precision ? "float" : "double", q, worst[q]);
+        free(s);
+      }
+    free(exact);
+    free(c);
+  }
+  unsetenv("CLAST_CPU");
+}
 
 static void momentum_is_conserved(void **state) {
   (void)state;
-  struct cloud *c = cloud_make(true, 1);
-  struct summed *s = calloc(1, sizeof *s);
-  sum(c, &usual, s);
+  struct cloud *c = cloud_make(SIDE, 1, true, 1);
+  struct summed *s = sum(c, &usual);
   double total[3] = {0}, scale = 0;
   for (size_t i = 0; i < c->n; i++) {
-    total[0] += c->a[7][i] * s->ax[i], total[1] += c->a[7][i] * s->ay[i], total[2] += c->a[7][i] * s->az[i];
-    scale += c->a[7][i] * fabs(s->ax[i]);
+    for (int k = 0; k < 3; k++)
+      total[k] += c->a[7][i] * s->a[k][i];
+    scale += c->a[7][i] * fabs(s->a[0][i]);
   }
   for (int k = 0; k < 3; k++)
     assert_true(fabs(total[k]) < 1e-13 * scale);
   free(s), free(c);
 }
 
-/* With eq. 18 over rho_i the gradient is the conjugate of eq. 17: sum m v.a + sum m (sigma/rho^2 rho : grad v) = -viscous heat. */
+/* With eq. 18 over rho_i the gradient is the conjugate of eq. 17: sum m v.a + sum m sigma/rho : grad v = -viscous heat. */
 static void work_equals_strain_energy(void **state) {
   (void)state;
-  struct cloud *c = cloud_make(true, 2);
-  struct summed *s = calloc(1, sizeof *s);
-  sum(c, &usual, s);
+  struct cloud *c = cloud_make(SIDE, 1, true, 2);
+  struct summed *s = sum(c, &usual);
   double work = 0, strain = 0, heat = 0, scale = 0;
   for (size_t i = 0; i < c->n; i++) {
     double m = c->a[7][i];
-    work += m * (c->a[4][i] * s->ax[i] + c->a[5][i] * s->ay[i] + c->a[6][i] * s->az[i]);
+    work += m * (c->a[4][i] * s->a[0][i] + c->a[5][i] * s->a[1][i] + c->a[6][i] * s->a[2][i]);
     static const int at[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     for (int k = 0; k < 9; k++) {
       double sigma = c->stress[at[k]][i] + (k % 4 == 0 ? c->a[10][i] : 0);
-      strain += m * c->a[8][i] * sigma * s->gradient[k][i];
+      strain += m * c->a[8][i] * sigma * s->a[3 + k][i];
     }
-    heat += m * s->heating[i];
-    scale += m * fabs(c->a[4][i] * s->ax[i]);
-    assert_true(s->heating[i] >= 0);
+    heat += m * s->a[12][i];
+    scale += m * fabs(c->a[4][i] * s->a[0][i]);
+    assert_true(s->a[12][i] >= 0);
   }
   assert_true(heat > 0.01 * scale);
   assert_true(fabs(work + strain + heat) < 1e-12 * scale);
   free(s), free(c);
 }
 
-/* A linear velocity field comes back exactly with the correction, and a rigid rotation without any strain. */
+/* A linear velocity field comes back exactly with the correction, corners and edges included. */
 static void corrected_gradient_is_linear(void **state) {
   (void)state;
-  struct cloud *c = cloud_make(false, 3);
-  struct summed *s = calloc(1, sizeof *s);
   static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
-  for (size_t i = 0; i < c->n; i++)
-    for (int a = 0; a < 3; a++)
-      c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
+  for (int variant = 0; variant < 8; variant++) {
+    struct cloud *c = cloud_make(12, 1, false, 3);
+    for (size_t i = 0; i < c->n; i++)
+      for (int a = 0; a < 3; a++)
+        c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
+    struct sph_pair_options options = usual;
+    options.gradient_correction = true;
+    options.volume_weights = variant & 1;
+    options.artificial_stress = variant & 2 ? 0.3 : 0;
+    options.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
+    struct summed *s = sum(c, &options);
+    for (size_t i = 0; i < c->n; i++)
+      for (int k = 0; k < 9; k++)
+        assert_true(fabs(s->a[3 + k][i] - g[k]) < (variant & 4 ? 1e-4 : 1e-11));
+    free(s), free(c);
+  }
+}
+
+static void coincident_particles_do_no_harm(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(10, 1, false, 6);
+  for (int k = 0; k < 3; k++)
+    c->a[k][11] = c->a[k][10];
+  for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
+    struct sph_pair_options options = usual;
+    options.precision = precision;
+    struct summed *s = sum(c, &options);
+    for (int k = 0; k < SUMS; k++)
+      for (size_t i = 0; i < c->n; i++)
+        assert_true(isfinite(s->a[k][i]));
+    free(s);
+  }
+  free(c);
+}
+
+/* The same scene 1000 km from the origin: double keeps what its positions hold, float loses nothing more. */
+static void float_is_as_good_far_away(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(12, 1, false, 7);
   struct sph_pair_options options = usual;
-  options.gradient_correction = true;
-  sum(c, &options, s);
   for (size_t i = 0; i < c->n; i++)
-    for (int k = 0; k < 9; k++)
-      assert_true(fabs(s->gradient[k][i] - g[k]) < 1e-11);
-  free(s), free(c);
+    c->a[1][i] += 1e6;
+  struct summed *exact = reference(c, &options);
+  double worst[4];
+  options.precision = SPH_FLOAT;
+  struct summed *s = sum(c, &options);
+  compare(c, s, exact, worst);
+  for (int q = 0; q < 4; q++)
+    assert_true(worst[q] < 3e-5);
+  free(s), free(exact), free(c);
+}
+
+static void bits_do_not_depend_on_threads(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(SIDE, 1, true, 8);
+  struct sph_pair_options options = usual;
+  struct summed *one = sum(c, &options);
+  for (int threads = 2; threads <= 3; threads++) {
+    options.threads = threads;
+    struct summed *s = sum(c, &options);
+    assert_memory_equal(s, one, sizeof *s);
+    free(s);
+  }
+  free(one), free(c);
+}
+
+static int ascending(const void *a, const void *b) {
+  const uint32_t left = *(const uint32_t *)a, right = *(const uint32_t *)b;
+  return left < right ? -1 : left > right;
 }
 
 static void lists_equal_brute_force(void **state) {
   (void)state;
-  for (int periodic = 0; periodic < 2; periodic++) {
-    struct cloud *c = cloud_make(true, 4);
-    c->a[0][17] = 1e9, c->a[1][20] = -1e15; /* fragments far off cost nothing */
-    double length[3] = {periodic ? 9 : (double)NAN, NAN, periodic ? 12 : (double)NAN}, skin = 0.05;
-    if (periodic)
-      for (size_t i = 0; i < c->n; i++)
-        c->a[3][i] = fmin(c->a[3][i], 2);
+  for (int variant = 0; variant < 4; variant++) {
+    const bool periodic = variant & 1;
+    struct cloud *c = cloud_make(12, 1, true, 4);
+    double length[3] = {periodic ? 12 : (double)NAN, NAN, periodic ? 15 : (double)NAN};
+    for (size_t i = 0; i < c->n; i++)
+      c->slack[i] = c->a[3][i] = periodic ? fmin(c->a[3][i], 3) : c->a[3][i];
+    c->a[1][17] = 1e9, c->a[1][20] = -1e15, c->a[1][25] = variant & 2 ? NAN : 5; /* fragments far off cost nothing */
     struct sph_neighbours lists = {0};
     struct error error = {0};
-    assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->a[3], skin, length, &lists, &error), STATUS_OK);
-    assert_true(lists.capacity < 200 * c->n);
-    size_t at = 0;
+    setenv("CLAST_CPU", variant & 2 ? "v4" : "baseline", 1);
+    assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->slack, length, sph_pairs_kernels_choose(), &lists, &error),
+                     STATUS_OK);
+    size_t total = 0;
     for (size_t i = 0; i < c->n; i++) {
-      assert_int_equal(lists.first[i], at);
-      for (size_t j = i + 1; j < c->n; j++) {
-        double square = 0, reach = (c->a[3][i] + c->a[3][j]) * (1 + skin);
+      uint32_t *j = lists.j + lists.start[i];
+      qsort(j, lists.count[i], sizeof *j, ascending);
+      size_t at = 0;
+      for (size_t k = i + 1; k < c->n; k++) {
+        double square = 0, reach = c->slack[i] + c->slack[k];
         for (int d = 0; d < 3; d++) {
-          double along = c->a[d][i] - c->a[d][j];
+          double along = c->a[d][i] - c->a[d][k];
           if (!isnan(length[d])) along -= length[d] * nearbyint(along / length[d]);
           square += along * along;
         }
-        if (square < reach * reach) assert_int_equal(lists.j[at++], j);
+        if (!(square < reach * reach)) continue;
+        assert_true(at < lists.count[i]);
+        assert_int_equal(j[at++], k);
       }
+      assert_int_equal(lists.count[i], at);
+      total += at;
     }
-    assert_int_equal(lists.count, at);
+    assert_true(lists.capacity < 2 * total + 10000);
     sph_neighbours_clear(&lists);
     free(c);
   }
+  unsetenv("CLAST_CPU");
+}
+
+static void thin_periodic_boxes_are_refused(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(4, 1, false, 4);
+  struct sph_neighbours lists = {0};
+  struct error error = {0};
+  const double length[3] = {NAN, 4, NAN};
+  assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->a[3], length, sph_pairs_kernels_choose(), &lists, &error),
+                   STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "too thin"));
+  sph_neighbours_clear(&lists);
+  free(c);
+}
+
+/* Stale exactly when a pair could be missed: each particle may use up its slack, by moving or by growing. */
+static void lists_wear_out_with_the_slack(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(6, 1, false, 5);
+  struct sph_pairs *pairs;
+  struct error error = {0};
+  assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
+  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+  const double x = c->a[0][7], h = c->a[3][7];
+  c->a[0][7] = x + 0.9 * c->slack[7];
+  assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  c->a[0][7] = x - 1.1 * c->slack[7];
+  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  c->a[0][7] = x, c->a[3][7] = h + 1.1 * c->slack[7];
+  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  c->a[0][7] = x + 0.6 * c->slack[7], c->a[3][7] = h + 0.6 * c->slack[7];
+  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  sph_pairs_free(pairs);
+  free(c);
 }
 
 static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
   (void)state;
-  struct cloud *c = cloud_make(false, 5);
-  uint32_t order[MOST];
+  struct cloud *c = cloud_make(12, 1, false, 5);
+  uint32_t order[12 * 12 * 12];
   struct error error = {0};
   c->a[2][3] = 1e9; /* the rest must not fall into one cell */
   assert_int_equal(sph_order_find(c->n, c->a[0], c->a[1], c->a[2], order, &error), STATUS_OK);
-  char seen[MOST] = {0};
+  char seen[12 * 12 * 12] = {0};
   double step = 0;
   for (size_t k = 0; k < c->n; k++) {
     assert_false(seen[order[k]]);
@@ -174,14 +366,40 @@ static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
       step += sqrt(pow(c->a[0][order[k]] - c->a[0][order[k - 1]], 2) + pow(c->a[1][order[k]] - c->a[1][order[k - 1]], 2) +
                    pow(c->a[2][order[k]] - c->a[2][order[k - 1]], 2));
   }
-  assert_true(step / (double)c->n < 2.5); /* spacing 1; drawn at random it would be about 5 */
+  assert_true(step / (double)c->n < 2.5); /* spacing 1; drawn at random it would be about 8 */
   free(c);
+}
+
+/* R is minus epsilon times the tensile part: along the axes of a turned tensor of known principal values. */
+static void artificial_stress_opposes_tension_only(void **state) {
+  (void)state;
+  const double principal[3] = {3, -2, 0.5}, c = cos(0.7), s = sin(0.7), axis[3][3] = {{c, s, 0}, {-s * 0.6, c * 0.6, 0.8}, {s * 0.8, -c * 0.8, 0.6}};
+  static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+  double stress[6] = {0}, expected[6] = {0}, r[6];
+  for (int k = 0; k < 6; k++)
+    for (int a = 0; a < 3; a++) {
+      stress[k] += principal[a] * axis[a][row[k]] * axis[a][column[k]];
+      expected[k] -= 0.3 * fmax(principal[a], 0) * axis[a][row[k]] * axis[a][column[k]];
+    }
+  sph_tension_opposed(0.3, stress, r);
+  for (int k = 0; k < 6; k++)
+    assert_true(fabs(r[k] - expected[k]) < 1e-14);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(momentum_is_conserved), cmocka_unit_test(work_equals_strain_energy),
-      cmocka_unit_test(corrected_gradient_is_linear), cmocka_unit_test(lists_equal_brute_force),
-      cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near)};
+      cmocka_unit_test(kernels_equal_plain_c),
+      cmocka_unit_test(momentum_is_conserved),
+      cmocka_unit_test(work_equals_strain_energy),
+      cmocka_unit_test(corrected_gradient_is_linear),
+      cmocka_unit_test(coincident_particles_do_no_harm),
+      cmocka_unit_test(float_is_as_good_far_away),
+      cmocka_unit_test(bits_do_not_depend_on_threads),
+      cmocka_unit_test(lists_equal_brute_force),
+      cmocka_unit_test(thin_periodic_boxes_are_refused),
+      cmocka_unit_test(lists_wear_out_with_the_slack),
+      cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near),
+      cmocka_unit_test(artificial_stress_opposes_tension_only),
+  };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,62 @@
+/* The pair loop over one chunk of particles, compiled once per CPU class and chosen at run time (engine/sph/ranges.h says
+ * what that means for bits), in double and in float.
+ *
+ * What a pair needs of a particle is one record, so that a neighbour costs two cache lines and no gather: records of as many
+ * neighbours as there are lanes are loaded whole and transposed in registers, and what the neighbours get is transposed
+ * back and added to records of sums. */
+#ifndef CLAST_ENGINE_SPH_PAIRS_KERNELS_H
+#define CLAST_ENGINE_SPH_PAIRS_KERNELS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Columns of a record. Float records hold x, y, z as 32-bit integers in units of a quantum: differences are exact and wrap
+ * round harmlessly, so that precision does not depend on where in a scene of kilometres a particle is. */
+enum sph_pair_column {
+  PAIR_X, PAIR_Y, PAIR_Z, PAIR_H, PAIR_VX, PAIR_VY, PAIR_VZ, PAIR_MASS,
+  PAIR_XX, PAIR_XY, PAIR_XZ, PAIR_YY, PAIR_YZ, PAIR_ZZ, /* sigma/rho^2, the pressure term in it */
+  PAIR_SOUND, PAIR_DENSITY,
+  PAIR_ARTIFICIAL, /* six more where there is artificial stress: R */
+};
+/* Columns of a record of sums. */
+enum sph_pair_sum {
+  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12, SUM_SIGNAL, SUM_COUNT,
+  SUM_MOMENT = 16, /* six more where the gradient is corrected */
+};
+enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with the six more; whole cache lines */
+
+struct sph_pair_chunk {
+  size_t own, slots;        /* particles whose lists these are; those and the foreign ones behind them */
+  const uint32_t *start;    /* own + 1: multiples of 16 */
+  const uint32_t *count;    /* own: how many of them are neighbours */
+  const uint32_t *neighbour; /* slots */
+};
+
+struct sph_pair_constants {
+  double alpha, twice_beta;
+  double periodic[3], per_period[3]; /* length and its inverse; NaN = open (double records only) */
+  double quantum[3];                 /* of float records' positions */
+  double spline_at_spacing;          /* W(spacing)/norm, for the artificial stress */
+  bool strength, volume_weights, wrapped;
+};
+
+struct sph_pair_kernels {
+  const char *name;
+  /* [gradient corrected][artificial stress]: which records are wide */
+  void (*sum_double[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const double *in, double *out);
+  void (*sum_float[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const float *in, float *out);
+  /* Of `count` candidates those with r < reach + reach_j and a number of at least `lowest` go to `found`; returns how many. Arrays may be read, and `found`
+   * written, up to 7 beyond the end. */
+  size_t (*within)(size_t count, const double *x, const double *y, const double *z, const double *reach, const uint32_t *id,
+                   const double at[3], double own_reach, const double periodic[3], uint32_t lowest, uint32_t *found);
+};
+
+extern const struct sph_pair_kernels sph_pairs_kernels_baseline;
+#ifdef __x86_64__
+extern const struct sph_pair_kernels sph_pairs_kernels_v3, sph_pairs_kernels_v4;
+#endif
+
+const struct sph_pair_kernels *sph_pairs_kernels_choose(void);
+
+#endif

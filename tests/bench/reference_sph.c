@@ -1,0 +1,55 @@
+#include "tests/bench/reference_sph.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/sph/spline.h"
+
+static double image(double along, double length) {
+  return isnan(length) ? along : along - length * nearbyint(along / length);
+}
+
+void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, const uint32_t *neighbour,
+                       const struct sph_pair_options *o, const struct sph_pair_fields *f, const double *const *artificial,
+                       const struct sph_pair_sums *sums) {
+  double *columns[] = {sums->ax, sums->ay, sums->az, sums->heating, sums->signal};
+  for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
+    memset(columns[k], 0, n * sizeof(double));
+  for (int k = 0; k < 9; k++)
+    memset(sums->gradient[k], 0, n * sizeof(double));
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = start[i]; k < start[i] + count[i]; k++) {
+      size_t j = neighbour[k];
+      double d[3] = {image(f->x[i] - f->x[j], o->periodic[0]), image(f->y[i] - f->y[j], o->periodic[1]),
+                     image(f->z[i] - f->z[j], o->periodic[2])};
+      double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2], h = 0.5 * (f->h[i] + f->h[j]);
+      if (!(square < 4 * h * h)) continue;
+      double r = sqrt(square), slope = sph_spline_slope(r, h);
+      double w[3] = {slope * d[0], slope * d[1], slope * d[2]};
+      double v[3] = {f->vx[i] - f->vx[j], f->vy[i] - f->vy[j], f->vz[i] - f->vz[j]};
+      double closing = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+      double mu = h * fmin(closing, 0) / (square + 0.01 * h * h);
+      double viscous = mu * (2 * o->viscosity_beta * mu - o->viscosity_alpha * (f->sound_speed[i] + f->sound_speed[j])) /
+                       (f->density[i] + f->density[j]);
+      double along = f->pressure_term[i] + f->pressure_term[j] - viscous, t[6] = {along, 0, 0, along, 0, along};
+      double ratio = artificial ? sph_spline(r, h) / sph_spline(o->spacing_over_h * h, h) : 0;
+      for (int c = 0; c < 6; c++) {
+        if (o->strength) t[c] += f->stress[c][i] + f->stress[c][j];
+        if (artificial) t[c] += pow(ratio, 4) * (artificial[c][i] + artificial[c][j]);
+      }
+      double force[3] = {t[0] * w[0] + t[1] * w[1] + t[2] * w[2], t[1] * w[0] + t[3] * w[1] + t[4] * w[2],
+                         t[2] * w[0] + t[4] * w[1] + t[5] * w[2]};
+      double mi = f->mass[i], mj = f->mass[j], heat = 0.5 * viscous * slope * closing;
+      sums->ax[i] += mj * force[0], sums->ay[i] += mj * force[1], sums->az[i] += mj * force[2];
+      sums->ax[j] -= mi * force[0], sums->ay[j] -= mi * force[1], sums->az[j] -= mi * force[2];
+      sums->heating[i] += mj * heat, sums->heating[j] += mi * heat;
+      sums->signal[i] = fmax(sums->signal[i], -mu), sums->signal[j] = fmax(sums->signal[j], -mu);
+      double wi = o->volume_weights ? mj / f->density[j] : mj / f->density[i];
+      double wj = o->volume_weights ? mi / f->density[i] : mi / f->density[j];
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+          sums->gradient[3 * a + b][i] -= wi * v[a] * w[b];
+          sums->gradient[3 * a + b][j] -= wj * v[a] * w[b];
+        }
+    }
+}
