@@ -20,17 +20,20 @@ RANGE_INLINE double palpha_within(double x, double low, double high) {
 }
 
 /* One Newton step for alpha - elastic(P(alpha)) = 0; see engine/sph/palpha.c. */
-RANGE_INLINE struct palpha_try palpha_step(const struct sph_palpha_law *law, double rest, double alpha, double rho,
+struct palpha_constants { /* of a body, in registers */
+  double A, B, a, b, E0, inverse0, K, top, q;
+};
+
+RANGE_INLINE struct palpha_try palpha_step(const struct palpha_constants t, double rest, double alpha, double rho,
                                            double u) {
-  const struct sph_tillotson *t = &law->solid;
-  const double top = law->given.distention, q = law->stiffness_slope, K = 1 / t->A, inverse0 = 1 / law->solid_density;
+  const double top = t.top, q = t.q, K = t.K, inverse0 = t.inverse0;
   const double rho_s = alpha * rho, inverse_alpha = 1 / alpha;
-  const double eta = rho_s * inverse0, mu = eta - 1, B = mu < 0 ? 0 : t->B;
-  const double e = t->E0 * eta * eta, v = 1 / (u + e), w = t->b * e * v;
-  const double p_s = (t->a + w) * rho_s * u + (t->A + B * mu) * mu;
+  const double eta = rho_s * inverse0, mu = eta - 1, B = mu < 0 ? 0 : t.B;
+  const double e = t.E0 * eta * eta, v = 1 / (u + e), w = t.b * e * v;
+  const double p_s = (t.a + w) * rho_s * u + (t.A + B * mu) * mu;
   struct palpha_try r;
-  r.by_density = (t->a + w) * u + 2 * w * v * u * u + (t->A + 2 * B * mu) * inverse0;
-  r.by_energy = rho_s * (t->a + w - w * v * u);
+  r.by_density = (t.a + w) * u + 2 * w * v * u * u + (t.A + 2 * B * mu) * inverse0;
+  r.by_energy = rho_s * (t.a + w - w * v * u);
   r.sound2 = r.by_density + p_s / (rho_s * rho_s) * r.by_energy;
   const double p = p_s * inverse_alpha;
   const double by_alpha = range_larger((rho * r.by_density - p) * inverse_alpha, 0);
@@ -43,11 +46,10 @@ RANGE_INLINE struct palpha_try palpha_step(const struct sph_palpha_law *law, dou
   const double mean = (g0 + 4 * g2 + g1) * (1.0 / 6), target = rest + p * mean;
   const double rise =
       1 - p * (1.0 / 6) * (d1 + d2 * (2 - 0.5 * p * d1)) - (mean + p * (1.0 / 12) * d2 * (g0 - g1)) * by_alpha;
-  const bool full = target >= top;
-  r.miss = alpha - (full ? top : target);
-  r.next = palpha_within(alpha - r.miss / (full ? 1 : range_larger(rise, 0.1)), 1, top);
+  r.miss = alpha - range_smaller(target, top);
+  r.next = palpha_within(alpha - r.miss / range_larger(rise, 0.1), 1, top);
   r.pressure = p + by_alpha * (r.next - alpha);
-  r.slope = full ? 0 : g1;
+  r.slope = target < top ? g1 : 0;
   return r;
 }
 
@@ -60,12 +62,25 @@ RANGE_INLINE double palpha_shear_factor(const struct palpha_try *t, double rho) 
 
 RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, double *was) {
   const struct sph_palpha_law *law = &body->porosity;
+  const struct sph_tillotson *solid = &law->solid;
+  const struct palpha_constants constants = {solid->A,
+                                             solid->B,
+                                             solid->a,
+                                             solid->b,
+                                             solid->E0,
+                                             1 / law->solid_density,
+                                             1 / solid->A,
+                                             law->given.distention,
+                                             law->stiffness_slope};
   const double top = law->given.distention, low_pressure = law->given.elastic_pressure,
                high_pressure = law->given.solid_pressure;
   const double c_e = law->given.sound_speed, share = isnan(c_e) ? 0 : 1 / (top - 1), start = isnan(c_e) ? 0 : c_e;
-  const double floor2 = law->solid.A / (4 * law->solid_density), E_iv = law->solid.E_iv;
+  const double floor2 = law->solid.A / (4 * law->solid_density), E_iv = law->solid.E_iv,
+               solid_density = law->solid_density;
   const bool quadratic = law->given.curve == SPH_CRUSH_QUADRATIC;
-  const double range = 1 / (high_pressure - low_pressure), pores = law->elastic_distention - 1;
+  const double range = 1 / (high_pressure - low_pressure);
+  /* two-power: not here, all above P_e that have pores go to sph_palpha_update */
+  const double pores = quadratic ? law->elastic_distention - 1 : 0, never = quadratic ? 0 : -1;
   const double *density = s->c.density, *energy = s->c.energy;
   double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor;
   double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed;
@@ -76,18 +91,18 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
     const size_t i = low + k;
     const double rho = density[i], u = range_larger(energy[i], 0), r = rest[i];
     was[k] = alpha[i];
-    const struct palpha_try first = palpha_step(law, r, palpha_within(alpha[i], 1, top), rho, u);
-    const struct palpha_try t = palpha_step(law, r, first.next, rho, u);
+    const struct palpha_try first = palpha_step(constants, r, palpha_within(alpha[i], 1, top), rho, u);
+    const struct palpha_try t = palpha_step(constants, r, first.next, rho, u);
     const double left = palpha_within((high_pressure - t.pressure) * range, 0, 1);
-    const double bound = quadratic ? 1 + pores * left * left : r > 1 ? 0 : 1; /* crush curve; two-power: not here */
+    const double bound = 1 + pores * left * left + (r > 1 ? never : 0); /* crush curve */
     const double c = sqrt(range_larger(t.sound2, floor2));
     pressure[i] = t.pressure;
     sound_speed[i] = c + (start - c) * (t.next - 1) * share;
     f[i] = palpha_shear_factor(&t, rho);
     alpha[i] = t.next;
-    const bool crush = t.pressure > low_pressure && t.next > bound;
-    const bool hot = rho * t.next < law->solid_density && u > E_iv;
-    hard[k] = -(int64_t)(crush | hot | !(fabs(t.miss) < 1e-9));
+    const int64_t crush = -(int64_t)(t.pressure > low_pressure) & -(int64_t)(t.next > bound);
+    const int64_t hot = -(int64_t)(rho * t.next < solid_density) & -(int64_t)(u > E_iv);
+    hard[k] = crush | hot | -(int64_t)(fabs(t.miss) >= 1e-9);
     any |= hard[k];
   }
   for (size_t k = 0; any && k < n; k++) {
