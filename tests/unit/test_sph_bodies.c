@@ -52,6 +52,27 @@ static void masses_add_up_and_ids_follow_bodies(void **state) {
   sph_particles_free(p);
 }
 
+/* h^3 goes with the mass, where particles differ. */
+static void graded_bodies_have_graded_h(void **state) {
+  (void)state;
+  struct sph_body body = bar;
+  body.lattice = (struct sph_lattice){
+      .particles = NAN, .grading = {.fine = 4e-3, .point = {0, 0, 0.2}, .radius = 0.01, .growth = 0.12}};
+  struct sph_range range;
+  struct sph_particles *p = NULL;
+  assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, NULL), STATUS_OK);
+  double mass = 0, least = HUGE_VAL, most = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    mass += p->mass[i];
+    least = fmin(least, p->h[i]);
+    most = fmax(most, p->h[i]);
+    assert_true(fabs(pow(p->h[i] / 1.3, 3) * 2000 / p->mass[i] - 1) < 1e-12);
+  }
+  assert_true(fabs(mass / (2000 * 0.1 * 0.2 * 0.4) - 1) < 1e-12 && most > 3 * least);
+  assert_true(fabs(least / (1.3 * 4e-3) - 1) < 0.02); /* volumes are scaled so that they add up */
+  sph_particles_free(p);
+}
+
 static void one_particle_is_a_body(void **state) {
   (void)state;
   struct sph_range range;
@@ -86,6 +107,9 @@ static void the_same_bits_each_time(void **state) {
     assert_memory_equal(p->y, again->y, p->n * sizeof *p->y);
     assert_memory_equal(p->z, again->z, p->n * sizeof *p->z);
     assert_true(p->x[3] != other->x[3] && p->x[3] != next->x[3]);
+    /* points follow each other along rows: another seed, another direction */
+    const double row = p->x[351] - p->x[350], turned = other->x[351] - other->x[350];
+    assert_true(fabs(row - turned) > 0.01 * hypot(row, p->y[351] - p->y[350]));
     sph_particles_free(p);
     sph_particles_free(again);
     sph_particles_free(other);
@@ -245,7 +269,8 @@ static void absurd_bodies_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_add_up_and_ids_follow_bodies), cmocka_unit_test(one_particle_is_a_body),
+      cmocka_unit_test(masses_add_up_and_ids_follow_bodies), cmocka_unit_test(graded_bodies_have_graded_h),
+      cmocka_unit_test(one_particle_is_a_body),
       cmocka_unit_test(the_same_bits_each_time),             cmocka_unit_test(projectiles_are_aimed),
       cmocka_unit_test(overlaps_are_refused_by_name),        cmocka_unit_test(bodies_move),
       cmocka_unit_test(ends_are_held_and_sides_damped),      cmocka_unit_test(absurd_bodies_are_refused),

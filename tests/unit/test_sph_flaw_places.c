@@ -219,6 +219,7 @@ static void ends_have_none(void **state) {
   struct sph_particles *p = make(&rod, 0, &range);
   struct sph_flaws *with = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, &middle);
   struct sph_flaws *without = flaws_of(&rod, p, range, SPH_FLAWS_RANKED, 1, NULL);
+  const double log_kv = log(5e34) + log(sph_shape_volume(&rod.shape));
   size_t ends = 0, common = 0;
   for (size_t i = 0; i < p->n; i++) {
     const size_t n = with->first[i + 1] - with->first[i], all = without->first[i + 1] - without->first[i];
@@ -227,6 +228,11 @@ static void ends_have_none(void **state) {
       ends++;
     } else {
       assert_true(n > 0);
+      for (size_t f = with->first[i]; f < with->first[i + 1]; f++) { /* and its place is in the middle */
+        double place[3];
+        sph_flaw_places_point(1, 0, (uint64_t)llround(exp(8.5 * with->log_strain[f] + log_kv)) - 1, &rod.shape, place);
+        assert_true(fabs(place[2]) <= 0.012);
+      }
       /* far from the border: the same flaws, up to where the shorter draw ended */
       for (size_t f = 0; f < n && f < all && fabs(p->z[i]) < 0.012 - 1.5 * range.spacing; f++, common++)
         assert_true(with->log_strain[with->first[i] + f] == without->log_strain[without->first[i] + f]);

@@ -242,6 +242,10 @@ static void periodic_bodies_have_no_seam(void **state) {
   p = fill(&bar, (struct sph_lattice){.particles = NAN, .spacing = 0.1, .periodic = {true, true, true}});
   assert_int_equal(p.n, 20 * 6 * 6);
   assert_true(p.stretch < 1 + 1e-9);
+  tree = tree_of(&p);
+  for (size_t i = 0; i < p.n; i++)
+    assert_true(fabs(look(&p, tree, i, bar.side).nearest / row - 1) < 1e-9);
+  sph_nearest_free(tree);
   sph_lattice_empty(&p);
 }
 
