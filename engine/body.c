@@ -1,38 +1,11 @@
 #include "engine/body.h"
 
-#include <errno.h>
-#include <hdf5.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-enum { LARGEST = 100000000 }; /* rows: more is a damaged file */
-
-/* A whole data set of `width` values a row (0: one, in one dimension) as doubles or int64; NULL when there is none such. */
-static void *read_rows(hid_t file, const char *name, size_t width, hid_t type, size_t *rows) {
-  hsize_t size[2] = {0, 0};
-  void *values = NULL;
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  hid_t space = set < 0 ? -1 : H5Dget_space(set);
-  int rank = width ? 2 : 1;
-  if (space >= 0 && H5Sget_simple_extent_ndims(space) == rank && H5Sget_simple_extent_dims(space, size, NULL) == rank &&
-      size[0] <= LARGEST && (!width || size[1] == width)) {
-    size_t count = (size_t)size[0] * (width ? width : 1);
-    values = malloc((count ? count : 1) * 8);
-    if (values && count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
-      free(values);
-      values = NULL;
-    }
-    *rows = (size_t)size[0];
-  }
-  if (space >= 0)
-    H5Sclose(space);
-  if (set >= 0)
-    H5Dclose(set);
-  return values;
-}
+#include "engine/fields_read.h"
 
 struct raw {
   size_t points, cells, offsets, ids, fragments, grains, beams, alive;
@@ -65,7 +38,7 @@ static bool take_cells(const struct raw *raw, struct body *body) {
     }
   }
   for (size_t i = 0; i < cells; i++) {
-    if (raw->fragment[i] < 0 || raw->fragment[i] > LARGEST)
+    if (raw->fragment[i] < 0 || raw->fragment[i] > FIELDS_READ_LARGEST)
       return false;
     body->fragment[i] = (uint32_t)raw->fragment[i];
   }
@@ -80,7 +53,7 @@ static bool take_cracks(const struct raw *raw, struct body *body) {
   int64_t most = -1;
   for (size_t i = 0; i < raw->grains; i++)
     most = raw->grain[i] > most ? raw->grain[i] : most;
-  if (most < 0 || most > LARGEST)
+  if (most < 0 || most > FIELDS_READ_LARGEST)
     return false;
   uint32_t *cell = malloc(((size_t)most + 1) * sizeof *cell);
   body->crack = malloc((raw->beams ? raw->beams : 1) * sizeof *body->crack);
@@ -106,15 +79,15 @@ static bool take_cracks(const struct raw *raw, struct body *body) {
   return true;
 }
 
-static bool read_file(hid_t file, struct body *body) {
+static bool read_file(struct fields_read *file, struct body *body) {
   struct raw raw = {0};
-  raw.point = read_rows(file, "/VTKHDF/Points", 3, H5T_NATIVE_DOUBLE, &raw.points);
-  raw.id = read_rows(file, "/VTKHDF/Connectivity", 0, H5T_NATIVE_INT64, &raw.ids);
-  raw.offset = read_rows(file, "/VTKHDF/Offsets", 0, H5T_NATIVE_INT64, &raw.offsets);
-  raw.fragment = read_rows(file, "/VTKHDF/CellData/fragment", 0, H5T_NATIVE_INT64, &raw.fragments);
-  raw.grain = read_rows(file, "/VTKHDF/CellData/grain", 0, H5T_NATIVE_INT64, &raw.grains);
-  raw.beam = read_rows(file, "/beams/grains", 2, H5T_NATIVE_DOUBLE, &raw.beams);
-  raw.alive_value = read_rows(file, "/beams/alive", 0, H5T_NATIVE_DOUBLE, &raw.alive);
+  raw.point = fields_read_rows(file, "/VTKHDF/Points", 3, FIELDS_READ_REAL, &raw.points);
+  raw.id = fields_read_rows(file, "/VTKHDF/Connectivity", 0, FIELDS_READ_INTEGER, &raw.ids);
+  raw.offset = fields_read_rows(file, "/VTKHDF/Offsets", 0, FIELDS_READ_INTEGER, &raw.offsets);
+  raw.fragment = fields_read_rows(file, "/VTKHDF/CellData/fragment", 0, FIELDS_READ_INTEGER, &raw.fragments);
+  raw.grain = fields_read_rows(file, "/VTKHDF/CellData/grain", 0, FIELDS_READ_INTEGER, &raw.grains);
+  raw.beam = fields_read_rows(file, "/beams/grains", 2, FIELDS_READ_REAL, &raw.beams);
+  raw.alive_value = fields_read_rows(file, "/beams/alive", 0, FIELDS_READ_REAL, &raw.alive);
   bool good = take_cells(&raw, body) && take_cracks(&raw, body);
   free(raw.point);
   free(raw.id);
@@ -128,19 +101,12 @@ static bool read_file(hid_t file, struct body *body) {
 
 status body_read(const char *path, struct body *body, struct error *error) {
   *body = (struct body){0};
-  if (access(path, R_OK))
-    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read %s: %s", path, strerror(errno));
-  bool good = false;
-  H5E_auto2_t report = NULL;
-  void *context = NULL;
-  H5Eget_auto2(H5E_DEFAULT, &report, &context);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the status says it */
-  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file >= 0) {
-    good = read_file(file, body);
-    H5Fclose(file);
-  }
-  H5Eset_auto2(H5E_DEFAULT, report, context);
+  struct fields_read *file;
+  status code = fields_read_open(path, &file, error);
+  if (code)
+    return code;
+  bool good = read_file(file, body);
+  fields_read_close(file);
   if (good)
     return STATUS_OK;
   body_clear(body);
