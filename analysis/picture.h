@@ -7,6 +7,7 @@
 #define CLAST_ANALYSIS_PICTURE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "analysis/pooled.h"
 
@@ -33,6 +34,35 @@ status picture_fragments(const char *path, double width, const char *title, cons
 /* What a body's picture should say below its title: "1100 grains in 259 fragments, 180 of them single; largest 12.1 % of the
  * area". `cells`: what its cells are called ("grains"). Empty when there is nothing or the labels are wrong. */
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
+
+/* Particles in space, drawn as discs of their size. All arrays borrowed. */
+struct picture_cloud {
+  size_t n;
+  const double (*position)[3]; /* m, finite */
+  const double *size;          /* m, cube root of a particle's volume */
+  const double *mass;          /* kg */
+  const int64_t *fragment;     /* number of its fragment, 0 the heaviest, below n; negative: none */
+  const int64_t *part;         /* 0 core, 1 veneer, 2 dust, 3 belongs to nothing */
+  const double *value;         /* what colours it; NULL: its fragment */
+};
+enum picture_view {
+  PICTURE_CUT,     /* through a plane: every particle that the plane meets, as it meets it */
+  PICTURE_OUTSIDE, /* from outside, all of it, near before far */
+  PICTURE_APART,   /* from outside, fragments moved away from each other; dust is left out */
+};
+struct picture_look {
+  enum picture_view view;
+  int axis;      /* looked along: 0 x (y to the right, z up), 1 y (x right, z up), 2 z (x right, y up) */
+  double plane;  /* m, place of the cut along the axis; NaN: through the centre of mass of the heaviest fragment, or of all */
+  const char *title, *subtitle;        /* may be NULL */
+  const char *quantity, *unit;         /* of the values: "damage", "1"; "pressure", "Pa" */
+};
+/* Values between 0 and 1 in unit 1 keep that range; others span what is drawn but for its outermost percent, about zero
+ * evenly when both signs occur. Beside STATUS_IO and so on: STATUS_USAGE when the plane meets no particle. */
+status picture_particles(const char *path, double width, const struct picture_cloud *cloud, const struct picture_look *look,
+                         struct error *error);
+/* "95210 particles in 143 fragments; largest 34.6 %, second 3.1 %, dust 41.2 % of the mass". */
+void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
 /* A fitted power law: drawn so that it holds as many fragments per run in [lower, upper) as the fit was made from. */
 struct picture_fit {

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/picture.h"
+#include "analysis/picture_bars.h"
 #include "analysis/picture_canvas.h"
 
 enum { LARGE = 10 }; /* cells: below, a fragment is hardly resolved and gets a pale tint */
@@ -190,16 +191,6 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
   grouping_free(&grouping);
 }
 
-static void scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double room, double font) {
-  char text[32];
-  double metres = picture_canvas_round_length(0.24 * room / points_per_metre), length = metres * points_per_metre;
-  picture_canvas_length_text(metres, text, sizeof text);
-  cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
-  cairo_rectangle(cairo, x, y - 0.28 * font, length, 0.28 * font);
-  cairo_fill(cairo);
-  picture_canvas_text(cairo, x + length / 2, y - 0.6 * font, 0.9 * font, PICTURE_CENTRE, false, text);
-}
-
 static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left, double top,
                          double width, double height, double font) {
   const struct picture_body *body = &panel->body;
@@ -222,7 +213,7 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   cairo_set_line_width(cairo, 0.11 * cell);
   cairo_stroke(cairo);
   cairo_restore(cairo);
-  scale_bar(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
+  picture_bars_length(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
   cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
   if (panel->caption) picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false, panel->caption);
 cleanup:

@@ -4,54 +4,14 @@
 #include <stdlib.h>
 
 #include "analysis/picture.h"
+#include "analysis/picture_bars.h"
 #include "analysis/picture_canvas.h"
-
-/* From dark blue to pale yellow: lightness rises evenly, so that it also reads in grey and for the colour-blind. */
-static void ramp(cairo_t *cairo, double share) {
-  picture_canvas_colour(cairo, 0.28 + 0.64 * share, 0.10 + 0.05 * sin(M_PI * share), 285 - 185 * share, 1);
-}
-
-static double tick_step(double span) {
-  double step = picture_canvas_round_length(span / 3);
-  return step;
-}
 
 static bool bad_axis(const struct picture_axis *axis) {
   if (axis->count == 0) return true;
   for (size_t i = 0; i < axis->count; i++)
     if (!isfinite(axis->values[i]) || (axis->log && axis->values[i] <= 0)) return true;
   return false;
-}
-
-static void colour_bar(cairo_t *cairo, double x, double y, double width, double height, double font, double low, double high,
-                       const char *quantity) {
-  enum { STEPS = 128 };
-  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_NONE); /* no seams between the steps */
-  for (int i = 0; i < STEPS; i++) {
-    ramp(cairo, (i + 0.5) / STEPS);
-    cairo_rectangle(cairo, x, y + height * (STEPS - 1 - i) / STEPS, width, height / STEPS + 0.5);
-    cairo_fill(cairo);
-  }
-  cairo_set_antialias(cairo, CAIRO_ANTIALIAS_DEFAULT);
-  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-  cairo_set_line_width(cairo, 0.07 * font);
-  cairo_rectangle(cairo, x, y, width, height);
-  cairo_stroke(cairo);
-  double step = high > low ? tick_step(high - low) : 1;
-  for (double tick = ceil(low / step) * step; tick <= high + 1e-9 * step; tick += step) {
-    char text[32];
-    double place = high > low ? y + height * (high - tick) / (high - low) : y + height / 2;
-    snprintf(text, sizeof text, "%.4g", fabs(tick) < 1e-9 * step ? 0 : tick);
-    cairo_move_to(cairo, x + width, place);
-    cairo_rel_line_to(cairo, 0.4 * font, 0);
-    cairo_stroke(cairo);
-    picture_canvas_text(cairo, x + width + 0.6 * font, place + 0.35 * font, 0.9 * font, PICTURE_LEFT, false, text);
-  }
-  cairo_save(cairo);
-  cairo_translate(cairo, x + width + 5 * font, y + height / 2);
-  cairo_rotate(cairo, -M_PI / 2);
-  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, quantity);
-  cairo_restore(cairo);
 }
 
 status picture_map(const char *path, double width, const char *title, const char *quantity, const struct picture_axis *x,
@@ -92,7 +52,7 @@ status picture_map(const char *path, double width, const char *title, const char
         continue;
       }
       double share = high > low ? (v - low) / (high - low) : 0.5;
-      ramp(cairo, share);
+      picture_bars_colour(cairo, PICTURE_RAMP_RISING, share);
       cairo_rectangle(cairo, at_x, at_y, tile_x + 0.4, tile_y + 0.4);
       cairo_fill(cairo);
       if (digits < 0.4 * font || tile_y < 1.3 * digits) continue;
@@ -116,7 +76,7 @@ status picture_map(const char *path, double width, const char *title, const char
     picture_canvas_text(cairo, left - 0.5 * font, top + tall - tile_y * ((double)j + 0.5) + 0.35 * font, 0.95 * font,
                         PICTURE_RIGHT, false, text);
   }
-  colour_bar(cairo, left + wide + 1.2 * font, top, 1.1 * font, tall, font, low, high, quantity);
+  picture_bars_colours(cairo, PICTURE_RAMP_RISING, left + wide + 1.2 * font, top, 1.1 * font, tall, font, low, high, quantity);
   cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
   if (title) picture_canvas_text(cairo, left, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
   picture_canvas_text(cairo, left + wide / 2, height - 0.8 * font, 1.05 * font, PICTURE_CENTRE, false, x->label);
