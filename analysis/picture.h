@@ -57,8 +57,8 @@ struct picture_look {
   const char *title, *subtitle;        /* may be NULL */
   const char *quantity, *unit;         /* of the values: "damage", "1"; "pressure", "Pa" */
 };
-/* Values between 0 and 1 in unit 1 keep that range; others span what is drawn but for its outermost percent, about zero
- * evenly when both signs occur. Beside STATUS_IO and so on: STATUS_USAGE when the plane meets no particle. */
+/* Values between 0 and 1 in unit 1 keep that range; others span what is drawn of the bodies searched for fragments,
+ * but for its outermost percent, evenly about zero when both signs occur. Beside STATUS_IO and so on: STATUS_USAGE when the plane meets no particle. */
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud, const struct picture_look *look,
                          struct error *error);
 /* "95210 particles in 143 fragments; largest 34.6 %, second 3.1 %, dust 41.2 % of the mass". */

@@ -182,8 +182,9 @@ static status choose_colours(struct scene *s) {
   if (!value) return STATUS_OK;
   double *sorted = malloc((s->discs + 1) * sizeof *sorted);
   if (!sorted) return STATUS_MEMORY;
-  for (size_t k = 0; k < s->discs; k++)
-    if (isfinite(value[s->disc[k].id])) sorted[count++] = value[s->disc[k].id];
+  for (int all = 0; all < 2 && count == 0; all++) /* a projectile, hot and dense, does not set the range for the body */
+    for (size_t k = 0; k < s->discs; k++)
+      if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != 3)) sorted[count++] = value[s->disc[k].id];
   qsort(sorted, count, sizeof *sorted, ascending);
   double least = count ? sorted[0] : 0, most = count ? sorted[count - 1] : 1;
   bool share = s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
@@ -223,7 +224,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
     double light = cut || !(near > far) ? 0 : fmin(fmax(2 * (d->depth - far) / (near - far) - 1, -1), 1);
     if (!cut) { /* a dark rim round what stands before other things */
       cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
-      cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.30);
+      cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
       cairo_fill(cairo);
     }
     if (!value) fragment_colour(cairo, s, d->id, light);

@@ -161,6 +161,7 @@ status fields_file_open(const char *engine, const char *doc, int results_version
   *out = NULL;
   if (!f)
     return status_fail(error, STATUS_MEMORY, "no memory for a fields file");
+  H5dont_atexit(); /* it prints at exit when a damaged file could not be closed; ours are closed by then */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   f->file = -1;
