@@ -147,6 +147,7 @@ static bool look(struct search *s, size_t k, const struct level *level, const si
   size_t used = 0;
   for (size_t b = 0; b < buckets; b++) {
     const size_t first = s->start[bucket[b] + 1], count = s->start[bucket[b] + 2] - first;
+    if (!count || (equals && s->id[first + count - 1] < i)) continue; /* numbers ascend within a bucket */
     if (!grow((void **)found, found_capacity, used + count + PAD, sizeof **found)) return false;
     used += kernels->within(count, s->x + first, s->y + first, s->z + first, s->reach + first, s->id + first, at, s->reach[k],
                             periodic, equals ? i + 1 : 0, *found + used);

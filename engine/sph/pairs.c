@@ -155,7 +155,6 @@ static bool fill(struct sph_pairs *p, struct chunk *c) {
     p->count[i] = count;
     for (size_t k = 0; k < count; k++)
       to[at + k] = j[k] < end ? j[k] - (uint32_t)c->first : p->slot[j[k]];
-    qsort(to + at, count, sizeof *to, ascending);
     at += count;
     for (; at % LANES_MOST; at++)
       to[at] = (uint32_t)(i - c->first);
@@ -208,13 +207,14 @@ status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const doub
   return STATUS_OK;
 }
 
-/* Units in which the numbers of float records are of the order of 1; in double all are 1. */
+/* Units in which the numbers of float records are of the order of 1; in double all are 1. per_...: their inverses. */
 struct units {
-  double length, mass, velocity, density;
+  double length, mass, velocity, density, specific; /* specific: of stress over density squared */
+  double per_length, per_mass, per_velocity, per_density, per_specific;
 };
 
 static struct units choose_units(const struct sph_pairs *p, size_t n, const struct sph_pair_fields *f) {
-  struct units u = {1, 1, 1, 1};
+  struct units u = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   if (p->options.precision != SPH_FLOAT) return u;
   double h = 0, density = 0, sound = 0;
   for (size_t i = 0; i < n; i++) {
@@ -226,22 +226,25 @@ static struct units choose_units(const struct sph_pairs *p, size_t n, const stru
   u.density = density > 0 && isfinite(density) ? density : 1;
   u.velocity = sound > 0 && isfinite(sound) ? sound : 1;
   u.mass = u.density * u.length * u.length * u.length;
+  u.specific = u.velocity * u.velocity / u.density;
+  u.per_length = 1 / u.length, u.per_mass = 1 / u.mass, u.per_velocity = 1 / u.velocity;
+  u.per_density = 1 / u.density, u.per_specific = 1 / u.specific;
   return u;
 }
 
 /* The record of particle i but for its position. */
 static inline __attribute__((always_inline)) void record(const struct sph_pair_fields *f, const struct units *u, bool strength,
                                                          size_t i, double out[PAIR_NARROW]) {
-  const double specific = u->density / (u->velocity * u->velocity), pressure = f->pressure_term[i] * specific;
+  const double pressure = f->pressure_term[i] * u->per_specific;
   out[PAIR_X] = f->x[i], out[PAIR_Y] = f->y[i], out[PAIR_Z] = f->z[i];
-  out[PAIR_H] = f->h[i] / u->length;
-  out[PAIR_VX] = f->vx[i] / u->velocity, out[PAIR_VY] = f->vy[i] / u->velocity, out[PAIR_VZ] = f->vz[i] / u->velocity;
-  out[PAIR_MASS] = f->mass[i] / u->mass;
+  out[PAIR_H] = f->h[i] * u->per_length;
+  out[PAIR_VX] = f->vx[i] * u->per_velocity, out[PAIR_VY] = f->vy[i] * u->per_velocity, out[PAIR_VZ] = f->vz[i] * u->per_velocity;
+  out[PAIR_MASS] = f->mass[i] * u->per_mass;
   for (int k = 0; k < 6; k++)
-    out[PAIR_XX + k] = strength ? f->stress[k][i] * specific : 0;
+    out[PAIR_XX + k] = strength ? f->stress[k][i] * u->per_specific : 0;
   out[PAIR_XX] += pressure, out[PAIR_YY] += pressure, out[PAIR_ZZ] += pressure;
-  out[PAIR_SOUND] = f->sound_speed[i] / u->velocity;
-  out[PAIR_DENSITY] = f->density[i] / u->density;
+  out[PAIR_SOUND] = f->sound_speed[i] * u->per_velocity;
+  out[PAIR_DENSITY] = f->density[i] * u->per_density;
 }
 
 static int32_t quanta(double x, double quantum) {

@@ -6,31 +6,69 @@ typedef INT NAME(mask) __attribute__((vector_size(LANES * sizeof(REAL))));
 #define VECTOR NAME(vector)
 #define MASK   NAME(mask)
 
-#if LANES == 2
-#define LOW(a, b)  __builtin_shufflevector(a, b, 0, 2)
-#define HIGH(a, b) __builtin_shufflevector(a, b, 1, 3)
+#define UNROLL _Pragma("GCC unroll 32")
+#if LANES == 2 && !FIXED
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 2)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 1, 3)
+#elif LANES == 4 && !FIXED
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 4, 2, 6)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 1, 5, 3, 7)
+#define EVEN(a, b)   __builtin_shufflevector(a, b, 0, 1, 4, 5)
+#define ODD(a, b)    __builtin_shufflevector(a, b, 2, 3, 6, 7)
+#elif LANES == 8 && !FIXED
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
+#define EVEN(a, b)   __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
+#define ODD(a, b)    __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15)
 #elif LANES == 4
-#define LOW(a, b)  __builtin_shufflevector(a, b, 0, 4, 1, 5)
-#define HIGH(a, b) __builtin_shufflevector(a, b, 2, 6, 3, 7)
+#define LOW(a, b)    __builtin_shufflevector(a, b, 0, 4, 1, 5)
+#define HIGH(a, b)   __builtin_shufflevector(a, b, 2, 6, 3, 7)
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 1, 4, 5)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 2, 3, 6, 7)
 #elif LANES == 8
-#define LOW(a, b)  __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11)
-#define HIGH(a, b) __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15)
+#define LOW(a, b)    __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13)
+#define HIGH(a, b)   __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15)
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 1, 8, 9, 4, 5, 12, 13)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 2, 3, 10, 11, 6, 7, 14, 15)
+#define EVEN(a, b)   __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11)
+#define ODD(a, b)    __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15)
 #else
-#define LOW(a, b)  __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23)
-#define HIGH(a, b) __builtin_shufflevector(a, b, 8, 24, 9, 25, 10, 26, 11, 27, 12, 28, 13, 29, 14, 30, 15, 31)
+#define LOW(a, b)    __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
+#define HIGH(a, b)   __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
+#define FIRST(a, b)  __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
+#define SECOND(a, b) __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+#define EVEN(a, b)   __builtin_shufflevector(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27)
+#define ODD(a, b)    __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)
 #endif
 
-/* Rows become columns: perfect shuffles, log2(LANES) times. */
+/* Rows become columns: first within the 16-byte quarters of the registers (PART numbers each), then the quarters among
+ * registers. All shuffles have two sources and another destination. */
 INLINE void NAME(transpose)(VECTOR r[LANES]) {
-  for (int stage = 1; stage < LANES; stage *= 2) {
-    VECTOR t[LANES];
-    for (int i = 0; i < LANES / 2; i++) {
-      t[2 * i] = LOW(r[i], r[i + LANES / 2]);
-      t[2 * i + 1] = HIGH(r[i], r[i + LANES / 2]);
-    }
-    for (int i = 0; i < LANES; i++)
-      r[i] = t[i];
+  enum { PART = 16 / sizeof(REAL), PARTS = LANES / PART };
+  VECTOR u[LANES];
+#if FIXED
+  UNROLL for (int g = 0; g < LANES; g += 4) {
+    const VECTOR a = LOW(r[g], r[g + 1]), b = HIGH(r[g], r[g + 1]), c = LOW(r[g + 2], r[g + 3]), d = HIGH(r[g + 2], r[g + 3]);
+    u[g] = FIRST(a, c), u[g + 1] = SECOND(a, c), u[g + 2] = FIRST(b, d), u[g + 3] = SECOND(b, d);
   }
+#else
+  UNROLL for (int g = 0; g < LANES; g += 2)
+    u[g] = FIRST(r[g], r[g + 1]), u[g + 1] = SECOND(r[g], r[g + 1]);
+#endif
+#ifdef EVEN
+  UNROLL for (int c = 0; c < PART; c++) {
+    if (PARTS == 2) {
+      r[c] = EVEN(u[c], u[PART + c]), r[PART + c] = ODD(u[c], u[PART + c]);
+    } else {
+      const VECTOR a = EVEN(u[c], u[PART + c]), b = EVEN(u[2 * PART + c], u[3 * PART + c]);
+      const VECTOR d = ODD(u[c], u[PART + c]), e = ODD(u[2 * PART + c], u[3 * PART + c]);
+      r[c] = EVEN(a, b), r[2 * PART + c] = ODD(a, b), r[PART + c] = EVEN(d, e), r[3 * PART + c] = ODD(d, e);
+    }
+  }
+#else
+  UNROLL for (int k = 0; k < LANES; k++)
+    r[k] = u[k];
+#endif
 }
 
 INLINE VECTOR NAME(select)(MASK mask, VECTOR yes, VECTOR no) {
@@ -43,24 +81,39 @@ INLINE VECTOR NAME(minimum)(VECTOR a, VECTOR b) {
 
 /* The block of LANES columns from `column` on, of LANES records: r[k] is column + k. */
 INLINE void NAME(fetch)(const REAL *in, size_t stride, size_t column, const uint32_t *slot, VECTOR r[LANES]) {
-  for (int lane = 0; lane < LANES; lane++)
+  UNROLL for (int lane = 0; lane < LANES; lane++)
     r[lane] = *(const VECTOR *)(const void *)(in + slot[lane] * stride + column);
   NAME(transpose)(r);
+}
+
+/* was + is, but where it is a largest value and not a sum. */
+INLINE VECTOR NAME(add)(VECTOR was, VECTOR is, size_t column) {
+  VECTOR now = was + is;
+  if (column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES) {
+    MASK pick = {0};
+    pick[SUM_SIGNAL - column] = -1;
+    now = NAME(select)(pick, NAME(select)(was > is, was, is), now);
+  }
+  return now;
 }
 
 /* r[k] is column + k of what LANES records get. */
 INLINE void NAME(spread)(REAL *out, size_t stride, size_t column, const uint32_t *slot, VECTOR r[LANES]) {
   NAME(transpose)(r);
-  for (int lane = 0; lane < LANES; lane++) {
+  UNROLL for (int lane = 0; lane < LANES; lane++) {
     VECTOR *to = (VECTOR *)(void *)(out + slot[lane] * stride + column);
-    VECTOR was = *to, now = was + r[lane];
-    if (column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES) { /* a largest value, not a sum */
-      MASK pick = {0};
-      pick[SUM_SIGNAL - column] = -1;
-      now = NAME(select)(pick, NAME(select)(was > r[lane], was, r[lane]), now);
-    }
-    *to = now;
+    *to = NAME(add)(*to, r[lane], column);
   }
+}
+
+/* r[k] is column + k of what one record gets, lane by lane. */
+INLINE void NAME(collect)(REAL *out, size_t column, VECTOR r[LANES]) {
+  VECTOR *to = (VECTOR *)(void *)(out + column), total;
+  NAME(transpose)(r);
+  total = r[0];
+  UNROLL for (int lane = 1; lane < LANES; lane++)
+    total = NAME(add)(total, r[lane], column);
+  *to = NAME(add)(*to, total, column);
 }
 
 INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair_constants *k) {
@@ -89,12 +142,14 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
     lanes[lane] = lane;
   for (size_t i = 0; i < chunk->own; i++) {
     const REAL *mine = in + i * in_stride;
-    VECTOR s[PAIR_WIDE] = {{0}}; /* my sums, lane by lane */
+    VECTOR s[PAIR_WIDE]; /* my sums, lane by lane */
+    UNROLL for (int column = 0; column < PAIR_WIDE; column++)
+      s[column] = (VECTOR){0};
     const uint32_t *slot = chunk->neighbour + chunk->start[i];
     const INT total = (INT)chunk->count[i];
     for (INT done = 0; done < total; done += LANES, slot += LANES) {
       VECTOR c[PAIR_NARROW];
-      for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+      UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(fetch)(in, in_stride, column, slot, c + column);
       const VECTOR dx = NAME(along)(mine[PAIR_X], c[PAIR_X], 0, &k), dy = NAME(along)(mine[PAIR_Y], c[PAIR_Y], 1, &k),
                    dz = NAME(along)(mine[PAIR_Z], c[PAIR_Z], 2, &k);
@@ -121,7 +176,7 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
                yz = mine[PAIR_YZ] + c[PAIR_YZ];
         if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
           VECTOR more[PAIR_WIDE - PAIR_NARROW];
-          for (size_t column = 0; column < 6; column += LANES)
+          UNROLL for (size_t column = 0; column < 6; column += LANES)
             NAME(fetch)(in, in_stride, PAIR_ARTIFICIAL + column, slot, more + column);
           VECTOR f = NAME(select)(q < 1, 1 - q * q * ((REAL)1.5 - (REAL)0.75 * q), quarter * t * t * t);
           f *= (REAL)(1 / k.spline_at_spacing);
@@ -167,27 +222,22 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       g[3] = -ux * ax, g[4] = -ux * ay, g[5] = -ux * az;
       g[6] = -uy * ax, g[7] = -uy * ay, g[8] = -uy * az;
       g[9] = -uz * ax, g[10] = -uz * ay, g[11] = -uz * az;
-      for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+      UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(spread)(out, out_stride, column, slot, g + column);
       if (corrected) {
         g[16] = -dx * ax, g[17] = -dx * ay, g[18] = -dx * az;
         g[19] = -dy * ay, g[20] = -dy * az, g[21] = -dz * az;
-        for (int column = 22; column < PAIR_WIDE; column++)
+        UNROLL for (int column = 22; column < PAIR_WIDE; column++)
           g[column] = zero;
-        for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
+        UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
           NAME(spread)(out, out_stride, column, slot, g + column);
       }
     }
-    REAL *to = out + i * out_stride;
-    for (int column = 0; column < (corrected ? SUM_MOMENT + 6 : SUM_COUNT + 1); column++) {
-      REAL total_of = 0;
-      if (column == SUM_SIGNAL)
-        for (int lane = 0; lane < LANES; lane++)
-          total_of = s[column][lane] > total_of ? s[column][lane] : total_of;
-      else
-        for (int lane = 0; lane < LANES; lane++)
-          total_of += s[column][lane];
-      to[column] = column == SUM_SIGNAL ? (to[column] > total_of ? to[column] : total_of) : to[column] + total_of;
+    UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+      NAME(collect)(out + i * out_stride, column, s + column);
+    if (corrected) {
+      UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
+        NAME(collect)(out + i * out_stride, column, s + column);
     }
   }
 }
@@ -207,5 +257,10 @@ static void NAME(sum_both)(const struct sph_pair_chunk *c, const struct sph_pair
 
 #undef VECTOR
 #undef MASK
+#undef UNROLL
 #undef LOW
 #undef HIGH
+#undef FIRST
+#undef SECOND
+#undef EVEN
+#undef ODD
