@@ -35,7 +35,7 @@ struct sph_palpha {
 struct sph_material {
   double density; /* kg/m^3 at rest */
   struct sph_tillotson tillotson;
-  double bulk_modulus;  /* Pa: K for Young's modulus and the speed of cracks; NaN: tillotson.A */
+  double bulk_modulus;  /* Pa: K for Young's modulus and the speed of cracks; NaN or 0: tillotson.A */
   double shear_modulus; /* Pa */
   double yield_stress;  /* Pa at u = 0; falls to zero at melt_energy; INFINITY: never yields */
   double melt_energy;   /* J/kg, NaN: yield does not depend on u */

@@ -5,6 +5,7 @@
 #include "engine/engine.h"
 #include "engine/sph/bodies.h"
 #include "engine/sph/inputs.h"
+#include "engine/sph/pieces.h"
 #include "engine/sph/results.h"
 #include "engine/sph/system.h"
 
@@ -72,9 +73,9 @@ status sph_protocol_record_start(struct sph_run *run, struct error *error);
 void sph_protocol_record(struct sph_run *run); /* after a step */
 
 /* report.c */
-/* The target's fragments as the inputs ask for, but for the two choices given. label: fragment of particle id < targets. */
-status sph_report_fragments(struct sph_run *run, double static_strength, bool veneer, uint32_t *label,
-                            struct fragment **fragments, size_t *count, struct error *error);
+/* The target's fragments as the inputs ask for, but for the two choices given; of the particles last read. */
+status sph_report_pieces(const struct sph_run *run, double static_strength, bool veneer, struct sph_pieces *pieces,
+                         struct error *error);
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error);
 

@@ -6,7 +6,7 @@
 static const double pi = 3.14159265358979323846;
 
 double sph_scale_bulk_modulus(const struct sph_material *m) {
-  return field_is_off(m->bulk_modulus) ? m->tillotson.A : m->bulk_modulus;
+  return m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A;
 }
 
 double sph_scale_young_modulus(const struct sph_material *m) {

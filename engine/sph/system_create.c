@@ -260,7 +260,7 @@ static status make_body(struct sph_system *s, size_t index, struct error *error)
   }
   b->density = m->density / (physics->porosity ? physics->porosity->distention : 1);
   b->lowest_density = s->p.density_lowest * b->density;
-  const double K = m->tillotson.A, mu = physics->strength ? m->shear_modulus : 0;
+  const double K = m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A, mu = physics->strength ? m->shear_modulus : 0;
   b->young = 9 * K * mu / (3 * K + mu);
   b->crack_speed = 0.4 * sqrt((K + 4 * mu / 3) / m->density);
   choose_hooks(s, b, physics);

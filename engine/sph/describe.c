@@ -1,0 +1,178 @@
+/* What a scene models and why, what it needs and how its numbers compare: text for `clast explain` and `plan`. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/modules.h"
+#include "engine/sph/run.h"
+#include "engine/sph/scale.h"
+
+/* Measured by tests/unit/test_sph_engine.c: bytes per particle of the moving system with its lists (sph_system_bytes), and of all
+ * that stands beside it (particles as set up and as read back, fragments at the end). */
+enum { BYTES_SYSTEM = 1100, BYTES_BESIDE = 600, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
+static const double pi = 3.14159265358979323846;
+static const double euler = 0.57721566490153286;
+
+struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
+  struct sph_parameters p = sph_parameters_default();
+  p.viscosity_alpha = in->viscosity.alpha;
+  p.viscosity_beta = in->viscosity.beta;
+  p.artificial_stress = in->method.artificial_stress;
+  p.gradient_correction = in->method.gradient_correction;
+  p.volume_weights = in->method.volume_weights;
+  p.cfl = in->fidelity.cfl;
+  p.damage_step = in->fidelity.damage_step;
+  p.growth = in->fracture.growth;
+  p.cap = in->fracture.cap;
+  p.crack_radius_support = in->fracture.crack_radius == 1;
+  p.compact_flaws = in->fidelity.flaws == 1;
+  p.skin = in->fidelity.skin;
+  p.precision = in->fidelity.precision;
+  p.threads = (int)in->fidelity.threads;
+  return p;
+}
+
+static double flaws_expected(double particles) { return particles * (log(fmax(particles, 1)) + euler); }
+
+size_t sph_describe_memory(const struct sph_inputs *in) {
+  double particles = sph_scale_particles(in), lists = in->fidelity.neighbours / 59 * pow(1 + in->fidelity.skin, 3) * 40 * 4;
+  double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists);
+  if (sph_scale_cracks(&in->target))
+    bytes += flaws_expected(particles) * BYTES_PER_FLAW;
+  return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
+}
+
+static double steps_expected(const struct sph_inputs *in) {
+  double h = sph_scale_smallest_spacing(in) * cbrt(3 * in->fidelity.neighbours / (32 * pi));
+  return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_scale_wave_speed(&in->target)));
+}
+
+double sph_describe_work(const struct sph_inputs *in) { return sph_scale_particles(in) * steps_expected(in); }
+
+/* ---- text ---- */
+
+static void shape(const char *name, const struct sph_shape *s, const struct sph_body_inputs *b, double spacing, FILE *out) {
+  static const char *const lattices[] = {"hexagonal lattice", "cubic lattice", "irregular points"};
+  double volume = sph_shape_volume(s);
+  fprintf(out, "  %s: ", name);
+  if (s->kind == SPH_SHAPE_SPHERE)
+    fprintf(out, "sphere of radius %.4g m", s->radius);
+  else if (s->kind == SPH_SHAPE_CYLINDER)
+    fprintf(out, "%s of radius %.4g m, length %.4g m", s->inner_radius > 0 ? "ring" : "cylinder", s->radius, s->length);
+  else
+    fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
+  fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", builtin_material_names[b->material_name],
+          b->material.density * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
+}
+
+static void protocol(const struct sph_inputs *in, FILE *out) {
+  struct sph_shape target = sph_scale_target(in), projectile;
+  double spacing = sph_scale_spacing(in);
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal (Benz & Asphaug 1995 section 5.2)\n", in->impact.speed,
+            in->impact.angle * 180 / pi);
+    break;
+  case SPH_STRETCH:
+    fprintf(out, "stretch: a rod is pulled by its ends at %.4g /s, stretching evenly from the start (Benz & Asphaug 1995 section "
+                 "5.1)\n",
+            in->stretch.rate);
+    break;
+  case SPH_VIBRATION:
+    fprintf(out, "vibration: a free bar rings along its axis in its first mode, ends at %.4g m/s\n", in->vibration.speed);
+    break;
+  case SPH_COLLISION:
+    fprintf(out, "collision: two equal bodies approach at %.4g m/s, slabs that repeat along their axes (Gray et al. 2001)\n",
+            in->collision.speed);
+    break;
+  }
+  shape("target", &target, &in->target, spacing, out);
+  if (sph_scale_has_projectile(in)) {
+    projectile = sph_scale_projectile(in);
+    shape("projectile", &projectile, &in->projectile, sph_scale_fine_spacing(in) * in->fidelity.projectile_spacing, out);
+    if (in->fidelity.graded)
+      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact\n", in->fidelity.fine_spacing,
+              in->fidelity.fine_radius);
+  }
+}
+
+/* Who asks for a module: the bodies for which it is on. */
+static bool modules(const struct sph_inputs *in, FILE *out) {
+  struct sph_parameters parameters = sph_describe_parameters(in);
+  struct sph_flaws some = {.particles = 1};
+  int bytes = 0;
+  for (size_t k = 0; k < sph_modules_count(); k++) {
+    const struct sph_module *module = sph_modules_at(k);
+    const char *who[3] = {"", "target", "projectile"};
+    int on = 0;
+    for (int b = 0; b < 1 + sph_scale_has_projectile(in); b++) {
+      const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
+      struct sph_body_physics physics = {.material = body->material, .strength = body->strength,
+                                         .flaws = sph_scale_cracks(body) ? &some : NULL};
+      if (module->on(&physics, &parameters))
+        on |= 1 << b;
+    }
+    if (on)
+      fprintf(out, "  %s (%s%s%s): %s [%s]\n", module->name, on & 1 ? who[1] : "", on == 3 ? ", " : "", on & 2 ? who[2] : "",
+              module->doc, module->source);
+    else
+      fprintf(out, "  %s: no; on with %s\n", module->name, module->when);
+    bytes += on ? module->bytes : 0;
+  }
+  fprintf(out, "  these modules add %d bytes per particle\n", bytes);
+  return true;
+}
+
+static void numbers(const struct sph_inputs *in, FILE *out) {
+  const struct sph_body_inputs *target = &in->target;
+  double speed = sph_scale_wave_speed(target), crossing = sph_scale_crossing(in);
+  fprintf(out, "  waves: c_p %.0f m/s, through the target in %.3g s", speed, crossing);
+  if (target->strength)
+    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g", sph_scale_young_modulus(&target->material),
+            sph_scale_poisson_ratio(&target->material));
+  fputc('\n', out);
+  if (sph_scale_cracks(target)) {
+    struct sph_shape shape = sph_scale_target(in);
+    double E = sph_scale_young_modulus(&target->material), m = target->material.weibull.m;
+    double log_kv = log(target->material.weibull.k) + log(sph_shape_volume(&shape)), n = (double)in->fidelity.particles;
+    fprintf(out, "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
+                 "%.0f m/s\n",
+            flaws_expected(n), exp(-log_kv / m), E * exp(-log_kv / m), exp((log(flaws_expected(n)) - log_kv) / m),
+            E * exp((log(flaws_expected(n)) - log_kv) / m), sph_scale_crack_speed(&target->material));
+  }
+  if (sph_scale_has_projectile(in)) {
+    struct sph_shape projectile = sph_scale_projectile(in);
+    double mass = sph_scale_projectile_mass(in), energy = 0.5 * mass * in->impact.speed * in->impact.speed;
+    double spacing = sph_scale_fine_spacing(in) * in->fidelity.projectile_spacing;
+    fprintf(out, "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g particles across the projectile\n", energy,
+            mass, sph_scale_specific_energy(in), cbrt(sph_shape_volume(&projectile) * 6 / pi) / spacing);
+  }
+  if (in->kind == SPH_VIBRATION && target->strength)
+    fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",
+            sqrt(sph_scale_young_modulus(&target->material) / target->material.density) / (2 * target->length));
+}
+
+char *sph_describe_scene(const struct sph_inputs *in) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  struct error error = {0};
+  protocol(in, out);
+  modules(in, out);
+  numbers(in, out);
+  if (sph_inputs_check(in, &error))
+    fprintf(out, "  cannot be run: %s\n", error.message);
+  double particles = sph_scale_particles(in);
+  fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
+          (double)sph_describe_memory(in) / 1e6);
+  fprintf(out, "  at most about %.3g steps of %.4g particles; ends when fracture has ceased\n", steps_expected(in), particles);
+  if (fclose(out)) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

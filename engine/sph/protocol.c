@@ -1,0 +1,178 @@
+/* Bodies, where they stand and how they move at the start. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/sph/pairs.h"
+#include "engine/sph/run.h"
+#include "engine/sph/scale.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { Z = 2 };
+
+static struct sph_body body_of(const struct sph_run *run, const struct sph_body_inputs *b, const struct sph_shape *shape,
+                               uint64_t number, double spacing) {
+  const struct sph_inputs *in = &run->inputs;
+  return (struct sph_body){
+      .shape = *shape,
+      .lattice = {.kind = b->lattice,
+                  .particles = NAN,
+                  .spacing = spacing,
+                  .turned = b->turned,
+                  .seed = run->seed,
+                  .body = number},
+      .density = b->material.density,
+      .h_over_spacing = cbrt(3 * in->fidelity.neighbours / (32 * pi)),
+  };
+}
+
+static status aim(struct sph_run *run, double flight[3], struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  double angle = in->impact.angle;
+  run->shape[0] = sph_scale_target(in);
+  run->shape[1] = sph_scale_projectile(in);
+  memcpy(run->impact_direction, (const double[]){0, 0, 1}, sizeof run->impact_direction);
+  memcpy(run->shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof run->shape[1].axis);
+  return sph_bodies_aim(&run->shape[0], &run->shape[1], run->impact_direction, angle, in->impact.gap, flight, error);
+}
+
+/* Two slabs that repeat along their axes: thick enough that no particle meets its own image. */
+static void place_slabs(struct sph_run *run, double spacing) {
+  const struct sph_inputs *in = &run->inputs;
+  double support = 2 * spacing * cbrt(3 * in->fidelity.neighbours / (32 * pi)) * (1 + in->fidelity.skin);
+  double length = sph_lattice_period(in->target.lattice, spacing, Z, fmax(in->target.length, 2.1 * support));
+  for (int b = 0; b < 2; b++) {
+    run->shape[b] = sph_scale_target(in);
+    run->shape[b].length = length;
+    run->shape[b].centre[0] = (b ? 1 : -1) * (in->target.radius + in->collision.gap / 2);
+    run->shape[b].centre[Z] = length / 2;
+  }
+  run->periodic[Z] = length;
+}
+
+static int arrays_of(const struct sph_inputs *in) {
+  int arrays = 0;
+  const struct sph_body_inputs *bodies[] = {&in->target, &in->projectile};
+  for (int b = 0; b < 1 + sph_scale_has_projectile(in); b++) {
+    if (bodies[b]->strength)
+      arrays |= SPH_WITH_STRESS;
+    if (sph_scale_cracks(bodies[b]))
+      arrays |= SPH_WITH_DAMAGE;
+  }
+  if (in->kind == SPH_STRETCH)
+    arrays |= SPH_WITH_HELD;
+  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far)
+    arrays |= SPH_WITH_DAMPING;
+  return arrays;
+}
+
+static status make_bodies(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  double spacing = sph_scale_spacing(in);
+  struct sph_body body[SPH_RUN_BODIES];
+  body[0] = body_of(run, &in->target, &run->shape[0], 0, spacing);
+  if (in->kind == SPH_COLLISION) {
+    body[0].lattice.periodic[Z] = true;
+    body[1] = body_of(run, &in->target, &run->shape[1], 1, spacing);
+    body[1].lattice.periodic[Z] = true;
+  } else {
+    body[0].lattice.particles = (double)in->fidelity.particles;
+    if (sph_scale_has_projectile(in)) {
+      body[1] = body_of(run, &in->projectile, &run->shape[1], 1, sph_scale_fine_spacing(in) * in->fidelity.projectile_spacing);
+      if (in->fidelity.graded) {
+        struct sph_grading *grading = &body[0].lattice.grading;
+        *grading = (struct sph_grading){.fine = in->fidelity.fine_spacing, .radius = in->fidelity.fine_radius, .growth = NAN};
+        double normal[3];
+        sph_shape_surface(&run->shape[0], run->impact_direction, grading->point, normal);
+      }
+    }
+  }
+  return sph_bodies_make(body, (size_t)run->body_count, arrays_of(in), &run->start, run->range, error);
+}
+
+/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends. */
+static void ring(struct sph_run *run) {
+  struct sph_particles *p = run->start;
+  for (size_t i = 0; i < p->n; i++)
+    p->vz[i] += run->inputs.vibration.speed * sin(pi * p->z[i] / run->inputs.target.length);
+}
+
+static void set_in_motion(struct sph_run *run, const double flight[3]) {
+  const struct sph_inputs *in = &run->inputs;
+  const double origin[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, spin[3] = {0, 0, in->target.spin};
+  double v[3] = {0, 0, 0};
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    for (int k = 0; k < 3; k++)
+      v[k] = in->impact.speed * flight[k];
+    sph_bodies_move(run->start, run->range[1], v);
+    if (in->target.spin != 0)
+      sph_bodies_spin(run->start, run->range[0], origin, spin);
+    break;
+  case SPH_STRETCH:
+    sph_bodies_stretch(run->start, run->range[0], origin, axis, in->stretch.rate,
+                       in->target.strength ? sph_scale_poisson_ratio(&in->target.material) : 0);
+    sph_bodies_hold(run->start, run->range[0],
+                    &(struct sph_middle){.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.grip},
+                    SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+    break;
+  case SPH_VIBRATION:
+    ring(run);
+    break;
+  case SPH_COLLISION:
+    for (int b = 0; b < 2; b++) {
+      v[0] = (b ? -0.5 : 0.5) * in->collision.speed;
+      sph_bodies_move(run->start, run->range[b], v);
+    }
+    break;
+  }
+}
+
+static status make_flaws(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  struct sph_middle middle = {.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.flaw_free};
+  status code = STATUS_OK;
+  for (int b = 0; b < run->body_count && !code; b++) {
+    const struct sph_body_inputs *body = b == 1 && sph_scale_has_projectile(in) ? &in->projectile : &in->target;
+    if (!sph_scale_cracks(body))
+      continue;
+    struct sph_flaw_law law = {.weibull = body->material.weibull, .draw = in->fracture.draw, .seed = run->seed, .body = (uint64_t)b};
+    code = sph_bodies_flaws(&law, &run->shape[b], run->start, run->range[b],
+                            in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b], error);
+    if (!code)
+      run->flaw_count += run->flaws[b]->count;
+  }
+  return code;
+}
+
+/* A wave that crosses the layer and returns keeps exp(-rate depth/(3 c)) of its amplitude: half of the kinetic energy, which is
+ * half of its energy, twice the integral of rate (s/depth)^2. 10.5 c/depth leaves 3 %. */
+static void damp(struct sph_run *run) {
+  const struct sph_inputs *in = &run->inputs;
+  if (run->start->damping)
+    sph_bodies_damp(run->start, run->range[0], &run->shape[0],
+                    SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, in->sides.depth,
+                    10.5 * sph_scale_wave_speed(&in->target) / in->sides.depth);
+}
+
+status sph_protocol_bodies(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  double flight[3] = {0, 0, 0};
+  status code = STATUS_OK;
+  run->body_count = sph_scale_bodies(in);
+  for (int k = 0; k < 3; k++)
+    run->periodic[k] = NAN;
+  if (in->kind == SPH_IMPACT)
+    code = aim(run, flight, error);
+  else if (in->kind == SPH_COLLISION)
+    place_slabs(run, sph_scale_spacing(in));
+  else
+    run->shape[0] = sph_scale_target(in);
+  if (code || (code = make_bodies(run, error)))
+    return code;
+  run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
+  set_in_motion(run, flight);
+  damp(run);
+  return make_flaws(run, error);
+}

@@ -1,0 +1,77 @@
+#include "engine/sph/sph.h"
+
+#include <math.h>
+
+#include "engine/sph/run.h"
+
+static void complete(void *inputs, const bool *given) { sph_inputs_complete(inputs, given); }
+
+static status check(const void *inputs, struct error *error) { return sph_inputs_check(inputs, error); }
+
+static char *describe(const void *inputs) { return sph_describe_scene(inputs); }
+
+static size_t memory(const void *inputs) { return sph_describe_memory(inputs); }
+
+static double work(const void *inputs) { return sph_describe_work(inputs); }
+
+static status prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
+  struct sph_run *made;
+  status code = sph_run_create(inputs, seed, &made, error);
+  *run = made;
+  return code;
+}
+
+static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
+  (void)error;
+  sph_run_advance(run, max_steps);
+  *finished = ((struct sph_run *)run)->state.finished;
+  return STATUS_OK;
+}
+
+static double progress(const void *run) {
+  const struct sph_run *r = run;
+  return r->state.finished ? 1 : fmin(sph_system_time(r->system) / r->inputs.stop.end_time, 1);
+}
+
+static status finish(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
+                     size_t *fragment_count, struct error *error) {
+  return sph_report_finish(run, outcome, result, fragments, fragment_count, error);
+}
+
+static status write_fields(void *run, const char *path, struct error *error) {
+  return sph_fields_write(run, path, error);
+}
+
+static status save(void *run, const char *path, struct error *error) { return sph_restart_save(run, path, error); }
+
+static status restore(const void *inputs, const char *path, void **run, struct error *error) {
+  struct sph_run *made;
+  status code = sph_restart_load(inputs, path, &made, error);
+  *run = made;
+  return code;
+}
+
+static void release(void *run) { sph_run_free(run); }
+
+const struct engine_kind sph_engine = {
+    .name = "sph",
+    .doc = "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state and "
+           "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` names "
+           "at each input.",
+    .results_version = 1,
+    .inputs = &sph_inputs,
+    .results = &sph_results,
+    .complete = complete,
+    .check = check,
+    .describe = describe,
+    .memory = memory,
+    .work = work,
+    .prepare = prepare,
+    .step = step,
+    .progress = progress,
+    .finish = finish,
+    .write_fields = write_fields,
+    .save = save,
+    .restore = restore,
+    .free = release,
+};

@@ -1,0 +1,11 @@
+/* Engine `sph`: solids that crack, in space (Benz & Asphaug 1994, 1995). */
+#ifndef CLAST_ENGINE_SPH_SPH_H
+#define CLAST_ENGINE_SPH_SPH_H
+
+#include "engine/engine.h"
+#include "engine/sph/inputs.h"
+#include "engine/sph/results.h"
+
+extern const struct engine_kind sph_engine;
+
+#endif
