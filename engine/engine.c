@@ -3,10 +3,12 @@
 #include <string.h>
 
 #include "engine/dem/dem.h"
+#include "engine/sph/sph.h"
 
 /* The registry: one line per engine, closed by NULL. */
 static const struct engine_kind *const kinds[] = {
     &dem_engine,
+    &sph_engine,
     NULL,
 };
 

@@ -37,7 +37,7 @@ struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
 static double flaws_expected(double particles) { return particles * (log(fmax(particles, 1)) + euler); }
 
 size_t sph_describe_memory(const struct sph_inputs *in) {
-  double particles = sph_scale_particles(in), lists = in->fidelity.neighbours / 59 * pow(1 + in->fidelity.skin, 3) * 40 * 4;
+  double particles = sph_scale_particles(in), lists = pow(in->fidelity.smoothing / SPH_BODIES_H * (1 + in->fidelity.skin), 3) * 40 * 4;
   double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists);
   if (sph_scale_cracks(&in->target))
     bytes += flaws_expected(particles) * BYTES_PER_FLAW;
@@ -45,7 +45,7 @@ size_t sph_describe_memory(const struct sph_inputs *in) {
 }
 
 static double steps_expected(const struct sph_inputs *in) {
-  double h = sph_scale_smallest_spacing(in) * cbrt(3 * in->fidelity.neighbours / (32 * pi));
+  double h = sph_scale_smallest_spacing(in) * in->fidelity.smoothing;
   return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_scale_wave_speed(&in->target)));
 }
 

@@ -71,7 +71,7 @@ struct sph_inputs {
     double projectile_spacing;
     bool graded;
     double fine_spacing, fine_radius;
-    double neighbours, cfl, damage_step, distention_step, skin;
+    double smoothing, cfl, damage_step, distention_step, skin;
     int precision, flaws;
     int64_t threads;
     double energy_bound; /* NaN = off */

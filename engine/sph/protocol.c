@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/pairs.h"
+#include "engine/sph/flaw_places.h"
 #include "engine/sph/run.h"
 #include "engine/sph/scale.h"
 
@@ -23,7 +23,7 @@ static struct sph_body body_of(const struct sph_run *run, const struct sph_body_
                   .seed = run->seed,
                   .body = number},
       .density = b->material.density,
-      .h_over_spacing = cbrt(3 * in->fidelity.neighbours / (32 * pi)),
+      .h_over_spacing = in->fidelity.smoothing,
   };
 }
 
@@ -40,7 +40,7 @@ static status aim(struct sph_run *run, double flight[3], struct error *error) {
 /* Two slabs that repeat along their axes: thick enough that no particle meets its own image. */
 static void place_slabs(struct sph_run *run, double spacing) {
   const struct sph_inputs *in = &run->inputs;
-  double support = 2 * spacing * cbrt(3 * in->fidelity.neighbours / (32 * pi)) * (1 + in->fidelity.skin);
+  double support = 2 * spacing * in->fidelity.smoothing * (1 + in->fidelity.skin);
   double length = sph_lattice_period(in->target.lattice, spacing, Z, fmax(in->target.length, 2.1 * support));
   for (int b = 0; b < 2; b++) {
     run->shape[b] = sph_scale_target(in);
@@ -138,7 +138,7 @@ static status make_flaws(struct sph_run *run, struct error *error) {
     if (!sph_scale_cracks(body))
       continue;
     struct sph_flaw_law law = {.weibull = body->material.weibull, .draw = in->fracture.draw, .seed = run->seed, .body = (uint64_t)b};
-    code = sph_bodies_flaws(&law, &run->shape[b], run->start, run->range[b],
+    code = sph_flaw_places_make(&law, &run->shape[b], run->start, run->range[b],
                             in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b], error);
     if (!code)
       run->flaw_count += run->flaws[b]->count;

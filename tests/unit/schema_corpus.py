@@ -29,8 +29,8 @@ def verdict(validator, text):
     return ("bad", errors[0][:200]) if errors else ("good", "")
 
 
-for kind, name in (("scene", "scene-dem"), ("campaign", "campaign")):
-    schema = json.load(open(f"{source}/schemas/{name}.schema.json"))
+for kind in ("scene-dem", "scene-sph", "campaign"):
+    schema = json.load(open(f"{source}/schemas/{kind}.schema.json"))
     Draft7Validator.check_schema(schema)
     validator = Draft7Validator(schema)
     # What each folder promises: (our reader, the schema). Folder `reader` holds what no schema can know: dimensions,
@@ -38,8 +38,9 @@ for kind, name in (("scene", "scene-dem"), ("campaign", "campaign")):
     for folder, ours_expected, theirs_expected in (("good", "good", "good"), ("bad", "bad", "bad"), ("reader", "bad", "good")):
         files = sorted(glob.glob(f"{source}/tests/unit/corpus/{kind}/{folder}/*.*"))
         if folder == "good":
-            shipped = f"{source}/engine/*/scenes/*.yaml" if kind == "scene" else f"{source}/campaign/examples/*.yaml"
-            files += [f for f in sorted(glob.glob(shipped)) if kind == "campaign" or "engine: dem" in open(f).read()]
+            engine = kind.removeprefix("scene-")
+            shipped = f"{source}/campaign/examples/*.yaml" if kind == "campaign" else f"{source}/engine/{engine}/scenes/*.yaml"
+            files += sorted(glob.glob(shipped))
         if len(files) < 3:
             fail(f"only {len(files)} documents in {kind}/{folder}")
         if not files:
@@ -52,20 +53,22 @@ for kind, name in (("scene", "scene-dem"), ("campaign", "campaign")):
             if (ours, theirs) != (ours_expected, theirs_expected):
                 fail(f"{path}: reader says {ours}, schema says {theirs} ({why}); expected {ours_expected} and {theirs_expected}")
 
-scene_validator = Draft7Validator(json.load(open(f"{source}/schemas/scene-dem.schema.json")))
 seen = {}
-generated = subprocess.run([program, "generated"], capture_output=True, text=True, check=True).stdout
-for entry in generated.split("%%\n"):
-    if not entry:
-        continue
-    ours, text = entry.split("\n", 1)
-    theirs, why = seen[text] if text in seen else verdict(scene_validator, text)
-    seen[text] = theirs, why
-    judged += 1
-    if ours != theirs:
-        fail(f"reader says {ours}, schema says {theirs} ({why}) of\n{text}")
-verdicts = [v for v, _ in seen.values()]
-if verdicts.count("good") < 200 or verdicts.count("bad") < 500:
-    fail(f"too few generated documents: {len(verdicts)}")
-print(f"schema_corpus: {judged} documents judged ({len(seen)} generated, {verdicts.count('good')} of them good), {wrong} disagreements")
+for kind in ("scene-dem", "scene-sph"):
+    scene_validator = Draft7Validator(json.load(open(f"{source}/schemas/{kind}.schema.json")))
+    generated = subprocess.run([program, "generated", kind], capture_output=True, text=True, check=True).stdout
+    for entry in generated.split("%%\n"):
+        if not entry:
+            continue
+        ours, text = entry.split("\n", 1)
+        theirs, why = seen[text] if text in seen else verdict(scene_validator, text)
+        seen[text] = theirs, why
+        judged += 1
+        if ours != theirs:
+            fail(f"reader says {ours}, schema says {theirs} ({why}) of\n{text}")
+    verdicts = [v for t, (v, _) in seen.items() if f"engine: {kind.removeprefix('scene-')}\n" in t]
+    if verdicts.count("good") < 200 or verdicts.count("bad") < 500:
+        fail(f"{kind}: too few generated documents: {len(verdicts)}")
+good = [v for v, _ in seen.values()].count("good")
+print(f"schema_corpus: {judged} documents judged ({len(seen)} generated, {good} of them good), {wrong} disagreements")
 sys.exit(wrong != 0)

@@ -1,10 +1,10 @@
 /* The C reader's side of schema_corpus.sh, and on its own a test that the corpus is judged as its folders say.
  *
  *     test_schema_corpus                              every document of corpus/<kind>/{good,bad,reader}
- *     test_schema_corpus schema scene|campaign        the schema that schemas/ holds a copy of
- *     test_schema_corpus judge scene|campaign FILE... lines "good FILE" or "bad FILE"
- *     test_schema_corpus generated                    documents made from the table of engine dem, one row after
- * another, with the reader's verdict: "good" or "bad", text, "%%" */
+ *     test_schema_corpus schema scene-dem|scene-sph|campaign    the schema that schemas/ holds a copy of
+ *     test_schema_corpus judge scene-dem|scene-sph|campaign FILE...   lines "good FILE" or "bad FILE"
+ *     test_schema_corpus generated scene-dem|scene-sph   documents made from the engine's table, one row after another, with
+ * the reader's verdict: "good" or "bad", text, "%%" */
 #include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,8 +12,12 @@
 
 #include "campaign/campaign.h"
 #include "campaign/campaign_schema.h"
-#include "engine/dem/dem.h"
 #include "engine/scene.h"
+
+/* The engine behind "scene-<engine>"; NULL for "campaign". */
+static const struct engine_kind *engine_of(const char *kind) {
+  return strncmp(kind, "scene-", 6) == 0 ? engine_find(kind + 6, NULL) : NULL;
+}
 
 static bool judge(bool scene_kind, const char *path, bool show) {
   struct error error = {.status = STATUS_OK};
@@ -31,17 +35,16 @@ static bool judge(bool scene_kind, const char *path, bool show) {
   return code == STATUS_OK;
 }
 
-static int judge_folder(bool scene_kind, const char *folder, bool good, int *count) {
+static int judge_folder(const char *kind, const char *folder, bool good, int *count) {
   char whole[512], path[1024];
   int wrong = 0;
-  snprintf(whole, sizeof whole, "%s/tests/unit/corpus/%s/%s", CLAST_SOURCE_DIR, scene_kind ? "scene" : "campaign",
-           folder);
+  snprintf(whole, sizeof whole, "%s/tests/unit/corpus/%s/%s", CLAST_SOURCE_DIR, kind, folder);
   DIR *list = opendir(whole);
   for (const struct dirent *entry; list && (entry = readdir(list));) {
     if (!strstr(entry->d_name, ".yaml") && !strstr(entry->d_name, ".json")) continue;
     snprintf(path, sizeof path, "%s/%.200s", whole, entry->d_name);
     ++*count;
-    if (judge(scene_kind, path, good) == good) continue;
+    if (judge(engine_of(kind) != NULL, path, good) == good) continue;
     fprintf(stderr, "%s should be %s\n", path, good ? "accepted" : "refused");
     wrong++;
   }
@@ -50,9 +53,9 @@ static int judge_folder(bool scene_kind, const char *folder, bool good, int *cou
 }
 
 /* Nested block mapping of one or two paths, the second's common words written once. */
-static void write_document(const char *first, const char *first_text, const char *second, const char *second_text,
+static void write_document(const char *engine, const char *first, const char *first_text, const char *second, const char *second_text,
                            FILE *out) {
-  fputs("engine: dem\n", out);
+  fprintf(out, "engine: %s\n", engine);
   int level = 0;
   const char *paths[2] = {first, second}, *texts[2] = {first_text, second_text};
   for (int p = 0; p < 2; p++) {
@@ -75,12 +78,12 @@ static void write_document(const char *first, const char *first_text, const char
   }
 }
 
-static void emit(const char *first, const char *first_text, const char *second, const char *second_text) {
+static void emit(const char *engine, const char *first, const char *first_text, const char *second, const char *second_text) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   if (!out) return;
-  write_document(first, first_text, second, second_text, out);
+  write_document(engine, first, first_text, second, second_text, out);
   fclose(out);
   struct scene *scene = NULL;
   bool good = scene_parse("generated", text, &scene, NULL) == STATUS_OK;
@@ -90,29 +93,29 @@ static void emit(const char *first, const char *first_text, const char *second, 
 }
 
 /* One row with one text, under every state of what it depends on. */
-static void emit_row(const struct field *row, const char *text) {
-  emit(NULL, NULL, row->path, text);
+static void emit_row(const struct engine_kind *engine, const struct field *row, const char *text) {
+  emit(engine->name, NULL, NULL, row->path, text);
   if (!row->when) return;
   char path[128];
   snprintf(path, sizeof path, "%.*s", (int)strcspn(row->when, "="), row->when);
-  const struct field *control = field_find(&dem_inputs, path, NULL);
+  const struct field *control = field_find(engine->inputs, path, NULL);
   for (size_t i = 0; control && control->kind == FIELD_CHOICE && control->choices[i]; i++)
-    emit(control->path, control->choices[i], row->path, text);
+    emit(engine->name, control->path, control->choices[i], row->path, text);
   if (control && control->kind == FIELD_BOOLEAN) {
-    emit(control->path, "true", row->path, text);
-    emit(control->path, "false", row->path, text);
+    emit(engine->name, control->path, "true", row->path, text);
+    emit(engine->name, control->path, "false", row->path, text);
   }
 }
 
-static void generate(void) {
+static void generate(const struct engine_kind *engine) {
   static const char *const texts[] = {"3",       "3.5",  "-3",       "0",   "true",   "False", "words", "off",
                                       "null",    "~",    "",         "[1]", "{a: 1}", "yes",   "no",    "1e3",
                                       "5.0",     "1e30", "-1e30",    "007", "+1",     ".5",    "5.",    "''",
                                       "'3 x,y'", "3 _",  "\"true\"", "3 4", "1,5",    "- 3"};
-  for (size_t i = 0; i < dem_inputs.count; i++) {
-    const struct field *row = &dem_inputs.rows[i];
+  for (size_t i = 0; i < engine->inputs->count; i++) {
+    const struct field *row = &engine->inputs->rows[i];
     for (size_t k = 0; k < sizeof texts / sizeof texts[0]; k++)
-      emit_row(row, texts[k]);
+      emit_row(engine, row, texts[k]);
     const double edges[] = {row->minimum,
                             row->maximum,
                             nextafter(row->minimum, -HUGE_VAL),
@@ -123,34 +126,34 @@ static void generate(void) {
       char text[32];
       if (!isfinite(edges[k])) continue;
       field_print_number(edges[k], text);
-      emit_row(row, text);
+      emit_row(engine, row, text);
     }
     for (size_t c = 0; row->kind == FIELD_CHOICE && row->choices[c]; c++)
-      emit_row(row, row->choices[c]);
+      emit_row(engine, row, row->choices[c]);
     char unknown[140];
     snprintf(unknown, sizeof unknown, "%sx", row->path);
-    emit(NULL, NULL, unknown, "3");
+    emit(engine->name, NULL, NULL, unknown, "3");
     snprintf(unknown, sizeof unknown, "%s.x", row->path);
-    emit(NULL, NULL, unknown, "3");
+    emit(engine->name, NULL, NULL, unknown, "3");
   }
 }
 
 int main(int count, char **arguments) {
-  bool scene_kind = count > 2 && strcmp(arguments[2], "scene") == 0;
+  const struct engine_kind *engine = count > 2 ? engine_of(arguments[2]) : NULL;
   if (count > 2 && strcmp(arguments[1], "schema") == 0) {
-    if (scene_kind)
-      scene_schema(&dem_engine, stdout);
+    if (engine)
+      scene_schema(engine, stdout);
     else
       campaign_schema_write(stdout);
     return 0;
   }
   if (count > 3 && strcmp(arguments[1], "judge") == 0) {
     for (int i = 3; i < count; i++)
-      printf("%s %s\n", judge(scene_kind, arguments[i], false) ? "good" : "bad", arguments[i]);
+      printf("%s %s\n", judge(engine != NULL, arguments[i], false) ? "good" : "bad", arguments[i]);
     return 0;
   }
-  if (count == 2 && strcmp(arguments[1], "generated") == 0) {
-    generate();
+  if (count == 3 && strcmp(arguments[1], "generated") == 0 && engine) {
+    generate(engine);
     return 0;
   }
   int wrong = scene_builtin_count() == 0;
@@ -166,11 +169,12 @@ int main(int count, char **arguments) {
     }
     scene_free(scene);
   }
-  for (int kind = 0; kind < 2; kind++) {
+  static const char *const kinds[] = {"scene-dem", "scene-sph", "campaign"};
+  for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; k++) {
     int good = 0, bad = 0;
-    wrong += judge_folder(kind == 0, "good", true, &good);
-    wrong += judge_folder(kind == 0, "bad", false, &bad) + judge_folder(kind == 0, "reader", false, &bad);
-    fprintf(stderr, "%s: %d good and %d bad documents\n", kind == 0 ? "scene" : "campaign", good, bad);
+    wrong += judge_folder(kinds[k], "good", true, &good);
+    wrong += judge_folder(kinds[k], "bad", false, &bad) + judge_folder(kinds[k], "reader", false, &bad);
+    fprintf(stderr, "%s: %d good and %d bad documents\n", kinds[k], good, bad);
     wrong += good < 3 || bad < 10;
   }
   return wrong != 0;
