@@ -243,6 +243,52 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   end_triangle_share REAL -- [1] Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.
 ) STRICT;
 
+CREATE TABLE result_sph ( -- What this engine reports beyond the columns of table run, one to one.
+  run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
+  stop_reason TEXT, -- Why the run ended. One of: running, quiet, end-time, fault
+  particles INTEGER, -- [1] Particles of the target (of a collision: of both bodies).
+  projectile_particles INTEGER, -- [1] Particles of the projectile.
+  flaws INTEGER, -- [1] Explicit flaws in all bodies.
+  target_mass REAL, -- [kg] Mass of the target: M of all mass fractions, which leave the projectile out.
+  projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
+  specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the target's mass; off without one.
+  fracture_ceased INTEGER, -- Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break.
+  first_damage REAL, -- [s] Time at which damage began; off when there is none.
+  cease_time REAL, -- [s] Time since which damage has grown by less than stop.quiet_growth; off when it still grows.
+  mean_damage REAL, -- [1] Mean damage of the target at the end, by mass.
+  undamaged_fraction REAL, -- [1] Mass share of the target's particles below fragments.damage, before the static pass.
+  largest_bare_fraction REAL, -- [1] M_1/M with the static pass and without the veneer of damaged particles.
+  largest_veneer_fraction REAL, -- [1] M_1/M with the static pass and with the veneer.
+  largest_dynamic_fraction REAL, -- [1] M_1/M without the static pass, with the veneer.
+  largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid with the largest fragment's moments of inertia.
+  largest_axis_short REAL, -- [1] Shortest over longest axis of that ellipsoid: 1 is a sphere.
+  largest_speed REAL, -- [m/s] Speed of the largest fragment.
+  second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is none.
+  second_angle REAL, -- [rad] Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.
+  energy_kinetic REAL, -- [J] Kinetic energy at the end.
+  energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
+  energy_damped REAL, -- [J] Energy taken by damped sides.
+  energy_work_of_held REAL, -- [J] Work done by grips.
+  energy_clamped REAL, -- [J] Energy put in where internal energy would have become negative.
+  energy_input REAL, -- [J] Energy put in: kinetic energy at the start, and the size of the grips' work.
+  clamped_share REAL, -- [1] energy.clamped over energy_input: booked apart, not credited in energy_error.
+  density_held_share REAL, -- [1] Particle-steps at the lowest density allowed, over all: clamps that put in no energy.
+  angular_momentum_error REAL, -- [1] Change of angular momentum over the larger of its first size and the sum of momenta times the target's reach; off with grips or damped sides.
+  limited_courant REAL, -- [1] Share of the steps whose length the speed of sound and the viscosity set.
+  limited_force REAL, -- [1] Share of the steps whose length the acceleration set.
+  limited_damage REAL, -- [1] Share of the steps whose length the growth of damage set.
+  limited_distention REAL, -- [1] Share of the steps whose length the closing of pores set.
+  limited_energy REAL, -- [1] Share of the steps whose length the change of internal energy set.
+  limited_density REAL, -- [1] Share of the steps whose length the change of density set.
+  neighbours REAL, -- [1] Mean number of neighbours within 2h at the end.
+  peak_stress REAL, -- [Pa] Stretch: largest mean axial stress between the grips.
+  peak_strain REAL, -- [1] Stretch: strain rate times time, then.
+  peak_time REAL, -- [s] Stretch: that time.
+  cracks REAL, -- [1] Stretch: pieces of more than 1 % of the rod, less one (without the veneer).
+  frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
+  rebound REAL -- [1] Collision: speed at which the bodies part over the speed of approach.
+) STRICT;
+
 CREATE VIEW runs AS -- every run with its varied inputs and all its results
 SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,
   r."session_id",
@@ -273,7 +319,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   r."mean_fragment_mass",
   r."mean_fragment_mass_rest",
   r."kinetic_energy_share",
-  result_dem."stop_reason",
+  result_dem."stop_reason" AS "result_dem_stop_reason",
   result_dem."grains",
   result_dem."beams",
   result_dem."broken",
@@ -282,13 +328,13 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_dem."broken_share",
   result_dem."first_break",
   result_dem."last_break",
-  result_dem."energy_input",
+  result_dem."energy_input" AS "result_dem_energy_input",
   result_dem."threshold_energy",
   result_dem."stable_time_step",
   result_dem."sound_speed_extension",
   result_dem."sound_speed_compression",
   result_dem."overlap_share",
-  result_dem."energy_kinetic",
+  result_dem."energy_kinetic" AS "result_dem_energy_kinetic",
   result_dem."energy_beam",
   result_dem."energy_contact",
   result_dem."energy_damping",
@@ -302,9 +348,52 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_dem."final_strain",
   result_dem."upright_share",
   result_dem."end_triangle_share",
+  result_sph."stop_reason" AS "result_sph_stop_reason",
+  result_sph."particles",
+  result_sph."projectile_particles",
+  result_sph."flaws",
+  result_sph."target_mass",
+  result_sph."projectile_mass",
+  result_sph."specific_energy",
+  result_sph."fracture_ceased",
+  result_sph."first_damage",
+  result_sph."cease_time",
+  result_sph."mean_damage",
+  result_sph."undamaged_fraction",
+  result_sph."largest_bare_fraction",
+  result_sph."largest_veneer_fraction",
+  result_sph."largest_dynamic_fraction",
+  result_sph."largest_axis_middle",
+  result_sph."largest_axis_short",
+  result_sph."largest_speed",
+  result_sph."second_mass",
+  result_sph."second_angle",
+  result_sph."energy_kinetic" AS "result_sph_energy_kinetic",
+  result_sph."energy_internal",
+  result_sph."energy_damped",
+  result_sph."energy_work_of_held",
+  result_sph."energy_clamped",
+  result_sph."energy_input" AS "result_sph_energy_input",
+  result_sph."clamped_share",
+  result_sph."density_held_share",
+  result_sph."angular_momentum_error",
+  result_sph."limited_courant",
+  result_sph."limited_force",
+  result_sph."limited_damage",
+  result_sph."limited_distention",
+  result_sph."limited_energy",
+  result_sph."limited_density",
+  result_sph."neighbours",
+  result_sph."peak_stress",
+  result_sph."peak_strain",
+  result_sph."peak_time",
+  result_sph."cracks",
+  result_sph."frequency",
+  result_sph."rebound",
   lower(hex(r.identity)) AS identity
 FROM run r JOIN point p ON p.point_id = r.point_id
-  LEFT JOIN result_dem ON result_dem.run_id = r.run_id;
+  LEFT JOIN result_dem ON result_dem.run_id = r.run_id
+  LEFT JOIN result_sph ON result_sph.run_id = r.run_id;
 
 CREATE VIEW points AS -- statistics of every point, one row per results_version
 WITH first AS (
@@ -709,6 +798,92 @@ INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression:
 
 INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta times the target''s reach; off with grips or damped sides.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time since which damage has grown by less than stop.quiet_growth; off when it still grows.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy put in where internal energy would have become negative.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy taken by damped sides.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start, and the size of the grips'' work.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_internal', 'J', 'Internal energy at the end, elastic energy included.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_kinetic', 'J', 'Kinetic energy at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done by grips.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time at which damage began; off when there is none.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Explicit flaws in all bodies.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Damage had ceased to grow by the scene''s rule (stop.quiet_time), or there is nothing that could break.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid with the largest fragment''s moments of inertia.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_short', '1', 'Shortest over longest axis of that ellipsoid: 1 is a sphere.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/M with the static pass and without the veneer of damaged particles.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M without the static pass, with the veneer.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M with the static pass and with the veneer.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_density', '1', 'Share of the steps whose length the change of density set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_distention', '1', 'Share of the steps whose length the closing of pores set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_energy', '1', 'Share of the steps whose length the change of internal energy set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'limited_force', '1', 'Share of the steps whose length the acceleration set.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'particles', '1', 'Particles of the target (of a collision: of both bodies).', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'peak_strain', '1', 'Stretch: strain rate times time, then.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'peak_stress', 'Pa', 'Stretch: largest mean axial stress between the grips.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'peak_time', 's', 'Stretch: that time.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'projectile_particles', '1', 'Particles of the projectile.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed at which the bodies part over the speed of approach.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'run_id', NULL, 'the run', 0);
+
+INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Angle at the target''s centre between the point of impact and the second largest fragment: pi is opposite.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is none.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the target''s mass; off without one.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, fault', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'target_mass', 'kg', 'Mass of the target: M of all mass fractions, which leave the projectile out.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass share of the target''s particles below fragments.damage, before the static pass.', 1);
+
 INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
 INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
@@ -775,6 +950,8 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta times the target''s reach; off with grips or damped sides.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'beams', '1', 'Beams at the start, those of the explosive left out.', 0);
@@ -787,9 +964,17 @@ INSERT INTO column_doc VALUES ('runs', 'broken_share', '1', 'Broken beams over a
 
 INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time since which damage has grown by less than stop.quiet_growth; off when it still grows.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of single grains.', 0);
 
@@ -799,7 +984,11 @@ INSERT INTO column_doc VALUES ('runs', 'energy_beam', 'J/m', 'Energy stored in b
 
 INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy put in where internal energy would have become negative.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy taken by damped sides.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
@@ -809,9 +998,9 @@ INSERT INTO column_doc VALUES ('runs', 'energy_external_work', 'J/m', 'Work done
 
 INSERT INTO column_doc VALUES ('runs', 'energy_friction', 'J/m', 'Energy taken by friction.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_internal', 'J', 'Internal energy at the end, elastic energy included.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_kinetic', 'J/m', 'Kinetic energy at the end.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_work_of_held', 'J', 'Work done by grips.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'engine', NULL, 'name of the engine', 0);
 
@@ -825,7 +1014,15 @@ INSERT INTO column_doc VALUES ('runs', 'finished_at', 's', 'when it was stored, 
 
 INSERT INTO column_doc VALUES ('runs', 'first_break', 's', 'Time of the first break; off when none broke.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time at which damage began; off when there is none.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Explicit flaws in all bodies.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'fracture_ceased', NULL, 'Damage had ceased to grow by the scene''s rule (stop.quiet_time), or there is nothing that could break.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'grains', '1', 'Grains, the explosive one left out.', 0);
 
@@ -835,9 +1032,35 @@ INSERT INTO column_doc VALUES ('runs', 'identity', NULL, '128-bit hash of engine
 
 INSERT INTO column_doc VALUES ('runs', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid with the largest fragment''s moments of inertia.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'largest_axis_short', '1', 'Shortest over longest axis of that ellipsoid: 1 is a sphere.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M with the static pass and without the veneer of damaged particles.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M without the static pass, with the veneer.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M with the static pass and with the veneer.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_density', '1', 'Share of the steps whose length the change of density set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_distention', '1', 'Share of the steps whose length the closing of pores set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_energy', '1', 'Share of the steps whose length the change of internal energy set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'limited_force', '1', 'Share of the steps whose length the acceleration set.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
@@ -847,17 +1070,45 @@ INSERT INTO column_doc VALUES ('runs', 'message', NULL, 'Diagnostics for a perso
 
 INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum not explained by outer forces, over the sum of the members'' momenta.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'particles', '1', 'Particles of the target (of a collision: of both bodies).', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'peak_strain', '1', 'Stretch: strain rate times time, then.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'peak_stress', 'Pa', 'Stretch: largest mean axial stress between the grips.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'peak_time', 's', 'Stretch: that time.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'point_id', NULL, 'number of the point: one set of input values', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'projectile_particles', '1', 'Particles of the projectile.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'rank', NULL, 'MPI rank that computed it', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'rebound', '1', 'Collision: speed at which the bodies part over the speed of approach.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'replicate', NULL, 'which seed of the point, from 0', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_input', 'J/m', 'Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kinetic energy at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_dem_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start, and the size of the grips'' work.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_kinetic', 'J', 'Kinetic energy at the end.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'result_sph_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, fault', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'results_version', NULL, 'version of the engine''s results; statistics never mix two', 0);
 
@@ -865,7 +1116,11 @@ INSERT INTO column_doc VALUES ('runs', 'run_id', NULL, 'number of the run in thi
 
 INSERT INTO column_doc VALUES ('runs', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Angle at the target''s centre between the point of impact and the second largest fragment: pi is opposite.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is none.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
@@ -877,17 +1132,19 @@ INSERT INTO column_doc VALUES ('runs', 'sound_speed_compression', 'm/s', 'Estima
 
 INSERT INTO column_doc VALUES ('runs', 'sound_speed_extension', 'm/s', 'Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice''s value).', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the target''s mass; off without one.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
-
 INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under load.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target: M of all mass fractions, which leave the projectile out.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 0);
 
@@ -896,6 +1153,8 @@ INSERT INTO column_doc VALUES ('runs', 'time', 's', 'Simulated time at the end.'
 INSERT INTO column_doc VALUES ('runs', 'time_step', 's', 'The smallest time step used.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'total_mass', 'kg', 'Mass of the body at the end (two dimensions: per metre of thickness).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'undamaged_fraction', '1', 'Mass share of the target''s particles below fragments.damage, before the static pass.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broken beams whose crack (the common side) lies within 30 degrees of the load''s direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.', 0);
 
