@@ -28,6 +28,7 @@ struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
   p.cap = in->fracture.cap;
   p.crack_radius_support = in->fracture.crack_radius == 1;
   p.compact_flaws = in->fidelity.flaws == 1;
+  p.distention_step = in->fidelity.distention_step;
   p.skin = in->fidelity.skin;
   p.precision = in->fidelity.precision;
   p.threads = (int)in->fidelity.threads;
@@ -64,7 +65,7 @@ static void shape(const char *name, const struct sph_shape *s, const struct sph_
   else
     fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
   fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", builtin_material_names[b->material_name],
-          b->material.density * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
+          sph_scale_density(b) * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
 }
 
 static void protocol(const struct sph_inputs *in, FILE *out) {
@@ -110,7 +111,8 @@ static bool modules(const struct sph_inputs *in, FILE *out) {
     for (int b = 0; b < 1 + sph_scale_has_projectile(in); b++) {
       const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
       struct sph_body_physics physics = {.material = body->material, .strength = body->strength,
-                                         .flaws = sph_scale_cracks(body) ? &some : NULL};
+                                         .flaws = sph_scale_cracks(body) ? &some : NULL,
+                                         .porosity = sph_scale_porous(body) ? &body->material.porosity : NULL};
       if (module->on(&physics, &parameters))
         on |= 1 << b;
     }

@@ -11,6 +11,11 @@ static const double pi = 3.14159265358979323846;
 
 enum { Z = 2 };
 
+/* A collision has two of the target. */
+static const struct sph_body_inputs *inputs_of(const struct sph_run *run, int body) {
+  return body == 1 && sph_scale_has_projectile(&run->inputs) ? &run->inputs.projectile : &run->inputs.target;
+}
+
 static struct sph_body body_of(const struct sph_run *run, const struct sph_body_inputs *b, const struct sph_shape *shape,
                                uint64_t number, double spacing) {
   const struct sph_inputs *in = &run->inputs;
@@ -22,7 +27,7 @@ static struct sph_body body_of(const struct sph_run *run, const struct sph_body_
                   .turned = b->turned,
                   .seed = run->seed,
                   .body = number},
-      .density = b->material.density,
+      .density = sph_scale_density(b),
       .h_over_spacing = in->fidelity.smoothing,
   };
 }
@@ -59,6 +64,8 @@ static int arrays_of(const struct sph_inputs *in) {
       arrays |= SPH_WITH_STRESS;
     if (sph_scale_cracks(bodies[b]))
       arrays |= SPH_WITH_DAMAGE;
+    if (sph_scale_porous(bodies[b]))
+      arrays |= SPH_WITH_DISTENTION;
   }
   if (in->kind == SPH_STRETCH)
     arrays |= SPH_WITH_HELD;
@@ -134,7 +141,7 @@ static status make_flaws(struct sph_run *run, struct error *error) {
   struct sph_middle middle = {.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.flaw_free};
   status code = STATUS_OK;
   for (int b = 0; b < run->body_count && !code; b++) {
-    const struct sph_body_inputs *body = b == 1 && sph_scale_has_projectile(in) ? &in->projectile : &in->target;
+    const struct sph_body_inputs *body = inputs_of(run, b);
     if (!sph_scale_cracks(body))
       continue;
     struct sph_flaw_law law = {.weibull = body->material.weibull, .draw = in->fracture.draw, .seed = run->seed, .body = (uint64_t)b};
@@ -156,6 +163,12 @@ static void damp(struct sph_run *run) {
                     10.5 * sph_scale_wave_speed(&in->target) / in->sides.depth);
 }
 
+static void open_pores(struct sph_run *run) {
+  for (int b = 0; run->start->distention && b < run->body_count; b++)
+    for (size_t i = run->range[b].first; i < run->range[b].first + run->range[b].n; i++)
+      run->start->distention[i] = sph_scale_porous(inputs_of(run, b)) ? inputs_of(run, b)->material.porosity.distention : 1;
+}
+
 status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   double flight[3] = {0, 0, 0};
@@ -172,6 +185,7 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   if (code || (code = make_bodies(run, error)))
     return code;
   run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
+  open_pores(run);
   set_in_motion(run, flight);
   damp(run);
   return make_flaws(run, error);

@@ -78,14 +78,17 @@ static void second(const struct sph_run *run, const struct sph_pieces *pieces, s
 
 static void damage(const struct sph_run *run, struct sph_results *results) {
   const struct sph_particles *p = run->now;
-  double mass = 0, sum = 0, whole = 0;
+  double mass = 0, sum = 0, whole = 0, pores = 0;
   for (size_t i = 0; i < run->targets; i++) {
     double d = p->damage_cbrt ? p->damage_cbrt[i] * p->damage_cbrt[i] * p->damage_cbrt[i] : 0;
     mass += p->mass[i];
     sum += p->mass[i] * d;
+    pores += p->distention ? p->mass[i] * p->distention[i] : 0;
     whole += d < run->inputs.fragments.damage ? p->mass[i] : 0;
   }
   results->mean_damage = share(sum, mass);
+  if (p->distention && mass > 0)
+    results->mean_distention = not_infinite(fmax(pores / mass, 1));
   results->undamaged_fraction = share(whole, mass);
 }
 

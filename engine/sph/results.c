@@ -31,6 +31,8 @@ static const struct field rows[] = {
     REAL(cease_time, "s", 0, .doc = "Time since which damage has grown by less than stop.quiet_growth; off when it still grows."),
     SHARE(mean_damage, .doc = "Mean damage of the target at the end, by mass.", .source = "BA95 eq. 14"),
     SHARE(undamaged_fraction, .doc = "Mass share of the target's particles below fragments.damage, before the static pass."),
+    REAL(mean_distention, "1", 1, .doc = "Mean distention of the target at the end, by mass: 1 is solid; off without pores.",
+         .source = "Jutzi, Benz & Michel 2008"),
     SHARE(largest.bare_fraction, .doc = "M_1/M with the static pass and without the veneer of damaged particles.",
           .source = "BA95 section 4.4"),
     SHARE(largest.veneer_fraction, .doc = "M_1/M with the static pass and with the veneer.", .source = "BA95 section 4.4"),

@@ -12,7 +12,7 @@ struct sph_results {
   double target_mass, projectile_mass, specific_energy;
   bool fracture_ceased;
   double first_damage, cease_time;
-  double mean_damage, undamaged_fraction;
+  double mean_damage, undamaged_fraction, mean_distention;
   struct {
     double bare_fraction, veneer_fraction, dynamic_fraction;
     double axis_middle, axis_short;

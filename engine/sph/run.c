@@ -44,7 +44,8 @@ static status make_system(struct sph_run *run, struct error *error) {
   struct sph_body_physics physics[SPH_RUN_BODIES];
   for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_inputs *body = b == 1 && sph_scale_has_projectile(in) ? &in->projectile : &in->target;
-    physics[b] = (struct sph_body_physics){.material = body->material, .strength = body->strength, .flaws = run->flaws[b]};
+    physics[b] = (struct sph_body_physics){.material = body->material, .strength = body->strength, .flaws = run->flaws[b],
+                                            .porosity = sph_scale_porous(body) ? &body->material.porosity : NULL};
     if (field_is_off(body->material.yield_stress))
       physics[b].material.yield_stress = HUGE_VAL; /* never yields */
   }
@@ -86,7 +87,8 @@ status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph
   run->seed = seed;
   if ((code = sph_protocol_bodies(run, error)) || (code = make_system(run, error)))
     goto cleanup;
-  int arrays = (run->start->stress[0] ? SPH_WITH_STRESS : 0) | (run->start->damage_cbrt ? SPH_WITH_DAMAGE : 0);
+  int arrays = (run->start->stress[0] ? SPH_WITH_STRESS : 0) | (run->start->damage_cbrt ? SPH_WITH_DAMAGE : 0) |
+               (run->start->distention ? SPH_WITH_DISTENTION : 0);
   if ((code = sph_particles_make(run->start->n, arrays, &run->now, error)) || (code = sph_protocol_record_start(run, error)))
     goto cleanup;
   for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own */
