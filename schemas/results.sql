@@ -257,6 +257,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   cease_time REAL, -- [s] Time since which damage has grown by less than stop.quiet_growth; off when it still grows.
   mean_damage REAL, -- [1] Mean damage of the target at the end, by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles below fragments.damage, before the static pass.
+  mean_distention REAL, -- [1] Mean distention of the target at the end, by mass: 1 is solid; off without pores.
   largest_bare_fraction REAL, -- [1] M_1/M with the static pass and without the veneer of damaged particles.
   largest_veneer_fraction REAL, -- [1] M_1/M with the static pass and with the veneer.
   largest_dynamic_fraction REAL, -- [1] M_1/M without the static pass, with the veneer.
@@ -360,6 +361,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_sph."cease_time",
   result_sph."mean_damage",
   result_sph."undamaged_fraction",
+  result_sph."mean_distention",
   result_sph."largest_bare_fraction",
   result_sph."largest_veneer_fraction",
   result_sph."largest_dynamic_fraction",
@@ -854,6 +856,8 @@ INSERT INTO column_doc VALUES ('result_sph', 'limited_force', '1', 'Share of the
 
 INSERT INTO column_doc VALUES ('result_sph', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'mean_distention', '1', 'Mean distention of the target at the end, by mass: 1 is solid; off without pores.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'particles', '1', 'Particles of the target (of a collision: of both bodies).', 1);
@@ -1061,6 +1065,8 @@ INSERT INTO column_doc VALUES ('runs', 'limited_energy', '1', 'Share of the step
 INSERT INTO column_doc VALUES ('runs', 'limited_force', '1', 'Share of the steps whose length the acceleration set.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, by mass: 1 is solid; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
