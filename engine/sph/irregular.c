@@ -5,6 +5,7 @@
 
 #include "engine/random.h"
 #include "engine/sph/nearest.h"
+#include "engine/sph/order.h"
 #include "engine/sph/particles.h"
 #include "engine/sph/relax.h"
 
@@ -160,6 +161,24 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
   return STATUS_OK;
 }
 
+/* Neighbours in space become neighbours in memory: the sequence leaps about. */
+static status sort(size_t n, double (*at)[3], struct error *error) {
+  double *column = malloc(3 * n * sizeof *column);
+  uint32_t *order = malloc(n * sizeof *order);
+  status code = STATUS_OK;
+  if (!column || !order) code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
+  for (size_t i = 0; i < n && !code; i++)
+    for (size_t k = 0; k < 3; k++)
+      column[k * n + i] = at[i][k];
+  if (!code) code = sph_order_find(n, column, column + n, column + 2 * n, order, error);
+  for (size_t i = 0; i < n && !code; i++)
+    for (size_t k = 0; k < 3; k++)
+      at[i][k] = column[k * n + order[i]];
+  free(column);
+  free(order);
+  return code;
+}
+
 /* Points start as a low-discrepancy sequence (Weyl's, with powers of the plastic number's cousin in 3D) over (number
  * within r, direction), kept where the body is. */
 static status fill_graded(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
@@ -206,7 +225,8 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
     code = status_fail(error, STATUS_CONTENT, "a body is too thin, or too far from its point of impact, for graded particles.");
     goto cleanup;
   }
-  code = sph_relax_spread(&graded, shape, g->fine, n, at, error);
+  code = sort(n, at, error);
+  if (!code) code = sph_relax_spread(&graded, shape, g->fine, n, at, error);
   if (!code) code = store(shape, g, n, at, points, error);
 cleanup:
   free(shells);
