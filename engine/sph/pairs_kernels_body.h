@@ -60,6 +60,10 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define FIXED   0
 #define ROOT    root_d
 #define INVERSE inverse_of_d
+#ifdef __AVX512F__
+#define AVX512(before, after) _mm512_##before##pd##after
+#define AVX512_MASK           __mmask8
+#endif
 #include "engine/sph/pairs_kernels_sum.h"
 #undef REAL
 #undef INT
@@ -68,6 +72,10 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef FIXED
 #undef ROOT
 #undef INVERSE
+#ifdef AVX512
+#undef AVX512
+#undef AVX512_MASK
+#endif
 #define REAL    float
 #define INT     int32_t
 #define LANES   (WIDTH / 4)
@@ -75,6 +83,10 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define FIXED   1
 #define ROOT    root_f
 #define INVERSE inverse_of_f
+#ifdef __AVX512F__
+#define AVX512(before, after) _mm512_##before##ps##after
+#define AVX512_MASK           __mmask16
+#endif
 #include "engine/sph/pairs_kernels_sum.h"
 
 static double nearest_image(double along, double length) {

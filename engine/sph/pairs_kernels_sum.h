@@ -71,13 +71,47 @@ INLINE void NAME(transpose)(VECTOR r[LANES]) {
 #endif
 }
 
-INLINE VECTOR NAME(select)(MASK mask, VECTOR yes, VECTOR no) {
-  return (VECTOR)((mask & (MASK)yes) | (~mask & (MASK)no));
+/* Choices between vectors: GCC's vector extension has none in C that become single instructions of the masks of AVX-512. */
+#ifdef AVX512
+typedef AVX512_MASK NAME(choice);
+INLINE NAME(choice) NAME(less)(VECTOR a, VECTOR b) {
+  return AVX512(cmp_, _mask)(a, b, _CMP_LT_OQ);
 }
-
-INLINE VECTOR NAME(minimum)(VECTOR a, VECTOR b) {
-  return NAME(select)(a < b, a, b);
+INLINE NAME(choice) NAME(first_lanes)(INT count) {
+  return (AVX512_MASK)(count < LANES ? (1U << count) - 1 : (1U << LANES) - 1);
 }
+INLINE VECTOR NAME(select)(NAME(choice) choice, VECTOR yes, VECTOR no) {
+  return (VECTOR)AVX512(mask_blend_, )(choice, no, yes);
+}
+INLINE VECTOR NAME(keep)(NAME(choice) choice, VECTOR yes) {
+  return (VECTOR)AVX512(maskz_mov_, )(choice, yes);
+}
+INLINE VECTOR NAME(larger_at)(size_t lane, VECTOR a, VECTOR b, VECTOR elsewhere) {
+  return (VECTOR)AVX512(mask_max_, )(elsewhere, (AVX512_MASK)(1U << lane), a, b);
+}
+#else
+typedef MASK NAME(choice);
+INLINE MASK NAME(less)(VECTOR a, VECTOR b) {
+  return a < b;
+}
+INLINE MASK NAME(first_lanes)(INT count) {
+  MASK lanes;
+  UNROLL for (int lane = 0; lane < LANES; lane++)
+    lanes[lane] = lane;
+  return lanes < count;
+}
+INLINE VECTOR NAME(select)(MASK choice, VECTOR yes, VECTOR no) {
+  return (VECTOR)((choice & (MASK)yes) | (~choice & (MASK)no));
+}
+INLINE VECTOR NAME(keep)(MASK choice, VECTOR yes) {
+  return (VECTOR)(choice & (MASK)yes);
+}
+INLINE VECTOR NAME(larger_at)(size_t lane, VECTOR a, VECTOR b, VECTOR elsewhere) {
+  MASK pick = {0};
+  pick[lane] = -1;
+  return NAME(select)(pick, NAME(select)(a > b, a, b), elsewhere);
+}
+#endif
 
 /* The block of LANES columns from `column` on, of LANES records: r[k] is column + k. */
 INLINE void NAME(fetch)(const REAL *in, size_t stride, size_t column, const uint32_t *slot, VECTOR r[LANES]) {
@@ -88,13 +122,8 @@ INLINE void NAME(fetch)(const REAL *in, size_t stride, size_t column, const uint
 
 /* was + is, but where it is a largest value and not a sum. */
 INLINE VECTOR NAME(add)(VECTOR was, VECTOR is, size_t column) {
-  VECTOR now = was + is;
-  if (column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES) {
-    MASK pick = {0};
-    pick[SUM_SIGNAL - column] = -1;
-    now = NAME(select)(pick, NAME(select)(was > is, was, is), now);
-  }
-  return now;
+  const VECTOR sum = was + is;
+  return column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES ? NAME(larger_at)(SUM_SIGNAL - column, was, is, sum) : sum;
 }
 
 /* r[k] is column + k of what LANES records get. */
@@ -137,9 +166,6 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
   const struct sph_pair_constants k = *constants;
   const size_t in_stride = artificial ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
   const REAL norm = (REAL)SPH_SPLINE_NORM, quarter = (REAL)0.25, half = (REAL)0.5;
-  MASK lanes;
-  for (int lane = 0; lane < LANES; lane++)
-    lanes[lane] = lane;
   for (size_t i = 0; i < chunk->own; i++) {
     const REAL *mine = in + i * in_stride;
     VECTOR s[PAIR_WIDE]; /* my sums, lane by lane */
@@ -154,20 +180,20 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       const VECTOR dx = NAME(along)(mine[PAIR_X], c[PAIR_X], 0, &k), dy = NAME(along)(mine[PAIR_Y], c[PAIR_Y], 1, &k),
                    dz = NAME(along)(mine[PAIR_Z], c[PAIR_Z], 2, &k);
       const VECTOR h = half * (mine[PAIR_H] + c[PAIR_H]), hh = h * h, square = dx * dx + dy * dy + dz * dz;
-      const MASK near = (square < 4 * hh) & (lanes < total - done);
+      const NAME(choice) near = NAME(less)(square, 4 * hh) & NAME(first_lanes)(total - done);
       const VECTOR floor_square = (REAL)1e-12 * hh; /* coincident particles: no force, no division by zero */
-      const VECTOR inverse_r = ROOT(NAME(select)(square > floor_square, square, floor_square));
+      const VECTOR inverse_r = ROOT(NAME(select)(NAME(less)(floor_square, square), square, floor_square));
       const VECTOR inverse_h = INVERSE(h), q = square * inverse_r * inverse_h, t = 2 - q;
       const VECTOR inner = (REAL)2.25 * q - 3, outer = (REAL)-0.75 * t * t * (h * inverse_r);
       const VECTOR inverse_hh = inverse_h * inverse_h;
-      VECTOR slope = NAME(select)(q < 1, inner, outer) * (inverse_hh * inverse_hh * inverse_h * norm); /* W'/r */
-      slope = (VECTOR)((MASK)slope & near);
+      const NAME(choice) within_h = NAME(less)(q, (VECTOR){0} + 1);
+      const VECTOR slope = NAME(keep)(near, NAME(select)(within_h, inner, outer) * (inverse_hh * inverse_hh * inverse_h * norm)); /* W'/r */
       const VECTOR wx = slope * dx, wy = slope * dy, wz = slope * dz;
       const VECTOR ux = mine[PAIR_VX] - c[PAIR_VX], uy = mine[PAIR_VY] - c[PAIR_VY], uz = mine[PAIR_VZ] - c[PAIR_VZ];
       const VECTOR closing = ux * dx + uy * dy + uz * dz, zero = {0};
       const VECTOR densities = mine[PAIR_DENSITY] + c[PAIR_DENSITY];
       const VECTOR per = INVERSE(densities * (square + (REAL)0.01 * hh));
-      const VECTOR mu_per = h * NAME(minimum)(closing, zero) * per, mu = mu_per * densities;
+      const VECTOR mu_per = h * NAME(select)(NAME(less)(closing, zero), closing, zero) * per, mu = mu_per * densities;
       const VECTOR viscous = mu_per * ((REAL)k.twice_beta * mu - (REAL)k.alpha * (mine[PAIR_SOUND] + c[PAIR_SOUND]));
       VECTOR fx, fy, fz;
       if (k.strength) {
@@ -178,7 +204,7 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
           VECTOR more[PAIR_WIDE - PAIR_NARROW];
           UNROLL for (size_t column = 0; column < 6; column += LANES)
             NAME(fetch)(in, in_stride, PAIR_ARTIFICIAL + column, slot, more + column);
-          VECTOR f = NAME(select)(q < 1, 1 - q * q * ((REAL)1.5 - (REAL)0.75 * q), quarter * t * t * t);
+          VECTOR f = NAME(select)(within_h, 1 - q * q * ((REAL)1.5 - (REAL)0.75 * q), quarter * t * t * t);
           f *= (REAL)(1 / k.spline_at_spacing);
           f *= f;
           f *= f;
@@ -193,21 +219,21 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         const VECTOR p = mine[PAIR_XX] + c[PAIR_XX] - viscous;
         fx = p * wx, fy = p * wy, fz = p * wz;
       }
-      const VECTOR heat = half * viscous * slope * closing, signal = (VECTOR)((MASK)-mu & near);
-      const VECTOR one = (VECTOR)((MASK)(zero + 1) & near);
-      VECTOR mi = zero + mine[PAIR_MASS], mj = c[PAIR_MASS];
+      const VECTOR heat = half * viscous * slope * closing, signal = NAME(keep)(near, -mu);
+      const VECTOR one = NAME(keep)(near, zero + 1), mi = zero + mine[PAIR_MASS];
+      VECTOR mj = c[PAIR_MASS], opposite = zero - mine[PAIR_MASS];
       s[0] += mj * fx, s[1] += mj * fy, s[2] += mj * fz;
       s[SUM_HEATING] += mj * heat;
-      s[SUM_SIGNAL] = NAME(select)(signal > s[SUM_SIGNAL], signal, s[SUM_SIGNAL]);
+      s[SUM_SIGNAL] = NAME(select)(NAME(less)(s[SUM_SIGNAL], signal), signal, s[SUM_SIGNAL]);
       s[SUM_COUNT] += one;
       VECTOR g[PAIR_WIDE];
-      g[0] = -mi * fx, g[1] = -mi * fy, g[2] = -mi * fz;
+      g[0] = opposite * fx, g[1] = opposite * fy, g[2] = opposite * fz;
       g[SUM_HEATING] = mi * heat;
       g[SUM_SIGNAL] = signal;
       g[SUM_COUNT] = one;
       g[SUM_COUNT + 1] = zero;
       if (k.volume_weights) { /* volumes; else the sum is divided by rho_i afterwards */
-        mi *= 1 / mine[PAIR_DENSITY];
+        opposite *= 1 / mine[PAIR_DENSITY];
         mj *= INVERSE(c[PAIR_DENSITY]);
       }
       VECTOR ax = mj * wx, ay = mj * wy, az = mj * wz;
@@ -218,15 +244,15 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         s[16] -= dx * ax, s[17] -= dx * ay, s[18] -= dx * az;
         s[19] -= dy * ay, s[20] -= dy * az, s[21] -= dz * az;
       }
-      ax = mi * wx, ay = mi * wy, az = mi * wz;
-      g[3] = -ux * ax, g[4] = -ux * ay, g[5] = -ux * az;
-      g[6] = -uy * ax, g[7] = -uy * ay, g[8] = -uy * az;
-      g[9] = -uz * ax, g[10] = -uz * ay, g[11] = -uz * az;
+      ax = opposite * wx, ay = opposite * wy, az = opposite * wz;
+      g[3] = ux * ax, g[4] = ux * ay, g[5] = ux * az;
+      g[6] = uy * ax, g[7] = uy * ay, g[8] = uy * az;
+      g[9] = uz * ax, g[10] = uz * ay, g[11] = uz * az;
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(spread)(out, out_stride, column, slot, g + column);
       if (corrected) {
-        g[16] = -dx * ax, g[17] = -dx * ay, g[18] = -dx * az;
-        g[19] = -dy * ay, g[20] = -dy * az, g[21] = -dz * az;
+        g[16] = dx * ax, g[17] = dx * ay, g[18] = dx * az;
+        g[19] = dy * ay, g[20] = dy * az, g[21] = dz * az;
         UNROLL for (int column = 22; column < PAIR_WIDE; column++)
           g[column] = zero;
         UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
