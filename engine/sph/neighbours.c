@@ -23,6 +23,12 @@ struct search {
   uint8_t *level_of; /* by particle */
   uint32_t (*across)[2]; /* pairs of different levels, lower number first */
   size_t across_count, across_capacity;
+  const double *given[4]; /* x y z reach by particle */
+  struct {                /* gathered candidates */
+    size_t count, capacity, reals_capacity;
+    uint32_t *place;
+    double *reals; /* x y z reach, each count + PAD */
+  } near;
 };
 
 static int64_t cell_along(const struct level *level, int axis, double x) {
@@ -137,24 +143,62 @@ static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
   return true;
 }
 
-/* Of particle k (in the sorted order) with those of one level: pairs of equals go to `lists`, others aside. */
-static bool look(struct search *s, size_t k, const struct level *level, const size_t *bucket, size_t buckets,
-                 const double periodic[3], const struct sph_pair_kernels *kernels, struct sph_neighbours *lists,
-                 uint32_t **found, size_t *found_capacity) {
-  const uint32_t i = s->id[k];
-  const bool equals = level == &s->level[s->level_of[i]];
-  const double at[3] = {s->x[k], s->y[k], s->z[k]};
+/* What may be near the particles `first` .. `last` - 1 of the sorted order, which share a cell of `level`: those of the
+ * buckets round it (of a higher number than the lowest of ours, among equals), gathered side by side. */
+static bool gather(struct search *s, size_t first, size_t last, const struct level *level, const int64_t cell[3],
+                   const double periodic[3], const struct sph_pair_kernels *kernels, bool equals) {
+  size_t bucket[CELLS];
+  const size_t buckets = buckets_round(level, cell, bucket);
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, reach = 0, square = 0, middle[3];
+  uint32_t lowest = UINT32_MAX;
+  for (size_t k = first; k < last; k++) {
+    const double at[3] = {s->x[k], s->y[k], s->z[k]};
+    for (int d = 0; d < 3; d++) {
+      low[d] = at[d] < low[d] ? at[d] : low[d];
+      high[d] = at[d] > high[d] ? at[d] : high[d];
+    }
+    reach = s->reach[k] > reach ? s->reach[k] : reach;
+    lowest = s->id[k] < lowest ? s->id[k] : lowest;
+  }
+  for (int d = 0; d < 3; d++) {
+    middle[d] = 0.5 * (low[d] + high[d]);
+    square += 0.25 * (high[d] - low[d]) * (high[d] - low[d]);
+  }
+  const double far = fabs(middle[0]) + fabs(middle[1]) + fabs(middle[2]);
+  const double round = (reach + sqrt(square)) * (1 + 1e-12) + 1e-15 * far; /* a sphere that holds all of ours with their reach */
   size_t used = 0;
   for (size_t b = 0; b < buckets; b++) {
-    const size_t first = s->start[bucket[b] + 1], count = s->start[bucket[b] + 2] - first;
-    if (!count || (equals && s->id[first + count - 1] < i)) continue; /* numbers ascend within a bucket */
-    if (!grow((void **)found, found_capacity, used + count + PAD, sizeof **found)) return false;
-    used += kernels->within(count, s->x + first, s->y + first, s->z + first, s->reach + first, s->id + first, at, s->reach[k],
-                            periodic, equals ? i + 1 : 0, *found + used);
+    const size_t from = s->start[bucket[b] + 1], count = s->start[bucket[b] + 2] - from;
+    if (!count) continue;
+    if (!grow((void **)&s->near.place, &s->near.capacity, used + count + PAD, sizeof *s->near.place)) return false;
+    used += kernels->within(count, s->x + from, s->y + from, s->z + from, s->reach + from, s->id + from, middle, round, periodic,
+                            equals ? lowest + 1 : 0, s->near.place + used);
   }
+  if (!grow((void **)&s->near.reals, &s->near.reals_capacity, 4 * (used + PAD), sizeof *s->near.reals)) return false;
+  s->near.count = used;
+  double *x = s->near.reals, *y = x + used + PAD, *z = y + used + PAD, *its = z + used + PAD;
+  for (size_t m = 0; m < used; m++) {
+    const size_t j = s->near.place[m];
+    x[m] = s->given[0][j], y[m] = s->given[1][j], z[m] = s->given[2][j], its[m] = s->given[3][j];
+  }
+  memset(x + used, 0, PAD * sizeof *x);
+  memset(y + used, 0, PAD * sizeof *y);
+  memset(z + used, 0, PAD * sizeof *z);
+  memset(its + used, 0, PAD * sizeof *its);
+  return true;
+}
+
+/* Of particle k (in the sorted order) with what was gathered: pairs of equals go to `lists`, others aside. */
+static bool look(struct search *s, size_t k, bool equals, const double periodic[3], const struct sph_pair_kernels *kernels,
+                 struct sph_neighbours *lists) {
+  const uint32_t i = s->id[k];
+  const double at[3] = {s->x[k], s->y[k], s->z[k]}, *x = s->near.reals;
+  const size_t count = s->near.count, row = count + PAD;
+  if (!grow((void **)&lists->j, &lists->capacity, lists->used + count + PAD, sizeof *lists->j)) return false;
+  uint32_t *found = lists->j + lists->used;
+  const size_t used = kernels->within(count, x, x + row, x + 2 * row, x + 3 * row, s->near.place, at, s->reach[k], periodic,
+                                      equals ? i + 1 : 0, found);
   if (equals) {
-    if (!grow((void **)&lists->j, &lists->capacity, lists->used + used, sizeof *lists->j)) return false;
-    memcpy(lists->j + lists->used, *found, used * sizeof **found);
     lists->start[i] = lists->used;
     lists->count[i] = (uint32_t)used;
     lists->used += used;
@@ -162,7 +206,7 @@ static bool look(struct search *s, size_t k, const struct level *level, const si
   }
   if (!grow((void **)&s->across, &s->across_capacity, s->across_count + used, sizeof *s->across)) return false;
   for (size_t m = 0; m < used; m++, s->across_count++) {
-    const uint32_t j = (*found)[m];
+    const uint32_t j = found[m];
     s->across[s->across_count][0] = i < j ? i : j;
     s->across[s->across_count][1] = i < j ? j : i;
   }
@@ -213,9 +257,7 @@ static bool make_lists(struct sph_neighbours *lists, size_t n) {
 status sph_neighbours_find(size_t n, const double *x, const double *y, const double *z, const double *reach,
                            const double periodic[3], const struct sph_pair_kernels *kernels, struct sph_neighbours *lists,
                            struct error *error) {
-  struct search s = {.n = n};
-  uint32_t *found = NULL;
-  size_t found_capacity = 0;
+  struct search s = {.n = n, .given = {x, y, z, reach}};
   status code = STATUS_OK;
   double *reals = malloc(4 * (n + PAD) * sizeof *reals);
   s.id = calloc(n + PAD, sizeof *s.id);
@@ -230,16 +272,16 @@ status sph_neighbours_find(size_t n, const double *x, const double *y, const dou
   for (size_t l = 0; l < s.levels && enough; l++)
     for (size_t m = l; m < s.levels && enough; m++) {
       const struct level *level = &s.level[m];
-      int64_t last[3] = {INT64_MIN, 0, 0};
-      size_t bucket[CELLS], buckets = 0;
-      for (size_t k = s.level[l].first; k < s.level[l].first + s.level[l].count && enough; k++) {
-        int64_t cell[3];
-        cell_of(level, s.x[k], s.y[k], s.z[k], cell);
-        if (memcmp(cell, last, sizeof cell) != 0) {
-          buckets = buckets_round(level, cell, bucket);
-          memcpy(last, cell, sizeof cell);
-        }
-        enough = look(&s, k, level, bucket, buckets, periodic, kernels, lists, &found, &found_capacity);
+      const size_t end = s.level[l].first + s.level[l].count;
+      for (size_t first = s.level[l].first, next = first; first < end && enough; first = next) {
+        int64_t cell[3], other[3];
+        cell_of(level, s.x[first], s.y[first], s.z[first], cell);
+        do {
+          if (++next < end) cell_of(level, s.x[next], s.y[next], s.z[next], other);
+        } while (next < end && memcmp(cell, other, sizeof cell) == 0);
+        enough = gather(&s, first, next, level, cell, periodic, kernels, l == m);
+        for (size_t k = first; k < next && enough; k++)
+          enough = look(&s, k, l == m, periodic, kernels, lists);
       }
     }
   if (enough && s.across_count) enough = merge(&s, lists);
@@ -250,7 +292,8 @@ cleanup:
   free(s.level_of);
   free(s.start);
   free(s.across);
-  free(found);
+  free(s.near.place);
+  free(s.near.reals);
   return code;
 }
 

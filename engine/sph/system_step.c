@@ -13,7 +13,7 @@
 #include "engine/sph/limits.h"
 #include "engine/sph/order.h"
 
-enum { LISTINGS_PER_SORT = 8, STEPS_PER_LISTING = 12 };
+enum { LISTINGS_PER_SORT = 8, STEPS_PER_LISTING = 20, ROOM = 4 }; /* ROOM: most slack, in h */
 static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
 
 static void run_blocks(struct sph_system *s, bool after) {
@@ -87,13 +87,17 @@ bool sph_system_step_relist(struct sph_system *s) {
 }
 
 /* How far each particle may go before lists are stale: fast ones have more room, so that a spray of debris does not make new
- * lists at every step, and slow ones have little, so that their lists are short. */
+ * lists all the time, and slow ones have little, so that their lists are short. A thin periodic box bounds the reach. */
 static void set_slack(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
-  const double horizon = STEPS_PER_LISTING * s->dt, room = 1;
+  double thinnest = INFINITY;
+  for (int d = 0; d < 3; d++)
+    if (s->p.periodic[d] < thinnest) thinnest = s->p.periodic[d];
+  const double horizon = STEPS_PER_LISTING * s->dt, reach = 0.2499 * thinnest; /* twice a pair's reach must fit */
   for (size_t i = 0; i < s->n; i++) {
+    const double h = c->h[i], most = fmin(ROOM * h, fmax(s->p.skin * h, reach - h));
     const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
-    s->listed[4][i] = c->h[i] * fmin(room, fmax(s->p.skin, way / c->h[i]));
+    s->listed[4][i] = fmin(most, fmax(s->p.skin * h, way));
   }
 }
 
