@@ -4,7 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static double unit(const double a[3], double out[3]) {
   const double length = sqrt(dot(a, a));
@@ -91,8 +93,8 @@ cleanup:
   return code;
 }
 
-status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3], double angle,
-                      double gap, double flight[3], struct error *error) {
+status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
+                      double angle, double gap, double flight[3], struct error *error) {
   double outwards[3], point[3], normal[3], aside[3];
   if (!(unit(direction, outwards) > 0) || !isfinite(dot(direction, direction)))
     return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");

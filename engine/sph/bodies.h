@@ -1,5 +1,5 @@
-/* The solids of a scene before the first step: particles on lattices in true shapes, where bodies stand and how they move,
- * what is held or damped. Pure functions of their arguments (and of a seed).
+/* The solids of a scene before the first step: particles on lattices in true shapes, where bodies stand and how they
+ * move, what is held or damped. Pure functions of their arguments (and of a seed).
  *
  *   struct sph_body body[2] = {{.shape = ..., .lattice = ..., .density = 2700, .h_over_spacing = NAN}, {...}};
  *   double flight[3];
@@ -13,10 +13,10 @@
 #include "engine/sph/lattice.h"
 #include "engine/sph/particles.h"
 
-/* h over spacing, spacing = (V/n)^(1/3): 56 neighbours within 2h on the resting hexagonal and cubic lattices (48 by volume).
- * On a lattice the sum of (m_j/rho_j) x dW/dx, by which every strain and every force is multiplied, is not 1 but depends on
- * h: here 1.006, 1.006, 0.993 along x, y, z of the hexagonal lattice and 0.992 on the cubic one. At 1.21 it is 1.024 and
- * 0.981: waves 2 % too fast or too slow, moduli wrong by 4 %, at any resolution. */
+/* h over spacing, spacing = (V/n)^(1/3): 56 neighbours within 2h on the resting hexagonal and cubic lattices (48 by
+ * volume). On a lattice the sum of (m_j/rho_j) x dW/dx, by which every strain and every force is multiplied, is not 1
+ * but depends on h: here 1.006, 1.006, 0.993 along x, y, z of the hexagonal lattice and 0.992 on the cubic one. At 1.21
+ * it is 1.024 and 0.981: waves 2 % too fast or too slow, moduli wrong by 4 %, at any resolution. */
 #define SPH_BODIES_H 1.13
 
 struct sph_body {
@@ -40,11 +40,11 @@ status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, 
                        struct sph_range *ranges, struct error *error);
 
 /* Puts the projectile in front of the target, its surface `gap` from the point where the ray from the target's centre
- * along `direction` leaves the target, and gives the unit `flight` direction: `angle` (rad) from the inward normal there,
- * turned towards +x (towards +y if the normal is within 0.1 rad of the x axis). STATUS_CONTENT: no direction, a negative
- * gap, an angle not in [0, pi/2). */
-status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3], double angle,
-                      double gap, double flight[3], struct error *error);
+ * along `direction` leaves the target, and gives the unit `flight` direction: `angle` (rad) from the inward normal
+ * there, turned towards +x (towards +y if the normal is within 0.1 rad of the x axis). STATUS_CONTENT: no direction, a
+ * negative gap, an angle not in [0, pi/2). */
+status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
+                      double angle, double gap, double flight[3], struct error *error);
 
 /* Velocity fields; each adds to what is there. */
 void sph_bodies_move(struct sph_particles *particles, struct sph_range range, const double velocity[3]);
@@ -68,7 +68,14 @@ size_t sph_bodies_hold(struct sph_particles *particles, struct sph_range range, 
 
 /* Far sides of a box that let waves out: damping (1/s) grows from 0 at `margin` from a damped side as the square of the
  * depth to `rate` at the side; the largest of the sides counts. */
-enum sph_side { SPH_SIDE_X0 = 1, SPH_SIDE_X1 = 2, SPH_SIDE_Y0 = 4, SPH_SIDE_Y1 = 8, SPH_SIDE_Z0 = 16, SPH_SIDE_Z1 = 32 };
+enum sph_side {
+  SPH_SIDE_X0 = 1,
+  SPH_SIDE_X1 = 2,
+  SPH_SIDE_Y0 = 4,
+  SPH_SIDE_Y1 = 8,
+  SPH_SIDE_Z0 = 16,
+  SPH_SIDE_Z1 = 32
+};
 void sph_bodies_damp(struct sph_particles *particles, struct sph_range range, const struct sph_shape *box, int sides,
                      double margin, double rate);
 

@@ -14,7 +14,8 @@ struct places {
   uint64_t seed, body;
 };
 
-void sph_flaw_places_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]) {
+void sph_flaw_places_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape,
+                           double point[3]) {
   uint64_t bits[4];
   random_bits(seed, RANDOM_FLAW_PLACE, body, flaw, bits);
   sph_shape_place(shape, (double[3]){random_uniform(bits[0]), random_uniform(bits[1]), random_uniform(bits[2])}, point);

@@ -61,8 +61,9 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
   }
   if (!(law->weibull.m > 0 && law->weibull.k > 0 && law->volume > 0) ||
       !isfinite(law->weibull.m + law->weibull.k + law->volume)) {
-    code = status_fail(error, STATUS_CONTENT, "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.",
-                       law->weibull.m, law->weibull.k, law->volume);
+    code =
+        status_fail(error, STATUS_CONTENT, "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.",
+                    law->weibull.m, law->weibull.k, law->volume);
     goto cleanup;
   }
   const double log_kv = log(law->weibull.k) + log(law->volume);

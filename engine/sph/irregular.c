@@ -48,8 +48,8 @@ static status store(const struct sph_shape *shape, const struct sph_grading *gra
   return STATUS_OK;
 }
 
-/* Uniform points start as the hexagonal lattice, each thrown by up to 0.7 spacings per direction: nothing is left of the
- * order, but the density is uniform over long distances, where pushing apart is slow. */
+/* Uniform points start as the hexagonal lattice, each thrown by up to 0.7 spacings per direction: nothing is left of
+ * the order, but the density is uniform over long distances, where pushing apart is slow. */
 static status fill_uniform(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
                            struct sph_points *points, struct error *error) {
   struct sph_lattice regular = *lattice;
@@ -84,8 +84,8 @@ cleanup:
 enum { SHELLS = 1024, RAYS = 512 };
 
 struct shells {
-  double r[SHELLS + 1];     /* m, edges */
-  double open[SHELLS];      /* share of the middle of each shell that lies in the body */
+  double r[SHELLS + 1];      /* m, edges */
+  double open[SHELLS];       /* share of the middle of each shell that lies in the body */
   double number[SHELLS + 1]; /* of whole shells, cumulative */
 };
 
@@ -112,7 +112,8 @@ static void cut_shells(const struct sph_grading *g, const struct sph_shape *shap
     for (int i = 0; i < RAYS; i++) {
       double d[3];
       ray((i + 0.5) / RAYS, fmod(0.6180339887498949 * i, 1), d);
-      in += sph_shape_inside(shape, (double[3]){g->point[0] + r * d[0], g->point[1] + r * d[1], g->point[2] + r * d[2]});
+      in +=
+          sph_shape_inside(shape, (double[3]){g->point[0] + r * d[0], g->point[1] + r * d[1], g->point[2] + r * d[2]});
     }
     shells->open[k] = (double)in / RAYS;
   }
@@ -141,23 +142,27 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
     g->growth = 0;
     const double most = count(g, shells), particles = lattice->particles;
     if (!(particles >= fewest && particles <= most))
-      return status_fail(error, STATUS_CONTENT,
-                         "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change their number, "
-                         "the finest spacing, or its radius.",
-                         g->fine, ceil(fewest), floor(most), particles);
+      return status_fail(
+          error, STATUS_CONTENT,
+          "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change their number, "
+          "the finest spacing, or its radius.",
+          g->fine, ceil(fewest), floor(most), particles);
     double low = 0, high = steepest;
     for (int k = 0; k < 60; k++) {
       g->growth = 0.5 * (low + high);
       *(count(g, shells) > particles ? &low : &high) = g->growth;
     }
   } else if (!(g->growth >= 0 && g->growth <= steepest)) {
-    return status_fail(error, STATUS_CONTENT, "spacing grows by %g per distance: give 0 to %g, so that neighbours are alike.",
-                       g->growth, steepest);
+    return status_fail(error, STATUS_CONTENT,
+                       "spacing grows by %g per distance: give 0 to %g, so that neighbours are alike.", g->growth,
+                       steepest);
   }
   *n = fmax(1, round(count(g, shells)));
   if (!(*n * 480 < (double)sph_particles_memory()) || *n > 4e9)
-    return status_fail(error, STATUS_MEMORY, "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.",
-                       *n, *n * 480 / 1e9, (double)sph_particles_memory() / 1e9);
+    return status_fail(
+        error, STATUS_MEMORY,
+        "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.", *n,
+        *n * 480 / 1e9, (double)sph_particles_memory() / 1e9);
   return STATUS_OK;
 }
 
@@ -222,7 +227,8 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
     i += sph_shape_inside(shape, at[i]);
   }
   if (i < n) {
-    code = status_fail(error, STATUS_CONTENT, "a body is too thin, or too far from its point of impact, for graded particles.");
+    code = status_fail(error, STATUS_CONTENT,
+                       "a body is too thin, or too far from its point of impact, for graded particles.");
     goto cleanup;
   }
   code = sort(n, at, error);

@@ -10,7 +10,7 @@
 /* A right-angled cell with points at `basis` (fractions of its sides). Sides in spacings: the hexagonal lattice's
  * neighbours are 2^(1/6) spacings apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
 struct cell {
-  double side[3]; /* of a row's point, of a row, of a layer: in spacings */
+  double side[3];   /* of a row's point, of a row, of a layer: in spacings */
   int rows, layers; /* how many make a period: in y, in z */
   int count;
   double basis[4][3];
@@ -53,8 +53,8 @@ static status allocate(struct sph_points *points, size_t n, struct error *error)
 
 /* ---- boxes along the axes: whole rows, stretched to fit ---- */
 
-static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box, double wanted,
-                    size_t best[3]) {
+static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
+                    double wanted, size_t best[3]) {
   const double spacing = cbrt(sph_shape_volume(box) / wanted);
   double ideal[3], least = INFINITY;
   int step[3];
@@ -73,7 +73,8 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
       widest = fmax(widest, ideal[k] / count[k]);
       narrowest = fmin(narrowest, ideal[k] / count[k]);
     }
-    /* Up to 1 % off the number costs as much as a lattice 2 % wider one way than another; beyond, each 0.2 % as much. */
+    /* Up to 1 % off the number costs as much as a lattice 2 % wider one way than another; beyond, each 0.2 % as much.
+     */
     const double miss = fabs(log(n / wanted)), off = miss <= 0.01 ? miss / 0.01 : 1 + (miss - 0.01) / 0.002;
     const double uneven = log(widest / narrowest) / 0.02;
     const double cost = off * off + uneven * uneven;
@@ -222,10 +223,12 @@ static size_t search(const struct sph_lattice *lattice, const struct cut *c, dou
   return n;
 }
 
-/* Scale to exactly V/n per particle (layers stay), put the centre of mass where the shape has it, turn into the world. */
+/* Scale to exactly V/n per particle (layers stay), put the centre of mass where the shape has it, turn into the world.
+ */
 static void settle(const struct cut *c, double wanted, struct sph_points *points) {
   const size_t n = points->n;
-  const double ratio = wanted / (double)n, across = c->layered ? sqrt(ratio) : cbrt(ratio), along = c->layered ? 1 : across;
+  const double ratio = wanted / (double)n, across = c->layered ? sqrt(ratio) : cbrt(ratio),
+               along = c->layered ? 1 : across;
   double mean[3] = {0};
   for (size_t i = 0; i < n; i++) {
     mean[0] += points->x[i] / (double)n;
@@ -280,7 +283,8 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
   }
   if ((double)n < 0.5 * wanted || !n)
     return status_fail(error, STATUS_CONTENT,
-                       "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted, spacing);
+                       "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted,
+                       spacing);
   status code = allocate(points, n, error);
   if (code) return code;
   cut(&c, offset, points);
@@ -297,16 +301,19 @@ static status check_periodic(const struct sph_lattice *lattice, const struct sph
                              struct error *error) {
   const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit), *axis = shape->axis;
   const char name = "xyz"[k];
-  const char *what = lattice->grading.fine > 0           ? "a graded body"
-                     : lattice->turned                   ? "a turned lattice"
+  const char *what = lattice->grading.fine > 0         ? "a graded body"
+                     : lattice->turned                 ? "a turned lattice"
                      : shape->kind == SPH_SHAPE_SPHERE ? "a sphere"
-                                                         : NULL;
-  if (what) return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what, name);
+                                                       : NULL;
+  if (what)
+    return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what,
+                       name);
   if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
     return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", name);
   if (fabs(shape->centre[k] - half) > 1e-9 * half)
-    return status_fail(error, STATUS_CONTENT, "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.",
-                       name, half, shape->centre[k]);
+    return status_fail(error, STATUS_CONTENT,
+                       "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.", name,
+                       half, shape->centre[k]);
   return STATUS_OK;
 }
 
@@ -316,17 +323,21 @@ static status decide(const struct sph_lattice *lattice, double volume, double *w
   *wanted = lattice->particles;
   if (isnan(*wanted)) {
     if (!(s > 0 && isfinite(s)))
-      return status_fail(error, STATUS_CONTENT, "the spacing of particles is %g m: give a positive length, or a number.", s);
+      return status_fail(error, STATUS_CONTENT,
+                         "the spacing of particles is %g m: give a positive length, or a number.", s);
     *wanted = volume / s / s / s;
     if (!(*wanted >= 0.5))
       return status_fail(error, STATUS_CONTENT,
-                         "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.", s, volume);
+                         "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.", s,
+                         volume);
   }
-  if (!(*wanted >= 0.5)) return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
+  if (!(*wanted >= 0.5))
+    return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
   if (!(*wanted * bytes < (double)sph_particles_memory()) || *wanted > 4e9)
-    return status_fail(error, STATUS_MEMORY,
-                       "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.",
-                       *wanted, *wanted * bytes / 1e9, (double)sph_particles_memory() / 1e9);
+    return status_fail(
+        error, STATUS_MEMORY,
+        "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.", *wanted,
+        *wanted * bytes / 1e9, (double)sph_particles_memory() / 1e9);
   *wanted = fmax(1, round(*wanted));
   return STATUS_OK;
 }

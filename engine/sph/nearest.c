@@ -34,7 +34,8 @@ static void swap(struct sph_nearest *t, size_t a, size_t b) {
 /* Quickselect: afterwards what stands before `middle` is at most, what follows at least, its coordinate. */
 static void halve(struct sph_nearest *t, size_t low, size_t high, size_t middle, int direction) {
   while (high - low > 1) {
-    const double a = t->at[low][direction], b = t->at[low + (high - low) / 2][direction], c = t->at[high - 1][direction];
+    const double a = t->at[low][direction], b = t->at[low + (high - low) / 2][direction],
+                 c = t->at[high - 1][direction];
     const double pivot = fmax(fmin(a, b), fmin(fmax(a, b), c));
     size_t i = low, j = high - 1;
     while (i <= j) {
@@ -117,7 +118,8 @@ struct part {
   double squares, away[3];
 };
 
-/* Goes down to a leaf on the point's side, keeping what of the other halves is within `reach` (squared) on the stack. */
+/* Goes down to a leaf on the point's side, keeping what of the other halves is within `reach` (squared) on the stack.
+ */
 static inline struct part descend(const struct sph_nearest *t, const double p[3], struct part part, double reach,
                                   struct part *stack, int *depth) {
   while (part.k < t->inner) {
@@ -171,7 +173,9 @@ size_t sph_nearest_other(const struct sph_nearest *t, const double p[3], size_t 
   return id;
 }
 
-size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) { return sph_nearest_other(t, p, SIZE_MAX); }
+size_t sph_nearest_find(const struct sph_nearest *t, const double p[3]) {
+  return sph_nearest_other(t, p, SIZE_MAX);
+}
 
 size_t sph_nearest_within(const struct sph_nearest *t, const double p[3], double radius, uint32_t *out, size_t room) {
   struct part stack[DEEPEST];

@@ -18,8 +18,8 @@ void sph_nearest_free(struct sph_nearest *nearest); /* NULL is fine */
 size_t sph_nearest_find(const struct sph_nearest *nearest, const double point[3]);
 /* The nearest point but `self`; SIZE_MAX when there is no other. */
 size_t sph_nearest_other(const struct sph_nearest *nearest, const double point[3], size_t self);
-/* Indices of the points within `radius`, at most `room` of them stored; returns how many there are. Not sorted, but always
- * in the same order. */
+/* Indices of the points within `radius`, at most `room` of them stored; returns how many there are. Not sorted, but
+ * always in the same order. */
 size_t sph_nearest_within(const struct sph_nearest *nearest, const double point[3], double radius, uint32_t *out,
                           size_t room);
 

@@ -13,7 +13,9 @@ size_t sph_particles_memory(void) {
   return most;
 }
 
-static double *column(size_t n) { return calloc(n ? n : 1, sizeof(double)); }
+static double *column(size_t n) {
+  return calloc(n ? n : 1, sizeof(double));
+}
 
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error) {
   *out = NULL;
@@ -21,8 +23,8 @@ status sph_particles_make(size_t n, int arrays, struct sph_particles **out, stru
                       (arrays & SPH_WITH_DAMPING ? 1 : 0) + (arrays & SPH_WITH_DISTENTION ? 1 : 0);
   const size_t bytes = (size_t)(8 * doubles + 1 + (arrays & SPH_WITH_HELD ? 1 : 0));
   if (n > sph_particles_memory() / bytes)
-    return status_fail(error, STATUS_MEMORY, "%zu particles need %.3g GB; this machine, or the limit set, has %.3g GB.", n,
-                       (double)n * (double)bytes / 1e9, (double)sph_particles_memory() / 1e9);
+    return status_fail(error, STATUS_MEMORY, "%zu particles need %.3g GB; this machine, or the limit set, has %.3g GB.",
+                       n, (double)n * (double)bytes / 1e9, (double)sph_particles_memory() / 1e9);
   struct sph_particles *p = calloc(1, sizeof *p);
   if (!p) return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", n);
   p->n = n;
@@ -52,9 +54,10 @@ status sph_particles_make(size_t n, int arrays, struct sph_particles **out, stru
 
 void sph_particles_free(struct sph_particles *p) {
   if (!p) return;
-  double *const all[] = {p->x,         p->y,         p->z,         p->vx,        p->vy,        p->vz,          p->mass,
-                         p->density,   p->energy,    p->h,         p->pressure,  p->stress[0], p->stress[1],   p->stress[2],
-                         p->stress[3], p->stress[4], p->stress[5], p->damage_cbrt, p->damping, p->distention};
+  double *const all[] = {p->x,         p->y,         p->z,           p->vx,        p->vy,
+                         p->vz,        p->mass,      p->density,     p->energy,    p->h,
+                         p->pressure,  p->stress[0], p->stress[1],   p->stress[2], p->stress[3],
+                         p->stress[4], p->stress[5], p->damage_cbrt, p->damping,   p->distention};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
     free(all[k]);
   free(p->body);

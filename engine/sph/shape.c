@@ -5,7 +5,9 @@
 
 static const double pi = 3.14159265358979323846;
 
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 static double unit(const double a[3], double out[3]) { /* the length of a; scaled first, so that no size overflows */
   const double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
@@ -28,14 +30,16 @@ status sph_shape_check(const struct sph_shape *s, struct error *error) {
     if (!isfinite(s->centre[k])) return status_fail(error, STATUS_CONTENT, "the centre of a body is not finite.");
   status code = STATUS_OK;
   switch (s->kind) {
-  case SPH_SHAPE_SPHERE: return positive(s->radius, "the radius of a sphere", error);
+  case SPH_SHAPE_SPHERE:
+    return positive(s->radius, "the radius of a sphere", error);
   case SPH_SHAPE_CYLINDER:
     code = positive(s->radius, "the radius of a cylinder", error);
     if (!code) code = positive(s->length, "the length of a cylinder", error);
     if (code) return code;
     if (!(s->inner_radius >= 0 && s->inner_radius < s->radius))
-      return status_fail(error, STATUS_CONTENT, "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.",
-                         s->inner_radius, s->radius);
+      return status_fail(error, STATUS_CONTENT,
+                         "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.", s->inner_radius,
+                         s->radius);
     if (!(unit(s->axis, ignored) > 0))
       return status_fail(error, STATUS_CONTENT, "the axis of a cylinder has no direction.");
     return STATUS_OK;
@@ -43,16 +47,19 @@ status sph_shape_check(const struct sph_shape *s, struct error *error) {
     for (int k = 0; k < 3 && !code; k++)
       code = positive(s->side[k], side[k], error);
     return code;
-  default: return status_fail(error, STATUS_INTERNAL, "shape %d is unknown", s->kind);
+  default:
+    return status_fail(error, STATUS_INTERNAL, "shape %d is unknown", s->kind);
   }
 }
 
 double sph_shape_volume(const struct sph_shape *s) {
   switch (s->kind) {
-  case SPH_SHAPE_SPHERE: return 4 * pi / 3 * s->radius * s->radius * s->radius;
+  case SPH_SHAPE_SPHERE:
+    return 4 * pi / 3 * s->radius * s->radius * s->radius;
   case SPH_SHAPE_CYLINDER:
     return pi * (s->radius - s->inner_radius) * (s->radius + s->inner_radius) * s->length;
-  default: return s->side[0] * s->side[1] * s->side[2];
+  default:
+    return s->side[0] * s->side[1] * s->side[2];
   }
 }
 
@@ -247,8 +254,8 @@ static struct sph_shape hull(const struct sph_shape *s) {
   return h;
 }
 
-/* Depth of overlap: the least push along any direction that parts them. Faces' and edges' directions first, then a search
- * over the sphere about the best. */
+/* Depth of overlap: the least push along any direction that parts them. Faces' and edges' directions first, then a
+ * search over the sphere about the best. */
 static double depth(const struct sph_shape *a, const struct sph_shape *b) {
   double try[64][3], fa[3][3], fb[3][3], d[3];
   int count = 0;
@@ -323,7 +330,8 @@ double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *rin
   return gap;
 }
 
-double sph_shape_approach(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3], double *when) {
+double sph_shape_approach(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
+                          double *when) {
   double direction[3], zero = sph_shape_gap(a, b), unused;
   if (!when) when = &unused;
   *when = 0;
@@ -331,7 +339,8 @@ double sph_shape_approach(const struct sph_shape *a, const struct sph_shape *b, 
   if (!(speed > 0) || zero <= 0) return zero;
   /* Between convex bodies the gap is a convex function of the way: golden section. */
   const double d[3] = {a->centre[0] - b->centre[0], a->centre[1] - b->centre[1], a->centre[2] - b->centre[2]};
-  double ways[4] = {0, 0, 0, fmax(0, dot(d, direction)) + sph_shape_reach(a, direction) + sph_shape_reach(b, direction)};
+  double ways[4] = {0, 0, 0,
+                    fmax(0, dot(d, direction)) + sph_shape_reach(a, direction) + sph_shape_reach(b, direction)};
   const double golden = 0.6180339887498949;
   struct sph_shape moved = *b;
   double gaps[4] = {zero, 0, 0, 0};

@@ -56,8 +56,8 @@ static void masses_add_up_and_ids_follow_bodies(void **state) {
 static void graded_bodies_have_graded_h(void **state) {
   (void)state;
   struct sph_body body = bar;
-  body.lattice = (struct sph_lattice){
-      .particles = NAN, .grading = {.fine = 4e-3, .point = {0, 0, 0.2}, .radius = 0.01, .growth = 0.12}};
+  body.lattice = (struct sph_lattice){.particles = NAN,
+                                      .grading = {.fine = 4e-3, .point = {0, 0, 0.2}, .radius = 0.01, .growth = 0.12}};
   struct sph_range range;
   struct sph_particles *p = NULL;
   assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, NULL), STATUS_OK);
@@ -81,8 +81,11 @@ static void one_particle_is_a_body(void **state) {
     for (int shape = 0; shape < 3; shape++) {
       struct sph_body one = sphere(2, 1, 1000);
       one.lattice.kind = kind;
-      one.shape = (struct sph_shape){.kind = shape, .centre = {1, 2, 3}, .radius = 1, .length = 2, .axis = {0, 1, 0}, .side = {1, 1, 1}};
-      assert_int_equal(sph_bodies_make(&one, 1, SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION, &p, &range, NULL), STATUS_OK);
+      one.shape = (struct sph_shape){
+          .kind = shape, .centre = {1, 2, 3}, .radius = 1, .length = 2, .axis = {0, 1, 0}, .side = {1, 1, 1}};
+      assert_int_equal(
+          sph_bodies_make(&one, 1, SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION, &p, &range, NULL),
+          STATUS_OK);
       assert_true(p->n == 1 && p->distention[0] == 1 && !p->held[0] && p->damping[0] == 0);
       assert_true(fabs(p->mass[0] / (1000 * sph_shape_volume(&one.shape)) - 1) < 1e-14);
       assert_true(sph_shape_inside(&one.shape, (double[3]){p->x[0], p->y[0], p->z[0]}));
@@ -133,7 +136,8 @@ static void projectiles_are_aimed(void **state) {
         for (int g = 0; g < 2; g++) {
           struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
           double flight[3], point[3], normal[3];
-          assert_int_equal(sph_bodies_aim(&targets[t], &shot, directions[d], angles[a], gaps[g], flight, NULL), STATUS_OK);
+          assert_int_equal(sph_bodies_aim(&targets[t], &shot, directions[d], angles[a], gaps[g], flight, NULL),
+                           STATUS_OK);
           sph_shape_surface(&targets[t], directions[d], point, normal);
           assert_true(fabs(sph_shape_gap(&targets[t], &shot) - gaps[g]) < 1e-12);
           double along = 0, length = 0;
@@ -167,7 +171,8 @@ static void overlaps_are_refused_by_name(void **state) {
   struct error error = {0};
   assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
   assert_null(p);
-  assert_string_equal(error.message, "the target and the projectile overlap by 0.0005 m: move one of them, or give a gap.");
+  assert_string_equal(error.message,
+                      "the target and the projectile overlap by 0.0005 m: move one of them, or give a gap.");
   bodies[1].shape.centre[2] = 0.033; /* they touch */
   bodies[2].shape.centre[0] = -0.0399;
   assert_int_equal(sph_bodies_make(bodies, 3, 0, &p, NULL, &error), STATUS_CONTENT);
@@ -269,11 +274,15 @@ static void absurd_bodies_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_add_up_and_ids_follow_bodies), cmocka_unit_test(graded_bodies_have_graded_h),
+      cmocka_unit_test(masses_add_up_and_ids_follow_bodies),
+      cmocka_unit_test(graded_bodies_have_graded_h),
       cmocka_unit_test(one_particle_is_a_body),
-      cmocka_unit_test(the_same_bits_each_time),             cmocka_unit_test(projectiles_are_aimed),
-      cmocka_unit_test(overlaps_are_refused_by_name),        cmocka_unit_test(bodies_move),
-      cmocka_unit_test(ends_are_held_and_sides_damped),      cmocka_unit_test(absurd_bodies_are_refused),
+      cmocka_unit_test(the_same_bits_each_time),
+      cmocka_unit_test(projectiles_are_aimed),
+      cmocka_unit_test(overlaps_are_refused_by_name),
+      cmocka_unit_test(bodies_move),
+      cmocka_unit_test(ends_are_held_and_sides_damped),
+      cmocka_unit_test(absurd_bodies_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,8 +48,8 @@ static size_t brute(size_t n, const double *x, const double *y, const double *z,
   return best;
 }
 
-/* On random points, on a lattice asked at its own points and half-way between them (ties), on points in a line and all at
- * one place. */
+/* On random points, on a lattice asked at its own points and half-way between them (ties), on points in a line and all
+ * at one place. */
 static void nearest_is_the_nearest(void **state) {
   (void)state;
   enum { MOST = 700 };
@@ -112,8 +112,9 @@ static void owners_are_nearest(void **state) {
   sph_particles_free(p);
 }
 
-/* Coarse or fine, a seed means the same flaws: the same strengths at the same places. What stands at a fine particle stands
- * at the coarse one nearest to the place; so both lie within a coarse particle's reach of the place, and of each other. */
+/* Coarse or fine, a seed means the same flaws: the same strengths at the same places. What stands at a fine particle
+ * stands at the coarse one nearest to the place; so both lie within a coarse particle's reach of the place, and of each
+ * other. */
 static void a_seed_means_the_same_flaws(void **state) {
   (void)state;
   const struct sph_body coarse = sphere(400), fine = sphere(3000);
@@ -144,7 +145,8 @@ static void a_seed_means_the_same_flaws(void **state) {
         sph_flaw_places_point(9, 0, flaw, &coarse.shape, place);
         assert_int_equal(brute(p->n, p->x, p->y, p->z, place, SIZE_MAX), i);
         const double apart = hypot(hypot(p->x[i] - q->x[j], p->y[i] - q->y[j]), p->z[i] - q->z[j]);
-        assert_true(apart < 1.2 * (a.spacing + b.spacing)); /* each within some 0.8 spacings, at corners of the cut more */
+        assert_true(apart <
+                    1.2 * (a.spacing + b.spacing)); /* each within some 0.8 spacings, at corners of the cut more */
       }
     free(owner);
     free(sorted);
@@ -209,11 +211,10 @@ static void the_weakest_scatters_by_the_law(void **state) {
 /* Ends have no flaws; the middle has its own, as dense as without ends: the strengths of those places are unchanged. */
 static void ends_have_none(void **state) {
   (void)state;
-  const struct sph_body rod = {
-      .shape = {.kind = SPH_SHAPE_CYLINDER, .radius = 0.01, .length = 0.04, .axis = {0, 0, 1}},
-      .lattice = {.particles = 1500},
-      .density = 2700,
-      .h_over_spacing = NAN};
+  const struct sph_body rod = {.shape = {.kind = SPH_SHAPE_CYLINDER, .radius = 0.01, .length = 0.04, .axis = {0, 0, 1}},
+                               .lattice = {.particles = 1500},
+                               .density = 2700,
+                               .h_over_spacing = NAN};
   const struct sph_middle middle = {.axis = {0, 0, 1}, .half = 0.012};
   struct sph_range range;
   struct sph_particles *p = make(&rod, 0, &range);
@@ -251,15 +252,16 @@ static void ends_have_none(void **state) {
 }
 
 /* Small particles of a graded body are as strong as their size says: with kV_i the expected number below strain 1,
- * k V_i eps_min^m is a unit exponential for each particle, whether its flaw was drawn or waited for. Means over classes of
- * size, against 1 within 4 standard errors 1/sqrt(n); nearest-particle cells differ from V_i by some per cent (5 % room). */
+ * k V_i eps_min^m is a unit exponential for each particle, whether its flaw was drawn or waited for. Means over classes
+ * of size, against 1 within 4 standard errors 1/sqrt(n); nearest-particle cells differ from V_i by some per cent (5 %
+ * room). */
 static void graded_particles_have_their_weakest(void **state) {
   (void)state;
-  const struct sph_body body = {.shape = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}},
-                                .lattice = {.particles = NAN,
-                                            .grading = {.fine = 2e-3, .point = {0, 0, 0.1}, .radius = 8e-3, .growth = 0.12}},
-                                .density = 2940,
-                                .h_over_spacing = NAN};
+  const struct sph_body body = {
+      .shape = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}},
+      .lattice = {.particles = NAN, .grading = {.fine = 2e-3, .point = {0, 0, 0.1}, .radius = 8e-3, .growth = 0.12}},
+      .density = 2940,
+      .h_over_spacing = NAN};
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
   double most = 0, sum[4] = {0};
@@ -329,10 +331,14 @@ static void extremes_of_the_law(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(nearest_is_the_nearest),      cmocka_unit_test(owners_are_nearest),
-      cmocka_unit_test(a_seed_means_the_same_flaws), cmocka_unit_test(particles_have_ln_n_flaws),
-      cmocka_unit_test(the_weakest_scatters_by_the_law), cmocka_unit_test(ends_have_none),
-      cmocka_unit_test(graded_particles_have_their_weakest), cmocka_unit_test(extremes_of_the_law),
+      cmocka_unit_test(nearest_is_the_nearest),
+      cmocka_unit_test(owners_are_nearest),
+      cmocka_unit_test(a_seed_means_the_same_flaws),
+      cmocka_unit_test(particles_have_ln_n_flaws),
+      cmocka_unit_test(the_weakest_scatters_by_the_law),
+      cmocka_unit_test(ends_have_none),
+      cmocka_unit_test(graded_particles_have_their_weakest),
+      cmocka_unit_test(extremes_of_the_law),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

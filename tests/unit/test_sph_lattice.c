@@ -37,10 +37,10 @@ static double spline(double r, double h) { /* Monaghan & Lattanzio 1985, three d
 }
 
 struct around {
-  int within;       /* 2h, itself not counted */
-  double sum;       /* of m W over the density */
-  double nearest;   /* m */
-  double steepest;  /* largest spacing of a near one over its own */
+  int within;      /* 2h, itself not counted */
+  double sum;      /* of m W over the density */
+  double nearest;  /* m */
+  double steepest; /* largest spacing of a near one over its own */
 };
 
 /* What stands about point i, with all 27 images where `length` says that a direction repeats. */
@@ -140,15 +140,16 @@ static void neighbours_of_regular_lattices(void **state) {
       }
       assert_true(inner > 1000);
       assert_true(fabs(p.nearest / p.spacing - (kind ? 1 : pow(2, 1. / 6))) < 1e-12);
-      assert_true(high - low < 1e-9);        /* a lattice is the same everywhere, to the rounding of places */
+      assert_true(high - low < 1e-9);    /* a lattice is the same everywhere, to the rounding of places */
       assert_true(fabs(low - 1) < 0.01); /* the spline's own error of summing at this h */
       sph_nearest_free(tree);
       sph_lattice_empty(&p);
     }
 }
 
-/* Centre of mass exactly; moments of inertia tend to the sphere's 2/5 M R^2 and the cylinder's, products to 0. The surface's
- * roughness is what differs, about n^(-2/3): 1 % at 1000 (twice that is allowed), 0.1 % at 50 000 (three times). */
+/* Centre of mass exactly; moments of inertia tend to the sphere's 2/5 M R^2 and the cylinder's, products to 0. The
+ * surface's roughness is what differs, about n^(-2/3): 1 % at 1000 (twice that is allowed), 0.1 % at 50 000 (three
+ * times). */
 static void moments_tend_to_the_shape(void **state) {
   (void)state;
   const double numbers[] = {1000, 50000}, room[] = {0.02, 0.003};
@@ -214,8 +215,12 @@ static void periodic_bodies_have_no_seam(void **state) {
     sph_nearest_free(tree);
     sph_lattice_empty(&p);
   }
-  const struct sph_shape ring = {.kind = SPH_SHAPE_CYLINDER, .centre = {0, 0, 0.1}, .radius = 1, .inner_radius = 0.7,
-                                 .length = 0.2, .axis = {0, 0, 1}};
+  const struct sph_shape ring = {.kind = SPH_SHAPE_CYLINDER,
+                                 .centre = {0, 0, 0.1},
+                                 .radius = 1,
+                                 .inner_radius = 0.7,
+                                 .length = 0.2,
+                                 .axis = {0, 0, 1}};
   const double length[3] = {0, 0, 0.2};
   struct sph_points p = fill(&ring, (struct sph_lattice){.particles = 5000, .periodic = {false, false, true}});
   struct sph_nearest *tree = tree_of(&p);
@@ -249,7 +254,8 @@ static void periodic_bodies_have_no_seam(void **state) {
   sph_lattice_empty(&p);
 }
 
-static double sum_scatter(const struct sph_shape *shape, const struct sph_points *p, const double *length, double *mean) {
+static double sum_scatter(const struct sph_shape *shape, const struct sph_points *p, const double *length,
+                          double *mean) {
   struct sph_nearest *tree = tree_of(p);
   double sum = 0, squares = 0;
   int inner = 0;
@@ -296,7 +302,8 @@ static void irregular_points_are_even(void **state) {
     sph_lattice_empty(&again);
     sph_lattice_empty(&other);
   }
-  struct sph_points p = fill(&brick, (struct sph_lattice){.kind = SPH_LATTICE_IRREGULAR, .particles = 2500, .periodic = {true, true, true}});
+  struct sph_points p = fill(
+      &brick, (struct sph_lattice){.kind = SPH_LATTICE_IRREGULAR, .particles = 2500, .periodic = {true, true, true}});
   assert_true(sum_scatter(&brick, &p, brick.side, &mean) < 0.012 && fabs(mean) < 0.01);
   sph_lattice_empty(&p);
 }
@@ -351,13 +358,16 @@ static void graded_points_keep_their_grading(void **state) {
   sph_lattice_empty(&p);
   struct error error;
   given.growth = 0.5;
-  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = NAN, .grading = given}, &target, &p, &error), STATUS_CONTENT);
-  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = 300, .grading = grading}, &target, &p, &error), STATUS_CONTENT);
+  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = NAN, .grading = given}, &target, &p, &error),
+                   STATUS_CONTENT);
+  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = 300, .grading = grading}, &target, &p, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "not 300"));
   assert_null(p.x);
   given.fine = 1e-7;
   given.growth = 0;
-  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = NAN, .grading = given}, &target, &p, &error), STATUS_MEMORY);
+  assert_int_equal(sph_lattice_fill(&(struct sph_lattice){.particles = NAN, .grading = given}, &target, &p, &error),
+                   STATUS_MEMORY);
 }
 
 static void absurd_lattices_are_refused(void **state) {
@@ -399,10 +409,14 @@ static void absurd_lattices_are_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(numbers_come_out),           cmocka_unit_test(neighbours_of_regular_lattices),
-      cmocka_unit_test(moments_tend_to_the_shape),  cmocka_unit_test(cylinders_have_whole_layers),
-      cmocka_unit_test(periodic_bodies_have_no_seam), cmocka_unit_test(irregular_points_are_even),
-      cmocka_unit_test(graded_points_keep_their_grading), cmocka_unit_test(absurd_lattices_are_refused),
+      cmocka_unit_test(numbers_come_out),
+      cmocka_unit_test(neighbours_of_regular_lattices),
+      cmocka_unit_test(moments_tend_to_the_shape),
+      cmocka_unit_test(cylinders_have_whole_layers),
+      cmocka_unit_test(periodic_bodies_have_no_seam),
+      cmocka_unit_test(irregular_points_are_even),
+      cmocka_unit_test(graded_points_keep_their_grading),
+      cmocka_unit_test(absurd_lattices_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -26,7 +26,8 @@ static void uniforms(uint64_t item, double u[3]) {
     u[k] = random_uniform(bits[k]);
 }
 
-/* The share of a box around the shape that is inside it. 2e5 throws: sd below 0.3 % of the volume; 1.2 % is four of them. */
+/* The share of a box around the shape that is inside it. 2e5 throws: sd below 0.3 % of the volume; 1.2 % is four of
+ * them. */
 static void volume_is_what_is_inside(void **state) {
   (void)state;
   for (int s = 0; s < 4; s++) {
@@ -46,8 +47,9 @@ static void volume_is_what_is_inside(void **state) {
   }
 }
 
-/* Places lie inside, and as many in each of 20 parts of equal volume. Two ways to part each shape: by depth (the uniforms'
- * own coordinate is not used: volumes of inner shapes of the same kind), and by the plane through the centre, normal to x. */
+/* Places lie inside, and as many in each of 20 parts of equal volume. Two ways to part each shape: by depth (the
+ * uniforms' own coordinate is not used: volumes of inner shapes of the same kind), and by the plane through the centre,
+ * normal to x. */
 static double inner_volume(const struct sph_shape *s, double depth) {
   struct sph_shape inner = *s;
   inner.radius -= depth;
@@ -81,8 +83,8 @@ static void places_are_uniform(void **state) {
   }
 }
 
-/* Inside and outside, the distance is that to the nearest of many points of the surface, and going back along the normal by
- * the distance ends on the surface. */
+/* Inside and outside, the distance is that to the nearest of many points of the surface, and going back along the
+ * normal by the distance ends on the surface. */
 static void distance_leads_to_the_surface(void **state) {
   (void)state;
   for (int s = 0; s < 4; s++)
@@ -101,8 +103,10 @@ static void distance_leads_to_the_surface(void **state) {
       const int walls = sph_shape_walls(shapes[s], p, depth, normals);
       for (int k = 0; k < walls; k++)
         least = fmin(least, depth[k]);
-      if (d < 0) assert_true(fabs(least + d) < 1e-12); /* inside, the nearest wall */
-      else assert_true(least < 1e-12);
+      if (d < 0)
+        assert_true(fabs(least + d) < 1e-12); /* inside, the nearest wall */
+      else
+        assert_true(least < 1e-12);
       /* no surface point is nearer: step to places of the shape and see that they are at least |d| away when outside */
       sph_shape_place(shapes[s], u, q);
       const double away = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
