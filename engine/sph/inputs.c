@@ -128,8 +128,8 @@ static const struct field rows[] = {
          .doc = "Angle between the flight and the inward normal where the projectile hits (the target's upper side, z).",
          .source = "BA95 section 5.2"),
     REAL(impact.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=impact",
-         .doc = "Distance of the projectile's surface from that point at the start; one particle spacing of the target there "
-                "unless given."),
+         .doc = "Distance of the projectile's surface from the target's at the start, along the normal; one particle spacing of the "
+                "target there unless given."),
 
     CHOICE(projectile.shape, shapes, .when = "impact.projectile=size", .doc = "The projectile's outline."),
     BODY_SIZES(projectile, 0.0035),

@@ -121,12 +121,11 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
     if (arrival >= in->stop.end_time)
       REFUSE("the projectile needs %.4g s over impact.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or lower the gap",
              arrival, in->impact.gap, in->stop.end_time);
-    double direction[3] = {0, 0, 1}, flight[3];
-    if ((code = sph_bodies_aim(&target, &projectile, direction, in->impact.angle, in->impact.gap, flight, error)))
+    struct sph_shape shape[2];
+    double flight[3];
+    if ((code = sph_scale_aim(in, shape, flight, error)))
       return code;
-    for (int k = 0; k < 3; k++)
-      flight[k] *= in->impact.speed;
-    if (sph_shape_approach(&target, &projectile, flight, NULL) > 0)
+    if (sph_shape_approach(&shape[0], &shape[1], flight, NULL) > 0)
       REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)", in->impact.angle,
              in->impact.gap);
   }

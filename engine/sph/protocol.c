@@ -32,16 +32,6 @@ static struct sph_body body_of(const struct sph_run *run, const struct sph_body_
   };
 }
 
-static status aim(struct sph_run *run, double flight[3], struct error *error) {
-  const struct sph_inputs *in = &run->inputs;
-  double angle = in->impact.angle;
-  run->shape[0] = sph_scale_target(in);
-  run->shape[1] = sph_scale_projectile(in);
-  memcpy(run->impact_direction, (const double[]){0, 0, 1}, sizeof run->impact_direction);
-  memcpy(run->shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof run->shape[1].axis);
-  return sph_bodies_aim(&run->shape[0], &run->shape[1], run->impact_direction, angle, in->impact.gap, flight, error);
-}
-
 /* Two slabs that repeat along their axes: thick enough that no particle meets its own image. */
 static void place_slabs(struct sph_run *run, double spacing) {
   const struct sph_inputs *in = &run->inputs;
@@ -174,10 +164,11 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   double flight[3] = {0, 0, 0};
   status code = STATUS_OK;
   run->body_count = sph_scale_bodies(in);
+  run->impact_direction[Z] = 1;
   for (int k = 0; k < 3; k++)
     run->periodic[k] = NAN;
   if (in->kind == SPH_IMPACT)
-    code = aim(run, flight, error);
+    code = sph_scale_aim(in, run->shape, flight, error);
   else if (in->kind == SPH_COLLISION)
     place_slabs(run, sph_scale_spacing(in));
   else

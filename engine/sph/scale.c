@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/sph/bodies.h"
+
 static const double pi = 3.14159265358979323846;
 
 double sph_scale_bulk_modulus(const struct sph_material *m) {
@@ -95,6 +97,17 @@ double sph_scale_projectile_mass(const struct sph_inputs *in) {
 double sph_scale_specific_energy(const struct sph_inputs *in) {
   double v = in->impact.speed;
   return sph_scale_has_projectile(in) ? 0.5 * sph_scale_projectile_mass(in) * v * v / sph_scale_target_mass(in) : (double)NAN;
+}
+
+status sph_scale_aim(const struct sph_inputs *in, struct sph_shape shape[2], double flight[3], struct error *error) {
+  const double up[3] = {0, 0, 1}, angle = in->impact.angle;
+  shape[0] = sph_scale_target(in);
+  shape[1] = sph_scale_projectile(in);
+  memcpy(shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof shape[1].axis);
+  status code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight, error); /* touching; and now back along the flight */
+  for (int k = 0; !code && k < 3; k++)
+    shape[1].centre[k] -= flight[k] * in->impact.gap / cos(angle);
+  return code;
 }
 
 double sph_scale_spacing(const struct sph_inputs *in) {

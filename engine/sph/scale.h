@@ -27,6 +27,9 @@ double sph_scale_fine_spacing(const struct sph_inputs *inputs);    /* m, of the 
 double sph_scale_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
 double sph_scale_crossing(const struct sph_inputs *inputs);        /* s, of a wave through the target's longest extent */
 double sph_scale_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
+/* Target and projectile where they start, and the unit direction of flight: it touches the target where the normal is z, the
+ * flight impact.angle from it, whatever the gap before. STATUS_CONTENT. */
+status sph_scale_aim(const struct sph_inputs *inputs, struct sph_shape shape[2], double flight[3], struct error *error);
 /* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
 double sph_scale_specific_energy(const struct sph_inputs *inputs);
 

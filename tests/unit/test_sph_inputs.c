@@ -186,6 +186,7 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("impact: {projectile: specific-energy, speed: 0}", "impact.speed 0");
   refused("impact: {speed: 1 km/s, gap: 1 m}\nstop: {end_time: 1 us}", "impact.gap");
   refused("impact: {speed: 1e-9}", "time steps");
+  accepted("impact: {angle: 89.9 deg}");
   refused("method: {artificial_stress: 0.3}", "artificial_stress");
   refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
   refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}", "stretch.grip");

@@ -1,0 +1,333 @@
+/* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that do not
+ * matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
+#include "tests/sph_run_case.h"
+
+#include <unistd.h>
+
+#include "engine/sph/run.h"
+#include "engine/sph/scale.h"
+
+static const char *const scenes[] = {"basalt-sphere", "tensile-rod", "gabbro-crater", "elastic-bar", "colliding-cylinders",
+                                     "disruption"};
+enum { SCENES = sizeof scenes / sizeof scenes[0] };
+
+/* A small sphere that is over soon. */
+#define SMALL(...) SPH_RUN_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
+
+static void results_table_is_whole(void **state) {
+  (void)state;
+  for (size_t i = 0; i < sph_results.count; i++) {
+    const struct field *row = &sph_results.rows[i];
+    assert_true(strlen(row->doc) > 10);
+    assert_true(row->offset < sph_results.size);
+    for (size_t j = 0; j < i; j++) {
+      assert_string_not_equal(row->path, sph_results.rows[j].path);
+      assert_true(row->offset != sph_results.rows[j].offset);
+    }
+  }
+}
+
+/* Every scene can be prepared at a small size, says what it models, and needs no more memory than it was said to. */
+static void builtin_scenes_say_what_they_model(void **state) {
+  (void)state;
+  for (size_t k = 0; k < SCENES; k++) {
+    struct sph_inputs inputs = SPH_RUN_CASE(scenes[k], NULL);
+    char *text = sph_engine.describe(&inputs);
+    assert_non_null(strstr(text, "c_p "));
+    assert_non_null(strstr(text, "bytes per particle"));
+    if (strstr(text, "cannot be run"))
+      fail_msg("%s: %s", scenes[k], text);
+    free(text);
+    inputs.fidelity.particles = 1500;
+    inputs.fidelity.graded = false;
+    inputs.fidelity.projectile_spacing = fmin(inputs.fidelity.projectile_spacing, 0.1);
+    inputs.impact.gap = sph_scale_spacing(&inputs);
+    inputs.stretch.grip = 3e-3;
+    inputs.stretch.flaw_free = 8e-3;
+    inputs.collision.gap = 2 * sph_scale_spacing(&inputs);
+    struct error error = {0};
+    void *made;
+    if (sph_engine.prepare(&inputs, 1, &made, &error))
+      fail_msg("%s: %s", scenes[k], error.message);
+    struct sph_run *run = made;
+    size_t beside = run->start->n * 2 * 20 * 8; /* particles as set up and as read back: 20 columns at most */
+    size_t needed = sph_system_bytes(run->system) + beside, said = sph_engine.memory(&inputs);
+    if (!(needed <= said && said < 6 * needed + (16 << 20)))
+      fail_msg("%s: %zu bytes, said %zu", scenes[k], needed, said);
+    assert_true(sph_engine.work(&inputs) > 0);
+    sph_engine.free(made);
+  }
+}
+
+static void impact_starts_as_described(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SMALL(NULL);
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  const struct sph_particles *p = run->start;
+  assert_true(fabs(run->range[1].mass / 2e-4 - 1) < 1e-12);
+  /* where it touches, the normal is z whatever the gap: from there it went back along its flight */
+  double r = run->shape[1].radius, way = inputs.impact.gap / cos(30 * 3.14159265358979323846 / 180);
+  assert_true(fabs(run->shape[1].centre[0] + 0.5 * way) < 1e-12);
+  assert_true(fabs(run->shape[1].centre[2] - (0.03 + r + inputs.impact.gap)) < 1e-12);
+  double least = HUGE_VAL, top = 0, v[3] = {0, 0, 0};
+  for (size_t i = run->targets; i < p->n; i++) {
+    least = fmin(least, sqrt(p->x[i] * p->x[i] + p->y[i] * p->y[i] + p->z[i] * p->z[i]));
+    v[0] = p->vx[i], v[1] = p->vy[i], v[2] = p->vz[i];
+  }
+  for (size_t i = 0; i < run->targets; i++) {
+    top = fmax(top, sqrt(p->x[i] * p->x[i] + p->y[i] * p->y[i] + p->z[i] * p->z[i]));
+    assert_true(p->vx[i] == 0 && p->vy[i] == 0 && p->vz[i] == 0);
+  }
+  if (!(top <= 0.03 + 0.1 * run->range[0].spacing)) /* particles stand in the middle of their matter */
+    fail_msg("%g", top);
+  assert_true(least >= 0.03 + 0.5 * inputs.impact.gap);
+  assert_true(fabs(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3200 - 1) < 1e-12);
+  assert_true(fabs(-v[2] / 3200 - cos(30 * 3.14159265358979323846 / 180)) < 1e-12); /* downwards, 30 degrees off */
+  struct sph_ledger ledger = sph_system_ledger(run->system);
+  assert_true(fabs(ledger.kinetic / (0.5 * 2e-4 * 3200 * 3200) - 1) < 1e-9);
+  sph_run_free(run);
+}
+
+static void stretch_and_vibration_start(void **state) {
+  (void)state;
+  struct sph_inputs rod = SPH_RUN_CASE("tensile-rod", "fidelity.particles=1500");
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&rod, 3, &run, NULL), STATUS_OK);
+  size_t held = 0;
+  for (size_t i = 0; i < run->start->n; i++) {
+    double z = run->start->z[i];
+    assert_true(fabs(run->start->vz[i] - 60 * z) < 1e-12);
+    assert_true(fabs(run->start->vx[i] + sph_scale_poisson_ratio(&rod.target.material) * 60 * run->start->x[i]) < 1e-12);
+    assert_true((run->start->held[i] != 0) == (fabs(z) > 0.02 - rod.stretch.grip));
+    held += run->start->held[i] != 0;
+  }
+  assert_true(held > 20 && held < run->start->n / 2);
+  sph_run_free(run);
+
+  struct sph_inputs bar = SPH_RUN_CASE("elastic-bar", "fidelity.particles=1500");
+  assert_int_equal(sph_run_create(&bar, 3, &run, NULL), STATUS_OK);
+  for (size_t i = 0; i < run->start->n; i++)
+    assert_true(fabs(run->start->vz[i] - 0.1 * sin(3.14159265358979323846 * run->start->z[i] / 0.04)) < 1e-12);
+  sph_run_free(run);
+}
+
+static void same(const struct sph_ran *a, const struct sph_ran *b) {
+  assert_memory_equal(&a->outcome, &b->outcome, sizeof a->outcome);
+  assert_memory_equal(&a->results, &b->results, sizeof a->results);
+  assert_int_equal(a->count, b->count);
+  assert_memory_equal(a->fragments, b->fragments, a->count * sizeof *a->fragments);
+}
+
+static struct sph_ran end_of(void *run) {
+  struct sph_ran ran = {0};
+  bool finished = false;
+  for (uint64_t k = 1; !finished; k = k * 7 % 23 + 1)
+    assert_int_equal(sph_engine.step(run, k, &finished, NULL), STATUS_OK);
+  assert_int_equal(sph_engine.finish(run, &ran.outcome, &ran.results, &ran.fragments, &ran.count, NULL), STATUS_OK);
+  sph_engine.free(run);
+  return ran;
+}
+
+static void chunks_and_restarts_do_not_matter(void **state) {
+  (void)state;
+  char path[100];
+  snprintf(path, sizeof path, "/tmp/clast_sph_engine_%d.restart", (int)getpid());
+  struct sph_inputs cases[] = {
+      SMALL("stop.end_time=40 us"),
+      SPH_RUN_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
+      SPH_RUN_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=20 us"),
+      SPH_RUN_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms"),
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    struct sph_ran whole = sph_run_case_run(&cases[c], 3), parts, resumed;
+    void *run;
+    bool finished = false;
+    struct error error = {0};
+    assert_int_equal(sph_engine.prepare(&cases[c], 3, &run, NULL), STATUS_OK);
+    assert_int_equal(sph_engine.step(run, (uint64_t)whole.outcome.steps / 2 + 1, &finished, NULL), STATUS_OK);
+    assert_false(finished);
+    if (sph_engine.save(run, path, &error))
+      fail_msg("%s", error.message);
+    parts = end_of(run);
+    same(&whole, &parts);
+    if (sph_engine.restore(&cases[c], path, &run, &error))
+      fail_msg("%s", error.message);
+    resumed = end_of(run);
+    same(&whole, &resumed);
+    cases[c].viscosity.alpha += 0.1;
+    assert_int_equal(sph_engine.restore(&cases[c], path, &run, &error), STATUS_CONTENT);
+    assert_null(run);
+    unlink(path);
+    free(whole.fragments);
+    free(parts.fragments);
+    free(resumed.fragments);
+  }
+}
+
+static void stop_rules(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SMALL(NULL);
+  struct sph_ran ran = sph_run_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+  assert_int_equal(ran.results.stop_reason, SPH_STOP_QUIET);
+  assert_true(ran.results.fracture_ceased && ran.results.first_damage > 0);
+  /* looks come every 8 steps, each of less than the Courant limit of matter at rest */
+  double step = inputs.fidelity.cfl * inputs.fidelity.smoothing * sph_scale_smallest_spacing(&inputs) / 0.7 / sph_scale_wave_speed(&inputs.target);
+  assert_true(ran.outcome.time - ran.results.cease_time >= inputs.stop.quiet_time);
+  assert_true(ran.outcome.time - ran.results.cease_time < inputs.stop.quiet_time + 9 * step);
+  assert_true(ran.outcome.energy_error < 5e-3);   /* the bound for this scene, clamps not credited */
+  assert_true(ran.outcome.momentum_error < 1e-12); /* pair forces cancel to rounding */
+  assert_true(ran.results.largest.bare_fraction <= ran.results.largest.veneer_fraction);
+  assert_true(ran.results.largest.veneer_fraction <= ran.results.largest.dynamic_fraction + 0.05);
+  assert_true(ran.results.mean_damage > 0.2 && ran.results.mean_damage < 1);
+  double mass = 0, parts = 0;
+  uint64_t count = 0;
+  for (size_t k = 0; k < ran.count; k++) {
+    mass += ran.fragments[k].mass;
+    count += ran.fragments[k].count;
+    assert_true(k == 0 || ran.fragments[k].mass <= ran.fragments[k - 1].mass);
+  }
+  assert_int_equal(count, ran.results.particles); /* the projectile is in no fragment */
+  assert_true(fabs(mass / sph_scale_target_mass(&inputs) - 1) < 1e-12);
+  const double shares[] = {ran.results.limited.courant, ran.results.limited.force,  ran.results.limited.damage,
+                           ran.results.limited.energy,  ran.results.limited.density};
+  for (size_t k = 0; k < 5; k++)
+    parts += shares[k];
+  assert_true(parts > 0.99 && parts <= 1 + 1e-12);
+  free(ran.fragments);
+
+  inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
+  inputs.stop.end_time = 2e-5;
+  ran = sph_run_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
+  assert_false(ran.results.fracture_ceased);
+  assert_true(isnan(ran.results.cease_time));
+  assert_non_null(strstr(ran.outcome.message, "stop.end_time"));
+  assert_true(ran.outcome.time == 2e-5);
+  free(ran.fragments);
+
+  inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms", "fragments.static_strength=off"); /* nothing breaks: one piece */
+  ran = sph_run_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+  assert_true(ran.results.fracture_ceased && isnan(ran.results.first_damage));
+  assert_int_equal(ran.count, 1);
+  free(ran.fragments);
+
+  inputs = SMALL("fidelity.energy_bound=1e-9");
+  ran = sph_run_case_run(&inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
+  assert_non_null(strstr(ran.outcome.message, "fidelity.energy_bound"));
+  free(ran.fragments);
+}
+
+static void seeds_move_flaws(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SMALL("stop.end_time=30 us"), poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
+  struct sph_ran a = sph_run_case_run(&inputs, 1), b = sph_run_case_run(&inputs, 2), c = sph_run_case_run(&poisson, 1);
+  assert_true(a.results.mean_damage != b.results.mean_damage && a.results.mean_damage != c.results.mean_damage);
+  assert_true(fabs(a.results.mean_damage - b.results.mean_damage) < 0.3); /* the same body by and large */
+  free(a.fragments);
+  free(b.fragments);
+  free(c.fragments);
+}
+
+static void more_than_memory_is_refused(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SPH_RUN_CASE("disruption", "fidelity.particles=1900000000");
+  void *run = &run;
+  struct error error = {0};
+  assert_int_equal(sph_engine.prepare(&inputs, 1, &run, &error), STATUS_MEMORY);
+  assert_null(run);
+  assert_non_null(strstr(error.message, "fidelity.particles"));
+  assert_non_null(strstr(error.message, " GB"));
+}
+
+/* Overlaps are refused by name. */
+static void overlapping_bodies_are_refused(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SPH_RUN_CASE("colliding-cylinders", "fidelity.particles=300");
+  inputs.collision.gap = 1e-6;
+  void *run;
+  struct error error = {0};
+  assert_int_equal(sph_engine.prepare(&inputs, 1, &run, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "overlap"));
+}
+
+/* At the ends of their ranges inputs give a clear error or a run with an honest status and finite numbers. */
+static const char *scene; /* a file: 3.4 mm of nylon into 3 cm of basalt */
+static void extreme(const char *a, const char *b, const char *c, const char *d) {
+  const char *const overrides[] = {"fidelity.particles=150", "fidelity.projectile_spacing=0.5", a, b, c, d, NULL};
+  struct sph_inputs inputs = sph_run_case(scene, overrides);
+  void *made = NULL;
+  struct error error = {0};
+  bool finished = false;
+  if (sph_engine.prepare(&inputs, 1, &made, &error)) {
+    assert_true(error.status == STATUS_CONTENT && strlen(error.message) > 20);
+    return;
+  }
+  struct sph_ran ran = {0};
+  for (int k = 0; k < 40 && !finished; k++) /* at most 4000 steps of 170 particles */
+    assert_int_equal(sph_engine.step(made, 100, &finished, &error), STATUS_OK);
+  assert_int_equal(sph_engine.finish(made, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error), STATUS_OK);
+  sph_engine.free(made);
+  bool fine = ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME;
+  if (finished && !fine && !strlen(ran.outcome.message))
+    fail_msg("%s %s %s %s: state %d without a word", a, b, c, d, ran.outcome.state);
+  const struct outcome *o = &ran.outcome; /* no silent NaN */
+  assert_true(isfinite(o->time) && isfinite(o->time_step) && isfinite(o->total_mass) && isfinite(o->largest_fraction));
+  if (fine)
+    for (size_t k = 0; k < ran.count; k++)
+      assert_true(isfinite(ran.fragments[k].position[0]) && isfinite(ran.fragments[k].velocity[2]));
+  if (strcmp(a, "impact.speed=0") == 0)
+    assert_true(fine && ran.results.mean_damage == 0);
+  print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state, (long long)o->steps,
+                o->largest_fraction, o->energy_error, o->message);
+  free(ran.fragments);
+}
+
+static void ends_of_the_ranges(void **state) {
+  (void)state;
+  char file[100];
+  snprintf(file, sizeof file, "/tmp/clast_sph_engine_%d.yaml", (int)getpid());
+  FILE *out = fopen(file, "w");
+  assert_non_null(out);
+  fputs("engine: sph\n", out);
+  fclose(out);
+  scene = file;
+#define NOTHING "impact.angle=0"
+  extreme("impact.speed=0", NOTHING, NOTHING, NOTHING);
+  extreme("impact.speed=1e-3", NOTHING, NOTHING, NOTHING);
+  extreme("impact.speed=70 km/s", NOTHING, NOTHING, NOTHING);
+  extreme("impact.speed=1e6 m/s", NOTHING, NOTHING, NOTHING);
+  extreme("target.radius=1e-6", "projectile.radius=2e-7", NOTHING, NOTHING);
+  extreme("target.radius=1e6", "projectile.radius=2e5", NOTHING, NOTHING);
+  const char *const m[] = {"target.material.weibull.m=1", "target.material.weibull.m=8.5", "target.material.weibull.m=200"};
+  const char *const k[] = {"target.material.weibull.k=1", "target.material.weibull.k=1e100", "target.material.weibull.k=1e200"};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      extreme(m[i], k[j], NOTHING, NOTHING);
+  extreme("target.radius=1e6", "projectile.radius=2e5", m[2], k[2]);
+  extreme("target.radius=1e-6", "projectile.radius=2e-7", m[0], k[0]);
+  extreme("fidelity.particles=2", "projectile.radius=3 cm", NOTHING, NOTHING);
+  extreme("target.material.density=1e-3", NOTHING, NOTHING, NOTHING);
+  extreme("target.material.tillotson.A=1e15", NOTHING, NOTHING, NOTHING);
+  extreme("target.strength=false", "projectile.strength=false", NOTHING, NOTHING);
+  extreme("impact.angle=89.9 deg", "projectile.radius=1 cm", "impact.angle=89.9 deg", "impact.speed=3 km/s");
+  extreme("target.spin=1e9 rad/s", NOTHING, NOTHING, NOTHING);
+  unlink(file);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(results_table_is_whole),
+                                     cmocka_unit_test(builtin_scenes_say_what_they_model),
+                                     cmocka_unit_test(impact_starts_as_described),
+                                     cmocka_unit_test(stretch_and_vibration_start),
+                                     cmocka_unit_test(chunks_and_restarts_do_not_matter),
+                                     cmocka_unit_test(stop_rules),
+                                     cmocka_unit_test(seeds_move_flaws),
+                                     cmocka_unit_test(more_than_memory_is_refused),
+                                     cmocka_unit_test(overlapping_bodies_are_refused),
+                                     cmocka_unit_test(ends_of_the_ranges)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
