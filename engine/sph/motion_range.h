@@ -139,7 +139,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8], *signal = s->c.signal;
   const double *c = s->c.sound_speed, *d = s->c.damage, *ax = s->c.ax, *ay = s->c.ay, *az = s->c.az;
   const double *energy_rate = s->c.energy_rate, *energy = s->c.energy, *h0 = s->c.h_initial;
-  const double *x = s->c.x, *y = s->c.y, *z = s->c.z;
+  const double *x = s->c.x, *y = s->c.y, *z = s->c.z, *vx = s->c.vx, *vy = s->c.vy, *vz = s->c.vz;
   double *density = s->c.density, *density_rate = s->c.density_rate, *h = s->c.h;
   const double h_low = s->p.h_lowest, h_high = s->p.h_highest;
   const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
@@ -159,7 +159,10 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double left = fracture ? 1 - d[i] * d[i] * d[i] : 1;
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
-    courant[k] = (fast + alpha * c[i] + beta * signal[i]) * inverse;
+    /* Debris without neighbours (signal < 0) has nobody to send a wave to: hot, it would halve the step of all. It must only
+     * not fly past where it would find some. */
+    const double flight = sqrt(vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
+    courant[k] = (signal[i] < 0 ? flight : fast + alpha * c[i] + beta * signal[i]) * inverse;
     const double pull2 = ax[i] * ax[i] + ay[i] * ay[i] + az[i] * az[i];
     force[k] = pull2 * inverse * inverse;
     heat[k] = fabs(energy_rate[i]) / (energy[i] + 0.01 * c2);

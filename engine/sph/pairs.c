@@ -259,15 +259,12 @@ static void pack(const struct sph_pairs *p, const struct chunk *c, const struct 
   const bool artificial = p->in_columns == PAIR_WIDE;
   for (size_t k = 0; k < c->own + c->foreign; k++) {
     const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
-    double real[PAIR_WIDE] = {0};
+    double room[PAIR_WIDE], *real = p->real == sizeof(double) ? (double *)in + k * p->in_columns : room;
     record(f, u, p->options.strength, i, real);
     if (artificial) sph_tension_opposed(p->options.artificial_stress, real + PAIR_XX, real + PAIR_ARTIFICIAL);
-    if (p->real == sizeof(double)) {
-      memcpy((double *)in + k * p->in_columns, real, p->in_columns * sizeof(double));
-      continue;
-    }
+    if (p->real == sizeof(double)) continue;
     float *to = (float *)in + k * p->in_columns;
-    for (size_t column = PAIR_H; column < p->in_columns; column++)
+    for (size_t column = PAIR_H; column < (artificial ? PAIR_ARTIFICIAL + 6 : PAIR_NARROW); column++)
       to[column] = (float)real[column];
     const int32_t at[3] = {quanta(real[PAIR_X], p->quantum[0]), quanta(real[PAIR_Y], p->quantum[1]),
                            quanta(real[PAIR_Z], p->quantum[2])};
@@ -323,68 +320,87 @@ static double power(const struct sph_pair_fields *f, bool strength, size_t i, co
   return f->density[i] * sum;
 }
 
-static double at(const struct sph_pairs *p, const void *record, size_t column) {
-  return p->real == sizeof(double) ? ((const double *)record)[column] : (double)((const float *)record)[column];
+#define INLINE static inline __attribute__((always_inline))
+
+INLINE double at(bool whole, const void *record, size_t column) {
+  return whole ? ((const double *)record)[column] : (double)((const float *)record)[column];
 }
 
-/* Of all chunks before it, what the own particles of chunk `k` got there; then the sums in SI units. */
-static size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
-                     const struct sph_pair_sums *sums) {
-  const struct chunk *c = &p->chunk[k];
-  const size_t size = p->out_columns * p->real, columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : SUM_COUNT + 1;
+/* The first of `count` ascending numbers that is not below `number`. */
+static size_t first_from(const uint32_t *numbers, size_t count, size_t number) {
+  size_t low = 0, high = count;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (numbers[middle] < number)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* What the own particles of chunk k got as foreign ones of all chunks before it. */
+INLINE void add_foreign(const struct sph_pairs *p, const struct chunk *c, size_t k, const bool whole) {
+  const size_t columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : PAIR_NARROW, size = p->out_columns * p->real;
   char *own = (char *)p->out + c->record_at * size;
   for (size_t before = 0; before < k; before++) {
     const struct chunk *b = &p->chunk[before];
     const uint32_t *foreign = p->foreign + b->foreign_at;
-    size_t low = 0, high = b->foreign;
-    while (low < high) { /* the first that is mine */
-      const size_t middle = (low + high) / 2;
-      if (foreign[middle] < c->first)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    for (size_t m = low; m < b->foreign && foreign[m] < c->first + c->own; m++) {
+    for (size_t m = first_from(foreign, b->foreign, c->first); m < b->foreign && foreign[m] < c->first + c->own; m++) {
       char *to = own + (foreign[m] - c->first) * size;
       const char *from = (const char *)p->out + (b->record_at + b->own + m) * size;
-      if (p->real == sizeof(double)) {
-        double *t = (double *)(void *)to;
-        const double *s = (const double *)(const void *)from, signal = fmax(t[SUM_SIGNAL], s[SUM_SIGNAL]);
+      const double signal = fmax(at(whole, to, SUM_SIGNAL), at(whole, from, SUM_SIGNAL));
+      if (whole) {
         for (size_t column = 0; column < columns; column++)
-          t[column] += s[column];
-        t[SUM_SIGNAL] = signal;
+          ((double *)(void *)to)[column] += ((const double *)(const void *)from)[column];
+        ((double *)(void *)to)[SUM_SIGNAL] = signal;
       } else {
-        float *t = (float *)(void *)to;
-        const float *s = (const float *)(const void *)from, signal = fmaxf(t[SUM_SIGNAL], s[SUM_SIGNAL]);
         for (size_t column = 0; column < columns; column++)
-          t[column] += s[column];
-        t[SUM_SIGNAL] = signal;
+          ((float *)(void *)to)[column] += ((const float *)(const void *)from)[column];
+        ((float *)(void *)to)[SUM_SIGNAL] = (float)signal;
       }
     }
   }
+}
+
+/* The sums of chunk k in SI units; returns how many neighbours its particles have. */
+INLINE size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
+                     const struct sph_pair_sums *sums, const bool whole, const bool corrected) {
+  const struct chunk *c = &p->chunk[k];
+  const size_t size = (corrected ? PAIR_WIDE : PAIR_NARROW) * (whole ? sizeof(double) : sizeof(float));
+  const char *own = (const char *)p->out + c->record_at * size;
   const double acceleration = u->velocity * u->velocity / u->length, rate = u->velocity / u->length;
-  size_t within = 0;
+  double within = 0;
+  add_foreign(p, c, k, whole);
   for (size_t i = c->first; i < c->first + c->own; i++, own += size) {
     const double weight = p->options.volume_weights ? 1 : u->density / f->density[i]; /* m_j/rho_i */
     double gradient[9], moment[6];
-    sums->ax[i] = at(p, own, 0) * acceleration;
-    sums->ay[i] = at(p, own, 1) * acceleration;
-    sums->az[i] = at(p, own, 2) * acceleration;
-    sums->heating[i] = at(p, own, SUM_HEATING) * acceleration * u->velocity;
-    sums->signal[i] = at(p, own, SUM_SIGNAL) * u->velocity;
-    within += (size_t)at(p, own, SUM_COUNT);
+    sums->ax[i] = at(whole, own, 0) * acceleration;
+    sums->ay[i] = at(whole, own, 1) * acceleration;
+    sums->az[i] = at(whole, own, 2) * acceleration;
+    sums->heating[i] = at(whole, own, SUM_HEATING) * acceleration * u->velocity;
+    sums->signal[i] = at(whole, own, SUM_COUNT) > 0 ? at(whole, own, SUM_SIGNAL) * u->velocity : -1;
+    within += at(whole, own, SUM_COUNT);
     for (size_t m = 0; m < 9; m++)
-      gradient[m] = at(p, own, SUM_GRADIENT + m) * weight * rate;
-    if (p->out_columns == PAIR_WIDE) {
+      gradient[m] = at(whole, own, SUM_GRADIENT + m) * weight * rate;
+    if (corrected) {
       for (size_t m = 0; m < 6; m++)
-        moment[m] = at(p, own, SUM_MOMENT + m) * weight;
+        moment[m] = at(whole, own, SUM_MOMENT + m) * weight;
       if (sums->power) sums->power[i] = power(f, p->options.strength, i, gradient);
       correct(moment, gradient);
     }
     for (int m = 0; m < 9; m++)
       sums->gradient[m][i] = gradient[m];
   }
-  return within;
+  return (size_t)within;
+}
+
+static size_t unpack_chunk(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
+                           const struct sph_pair_sums *sums) {
+  const bool corrected = p->out_columns == PAIR_WIDE;
+  if (p->real == sizeof(double))
+    return corrected ? unpack(p, k, u, f, sums, true, true) : unpack(p, k, u, f, sums, true, false);
+  return corrected ? unpack(p, k, u, f, sums, false, true) : unpack(p, k, u, f, sums, false, false);
 }
 
 void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
@@ -417,7 +433,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : within) num_threads(o->threads) if (o->threads > 1)
 #endif
   for (size_t k = 0; k < p->chunks; k++)
-    within += unpack(p, k, &u, f, sums);
+    within += unpack_chunk(p, k, &u, f, sums);
   p->within = within;
 }
 

@@ -47,7 +47,8 @@ struct sph_pair_sums {
    * *before* its correction. That one is conjugate to the forces: with it total energy is conserved, with the corrected one
    * it is not (by 10 % in a collision of bodies six particles wide). */
   double *power;
-  double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step */
+  double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step; -1 without
+                              neighbours: what nobody feels need not be resolved */
 };
 
 struct sph_pairs; /* opaque: lists and records */
