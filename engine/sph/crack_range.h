@@ -48,16 +48,19 @@ RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_soli
     d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
 }
 
-/* One particle whose strain (times E) is known. */
+/* One particle whose strain (times E) is known. Its list is looked up only when the strain has left the bracket between two
+ * thresholds. */
 RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body, size_t i, double stress) {
-  const size_t own = s->id[i] - body->first;
-  const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young);
-  if (open != s->active[i]) {
-    s->active[i] = open;
+  if (!(stress >= s->c.open_from[i] && stress < s->c.open_below[i])) {
+    const size_t own = s->id[i] - body->first;
+    double bracket[2];
+    const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young, bracket);
+    s->c.open_from[i] = bracket[0] * body->young;
+    s->c.open_below[i] = bracket[1] * body->young;
+    s->c.open_rate[i] = open ? sph_fracture_rate(open, s->p.growth) * s->c.crack_rate[i] : 0;
     s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->p.cap) : 0;
   }
-  const bool grows = open && crack_own_damage(s, body)[i] < s->c.damage_cap[i];
-  s->c.damage_rate[i] = grows ? sph_fracture_rate(open, s->p.growth) * s->c.crack_rate[i] : 0;
+  s->c.damage_rate[i] = crack_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
   if (s->c.damage[i] >= 1) s->c.weakest[i] = INFINITY; /* nothing left to open */
 }
 
@@ -66,7 +69,6 @@ RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, 
   const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
   const double *yz = s->c.stress[4];
   double *rate = s->c.damage_rate;
-  uint32_t *active = s->active;
   double above[SPH_BLOCK], strain[SPH_BLOCK];
   uint32_t which[SPH_BLOCK];
   const size_t low = b->low, n = b->high - b->low;
@@ -82,9 +84,6 @@ RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, 
     which[count] = (uint32_t)k;
     count += above[k] >= 0;
   }
-  RANGE_LOOP
-  for (size_t k = 0; k < n; k++)
-    active[low + k] = above[k] >= 0 ? active[low + k] : 0;
   if (!count) return;
   RANGE_LOOP
   for (size_t m = 0; m < count; m++) {

@@ -14,7 +14,6 @@ void sph_system_free(struct sph_system *s) {
   sph_pairs_free(s->pairs);
   free(s->arena);
   free(s->id);
-  free(s->active);
   free(s->held);
   free(s->listed[0]);
   free(s->order);
@@ -26,7 +25,6 @@ void sph_system_free(struct sph_system *s) {
 size_t sph_system_bytes(const struct sph_system *s) {
   size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (5 * sizeof(double) + 2 * sizeof(uint32_t)) +
                  s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
-  if (s->active) bytes += s->n * sizeof *s->active;
   if (s->held) bytes += s->n * sizeof *s->held;
   for (size_t b = 0; b < s->body_count; b++)
     bytes += sph_weibull_bytes(s->solid[b].weibull);

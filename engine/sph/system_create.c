@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #include "engine/sph/ranges.h"
 #include "engine/sph/system_step.h"
@@ -53,6 +54,9 @@ static const struct {
     {COLUMN(damage_rate), FRACTURE},
     {COLUMN(damage_cap), FRACTURE},
     {COLUMN(weakest), FRACTURE},
+    {COLUMN(open_from), FRACTURE},
+    {COLUMN(open_below), FRACTURE},
+    {COLUMN(open_rate), FRACTURE},
     {COLUMN(crack_rate), FRACTURE},
     {COLUMN(damping), DAMPING},
     {COLUMN(distention), DISTENTION},
@@ -110,19 +114,29 @@ size_t sph_system_create_columns(struct sph_system *s, double **slot[SPH_COLUMNS
   return count;
 }
 
+/* Sixty columns are read side by side: with pages of 4 kB that is more than the address cache of a core holds. */
+static double *huge_pages(size_t bytes) {
+  const size_t page = (size_t)1 << 21;
+  if (bytes < 2 * page) return aligned_alloc(64, (bytes + 63) / 64 * 64);
+  double *memory = aligned_alloc(page, (bytes + page - 1) / page * page);
+#ifdef MADV_HUGEPAGE
+  if (memory) madvise(memory, (bytes + page - 1) / page * page, MADV_HUGEPAGE); /* a hint: it may fail */
+#endif
+  return memory;
+}
+
 static status take_columns(struct sph_system *s, const struct sph_particles *p, struct error *error) {
   size_t count = 0;
   for (size_t r = 0; r < SPH_COLUMNS; r++)
     count += is_there(rows[r].need, p, s);
   s->stride = (s->n + 7) / 8 * 8 + 8; /* an odd number of cache lines would be better still: columns must not share sets */
   s->arena_doubles = count * s->stride;
-  s->arena = aligned_alloc(64, s->arena_doubles * sizeof(double));
+  s->arena = huge_pages(s->arena_doubles * sizeof(double));
   s->listed[0] = calloc(5 * s->n, sizeof(double));
   s->id = malloc(s->n * sizeof *s->id);
   s->order = malloc(s->n * sizeof *s->order);
-  if (s->fracture) s->active = calloc(s->n, sizeof *s->active);
   if (p->held) s->held = malloc(s->n * sizeof *s->held);
-  if (!s->arena || !s->listed[0] || !s->id || !s->order || (s->fracture && !s->active) || (p->held && !s->held))
+  if (!s->arena || !s->listed[0] || !s->id || !s->order || (p->held && !s->held))
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles of %zu columns (%.3g GB)", s->n, count,
                        (double)(s->arena_doubles * sizeof(double)) / 1e9);
   memset(s->arena, 0, s->arena_doubles * sizeof(double));

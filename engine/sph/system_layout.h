@@ -27,6 +27,7 @@ struct sph_columns {
   double *damaged[6];               /* damaged S/rho^2: what the pair loop takes; xx xy xz yy yz zz */
   double *damage, *damage_rate, *damage_cap; /* D^(1/3); the rate holds until the cap; */
   double *weakest;                  /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
+  double *open_from, *open_below, *open_rate; /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
   double *crack_rate;               /* c_g / R_s, 1/s */
   double *damping;
   /* pores */
@@ -87,7 +88,6 @@ struct sph_system {
   double *arena;    /* holds every column */
   size_t arena_doubles;
   uint32_t *id;     /* id of the particle that stands at a place */
-  uint32_t *active; /* open flaws at the last step; NULL without fracture */
   uint8_t *held;    /* enum sph_freedom bits; NULL when none is */
   double dt;        /* s, of the step under way */
   double *listed[5]; /* x y z h slack at the last listing: a restart makes the same lists */

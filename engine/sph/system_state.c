@@ -22,7 +22,6 @@ static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   for (int k = 0; k < 5; k++)
     out[count++] = (struct section){s->listed[k], s->n * sizeof(double)};
   out[count++] = (struct section){s->id, s->n * sizeof *s->id};
-  if (s->active) out[count++] = (struct section){s->active, s->n * sizeof *s->active};
   if (s->held) out[count++] = (struct section){s->held, s->n};
   return count;
 }

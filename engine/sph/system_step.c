@@ -40,14 +40,10 @@ static void permute(struct sph_system *s) {
       scratch[i] = column[s->order[i]];
     memcpy(column, scratch, s->n * sizeof(double));
   }
-  uint32_t *const words[2] = {s->id, s->active};
   uint32_t *word = (uint32_t *)(void *)scratch;
-  for (int k = 0; k < 2; k++) {
-    if (!words[k]) continue;
-    for (size_t i = 0; i < s->n; i++)
-      word[i] = words[k][s->order[i]];
-    memcpy(words[k], word, s->n * sizeof *word);
-  }
+  for (size_t i = 0; i < s->n; i++)
+    word[i] = s->id[s->order[i]];
+  memcpy(s->id, word, s->n * sizeof *word);
   uint8_t *byte = (uint8_t *)scratch;
   for (size_t i = 0; s->held && i < s->n; i++)
     byte[i] = s->held[s->order[i]];

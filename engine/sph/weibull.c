@@ -83,22 +83,38 @@ uint32_t sph_weibull_total(const struct sph_weibull_lists *w, size_t i) {
   return w->strain ? (uint32_t)(w->first[i + 1] - w->first[i]) : w->total[i];
 }
 
-uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double strain) {
-  if (w->strain) {
-    size_t low = w->first[i], high = w->first[i + 1];
-    while (low < high) { /* first flaw stronger than the strain */
-      const size_t middle = low + (high - low) / 2;
-      if (w->strain[middle] <= strain)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return (uint32_t)(low - w->first[i]);
+static uint32_t active_exact(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  const size_t first = w->first[i], last = w->first[i + 1];
+  size_t low = first, high = last;
+  while (low < high) { /* first flaw stronger than the strain */
+    const size_t middle = low + (high - low) / 2;
+    if (w->strain[middle] <= strain)
+      low = middle + 1;
+    else
+      high = middle;
   }
-  if (!(strain >= w->lowest[i])) return 0;
-  if (!(w->exponent[i] > 0) || !(w->lowest[i] > 0)) return w->total[i]; /* one flaw, all equal, or thresholds of 0 */
-  const double open = pow(strain / w->lowest[i], w->exponent[i]) * (1 + 1e-12); /* the highest is reached, not missed */
-  return open >= (double)w->total[i] ? w->total[i] : (uint32_t)open;
+  bracket[0] = low > first ? w->strain[low - 1] : -HUGE_VAL;
+  bracket[1] = low < last ? w->strain[low] : HUGE_VAL;
+  return (uint32_t)(low - first);
+}
+
+static uint32_t active_compact(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  const double lowest = w->lowest[i], q = w->exponent[i], total = (double)w->total[i];
+  bracket[0] = -HUGE_VAL;
+  bracket[1] = lowest;
+  if (!(strain >= lowest)) return 0;
+  double open = total;
+  if (q > 0 && lowest > 0) { /* else one flaw, all equal, or thresholds of 0: all open at once */
+    const double law = floor(pow(strain / lowest, q) * (1 + 1e-12)); /* the highest is reached, not missed */
+    open = law < 1 ? 1 : law < total ? law : total;
+  }
+  bracket[0] = open > 1 && q > 0 ? lowest * pow(open, 1 / q) : lowest;
+  bracket[1] = open < total ? lowest * pow(open + 1, 1 / q) : HUGE_VAL;
+  return (uint32_t)open;
+}
+
+uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  return (w->strain ? active_exact : active_compact)(w, i, strain, bracket);
 }
 
 static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
@@ -113,5 +129,5 @@ const struct sph_module sph_weibull_module = {
     .source = "Benz & Asphaug 1995, eqs. 11 and 20",
     .when = "a body whose material has Weibull parameters",
     .on = on,
-    .bytes = sizeof(double) + sizeof(uint32_t), /* and the lists: about 12 thresholds per particle, or 20 bytes compact */
+    .bytes = 4 * sizeof(double), /* and the lists: about 12 thresholds per particle, or 20 bytes compact */
 };

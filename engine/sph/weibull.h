@@ -20,6 +20,7 @@ size_t sph_weibull_bytes(const struct sph_weibull_lists *lists);
 
 double sph_weibull_lowest(const struct sph_weibull_lists *lists, size_t particle);
 uint32_t sph_weibull_total(const struct sph_weibull_lists *lists, size_t particle);
-uint32_t sph_weibull_active(const struct sph_weibull_lists *lists, size_t particle, double strain);
+/* How many are open; it stays so while bracket[0] <= strain < bracket[1]. */
+uint32_t sph_weibull_active(const struct sph_weibull_lists *lists, size_t particle, double strain, double bracket[2]);
 
 #endif

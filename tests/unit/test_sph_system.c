@@ -149,10 +149,10 @@ static void absent(void **state) {
   struct sph_system *fluid = case_system(c.particles, 2, c.physics, &c.parameters);
   assert_true(sph_system_bytes(fluid) < sph_system_bytes(whole) && sph_system_bytes(whole) < sph_system_bytes(solid));
   assert_non_null(solid->c.damage);
-  assert_non_null(solid->active);
+  assert_non_null(solid->c.open_rate);
   assert_null(whole->c.damage);
   assert_null(whole->c.weakest);
-  assert_null(whole->active);
+  assert_null(whole->c.open_rate);
   assert_non_null(whole->c.stress[0]);
   assert_null(fluid->c.stress[0]);
   assert_null(fluid->c.damaged[5]);
