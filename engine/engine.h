@@ -30,6 +30,7 @@ struct engine_kind {
    * (NaN, collapse) is no error status: the run is finished and says so in its outcome. */
   status (*step)(void *run, uint64_t max_steps, bool *finished, struct error *error);
   double (*progress)(const void *run); /* 0..1, simulated time over the hard end */
+  double (*time)(const void *run);     /* s simulated so far: what snapshots are labelled by */
   /* Results: *outcome, the engine's own *result (results->size bytes), and the fragments by descending mass (malloc'd,
    * owned by the caller from then on). May be called before the run is finished (a snapshot of results). */
   status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments, size_t *fragment_count,

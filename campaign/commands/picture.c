@@ -1,17 +1,23 @@
-/* `clast picture FIELDS PICTURE`: draws a body in pieces. */
+/* `clast picture FIELDS PICTURE`: draws a body in pieces, whichever engine wrote the file. */
 #include "campaign/commands/picture.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "analysis/picture.h"
 #include "campaign/commands/commands.h"
 #include "engine/body.h"
+#include "engine/cloud.h"
+#include "schemas/unit.h"
 
 enum { WIDTH = 900 };
 
 struct options {
-  const char *caption;
+  const char *caption, *what, *view, *axis, *at;
 };
 
-status picture_draw(const char *fields, const char *picture, const char *caption, struct error *error) {
+static status draw_grains(const char *fields, const char *picture, const char *caption, struct error *error) {
   struct body body;
   status code = body_read(fields, &body, error);
   if (code)
@@ -26,23 +32,122 @@ status picture_draw(const char *fields, const char *picture, const char *caption
   return code;
 }
 
+/* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
+static status choose_look(const struct options *options, struct picture_look *look, const char **what, struct error *error) {
+  *what = options->what ? options->what : "damage";
+  if (!strcmp(*what, "fragments"))
+    *what = NULL;
+  *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .axis = 1, .plane = NAN};
+  if (options->view && !strcmp(options->view, "cut"))
+    look->view = PICTURE_CUT;
+  else if (options->view && !strcmp(options->view, "outside"))
+    look->view = PICTURE_OUTSIDE;
+  else if (options->view && !strcmp(options->view, "apart"))
+    look->view = PICTURE_APART;
+  else if (options->view)
+    return status_fail(error, STATUS_USAGE, "--view is cut, outside or apart, not '%s'", options->view);
+  if (options->axis && (strlen(options->axis) != 1 || !strchr("xyz", options->axis[0])))
+    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", options->axis);
+  if (options->axis)
+    look->axis = options->axis[0] - 'x';
+  if (options->at && look->view != PICTURE_CUT)
+    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
+  if (options->at && unit_read(options->at, "m", &look->plane, error))
+    return STATUS_USAGE;
+  return STATUS_OK;
+}
+
+static void name_look(const struct picture_look *look, const struct cloud *cloud, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = 0;
+  if (*cloud->engine)
+    used = (size_t)snprintf(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
+  if (used < size && isfinite(cloud->time))
+    used += (size_t)snprintf(text + used, size - used, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
+  if (used < size && look->view == PICTURE_CUT)
+    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle", 'x' + look->axis,
+             look->plane);
+  else if (used < size && look->view == PICTURE_APART)
+    snprintf(text + used, size - used, ", fragments drawn apart");
+}
+
+static status draw_particles(const char *fields, const char *picture, const char *caption, const struct options *options,
+                             struct error *error) {
+  struct picture_look look;
+  struct cloud cloud = {0};
+  double *value = NULL;
+  const char *what;
+  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "", meaning[128] = "";
+  status code = choose_look(options, &look, &what, error);
+  if (code || (code = cloud_read(fields, &cloud, error)))
+    return code;
+  if (what && !options->what) { /* what cannot crack shows its pressure */
+    if (cloud_read_column(fields, &cloud, what, &value, unit, meaning, NULL))
+      what = "pressure";
+  }
+  if (what && !value && (code = cloud_read_column(fields, &cloud, what, &value, unit, meaning, error)))
+    goto cleanup;
+  struct picture_cloud drawn = {.n = cloud.n, .position = (const double(*)[3])cloud.position, .size = cloud.size,
+                                .mass = cloud.mass, .fragment = cloud.fragment, .part = cloud.part, .value = value};
+  name_look(&look, &cloud, title, sizeof title);
+  picture_particles_numbers(&drawn, numbers, sizeof numbers);
+  look.title = caption ? caption : title;
+  look.subtitle = numbers;
+  look.quantity = what;
+  look.unit = unit;
+  code = picture_particles(picture, WIDTH, &drawn, &look, error);
+cleanup:
+  free(value);
+  cloud_clear(&cloud);
+  return code;
+}
+
+static status draw(const char *fields, const char *picture, const struct options *options, struct error *error) {
+  if (cloud_in_file(fields))
+    return draw_particles(fields, picture, options->caption, options, error);
+  if (options->what || options->view || options->axis || options->at) {
+    struct body body;
+    status code = body_read(fields, &body, error);
+    if (code)
+      return code;
+    body_clear(&body);
+    return status_fail(error, STATUS_USAGE, "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
+                                            "are for particles in space", fields);
+  }
+  return draw_grains(fields, picture, options->caption, error);
+}
+
+status picture_draw(const char *fields, const char *picture, const char *caption, struct error *error) {
+  return draw(fields, picture, &(struct options){.caption = caption}, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
-  const struct options *options = line->options;
-  return picture_draw(line->arguments[0], line->arguments[1], options->caption, error);
+  return draw(line->arguments[0], line->arguments[1], line->options, error);
 }
 
 static const struct option_row rows[] = {
     {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title over it."},
+    {"what", 0, OPTION_TEXT, "QUANTITY", offsetof(struct options, what), 0, 0, NULL,
+     "Particles: what colours them: damage (where there is any, else pressure), pressure, density, energy, distention, flaws..., "
+     "or fragments."},
+    {"view", 0, OPTION_TEXT, "VIEW", offsetof(struct options, view), 0, 0, NULL,
+     "Particles: cut (through a plane; the default), outside, or apart (fragments moved away from each other; the default "
+     "for fragments)."},
+    {"axis", 0, OPTION_TEXT, "x|y|z", offsetof(struct options, axis), 0, 0, NULL,
+     "Particles: the axis that is looked along, at right angles to a cut (y)."},
+    {"at", 0, OPTION_TEXT, "LENGTH", offsetof(struct options, at), 0, 0, NULL,
+     "Particles: where the cut stands on that axis (the middle of the heaviest fragment)."},
 };
 
 const struct command picture_command = {
     .name = "picture",
     .group = "results",
-    .arguments = "FIELDS.h5 PICTURE.png",
-    .summary = "draw the body of a fields file, fragments in colours",
-    .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields): every fragment\n"
-           "in a colour of its own, cracks inside fragments as lines. The ending chooses the format, .png or .svg.",
-    .examples = "clast picture disc.h5 disc.png\nclast picture disc.h5 disc.svg --caption \"seed 7\"",
+    .arguments = "FIELDS.hdf PICTURE.png",
+    .summary = "draw the body of a fields file: fragments, damage, pressure",
+    .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields). Grains in the\n"
+           "plane: every fragment in a colour of its own, cracks inside fragments as lines. Particles in space: a cut, a view\n"
+           "from outside, or the fragments apart. The ending chooses the format, .png or .svg.",
+    .examples = "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
     .options = rows,

@@ -10,9 +10,10 @@
 #include "campaign/commands/explain.h"
 #include "campaign/commands/picture.h"
 #include "campaign/commands/results.h"
+#include "campaign/commands/snapshots.h"
 #include "campaign/run.h"
 
-enum { BLOCK = 200 }; /* steps between looks at progress: about a tenth of a second for a thousand grains */
+enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for a million particles */
 
 struct options {
   int64_t seed, snapshots;
@@ -23,29 +24,19 @@ struct options {
 };
 
 struct watch {
-  const struct options *options;
-  const char *name; /* of the scene, for snapshots */
-  int64_t written;
+  struct snapshots *snapshots; /* NULL: none wanted */
   bool terminal;
   int percent;
 };
 
-/* Snapshot k of n when the run has done k/n of its time; a percentage on a terminal. */
+/* The snapshot that is due; a percentage on a terminal. */
 static status look(void *context, const struct engine_kind *kind, void *run, struct error *error) {
   struct watch *watch = context;
-  double progress = kind->progress(run);
-  while (watch->written < watch->options->snapshots &&
-         progress * (double)watch->options->snapshots >= (double)watch->written) {
-    char path[FIELD_TEXT_SIZE + 64];
-    snprintf(path, sizeof path, "%s_%06lld.h5", watch->name, (long long)watch->written++);
-    status code = kind->write_fields(run, path, error);
-    if (code)
-      return code;
-  }
-  int percent = (int)floor(100 * progress);
+  status code = watch->snapshots ? snapshots_look(watch->snapshots, kind, run, error) : STATUS_OK;
+  int percent = (int)floor(100 * kind->progress(run));
   if (watch->terminal && percent != watch->percent)
     fprintf(stderr, "\r%3d %% of the longest time it may take", watch->percent = percent);
-  return STATUS_OK;
+  return code;
 }
 
 static status simulate(const struct scene *scene, const struct options *options, enum table_format format,
@@ -56,12 +47,13 @@ static status simulate(const struct scene *scene, const struct options *options,
     snprintf(temporary, sizeof temporary, "%s.%ld.h5", options->picture, (long)getpid());
     fields = temporary;
   }
-  struct watch watch = {.options = options, .name = scene->name, .percent = -1,
-                        .terminal = !options->quiet && isatty(STDERR_FILENO)};
+  struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};
   struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)options->seed,
                                 .fields_path = fields};
   struct run_result result = {0};
-  status code = run_simulate(&request, look, &watch, BLOCK, &result, error);
+  status code = options->snapshots ? snapshots_open(scene->name, options->snapshots, false, &watch.snapshots, error) : STATUS_OK;
+  if (!code)
+    code = run_simulate(&request, look, &watch, BLOCK, &result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
   if (!code && options->picture) {
@@ -77,6 +69,7 @@ static status simulate(const struct scene *scene, const struct options *options,
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (!code && *result.outcome.message && !options->quiet)
     fprintf(stderr, "clast: %s\n", result.outcome.message);
+  snapshots_close(watch.snapshots);
   run_result_clear(&result);
   return code;
 }
@@ -103,11 +96,12 @@ static const struct option_row rows[] = {
      "Seed of the run: the same seed gives the same bits."},
     EXPLAIN_SET(struct options, set),
     {"picture", 'p', OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
-     "Draw the body at the end, fragments in colours."},
-    {"fields", 0, OPTION_TEXT, "FILE.h5", offsetof(struct options, fields), 0, 0, NULL,
-     "Write grains, beams and the break log at the end as an HDF5 file."},
+     "Draw the body at the end: fragments of grains, or the damage of particles on a cut."},
+    {"fields", 0, OPTION_TEXT, "FILE.hdf", offsetof(struct options, fields), 0, 0, NULL,
+     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file; named .hdf, ParaView opens it."},
     {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
-     "Write N such files on the way, SCENE_000000.h5 and so on, evenly over the longest time the run may take."},
+     "Write up to N such files on the way, SCENE_000000.hdf and so on, evenly over the longest time the run may take; "
+     "SCENE.hdf.series lists them with their times for ParaView."},
     {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
     TABLE_OPTIONS(struct options, table),
 };

@@ -35,6 +35,8 @@ static status step(void *run, uint64_t max_steps, bool *finished, struct error *
   return STATUS_OK;
 }
 
+static double time_of(const void *run) { return dem_system_time(((const struct dem_run *)run)->system); }
+
 static double progress(const void *run) {
   const struct dem_run *r = run;
   return r->state.finished ? 1 : fmin(dem_system_time(r->system) / dem_inputs_end_time(&r->inputs), 1);
@@ -77,6 +79,7 @@ const struct engine_kind dem_engine = {
     .prepare = prepare,
     .step = step,
     .progress = progress,
+    .time = time_of,
     .finish = finish,
     .write_fields = write_fields,
     .save = save,

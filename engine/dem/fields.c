@@ -191,6 +191,7 @@ status dem_fields_write(struct dem_run *run, const char *path, struct error *err
       (code = fields_file_open(dem_engine.name, dem_engine.doc, dem_engine.results_version, run->seed, &dem_inputs, &run->inputs,
                                &file, error)))
     goto cleanup;
+  fields_file_real(file, "run", "time", outcome.time);
   content(file, run, label, &outcome, &results, fragments, count);
   code = fields_file_save(file, path, error);
 cleanup:

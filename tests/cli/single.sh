@@ -35,9 +35,13 @@ expect 0 "$clast" simulate disc-explosion --seed 8 "${small[@]}" --json
 if cmp -s out first.json; then fail "another seed gives the same result"; fi
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields end.h5 --snapshots 3 --picture end.png
 prints "largest_fraction"; prints "beta"
-for file in end.h5 disc-explosion_000000.h5 disc-explosion_000002.h5; do [ -s "$file" ] || fail "no $file"; done
-[ ! -e disc-explosion_000003.h5 ] || fail "too many snapshots"
+for file in end.h5 disc-explosion_000000.hdf disc-explosion_000002.hdf; do [ -s "$file" ] || fail "no $file"; done
+[ ! -e disc-explosion_000003.hdf ] || fail "too many snapshots"
 python - <<'PY'
+import json
+series = json.load(open('disc-explosion.hdf.series'))['files']
+assert [f['name'] for f in series] == ['disc-explosion_%06d.hdf' % k for k in range(3)], series
+assert 0 < series[0]['time'] < series[1]['time'] < series[2]['time'] <= 1e-3, series
 data = open('end.png', 'rb').read()
 assert data[:8] == b'\x89PNG\r\n\x1a\n' and len(data) > 5000, len(data)
 PY

@@ -1,0 +1,114 @@
+#include "campaign/commands/snapshots.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/fields_read.h"
+#include "engine/whole_file.h"
+#include "schemas/field.h"
+
+struct snapshots {
+  char name[FIELD_TEXT_SIZE];
+  int64_t count, next; /* next: number of the first that is still to come */
+  bool resumed;        /* and not looked yet */
+  double *time;        /* s, by number; NaN: there is no such file */
+};
+
+status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error) {
+  struct snapshots *s = calloc(1, sizeof *s);
+  *out = NULL;
+  if (s && !(s->time = malloc(((size_t)count + 1) * sizeof *s->time))) {
+    free(s);
+    s = NULL;
+  }
+  if (!s)
+    return status_fail(error, STATUS_MEMORY, "no memory for %lld snapshots", (long long)count);
+  snprintf(s->name, sizeof s->name, "%s", name);
+  s->count = count;
+  s->resumed = resumed;
+  for (int64_t k = 0; k < count; k++)
+    s->time[k] = NAN;
+  *out = s;
+  return STATUS_OK;
+}
+
+void snapshots_close(struct snapshots *s) {
+  if (s)
+    free(s->time);
+  free(s);
+}
+
+static void path_of(const struct snapshots *s, int64_t number, char *path, size_t size) {
+  snprintf(path, size, "%s_%06lld.hdf", s->name, (long long)number);
+}
+
+/* A run that was restored has its first snapshots on the disk already. */
+static void find_earlier(struct snapshots *s, double progress) {
+  s->resumed = false;
+  s->next = (int64_t)ceil(progress * (double)s->count);
+  for (int64_t k = 0; k < s->next && k < s->count; k++) {
+    char path[FIELD_TEXT_SIZE + 64];
+    struct fields_read *file;
+    path_of(s, k, path, sizeof path);
+    if (fields_read_open(path, &file, NULL))
+      continue;
+    if (!fields_read_real(file, "run", "time", &s->time[k]))
+      s->time[k] = NAN;
+    fields_read_close(file);
+  }
+}
+
+/* ParaView's list of files with their times (style: JSON, version 1.0). Names are relative to it. */
+static status write_series(const struct snapshots *s, struct error *error) {
+  char *text = NULL, path[FIELD_TEXT_SIZE + 64];
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
+  const char *base = strrchr(s->name, '/');
+  fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [", out);
+  const char *between = "\n";
+  for (int64_t k = 0; k < s->count; k++) {
+    if (isnan(s->time[k]))
+      continue;
+    char number[32];
+    snprintf(path, sizeof path, "%s_%06lld.hdf", base ? base + 1 : s->name, (long long)k);
+    field_print_number(s->time[k], number);
+    fprintf(out, "%s    {\"name\": ", between);
+    field_json_string(path, out);
+    fprintf(out, ", \"time\": %s}", number);
+    between = ",\n";
+  }
+  fputs("\n  ]\n}\n", out);
+  if (fclose(out)) {
+    free(text);
+    return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
+  }
+  snprintf(path, sizeof path, "%s.hdf.series", s->name);
+  status code = whole_file_write(path, "list of snapshots", text, size, error);
+  free(text);
+  return code;
+}
+
+status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void *run, struct error *error) {
+  double progress = kind->progress(run);
+  if (s->resumed)
+    find_earlier(s, progress);
+  if (s->next >= s->count || progress * (double)s->count < (double)s->next)
+    return STATUS_OK;
+  char path[FIELD_TEXT_SIZE + 64];
+  int64_t number = s->next;
+  path_of(s, number, path, sizeof path);
+  status code = kind->write_fields(run, path, error);
+  if (code)
+    return code;
+  s->time[number] = kind->time(run);
+  s->next = number + 1;
+  while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)
+    s->next++; /* steps so long that some were missed: no copies of one state */
+  if (progress >= 1)
+    s->next = s->count; /* the end has come, before its longest time perhaps: this was the last */
+  return write_series(s, error);
+}

@@ -1,0 +1,19 @@
+/* Fields files on the way of a run, and the list of them with their times that ParaView reads (FILE.series). */
+#ifndef CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
+#define CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
+
+#include <stdint.h>
+
+#include "engine/engine.h"
+
+struct snapshots; /* opaque */
+
+/* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first before it has moved far.
+ * `resumed`: the run goes on from a restart file; what came before is on the disk and stays in the list. STATUS_MEMORY. */
+status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error);
+void snapshots_close(struct snapshots *snapshots); /* NULL is fine */
+/* Between blocks of steps: writes the snapshot that is due, if one is, and NAME.hdf.series anew. Both are whole files at any
+ * moment. Steps longer than the time between snapshots leave numbers out. What write_fields returns, STATUS_IO. */
+status snapshots_look(struct snapshots *snapshots, const struct engine_kind *kind, void *run, struct error *error);
+
+#endif
