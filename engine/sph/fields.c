@@ -35,6 +35,7 @@ status sph_fields_write(struct sph_run *run, const char *path, struct error *err
       (code = fields_file_open(sph_engine.name, sph_engine.doc, sph_engine.results_version, run->seed, &sph_inputs, &run->inputs,
                                &file, error)))
     goto cleanup;
+  fields_file_real(file, "run", "time", outcome.time);
   fields_file_table(file, "inputs", &sph_inputs, &run->inputs);
   fields_file_table(file, "outcome", &outcome_table, &outcome);
   fields_file_table(file, "results", &sph_results, &results);

@@ -28,6 +28,8 @@ static status step(void *run, uint64_t max_steps, bool *finished, struct error *
   return STATUS_OK;
 }
 
+static double time_of(const void *run) { return sph_system_time(((const struct sph_run *)run)->system); }
+
 static double progress(const void *run) {
   const struct sph_run *r = run;
   return r->state.finished ? 1 : fmin(sph_system_time(r->system) / r->inputs.stop.end_time, 1);
@@ -69,6 +71,7 @@ const struct engine_kind sph_engine = {
     .prepare = prepare,
     .step = step,
     .progress = progress,
+    .time = time_of,
     .finish = finish,
     .write_fields = write_fields,
     .save = save,
