@@ -61,7 +61,7 @@ struct picture_look {
  * but for its outermost percent, evenly about zero when both signs occur. Beside STATUS_IO and so on: STATUS_USAGE when the plane meets no particle. */
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud, const struct picture_look *look,
                          struct error *error);
-/* "95210 particles in 143 fragments; largest 34.6 %, second 3.1 %, dust 41.2 % of the mass". */
+/* "95210 particles: 143 fragments of two and more (largest 34.6 %, second 3.1 % of the mass), 41.2 % dust". */
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
 /* A fitted power law: drawn so that it holds as many fragments per run in [lower, upper) as the fit was made from. */

@@ -79,7 +79,7 @@ void picture_particles_numbers(const struct picture_cloud *cloud, char *text, si
     }
     for (size_t f = 0; f < s.fragments; f++) pieces += s.count[f] > 1;
     if (total > 0)
-      snprintf(text, size, "%zu particles in %zu fragment%s of more than one; largest %.1f %%, second %.1f %%, dust %.1f %% of the mass",
+      snprintf(text, size, "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% dust",
                searched, pieces, pieces == 1 ? "" : "s", s.fragments ? 100 * s.mass[0] / total : 0,
                s.fragments > 1 && s.count[1] > 1 ? 100 * s.mass[1] / total : 0, 100 * dust / total);
   }

@@ -55,6 +55,8 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
     return invalid(kind, result, &why, error);
   if (code != STATUS_OK)
     return status_fail(error, code, "%s", why.message);
+  if (watch)
+    code = watch(context, kind, run, error);
   for (bool finished = false; code == STATUS_OK && !finished;) {
     code = kind->step(run, watch ? block : UINT64_C(1) << 62, &finished, error);
     if (code == STATUS_OK && watch)

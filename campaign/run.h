@@ -23,7 +23,7 @@ struct run_result {
   size_t estimate_count;   /* 0 for a run without fragments */
 };
 
-/* Called between blocks of steps: snapshots, a progress line. Anything but STATUS_OK ends the run with it. */
+/* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends the run with it. */
 typedef status (*run_watch)(void *context, const struct engine_kind *kind, void *run, struct error *error);
 
 /* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that the

@@ -31,6 +31,11 @@ status sph_fields_write(struct sph_run *run, const char *path, struct error *err
   free(fragments); /* once more, for the labels */
   if (code)
     return code;
+  uint32_t *flaws = malloc((run->now->n + 1) * sizeof *flaws);
+  if (!flaws) {
+    code = status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+    goto cleanup;
+  }
   if ((code = sph_report_pieces(run, run->inputs.fragments.static_strength, run->inputs.fragments.veneer, &pieces, error)) ||
       (code = fields_file_open(sph_engine.name, sph_engine.doc, sph_engine.results_version, run->seed, &sph_inputs, &run->inputs,
                                &file, error)))
@@ -39,13 +44,14 @@ status sph_fields_write(struct sph_run *run, const char *path, struct error *err
   fields_file_table(file, "inputs", &sph_inputs, &run->inputs);
   fields_file_table(file, "outcome", &outcome_table, &outcome);
   fields_file_table(file, "results", &sph_results, &results);
-  sph_particle_fields_add(file, run->now, &pieces, NULL);
+  sph_particle_fields_add(file, run->now, &pieces, sph_system_flaws(run->system, flaws) ? flaws : NULL);
   if (run->sample)
     fields_file_columns(file, "curve", run->state.samples, sizeof curve_columns / sizeof curve_columns[0], curve_columns, curve_value,
                         run->sample);
   code = fields_file_save(file, path, error);
 cleanup:
   fields_file_close(file);
+  free(flaws);
   sph_pieces_clear(&pieces);
   return code;
 }

@@ -188,8 +188,11 @@ static const struct field rows[] = {
          .source = "BA95 section 4.4"),
     REAL(fragments.damage, "1", 1, 0, 1, .flags = FIELD_ABOVE_MINIMUM,
          .doc = "Particles with this damage or more do not join fragments.", .source = "BA95 section 4.4 (fully damaged)"),
-    REAL(fragments.link_length, "1", 1, 0.1, 4,
-         .doc = "Undamaged particles nearer than this many smoothing lengths belong together.", .source = "BA95 section 4.4"),
+    REAL(fragments.link_length, "1", 1.2, 0.1, 4,
+         .doc = "Undamaged particles nearer than this many smoothing lengths belong together. 1 is as printed, but nearest "
+                "neighbours of the default lattice stand 0.99 h apart and a strain of 1 % would part them; from 1.1 to 1.3 h is "
+                "the same: all nearest neighbours and none farther.",
+         .source = "BA95 section 4.4 (1 h)"),
     CHOICE(fragments.link_h, link_h, .choice_docs = "of the body at rest\nas it is at the end, where debris has expanded",
            .doc = "The smoothing length meant there."),
     SWITCH(fragments.veneer, 1,

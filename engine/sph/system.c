@@ -87,6 +87,16 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
     memset(out->body + s->solid[b].first, (int)b, s->solid[b].last - s->solid[b].first);
 }
 
+bool sph_system_flaws(const struct sph_system *s, uint32_t *count) {
+  if (!s->fracture) return false;
+  for (size_t b = 0; b < s->body_count; b++) {
+    const struct sph_solid *body = &s->solid[b];
+    for (size_t i = body->first; i < body->last; i++) /* bodies stand in the order of their ids */
+      count[i] = body->weibull ? sph_weibull_total(body->weibull, i - body->first) : 0;
+  }
+  return true;
+}
+
 double sph_system_damage(const struct sph_system *s, double *rate) {
   double volume = 0, damage = 0, growth = 0;
   for (size_t b = 0; s->fracture && b < s->body_count; b++) {

@@ -81,6 +81,8 @@ double sph_system_damage(const struct sph_system *system, double *rate);
 /* Read back in the order of the ids, at one time level; arrays present in *out are filled. Positions are wrapped into the box
  * in periodic directions. The pressure is that of the last evaluation (the predicted state of the same time). */
 void sph_system_read(const struct sph_system *system, struct sph_particles *out);
+/* How many flaws each particle has, by id (0 in bodies without). False, and nothing filled, when no body has any. */
+bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
 double sph_system_neighbours(const struct sph_system *system); /* mean number within 2h */
 
 size_t sph_system_state_size(const struct sph_system *system);
