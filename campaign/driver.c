@@ -208,7 +208,7 @@ static bool next(void *context, struct farm_task *task) {
   char path[4096] = "";
   if (writes_fields(driver, &flight))
     fields_path(driver, flight.identity, true, path, sizeof path);
-  struct run_request request = {point->scene->kind, point->scene->inputs, flight.seed, path[0] ? path : NULL};
+  struct run_request request = {point->scene->kind, point->scene->inputs, flight.seed, path[0] ? path : NULL, NULL};
   free(driver->task);
   driver->task = place ? run_encode_task(&request, &task->size) : NULL;
   if (!driver->task) {

@@ -6,6 +6,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "engine/restart.h"
+
 /* Both encodings begin so. All ranks of a farm run one binary, so arrays of structs go as they lie in memory; the mark, the
  * sizes and the tables' own hashes catch anything else. */
 #define TASK_MARK "clast task 1"
@@ -44,17 +46,35 @@ static status invalid(const struct engine_kind *kind, struct run_result *result,
   return STATUS_OK;
 }
 
+/* From the restart file, when one is asked for and there. */
+static status resume(const struct run_request *request, void **run, struct error *error) {
+  uint64_t seed = 0;
+  *run = NULL;
+  status code = request->restart_path ? restart_peek(request->restart_path, &seed, error) : STATUS_MISSING;
+  if (code == STATUS_MISSING)
+    return STATUS_OK;
+  if (code == STATUS_OK && seed != request->seed)
+    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is of seed %llu, not %llu", request->restart_path,
+                       (unsigned long long)seed, (unsigned long long)request->seed);
+  return code ? code : request->kind->restore(request->inputs, request->restart_path, run, error);
+}
+
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error) {
   const struct engine_kind *kind = request->kind;
   struct error why = {0};
   void *run = NULL;
   *result = (struct run_result){0};
-  status code = kind->prepare(request->inputs, request->seed, &run, &why);
-  if (code == STATUS_CONTENT)
-    return invalid(kind, result, &why, error);
+  status code = resume(request, &run, error);
   if (code != STATUS_OK)
-    return status_fail(error, code, "%s", why.message);
+    return code;
+  if (!run) {
+    code = kind->prepare(request->inputs, request->seed, &run, &why);
+    if (code == STATUS_CONTENT)
+      return invalid(kind, result, &why, error);
+    if (code != STATUS_OK)
+      return status_fail(error, code, "%s", why.message);
+  }
   if (watch)
     code = watch(context, kind, run, error);
   for (bool finished = false; code == STATUS_OK && !finished;) {
@@ -255,7 +275,7 @@ status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t
     code = status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");
   struct run_result values = {0};
   if (code == STATUS_OK) {
-    struct run_request request = {kind, inputs, seed, fields_path[0] ? fields_path : NULL};
+    struct run_request request = {kind, inputs, seed, fields_path[0] ? fields_path : NULL, NULL};
     code = run_simulate(&request, NULL, NULL, 0, &values, error);
   }
   if (code == STATUS_OK && !(*result = run_encode_result(kind, &values, result_size)))

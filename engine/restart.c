@@ -1,5 +1,6 @@
 #include "engine/restart.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,23 @@ static bool read_parts(struct bytes *b, size_t count, struct restart *restart) {
     }
   }
   return good && b->used == b->size;
+}
+
+status restart_peek(const char *path, uint64_t *seed, struct error *error) {
+  struct {
+    char magic[sizeof magic];
+    uint64_t version, seed;
+  } head;
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read the restart file '%s': %s", path,
+                       strerror(errno));
+  size_t got = fread(&head, sizeof head, 1, file);
+  fclose(file);
+  if (got != 1 || memcmp(head.magic, magic, sizeof magic) != 0)
+    return status_fail(error, STATUS_CONTENT, "'%s' is no restart file", path);
+  *seed = head.seed;
+  return STATUS_OK;
 }
 
 status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path, struct restart **out,

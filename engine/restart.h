@@ -19,6 +19,9 @@ struct restart_part {
 status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t seed, size_t count,
                     const struct restart_part *parts, const char *path, struct error *error);
 
+/* The seed of the run that a file is of, without reading the rest. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no restart file. */
+status restart_peek(const char *path, uint64_t *seed, struct error *error);
+
 struct restart; /* owns the file's bytes */
 /* STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no restart file, damaged, of other inputs or another version, or not `count` parts. */
 status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path, struct restart **out,

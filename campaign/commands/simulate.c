@@ -10,6 +10,7 @@
 #include "campaign/commands/explain.h"
 #include "campaign/commands/picture.h"
 #include "campaign/commands/results.h"
+#include "campaign/commands/resume.h"
 #include "campaign/commands/snapshots.h"
 #include "campaign/run.h"
 
@@ -18,21 +19,24 @@ enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for
 struct options {
   int64_t seed, snapshots;
   struct option_list set;
-  const char *fields, *picture;
+  const char *fields, *picture, *restart;
   bool quiet;
   struct table_options table;
 };
 
 struct watch {
   struct snapshots *snapshots; /* NULL: none wanted */
+  struct resume *resume;       /* NULL: it ends where it is stopped */
   bool terminal;
   int percent;
 };
 
-/* The snapshot that is due; a percentage on a terminal. */
+/* The snapshot that is due; the restart file; a percentage on a terminal. */
 static status look(void *context, const struct engine_kind *kind, void *run, struct error *error) {
   struct watch *watch = context;
   status code = watch->snapshots ? snapshots_look(watch->snapshots, kind, run, error) : STATUS_OK;
+  if (!code && watch->resume)
+    code = resume_look(watch->resume, kind, run, error);
   int percent = (int)floor(100 * kind->progress(run));
   if (watch->terminal && percent != watch->percent)
     fprintf(stderr, "\r%3d %% of the longest time it may take", watch->percent = percent);
@@ -48,10 +52,16 @@ static status simulate(const struct scene *scene, const struct options *options,
     fields = temporary;
   }
   struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};
+  struct resume resume;
+  if (options->restart) {
+    resume_begin(&resume, options->restart);
+    watch.resume = &resume;
+  }
   struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)options->seed,
-                                .fields_path = fields};
+                                .fields_path = fields, .restart_path = options->restart};
   struct run_result result = {0};
-  status code = options->snapshots ? snapshots_open(scene->name, options->snapshots, false, &watch.snapshots, error) : STATUS_OK;
+  status code = options->snapshots ? snapshots_open(scene->name, options->snapshots, options->restart && access(options->restart, F_OK) == 0,
+                                                  &watch.snapshots, error) : STATUS_OK;
   if (!code)
     code = run_simulate(&request, look, &watch, BLOCK, &result, error);
   if (watch.terminal)
@@ -65,6 +75,8 @@ static status simulate(const struct scene *scene, const struct options *options,
     remove(temporary);
   if (!code)
     code = results_print(scene->kind, options->seed, &result, format, error);
+  if (!code && options->restart)
+    resume_end(&resume);
   if (!code && !campaign_usable(&result.outcome))
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (!code && *result.outcome.message && !options->quiet)
@@ -102,6 +114,9 @@ static const struct option_row rows[] = {
     {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
      "Write up to N such files on the way, SCENE_000000.hdf and so on, evenly over the longest time the run may take; "
      "SCENE.hdf.series lists them with their times for ParaView."},
+    {"restart", 0, OPTION_TEXT, "FILE", offsetof(struct options, restart), 0, 0, NULL,
+     "Go on from this file if it is there. It is written every five minutes and when the run is interrupted (exit 75: the "
+     "same command goes on, to the same bits), and removed at the end."},
     {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
     TABLE_OPTIONS(struct options, table),
 };

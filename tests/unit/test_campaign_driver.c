@@ -284,7 +284,7 @@ static void equal_points_are_computed_once(void **state) {
 static void broken_answers_are_refused(void **state) {
   (void)state;
   struct campaign *campaign = play_campaign(1, 1, 1);
-  struct run_request request = {&play_kind, campaign->scene->inputs, 5, NULL};
+  struct run_request request = {&play_kind, campaign->scene->inputs, 5, NULL, NULL};
   struct run_result result;
   struct error error = {0};
   size_t task_size, size;

@@ -1,0 +1,79 @@
+# A run of particles as a user meets it: snapshots with their times, pictures of every kind, a run that is interrupted and goes
+# on to the same bits, and what is said when any of it cannot be.
+. "$(dirname "$0")/lib.bash"
+
+run=(simulate basalt-sphere --seed 3 --set fidelity.particles=700 --set "stop.end_time=30 us" --quiet)
+is_png() { [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ] || fail "$1 is no PNG"; ok "$1 is a PNG"; }
+
+expect 0 "$clast" "${run[@]}" --json --fields end.hdf --snapshots 4 --picture end.png
+cp out whole.json
+is_png end.png
+python - <<'PY'
+import json
+files = json.load(open('basalt-sphere.hdf.series'))
+assert files['file-series-version'] == '1.0', files
+files = files['files']
+assert [f['name'] for f in files] == ['basalt-sphere_%06d.hdf' % k for k in range(4)], files
+times = [f['time'] for f in files]
+for k, time in enumerate(times):
+    assert 0 <= time - k * 7.5e-6 < 4e-6, times # due at k/4 of 30 us, and written at the next look: 8 steps
+PY
+ok "the series lists four snapshots and their times"
+
+for what in damage pressure density energy flaws fragments; do
+  expect 0 "$clast" picture end.hdf $what.png --what $what
+  is_png $what.png
+done
+expect 0 "$clast" picture end.hdf cut.svg --what fragments --view cut --axis z --at "1 cm" --caption "a cut"
+grep -q '</svg>' cut.svg || fail "no whole SVG"
+expect 0 "$clast" picture basalt-sphere_000001.hdf outside.png --view outside --axis x
+cmp -s damage.png pressure.png && fail "damage looks like pressure"
+expect 65 "$clast" picture end.hdf x.png --what colour
+says "damage, pressure"
+expect 64 "$clast" picture end.hdf x.png --view sideways
+expect 64 "$clast" picture end.hdf x.png --axis w
+expect 64 "$clast" picture end.hdf x.png --at "1 kg"
+expect 64 "$clast" picture end.hdf x.png --at "3 m"
+says "meets no particle"
+expect 64 "$clast" picture end.hdf x.png --view outside --at "1 cm"
+head -c 40000 end.hdf >cut.hdf
+expect 65 "$clast" picture cut.hdf x.png
+one_error
+[ ! -e x.png ] || fail "a picture was left behind"
+expect 0 "$clast" simulate disc-explosion --set "body.diameter=8 cm" --set "stop.end_time=0.2 ms" --quiet --fields disc.hdf
+expect 64 "$clast" picture disc.hdf x.png --what damage
+says "particles in space"
+
+# Stopped as soon as it has begun (its first snapshot is there), and gone on with. On a busy machine the signal may come after
+# the end: then once more.
+for attempt in 1 2 3 4 5; do
+  rm -f basalt-sphere*
+  "$clast" "${run[@]}" --json --restart run.bin --snapshots 4 >out 2>err &
+  pid=$!
+  for _ in $(seq 6000); do [ -e basalt-sphere.hdf.series ] && break; sleep 0.01; done
+  code=0
+  kill -TERM $pid 2>/dev/null || true
+  wait $pid || code=$?
+  [ $code -eq 0 ] || break
+done
+same $code 75 "stopped by a signal"
+says "the same command goes on from there"
+[ -s run.bin ] || fail "no restart file"
+expect 65 "$clast" "${run[@]}" --json --restart run.bin --seed 4
+says "of seed 3"
+expect 65 "$clast" "${run[@]}" --json --restart run.bin --set fidelity.cfl=0.2
+says "another scene"
+[ -s run.bin ] || fail "the restart file was lost"
+expect 0 "$clast" "${run[@]}" --json --restart run.bin --snapshots 4
+cmp -s out whole.json || fail "the bits differ after a restart"
+ok "the same bits after a restart"
+[ ! -e run.bin ] || fail "the restart file is still there"
+python - <<'PY'
+import json
+names = [f['name'] for f in json.load(open('basalt-sphere.hdf.series'))['files']]
+assert names == ['basalt-sphere_%06d.hdf' % k for k in range(4)], names
+PY
+ok "snapshots before and after the stop are in one series"
+expect 74 "$clast" "${run[@]}" --fields none/such/folder/end.hdf
+one_error
+done_after 33
