@@ -1,4 +1,5 @@
-/* Moving solids for tests, through engine/sph/bodies.h and engine/sph/system.h alone. Everything fails the test by itself.
+/* Moving solids for tests, through engine/sph/bodies.h and engine/sph/system.h alone. Everything fails the test by
+ * itself.
  *
  *   struct solid_case c = solid_make(1);      parameters at their defaults, bodies empty
  *   c.body[0].shape = ...; c.physics[0].material = solid_basalt(); c.physics[0].strength = true;
@@ -10,6 +11,7 @@
 #ifndef CLAST_TESTS_SPH_SOLID_H
 #define CLAST_TESTS_SPH_SOLID_H
 
+#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +21,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 #include "engine/sph/bodies.h"
 #include "engine/sph/system.h"
@@ -105,8 +106,7 @@ UNUSED static void solid_start(struct solid_case *c) {
 }
 
 UNUSED static void solid_step(struct solid_case *c, double until) {
-  if (!sph_system_step(c->system, until))
-    fail_msg("step: %s", sph_system_failure(c->system));
+  if (!sph_system_step(c->system, until)) fail_msg("step: %s", sph_system_failure(c->system));
 }
 
 UNUSED static void solid_until(struct solid_case *c, double until) {
@@ -114,7 +114,9 @@ UNUSED static void solid_until(struct solid_case *c, double until) {
     solid_step(c, until);
 }
 
-UNUSED static void solid_read(struct solid_case *c) { sph_system_read(c->system, c->particles); }
+UNUSED static void solid_read(struct solid_case *c) {
+  sph_system_read(c->system, c->particles);
+}
 
 UNUSED static void solid_end(struct solid_case *c) {
   sph_system_free(c->system);
@@ -129,8 +131,8 @@ UNUSED static double solid_energy_error(struct solid_case *c, struct sph_ledger 
   return now.kinetic + now.internal + now.damped - now.work_of_held - start.kinetic - start.internal;
 }
 
-/* A bar along direction 0-2, `length` long, that is one block of an endless solid across: the thinnest cross-section in which no
- * particle meets its own image. The lattice is h-ready and periodic across, along too if `endless`. */
+/* A bar along direction 0-2, `length` long, that is one block of an endless solid across: the thinnest cross-section in
+ * which no particle meets its own image. The lattice is h-ready and periodic across, along too if `endless`. */
 UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double length, double spacing, bool endless) {
   struct sph_body *b = &c->body[0];
   double reach = 4 * SPH_BODIES_H * spacing * (1 + c->parameters.skin) * 1.05;
@@ -145,8 +147,12 @@ UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double l
   }
 }
 
-UNUSED static double *solid_position(struct sph_particles *p, int d) { return d == 0 ? p->x : d == 1 ? p->y : p->z; }
-UNUSED static double *solid_velocity(struct sph_particles *p, int d) { return d == 0 ? p->vx : d == 1 ? p->vy : p->vz; }
+UNUSED static double *solid_position(struct sph_particles *p, int d) {
+  return d == 0 ? p->x : d == 1 ? p->y : p->z;
+}
+UNUSED static double *solid_velocity(struct sph_particles *p, int d) {
+  return d == 0 ? p->vx : d == 1 ? p->vy : p->vz;
+}
 
 /* Order of convergence from three values whose resolutions stand 1 : ratio : ratio^2, without knowing the limit. */
 UNUSED static double solid_order(double coarse, double middle, double fine, double ratio) {
@@ -155,19 +161,18 @@ UNUSED static double solid_order(double coarse, double middle, double fine, doub
 
 /* Follows an amplitude that swings from its maximum: times of zero crossings and the extremes between them. */
 struct solid_swing {
-  double time, value;      /* of the last sample */
-  double start;            /* the first value */
+  double time, value; /* of the last sample */
+  double start;       /* the first value */
   int crossings;
-  double crossing[3];      /* s */
-  double extreme[4];       /* largest |value| before the first, second, ... crossing */
+  double crossing[3]; /* s */
+  double extreme[4];  /* largest |value| before the first, second, ... crossing */
 };
 UNUSED static void solid_swing_add(struct solid_swing *s, double time, double value) {
   if (s->start == 0)
     s->start = value;
   else if (s->value * value < 0 && s->crossings < 3)
     s->crossing[s->crossings++] = s->time + (time - s->time) * s->value / (s->value - value);
-  if (fabs(value) > s->extreme[s->crossings])
-    s->extreme[s->crossings] = fabs(value);
+  if (fabs(value) > s->extreme[s->crossings]) s->extreme[s->crossings] = fabs(value);
   s->time = time;
   s->value = value;
 }

@@ -2,12 +2,12 @@
  *   bar  sqrt(E/rho0),            E = 9 K mu/(3 K + mu) = 53.06 GPa:  4433 m/s
  *   P    sqrt((K + 4 mu/3)/rho0):                                     4593 m/s
  *   S    sqrt(mu/rho0):                                               2900 m/s
- * P and S are standing plane waves in thin periodic bars. The bar wave stands in an endless round rod with free sides, where the
- * exact speed at finite length is that of the first mode of Pochhammer 1876 and Chree 1889.
+ * P and S are standing plane waves in thin periodic bars. The bar wave stands in an endless round rod with free sides,
+ * where the exact speed at finite length is that of the first mode of Pochhammer 1876 and Chree 1889.
  *
- * A standing wave starts as velocity without strain; its amplitude is the velocity's projection on the initial shape, its period
- * the time from the first zero to the third. Amplitudes are 1e-4 of the sound speed: what is not linear (B, the change of
- * density) is of that order, 1e-4.
+ * A standing wave starts as velocity without strain; its amplitude is the velocity's projection on the initial shape,
+ * its period the time from the first zero to the third. Amplitudes are 1e-4 of the sound speed: what is not linear (B,
+ * the change of density) is of that order, 1e-4.
  *
  * CLAST_FULL=1: every axis, with the gradient correction, too, and one more doubling of each. */
 #include "tests/sph_solid.h"
@@ -23,8 +23,8 @@ static void speeds_are_as_printed(void **state) {
 }
 
 struct wave {
-  double speed;  /* m/s */
-  double decay;  /* share of amplitude lost in the first period (by viscosity) */
+  double speed; /* m/s */
+  double decay; /* share of amplitude lost in the first period (by viscosity) */
   size_t n;
   double spacings; /* in a wave */
 };
@@ -40,7 +40,8 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
-  const double exact = sqrt(((kind == SHEAR_WAVE ? 0 : m->tillotson.A) + (kind == SHEAR_WAVE ? 1 : 4.0 / 3) * m->shear_modulus) / m->density);
+  const double exact = sqrt(
+      ((kind == SHEAR_WAVE ? 0 : m->tillotson.A) + (kind == SHEAR_WAVE ? 1 : 4.0 / 3) * m->shear_modulus) / m->density);
   const int moves = kind == SHEAR_WAVE ? (along + 1) % 3 : along;
   const double k = 2 * acos(-1.0) / length;
   double *shape = malloc(p->n * sizeof *shape);
@@ -58,7 +59,8 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
     solid_swing_add(&swing, sph_system_time(c.system), sum);
     solid_step(&c, INFINITY);
   }
-  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n, length / spacing};
+  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,
+                   length / spacing};
   free(shape);
   solid_end(&c);
   return w;
@@ -69,7 +71,8 @@ static void plane_waves(void **state) {
   static const double exact[] = {4593.3, 2899.6};
   static const char *const name[] = {"P", "S"};
   const int levels = SOLID_SLOW ? 1 : solid_full() ? 4 : 3;
-  print_message("m/s at about 24, 48, 96 spacings a wave; order; amplitude lost to viscosity in a period at the finest\n");
+  print_message(
+      "m/s at about 24, 48, 96 spacings a wave; order; amplitude lost to viscosity in a period at the finest\n");
   for (int lattice = 0; lattice < 2; lattice++)
     for (int correction = 0; correction < 2; correction++)
       for (int kind = 0; kind < 2; kind++)
@@ -77,11 +80,11 @@ static void plane_waves(void **state) {
           const int which = lattice ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL;
           const double periods = round(24 / sph_lattice_period(which, 1, along, 0.1));
           struct wave w[4];
-          if (lattice && along > 0)
-            continue; /* the cubic lattice looks alike along all axes */
+          if (lattice && along > 0) continue; /* the cubic lattice looks alike along all axes */
           if (!solid_full() && (correction || along == 1))
             continue; /* to save time: nothing that the others do not have */
-          print_message("%-9s correction %-3s %s along %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off", name[kind], 'x' + along);
+          print_message("%-9s correction %-3s %s along %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off",
+                        name[kind], 'x' + along);
           for (int l = 0; l < levels; l++) {
             w[l] = plane_wave(which, kind, along, periods * (1 << l), correction);
             print_message(" %7.1f (%+.2f %%)", w[l].speed, 100 * (w[l].speed / exact[kind] - 1));
@@ -92,8 +95,8 @@ static void plane_waves(void **state) {
           }
           const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
           print_message("  order %.2f, decay %.3f\n", order, w[levels - 1].decay);
-          /* 1 % is the issue's. A kernel sum is of second order in the smooth interior: 2 but for the next even term (and the time
-           * step's error, of second order, too), which at 24 spacings is some per cent of the first */
+          /* 1 % is the issue's. A kernel sum is of second order in the smooth interior: 2 but for the next even term
+           * (and the time step's error, of second order, too), which at 24 spacings is some per cent of the first */
           assert_true(fabs(w[levels - 1].speed / exact[kind] - 1) < 0.01);
           assert_true(order > 1.8 && order < 2.2);
         }
@@ -113,10 +116,12 @@ static double bessel1(double q) {
   return sum;
 }
 
-/* Pochhammer's equation divided by its trivial roots; radius 1, wave number k, phase speed c over that of S waves; ratio2 = (cP/cS)^2. */
+/* Pochhammer's equation divided by its trivial roots; radius 1, wave number k, phase speed c over that of S waves;
+ * ratio2 = (cP/cS)^2. */
 static double pochhammer(double k, double c, double ratio2) {
   double kk = k * k, p = kk * (c * c / ratio2 - 1), q = kk * (c * c - 1);
-  return 2 * p * bessel1(p) * (q + kk) * bessel1(q) - (q - kk) * (q - kk) * bessel0(p) * bessel1(q) - 4 * kk * p * bessel1(p) * bessel0(q);
+  return 2 * p * bessel1(p) * (q + kk) * bessel1(q) - (q - kk) * (q - kk) * bessel0(p) * bessel1(q) -
+         4 * kk * p * bessel1(p) * bessel0(q);
 }
 
 /* Phase speed of the first longitudinal mode, m/s. */
@@ -151,7 +156,8 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   c.physics[0].strength = true;
   c.parameters.gradient_correction = correction;
   struct sph_body *b = &c.body[0];
-  b->shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER, .centre = {0, 0, length / 2}, .radius = radius, .length = length, .axis = {0, 0, 1}};
+  b->shape = (struct sph_shape){
+      .kind = SPH_SHAPE_CYLINDER, .centre = {0, 0, length / 2}, .radius = radius, .length = length, .axis = {0, 0, 1}};
   b->lattice.spacing = radius / radius_over_h / SPH_BODIES_H;
   b->lattice.periodic[2] = true;
   c.parameters.periodic[2] = length;
@@ -176,7 +182,8 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
     solid_swing_add(&swing, sph_system_time(c.system), sum);
     solid_step(&c, INFINITY);
   }
-  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n, length / (radius / radius_over_h / SPH_BODIES_H)};
+  struct wave w = {length / solid_swing_period(&swing), 1 - swing.extreme[2] / swing.extreme[0], p->n,
+                   length / (radius / radius_over_h / SPH_BODIES_H)};
   free(shape);
   solid_end(&c);
   return w;
@@ -192,20 +199,19 @@ static void bar_wave(void **state) {
     struct wave w[4] = {0};
     for (int l = 0; l < levels; l++) {
       w[l] = rod_wave(2.5 * (1 << l), correction);
-      print_message("  correction %s, R/h %4.1f, n %6zu: %7.1f m/s (%+.2f %%), as bar speed %7.1f; decay %.3f\n", correction ? "on " : "off",
-                    2.5 * (1 << l), w[l].n, w[l].speed, 100 * (w[l].speed / exact - 1), w[l].speed * bar / exact, w[l].decay);
+      print_message("  correction %s, R/h %4.1f, n %6zu: %7.1f m/s (%+.2f %%), as bar speed %7.1f; decay %.3f\n",
+                    correction ? "on " : "off", 2.5 * (1 << l), w[l].n, w[l].speed, 100 * (w[l].speed / exact - 1),
+                    w[l].speed * bar / exact, w[l].decay);
     }
-    if (levels < 3)
-      continue;
+    if (levels < 3) continue;
     const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
     const double limit = w[levels - 1].speed + (w[levels - 1].speed - w[levels - 2].speed) / (pow(2, order) - 1);
     print_message("  order %.2f; extrapolated with it %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));
-    /* The sums of a particle at a free side miss what would be outside: a soft skin of about h, hence first order; the interior is of
-     * second. 1 % (the issue's) is asked of the limit, and at 20 h a radius of the run itself. */
+    /* The sums of a particle at a free side miss what would be outside: a soft skin of about h, hence first order; the
+     * interior is of second. 1 % (the issue's) is asked of the limit, and at 20 h a radius of the run itself. */
     assert_true(order > 1 && order < 2);
     assert_true(fabs(limit / exact - 1) < 0.01);
-    if (levels == 4 && correction)
-      assert_true(fabs(w[3].speed / exact - 1) < 0.01);
+    if (levels == 4 && correction) assert_true(fabs(w[3].speed / exact - 1) < 0.01);
   }
 }
 
