@@ -11,7 +11,6 @@
 #ifndef CLAST_TESTS_SPH_SOLID_H
 #define CLAST_TESTS_SPH_SOLID_H
 
-#include <cmocka.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,6 +20,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include <cmocka.h> /* after what it needs */
 
 #include "engine/sph/bodies.h"
 #include "engine/sph/system.h"
