@@ -51,10 +51,16 @@ static status allocate(struct sph_points *points, size_t n, struct error *error)
   return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
 }
 
+static status too_thin(double wanted, double spacing, struct error *error) {
+  return status_fail(error, STATUS_CONTENT,
+                     "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted,
+                     spacing);
+}
+
 /* ---- boxes along the axes: whole rows, stretched to fit ---- */
 
 static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
-                    double wanted, size_t best[3]) {
+                    double wanted, double best[3]) {
   const double spacing = cbrt(sph_shape_volume(box) / wanted);
   double ideal[3], least = INFINITY;
   int step[3];
@@ -81,31 +87,33 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
     if (cost < least) {
       least = cost;
       for (int k = 0; k < 3; k++)
-        best[k] = (size_t)count[k];
+        best[k] = count[k];
     }
   }
 }
 
 static status fill_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
                        double wanted, struct sph_points *points, struct error *error) {
-  size_t count[3];
+  double count[3];
   fit_box(lattice, cell, box, wanted, count);
-  status code = allocate(points, count[0] * count[1] * count[2], error);
+  const double n = count[0] * count[1] * count[2];
+  if (n > 2 * wanted + 2 || n < 0.5 * wanted) return too_thin(wanted, cbrt(sph_shape_volume(box) / wanted), error);
+  status code = allocate(points, (size_t)n, error);
   if (code) return code;
   points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
   double step[3], corner[3];
   points->stretch = 1;
   for (int k = 0; k < 3; k++) {
-    step[k] = box->side[k] / (double)count[k];
+    step[k] = box->side[k] / count[k];
     corner[k] = box->centre[k] - 0.5 * box->side[k];
     const double stretch = step[k] / (points->spacing * cell->side[k]);
     points->stretch = fmax(points->stretch, fmax(stretch, 1 / stretch));
   }
   const bool shifted = cell->rows == 2; /* rows stand in the gaps of their neighbours, half a point to and fro */
   size_t i = 0;
-  for (size_t layer = 0; layer < count[2]; layer++)
-    for (size_t row = 0; row < count[1]; row++)
-      for (size_t at = 0; at < count[0]; at++, i++) {
+  for (size_t layer = 0; layer < (size_t)count[2]; layer++)
+    for (size_t row = 0; row < (size_t)count[1]; row++)
+      for (size_t at = 0; at < (size_t)count[0]; at++, i++) {
         const double x = shifted ? 0.25 + 0.5 * (double)((row + layer) % 2) : 0.5;
         const double y = shifted ? 1. / 3 + 1. / 3 * (double)(layer % 2) : 0.5;
         points->x[i] = corner[0] + ((double)at + x) * step[0];
@@ -140,23 +148,41 @@ static bool inside(const struct cut *c, const double p[3], double world[3]) {
   return sph_shape_inside(s, world);
 }
 
-/* Counts, and with `points` stores (relative to the centre, in the lattice's frame), what lies inside. */
-static size_t cut(const struct cut *c, const double offset[3], struct sph_points *points) {
+struct box { /* of cells */
   int64_t low[3], high[3];
-  for (int k = 0; k < 3; k++) { /* offset and basis are each within a cell */
-    low[k] = (int64_t)floor(-c->reach[k] / c->side[k]) - 2;
-    high[k] = (int64_t)ceil(c->reach[k] / c->side[k]) + 1;
+};
+
+/* Counts, and with `points` stores (relative to the centre, in the lattice's frame), what lies inside: boxes of cells
+ * that the shape does not reach are left out, so that thin shapes of any direction cost what they hold. */
+static size_t cut_box(const struct cut *c, const double offset[3], const struct box *box, struct sph_points *points,
+                      size_t n) {
+  enum { SMALL = 8 };
+  double middle[3], world[3], half = 0, p[3];
+  int longest = 0;
+  for (int k = 0; k < 3; k++) { /* points are up to one cell beyond their cell's corner */
+    const double wide = 0.5 * (double)(box->high[k] - box->low[k] + 1) * c->side[k];
+    middle[k] = ((double)box->low[k] + offset[k]) * c->side[k] + wide;
+    half += wide * wide;
+    if (box->high[k] - box->low[k] > box->high[longest] - box->low[longest]) longest = k;
   }
-  size_t n = 0;
-  double p[3], world[3];
-  for (int64_t iz = low[2]; iz <= high[2]; iz++)
-    for (int64_t iy = low[1]; iy <= high[1]; iy++)
+  for (int k = 0; k < 3; k++)
+    world[k] =
+        c->shape->centre[k] + c->frame[k][0] * middle[0] + c->frame[k][1] * middle[1] + c->frame[k][2] * middle[2];
+  if (sph_shape_distance(c->shape, world, NULL) > sqrt(half)) return n;
+  if (box->high[longest] - box->low[longest] > SMALL) {
+    struct box part[2] = {*box, *box};
+    part[0].high[longest] = part[1].low[longest] = box->low[longest] + (box->high[longest] - box->low[longest]) / 2;
+    n = cut_box(c, offset, &part[0], points, n);
+    return cut_box(c, offset, &part[1], points, n);
+  }
+  for (int64_t iz = box->low[2]; iz < box->high[2]; iz++)
+    for (int64_t iy = box->low[1]; iy < box->high[1]; iy++)
       for (int b = 0; b < c->cell->count; b++) {
         const double *basis = c->cell->basis[b];
         p[2] = ((double)iz + basis[2] + offset[2]) * c->side[2];
         p[1] = ((double)iy + basis[1] + offset[1]) * c->side[1];
         if (fabs(p[2]) >= c->reach[2] || fabs(p[1]) >= c->reach[1]) continue;
-        for (int64_t ix = low[0]; ix <= high[0]; ix++) {
+        for (int64_t ix = box->low[0]; ix < box->high[0]; ix++) {
           p[0] = ((double)ix + basis[0] + offset[0]) * c->side[0];
           if (fabs(p[0]) >= c->reach[0] || !inside(c, p, world)) continue;
           if (points) {
@@ -168,6 +194,15 @@ static size_t cut(const struct cut *c, const double offset[3], struct sph_points
         }
       }
   return n;
+}
+
+static size_t cut(const struct cut *c, const double offset[3], struct sph_points *points) {
+  struct box all;
+  for (int k = 0; k < 3; k++) { /* offset and basis are each within a cell */
+    all.low[k] = (int64_t)floor(-c->reach[k] / c->side[k]) - 2;
+    all.high[k] = (int64_t)ceil(c->reach[k] / c->side[k]) + 2;
+  }
+  return cut_box(c, offset, &all, points, 0);
 }
 
 /* Three uniforms: from the seed, or (not turned) first the middle of a point, then an even cover of the cell. */
@@ -198,6 +233,23 @@ static void stack_layers(struct cut *c, double spacing, double layers) { /* alon
   c->side[0] = spacing * period(c->cell, 0) / sqrt(taller);
   c->side[1] = spacing * period(c->cell, 1) / sqrt(taller);
   c->side[2] = spacing * period(c->cell, 2) * taller;
+}
+
+/* Does the body, one spacing wider all round, have a hundred times its volume? Then the lattice mostly misses it, and
+ * looking for better offsets would take long. Layers have no ends to miss. */
+static bool thin(const struct cut *c) {
+  const struct sph_shape *s = c->shape;
+  const double each = c->side[0] * c->side[1] * c->side[2] / c->cell->count, layer = c->side[2] / c->cell->layers;
+  const double across = c->layered ? sqrt(each / layer) : cbrt(each), along = c->layered ? 0 : across;
+  if (s->kind == SPH_SHAPE_SPHERE) return false;
+  double wider = 1;
+  for (int k = 0; k < 3; k++)
+    wider *= s->side[k] + 2 * across;
+  if (s->kind == SPH_SHAPE_CYLINDER) {
+    const double outer = s->radius + across, inner = fmax(0, s->inner_radius - across);
+    wider = 3.14159265358979323846 * (outer - inner) * (outer + inner) * (s->length + 2 * along);
+  }
+  return !(wider < 100 * sph_shape_volume(s));
 }
 
 /* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
@@ -265,6 +317,7 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
     const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
     layers = nearest * step;
     stack_layers(&c, spacing, layers);
+    if (thin(&c)) return too_thin(wanted, spacing, error);
     n = search(lattice, &c, wanted, offset);
     if (fabs((double)n - wanted) > 0.01 * wanted) {
       double second[3];
@@ -279,12 +332,10 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
       stack_layers(&c, spacing, layers);
     }
   } else {
+    if (thin(&c)) return too_thin(wanted, spacing, error);
     n = search(lattice, &c, wanted, offset);
   }
-  if ((double)n < 0.5 * wanted || !n)
-    return status_fail(error, STATUS_CONTENT,
-                       "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted,
-                       spacing);
+  if (!n || (double)n < 0.5 * wanted || (double)n > 2 * wanted + 2) return too_thin(wanted, spacing, error);
   status code = allocate(points, n, error);
   if (code) return code;
   cut(&c, offset, points);

@@ -399,12 +399,42 @@ static void absurd_lattices_are_refused(void **state) {
     if (!strstr(error.message, cases[k].says)) fail_msg("'%s' does not say '%s'", error.message, cases[k].says);
     assert_true(points.n == 0 && !points.x);
   }
-  const struct sph_shape thread = {.kind = SPH_SHAPE_CYLINDER, .radius = 1e-3, .length = 1, .axis = {0, 0, 1}};
-  struct sph_points points;
-  struct error error = {0};
-  status code = sph_lattice_fill(&(struct sph_lattice){.particles = 10}, &thread, &points, &error);
-  assert_true(code == STATUS_CONTENT || points.n >= 5); /* too thin, or nearly as asked; never an empty body */
-  sph_lattice_empty(&points);
+}
+
+/* Threads, sheets and discs, thinner than a million to one: as asked, or refused; in no time, and never an empty body. */
+static void thin_bodies_are_filled_or_refused(void **state) {
+  (void)state;
+  for (double thin = 1; thin > 1e-9; thin *= 0.02) {
+    const struct sph_shape shapes[] = {
+        {.kind = SPH_SHAPE_CYLINDER, .radius = thin, .length = 1, .axis = {1, 2, 3}},
+        {.kind = SPH_SHAPE_CYLINDER, .radius = 1, .length = thin, .axis = {1, 2, 3}},
+        {.kind = SPH_SHAPE_CYLINDER, .radius = 1, .inner_radius = 1 - 0.5 * thin, .length = 1, .axis = {1, 2, 3}},
+        {.kind = SPH_SHAPE_BOX, .side = {thin, 1, 1}},
+        {.kind = SPH_SHAPE_BOX, .side = {1, thin, thin}},
+    };
+    for (int s = 0; s < 5; s++)
+      for (int kind = 0; kind < 3; kind++)
+        for (int turned = 0; turned < 2; turned++)
+          for (double wanted = 3; wanted < 1e4; wanted *= 30) {
+            if (kind == SPH_LATTICE_IRREGULAR && wanted > 100) continue;
+            struct sph_points points;
+            struct error error = {0};
+            const struct sph_lattice lattice = {.kind = kind, .particles = wanted, .turned = turned, .seed = 1};
+            const status code = sph_lattice_fill(&lattice, &shapes[s], &points, &error);
+            if (code) {
+              assert_int_equal(code, STATUS_CONTENT);
+              assert_non_null(strstr(error.message, "too thin"));
+              assert_true(thin < 0.5);
+            } else {
+              assert_true((double)points.n >= 0.5 * wanted && (double)points.n <= 2 * wanted + 2);
+            }
+            sph_lattice_empty(&points);
+          }
+  }
+  const struct sph_shape thread = {.kind = SPH_SHAPE_CYLINDER, .radius = 1e-3, .length = 1, .axis = {1, 2, 3}};
+  struct sph_points p = fill(&thread, (struct sph_lattice){.particles = 20000, .turned = true, .seed = 7});
+  assert_true(fabs((double)p.n / 20000 - 1) < 0.01);
+  sph_lattice_empty(&p);
 }
 
 int main(void) {
@@ -417,6 +447,7 @@ int main(void) {
       cmocka_unit_test(irregular_points_are_even),
       cmocka_unit_test(graded_points_keep_their_grading),
       cmocka_unit_test(absurd_lattices_are_refused),
+      cmocka_unit_test(thin_bodies_are_filled_or_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
