@@ -13,6 +13,21 @@ static const struct fields_file_column curve_columns[] = {
     {"mode", "1", "vibration: velocities projected on the first mode, over their first size", 0},
     {"damage", "1", "mean damage of bodies with flaws", 0},
 };
+/* Along the axis of an impact, from the surface down: how pores and damage change with depth. */
+static const struct fields_file_column axis_columns[] = {
+    {"depth", "m", "of the layer at the start, below the surface", 0},
+    {"distention", "1", "mean over retained particles within 1.5 spacings of the axis", 0},
+    {"damage", "1", "mean D there", 0},
+    {"pressure", "Pa", "mean there", 0},
+    {"velocity", "m/s", "mean there, outwards", 0},
+};
+static double axis_value(const void *context, size_t row, size_t column, size_t k) {
+  (void)k;
+  const struct sph_crater_layer *l = (const struct sph_crater_layer *)context + row;
+  const double values[] = {l->depth, l->distention, l->damage, l->pressure, l->velocity};
+  return values[column];
+}
+
 static double curve_value(const void *context, size_t row, size_t column, size_t k) {
   (void)k;
   const struct sph_sample *s = (const struct sph_sample *)context + row;
@@ -48,6 +63,17 @@ status sph_fields_write(struct sph_run *run, const char *path, struct error *err
   if (run->sample)
     fields_file_columns(file, "curve", run->state.samples, sizeof curve_columns / sizeof curve_columns[0], curve_columns, curve_value,
                         run->sample);
+  if (run->inputs.kind == SPH_IMPACT) {
+    static const size_t most = 4096;
+    struct sph_crater_options options = sph_report_crater(run);
+    struct sph_crater_layer *layers = malloc(most * sizeof *layers);
+    if (layers)
+      fields_file_columns(file, "axis", sph_crater_profile(run->start, run->now, &options, layers, most),
+                          sizeof axis_columns / sizeof axis_columns[0], axis_columns, axis_value, layers);
+    else
+      fields_file_fail(file);
+    free(layers);
+  }
   code = fields_file_save(file, path, error);
 cleanup:
   fields_file_close(file);

@@ -200,6 +200,10 @@ static const struct field rows[] = {
                   "without it.",
            .source = "BA95 section 4.4"),
 
+    REAL(crater.ejection_speed, "m/s", 10, 0, 1e6, .when = "kind=impact",
+         .doc = "At the end what moves out of the target (along z, towards where the projectile came from) faster than this counts as "
+                "ejecta, all else as retained: there is no gravity to tell. 0: whatever moves outwards.",
+         .source = "Jutzi & Benz, section 3.2, for 0"),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .doc = "Hard end of the run; unless given, ten times what a longitudinal wave needs through the target, and the time "
                 "until bodies meet."),

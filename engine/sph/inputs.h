@@ -64,6 +64,9 @@ struct sph_inputs {
     bool veneer;
   } fragments;
   struct {
+    double ejection_speed;
+  } crater;
+  struct {
     double end_time, quiet_time, quiet_growth;
   } stop;
   struct {

@@ -52,7 +52,7 @@ static int arrays_of(const struct sph_inputs *in) {
   for (int b = 0; b < 1 + sph_scale_has_projectile(in); b++) {
     if (bodies[b]->strength)
       arrays |= SPH_WITH_STRESS;
-    if (sph_scale_cracks(bodies[b]))
+    if (sph_scale_cracks(bodies[b]) || (bodies[b]->strength && sph_scale_porous(bodies[b]))) /* pores that close harm, too */
       arrays |= SPH_WITH_DAMAGE;
     if (sph_scale_porous(bodies[b]))
       arrays |= SPH_WITH_DISTENTION;

@@ -123,6 +123,37 @@ static double rebound(const struct sph_run *run) {
   return not_infinite((speed[1] - speed[0]) / run->inputs.collision.speed);
 }
 
+/* The impact comes down on z at x = y = 0; an oblique one is not followed. */
+struct sph_crater_options sph_report_crater(const struct sph_run *run) {
+  const struct sph_inputs *in = &run->inputs;
+  return (struct sph_crater_options){.first = run->range[0].first,
+                                     .count = run->range[0].n,
+                                     .spacing = sph_scale_fine_spacing(in),
+                                     .ejection_speed = in->crater.ejection_speed,
+                                     .distention = sph_scale_porous(&in->target) ? in->target.material.porosity.distention : 1};
+}
+
+static status crater(const struct sph_run *run, struct sph_results *results, struct error *error) {
+  struct sph_crater c;
+  struct sph_crater_options options = sph_report_crater(run);
+  status code = sph_crater_find(run->start, run->now, &options, &c, error);
+  if (code)
+    return code;
+  results->ejecta.mass_fraction = share(c.ejected_mass, run->range[0].mass);
+  results->ejecta.momentum = not_infinite(c.ejected_momentum);
+  results->crater.depth = c.depth;
+  results->crater.radius = c.radius;
+  results->crater.volume = not_infinite(c.volume);
+  results->crater.compaction_share = share(c.compaction_volume, c.compaction_volume + c.ejecta_volume);
+  if (options.distention > 1) {
+    results->compaction.mass_fraction = share(c.compacted_mass, run->range[0].mass);
+    results->compaction.volume = not_infinite(c.compaction_volume);
+    results->compaction.depth = c.compaction_depth;
+    results->compaction.reach = c.compaction_reach;
+  }
+  return STATUS_OK;
+}
+
 static bool closed(const struct sph_run *run) { return !run->start->held && !run->start->damping; }
 
 static void shares_of_steps(const struct sph_run *run, struct sph_results *results) {
@@ -159,6 +190,8 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
   status code = variants(run, pieces, results, error);
   if (!code && in->kind == SPH_STRETCH)
     code = stretch(run, results, error);
+  if (!code && in->kind == SPH_IMPACT)
+    code = crater(run, results, error);
   if (code)
     return code;
   results->largest.axis_middle = share(pieces->axis_ratio[0], 1);

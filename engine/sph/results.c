@@ -44,6 +44,22 @@ static const struct field rows[] = {
     REAL(second.angle, "rad", 0,
          .doc = "Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.",
          .source = "BA95 section 5.2"),
+    SHARE(ejecta.mass_fraction, .doc = "Impact: mass share of the target that leaves it faster than crater.ejection_speed.",
+          .source = "Jutzi & Benz, section 3"),
+    REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of that mass, along the outward normal."),
+    REAL(crater.depth, "m", 0, .doc = "Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 "
+                                      "below one."),
+    REAL(crater.radius, "m", 0, .doc = "Impact: radius of a circle of the crater's area at the first surface."),
+    REAL(crater.volume, "m^3", 0, .doc = "Impact: volume between the first and the present surface of what is retained."),
+    SHARE(crater.compaction_share,
+          .doc = "Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when "
+                 "there is neither.", .source = "Jutzi & Benz, section 3.1"),
+    SHARE(compaction.mass_fraction, .doc = "Mass share of the target with distention below 1.01 that had more; off without pores.",
+          .source = "Jutzi & Benz, figure 2"),
+    REAL(compaction.volume, "m^3", 0, .doc = "Volume that the target's retained matter has lost by closing pores; off without pores."),
+    REAL(compaction.depth, "m", 0, .doc = "First depth of the deepest matter near the axis with distention below 1.01; off without pores."),
+    REAL(compaction.reach, "m", 0, .doc = "Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off "
+                                          "without pores."),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
     REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy taken by damped sides."),

@@ -22,6 +22,15 @@ struct sph_results {
     double mass, angle;
   } second;
   struct {
+    double mass_fraction, momentum;
+  } ejecta;
+  struct {
+    double depth, radius, volume, compaction_share;
+  } crater;
+  struct {
+    double mass_fraction, volume, depth, reach;
+  } compaction;
+  struct {
     double kinetic, internal, damped, work_of_held, clamped;
   } energy;
   double energy_input, clamped_share, density_held_share, angular_momentum_error;

@@ -4,6 +4,7 @@
 
 #include "engine/engine.h"
 #include "engine/sph/bodies.h"
+#include "engine/sph/crater.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/pieces.h"
 #include "engine/sph/results.h"
@@ -73,6 +74,7 @@ status sph_protocol_record_start(struct sph_run *run, struct error *error);
 void sph_protocol_record(struct sph_run *run); /* after a step */
 
 /* report.c */
+struct sph_crater_options sph_report_crater(const struct sph_run *run);
 /* The target's fragments as the inputs ask for, but for the two choices given; of the particles last read. */
 status sph_report_pieces(const struct sph_run *run, double static_strength, bool veneer, struct sph_pieces *pieces,
                          struct error *error);
