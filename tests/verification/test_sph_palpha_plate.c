@@ -149,42 +149,40 @@ static void near(double got, double want, double relative, const char *what) {
     fail_msg("%s: got %.6g, expected %.6g +- %g", what, got, want, relative);
 }
 
-/* The solid is stiff: P follows rho with K/P = 38 times the error of rho at 1960 MPa, and a summed gradient on a
- * lattice that was squeezed by 1.3 one way is good to some 1e-3. So P may be 2 % off where rho is 1e-3 off. The
- * precursor is a weak step that viscosity spreads over about 15 layers: 2 % from 400 points on. Energy is what the
- * step's order leaves. */
+/* The solid is stiff: P follows rho with K/P = 38 times the error of rho at 1960 MPa, and a summed gradient on a lattice that
+ * was squeezed by 1.3 one way is good to some 1e-3 (sum over neighbours: 0.998). So P may be 2 % off where rho is 1e-3 off. Of
+ * 200 points only 24 lie between piston and weak shock, which viscosity spreads over about ten; the precursor, a weak step,
+ * over 15. Energy: what the step's order leaves. */
 static void check(const struct outcome *o, size_t along) {
+  const bool coarse = along < 400;
   near(o->Us, o->shock.speed, 0.01, "Us");
-  near(o->last.density, o->shock.density, along >= 400 ? 0.002 : 0.003, "density behind the shock");
-  near(o->last.pressure, o->shock.pressure, 0.02, "pressure behind the shock");
+  near(o->last.density, o->shock.density, coarse ? 0.005 : 0.002, "density behind the shock");
+  near(o->last.pressure, o->shock.pressure, coarse ? 0.03 : 0.02, "pressure behind the shock");
   near(o->last.alpha, o->shock.alpha, 0.005 / o->shock.alpha, "alpha behind the shock");
-  near(o->precursor_speed, o->precursor.speed, along >= 400 ? 0.02 : 0.03, "precursor");
+  near(o->precursor_speed, o->precursor.speed, coarse ? 0.03 : 0.02, "precursor");
   near(o->last.precursor_pressure, o->precursor.pressure, 0.01, "pressure of the precursor");
   if (!(fabs(o->drift) < 0.005)) fail_msg("energy is off by %g of the work done", o->drift);
 }
 
+/* Both states at 200 points (400 and 800 with CLAST_FULL). The weak shock leaves alpha = 1.0334, which nothing but the curve
+ * decides: its errors fall with the spacing. */
 static void both_states(void **state) {
   (void)state;
   const char *full = getenv("CLAST_FULL");
   const bool all = full && !strcmp(full, "1");
+  struct outcome coarse = run(100, 200);
   for (size_t along = 200; along <= (all ? 800 : 200); along *= 2) {
     struct outcome strong = run(along, 458), weak = run(along, 200);
     check(&strong, along);
     check(&weak, along);
+    if (along > 200) continue; /* beyond, errors are those of the lattice, no longer of the resolution */
+    assert_true(fabs(weak.last.alpha - weak.shock.alpha) < 0.5 * fabs(coarse.last.alpha - coarse.shock.alpha));
+    assert_true(fabs(weak.last.density - weak.shock.density) < 0.5 * fabs(coarse.last.density - coarse.shock.density));
+    assert_true(fabs(weak.precursor_speed - weak.precursor.speed) < 0.7 * fabs(coarse.precursor_speed - coarse.precursor.speed));
   }
 }
 
-/* The weak shock leaves alpha = 1.0334, which nothing but the curve decides: its error falls with the spacing. */
-static void converges(void **state) {
-  (void)state;
-  struct outcome coarse = run(100, 200), fine = run(200, 200);
-  assert_true(fabs(fine.last.alpha - fine.shock.alpha) < 0.5 * fabs(coarse.last.alpha - coarse.shock.alpha));
-  assert_true(fabs(fine.last.density - fine.shock.density) < 0.5 * fabs(coarse.last.density - coarse.shock.density));
-  assert_true(fabs(fine.precursor_speed - fine.precursor.speed) <
-              0.7 * fabs(coarse.precursor_speed - coarse.precursor.speed));
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(both_states), cmocka_unit_test(converges)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(both_states)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
