@@ -266,6 +266,16 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_speed REAL, -- [m/s] Speed of the largest fragment.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is none.
   second_angle REAL, -- [rad] Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.
+  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target that leaves it faster than crater.ejection_speed.
+  ejecta_momentum REAL, -- [kg m/s] Impact: momentum of that mass, along the outward normal.
+  crater_depth REAL, -- [m] Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.
+  crater_radius REAL, -- [m] Impact: radius of a circle of the crater's area at the first surface.
+  crater_volume REAL, -- [m^3] Impact: volume between the first and the present surface of what is retained.
+  crater_compaction_share REAL, -- [1] Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when there is neither.
+  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention below 1.01 that had more; off without pores.
+  compaction_volume REAL, -- [m^3] Volume that the target's retained matter has lost by closing pores; off without pores.
+  compaction_depth REAL, -- [m] First depth of the deepest matter near the axis with distention below 1.01; off without pores.
+  compaction_reach REAL, -- [m] Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.
   energy_kinetic REAL, -- [J] Kinetic energy at the end.
   energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
   energy_damped REAL, -- [J] Energy taken by damped sides.
@@ -370,6 +380,16 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_sph."largest_speed",
   result_sph."second_mass",
   result_sph."second_angle",
+  result_sph."ejecta_mass_fraction",
+  result_sph."ejecta_momentum",
+  result_sph."crater_depth",
+  result_sph."crater_radius",
+  result_sph."crater_volume",
+  result_sph."crater_compaction_share",
+  result_sph."compaction_mass_fraction",
+  result_sph."compaction_volume",
+  result_sph."compaction_depth",
+  result_sph."compaction_reach",
   result_sph."energy_kinetic" AS "result_sph_energy_kinetic",
   result_sph."energy_internal",
   result_sph."energy_damped",
@@ -806,9 +826,29 @@ INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time since whic
 
 INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention below 1.01 that had more; off without pores.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Volume that the target''s retained matter has lost by closing pores; off without pores.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'crater_radius', 'm', 'Impact: radius of a circle of the crater''s area at the first surface.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: volume between the first and the present surface of what is retained.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that leaves it faster than crater.ejection_speed.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of that mass, along the outward normal.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy put in where internal energy would have become negative.', 1);
 
@@ -972,15 +1012,35 @@ INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time since which dama
 
 INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention below 1.01 that had more; off without pores.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Volume that the target''s retained matter has lost by closing pores; off without pores.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'crater_radius', 'm', 'Impact: radius of a circle of the crater''s area at the first surface.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'crater_volume', 'm^3', 'Impact: volume between the first and the present surface of what is retained.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of single grains.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that leaves it faster than crater.ejection_speed.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of that mass, along the outward normal.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 0);
 
