@@ -209,6 +209,15 @@ static status check_parameters(const struct sph_parameters *p, struct error *err
     if (!(range[k].value >= range[k].low && range[k].value <= range[k].high))
       return status_fail(error, STATUS_CONTENT, "%s is %g; it must lie between %g and %g", range[k].name, range[k].value,
                          range[k].low, range[k].high);
+  if (p->largest_time_step <= 0) /* NaN: off */
+    return status_fail(error, STATUS_CONTENT, "largest_time_step is %g s; it must be above 0", p->largest_time_step);
+  for (int k = 0; k < 3; k++)
+    if (p->periodic[k] <= 0 || isinf(p->periodic[k]))
+      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c", p->periodic[k], "xyz"[k]);
+  if (p->threads < 1 || p->threads > 4096)
+    return status_fail(error, STATUS_CONTENT, "threads is %d; it must lie between 1 and 4096", p->threads);
+  if (p->growth < SPH_GROWTH_CUBE_ROOT || p->growth > SPH_GROWTH_LINEAR || p->cap < SPH_CAP_BA95 || p->cap > SPH_CAP_NONE)
+    return status_fail(error, STATUS_CONTENT, "there is no growth law %d with cap %d", p->growth, p->cap);
   return STATUS_OK;
 }
 

@@ -1,5 +1,6 @@
 /* Everything that the next step depends on. Lists are not saved: they are made again from the positions of the last listing,
  * and the pair loop sums in their order. */
+#include <stdio.h>
 #include <string.h>
 
 #include "engine/sph/system_step.h"
@@ -57,7 +58,10 @@ bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size)
     from += list[k].bytes;
   }
   for (size_t i = 0; i < n; i++)
-    if (s->id[i] >= n) return false; /* ids of another system: nothing may be done with them */
+    if (s->id[i] >= n) {
+      snprintf(s->failure, sizeof s->failure, "the state read back is no state of this system");
+      return false;
+    }
   s->failure[0] = '\0';
   return sph_system_step_relist(s);
 }

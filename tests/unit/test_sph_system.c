@@ -147,6 +147,10 @@ static void absent(void **state) {
   for (int b = 0; b < 2; b++)
     c.physics[b].strength = false;
   struct sph_system *fluid = case_system(c.particles, 2, c.physics, &c.parameters);
+  /* what `clast explain` says a module adds is what it adds */
+  assert_int_equal((solid->arena_doubles - whole->arena_doubles) / solid->stride * sizeof(double),
+                   sph_weibull_module.bytes + sph_fracture_module.bytes);
+  assert_int_equal((whole->arena_doubles - fluid->arena_doubles) / solid->stride * sizeof(double), sph_elastic_module.bytes);
   assert_true(sph_system_bytes(fluid) < sph_system_bytes(whole) && sph_system_bytes(whole) < sph_system_bytes(solid));
   assert_non_null(solid->c.damage);
   assert_non_null(solid->c.open_rate);
@@ -276,6 +280,18 @@ static void refused(void **state) {
   c.parameters.cfl = 0;
   assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "cfl"));
+  c.parameters.cfl = 0.3;
+  c.parameters.periodic[1] = 0;
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "along y"));
+  c.parameters.periodic[1] = NAN;
+  c.parameters.threads = 0;
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "threads"));
+  c.parameters.threads = 1;
+  c.particles->body[3] = 1; /* then body 0 again: out of order */
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "out of order"));
   let_go(&c);
 }
 
