@@ -107,4 +107,8 @@ struct sph_system {
 enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
 size_t sph_system_create_columns(struct sph_system *system, double **slot[SPH_COLUMNS], size_t *kept);
 
+/* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
+status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
+                        const struct sph_parameters *parameters, struct error *error);
+
 #endif
