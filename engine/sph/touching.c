@@ -140,9 +140,10 @@ struct visit {
   bool passive, periodic;
 };
 
-static void visit_bucket(const struct visit *visit, const struct item *item, int number, bool own, size_t bucket) {
+/* `count` buckets, one after the other. */
+static void visit_buckets(const struct visit *visit, const struct item *item, int number, bool own, size_t bucket, size_t count) {
   const struct sph_touching *t = visit->t;
-  for (uint32_t k = t->start[bucket]; k < t->start[bucket + 1]; k++) {
+  for (uint32_t k = t->start[bucket]; k < t->start[bucket + count]; k++) {
     const struct item *other = &t->item[k];
     if (other->level != number || other->id == item->id || (own && other->id < item->id)) continue;
     if (visit->passive ? other->role == item->role : other->role == SPH_TOUCHING_PASSIVE) continue;
@@ -167,13 +168,21 @@ static void visit_level(const struct visit *visit, const struct item *item, int 
   }
   bool same = item->level == number;
   for (int a = same ? 0 : low[2]; a <= high[2]; a++)
-    for (int b = same && a == 0 ? 0 : low[1]; b <= high[1]; b++)
-      for (int c = same && a == 0 && b == 0 ? 0 : low[0]; c <= high[0]; c++) {
+    for (int b = same && a == 0 ? 0 : low[1]; b <= high[1]; b++) {
+      bool own = same && a == 0 && b == 0;
+      int first = own ? 0 : low[0], count = high[0] - first + 1;
+      size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1] + b, home[2] + a});
+      if (!visit->periodic && !own && row + (size_t)count <= visit->t->mask + 1) { /* a row of cells is a row of buckets */
+        visit_buckets(visit, item, number, false, row, (size_t)count);
+        continue;
+      }
+      for (int c = first; c <= high[0]; c++) {
         int64_t at[3] = {home[0] + c, home[1] + b, home[2] + a};
         for (int d = 0; visit->periodic && d < 3; d++)
           if (level->wrap[d]) at[d] = (at[d] + level->wrap[d]) % level->wrap[d];
-        visit_bucket(visit, item, number, same && a == 0 && b == 0 && c == 0, bucket_of(visit->t, number, at));
+        visit_buckets(visit, item, number, own && c == 0, bucket_of(visit->t, number, at), 1);
       }
+    }
 }
 
 void sph_touching_visit(const struct sph_touching *t, bool passive, sph_touching_pair pair, void *context) {

@@ -70,8 +70,9 @@ ok "the same bits after a restart"
 [ ! -e run.bin ] || fail "the restart file is still there"
 python - <<'PY'
 import json
-names = [f['name'] for f in json.load(open('basalt-sphere.hdf.series'))['files']]
-assert names == ['basalt-sphere_%06d.hdf' % k for k in range(4)], names
+files = json.load(open('basalt-sphere.hdf.series'))['files']
+assert [f['name'] for f in files] == ['basalt-sphere_%06d.hdf' % k for k in range(4)], files
+assert files[0]['time'] == 0, files # the first is from before the stop
 PY
 ok "snapshots before and after the stop are in one series"
 expect 74 "$clast" "${run[@]}" --fields none/such/folder/end.hdf
