@@ -2,7 +2,8 @@
  *
  * First the pair loop alone, on a resting sphere of basalt with drawn velocities and stresses: time per particle, pairs and
  * flops per second against what the core's multiply-add units can do, the frozen plain C loop beside it (reference_sph.c), float
- * against double, threads. An argument runs one of pairs, run alone. */
+ * against double, threads. Then whole steps and whole runs (sph_whole_runs.h). An argument runs one of pairs, sizes, modules,
+ * threads, run, 10000, 100000 alone; everything takes about a quarter of an hour on one core. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,6 +16,7 @@
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
+#include "tests/bench/sph_whole_runs.h"
 
 enum { COLUMNS = 17, SUMS = 14, FLOPS = 139 }; /* per pair, counted in pairs_kernels_sum.h: an inverse or a root is 1 */
 
@@ -235,5 +237,10 @@ int main(int argc, char **argv) {
     pairs("10000", 10000);
     pairs("100000", 100000);
   }
+  if (!*only || !strcmp(only, "sizes")) sph_whole_runs_sizes();
+  if (!*only || !strcmp(only, "modules")) sph_whole_runs_modules();
+  if (!*only || !strcmp(only, "threads")) sph_whole_runs_threads();
+  if (!*only || !strcmp(only, "run") || !strcmp(only, "10000")) sph_whole_runs_figures("10000", "10000");
+  if (!*only || !strcmp(only, "run") || !strcmp(only, "100000")) sph_whole_runs_figures("100000", "100000");
   return 0;
 }
