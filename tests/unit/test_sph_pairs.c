@@ -223,6 +223,125 @@ static void corrected_gradient_is_linear(void **state) {
   }
 }
 
+/* Each pair once, however lists are cut into chunks: equal masses, no stress, unit volume weights, so that what a particle counts
+ * is the number of others within the mean of both supports. */
+static void each_pair_is_summed_once(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(SIDE, 1, true, 9);
+  size_t pairs = 0;
+  for (size_t i = 0; i < c->n; i++)
+    for (size_t j = i + 1; j < c->n; j++) {
+      const double x = c->a[0][i] - c->a[0][j], y = c->a[1][i] - c->a[1][j], z = c->a[2][i] - c->a[2][j], r = c->a[3][i] + c->a[3][j];
+      pairs += x * x + y * y + z * z < r * r;
+    }
+  for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
+    struct sph_pair_options options = usual;
+    options.precision = precision;
+    struct summed *s = sum(c, &options);
+    /* float may decide otherwise for a pair within 1e-6 of the edge: a handful of 3e5 */
+    assert_true(fabs(s->neighbours * (double)c->n - 2.0 * (double)pairs) <= (precision == SPH_FLOAT ? 20 : 0.01));
+    free(s);
+  }
+  free(c);
+}
+
+/* Without deviators forces are along the line between two particles: sum m x cross a = 0. Viscosity included. */
+static void angular_momentum_is_conserved(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(SIDE, 1, true, 10);
+  struct sph_pair_options options = usual;
+  options.strength = false;
+  struct summed *s = sum(c, &options);
+  double total[3] = {0}, scale = 0;
+  for (size_t i = 0; i < c->n; i++)
+    for (int k = 0; k < 3; k++) {
+      const double part = c->a[7][i] * c->a[(k + 1) % 3][i] * s->a[(k + 2) % 3][i];
+      total[k] += part - c->a[7][i] * c->a[(k + 2) % 3][i] * s->a[(k + 1) % 3][i];
+      scale += fabs(part);
+    }
+  for (int k = 0; k < 3; k++)
+    assert_true(fabs(total[k]) < 1e-12 * scale); /* 1e4 roundings of either sign */
+  free(s), free(c);
+}
+
+/* Particles that fly apart uniformly feel no viscosity, those that approach do, and it slows them: the sign of eq. 4's missing
+ * term. Two particles, by hand: r = h, v.r < 0. */
+static void viscosity_of_two_by_hand(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(2, 1, false, 11);
+  c->n = 2;
+  for (int i = 0; i < 2; i++) {
+    for (int k = 0; k < 11; k++)
+      c->a[k][i] = 0;
+    for (int k = 0; k < 6; k++)
+      c->stress[k][i] = 0;
+    c->a[0][i] = i, c->a[3][i] = 1, c->a[7][i] = 2, c->a[8][i] = 4, c->a[9][i] = 3;
+    c->a[4][i] = i ? -0.5 : 0.5; /* approach at 1 */
+  }
+  struct summed *s = sum(c, &usual);
+  const double mu = -1 / 1.01, viscous = (3 * mu * mu - 1.5 * 3 * mu) / 4, slope = -0.75 / acos(-1.0); /* W'(1), h = 1 */
+  assert_true(fabs(s->a[0][0] - 2 * viscous * slope) < 1e-14); /* a_0 = -m Pi W' (x_0 - x_1)/r: pushed back */
+  assert_true(s->a[0][0] < 0 && fabs(s->a[0][0] + s->a[0][1]) < 1e-15);
+  assert_true(fabs(s->a[12][0] - 0.5 * 2 * viscous * -slope) < 1e-14);
+  assert_true(fabs(s->a[13][0] + mu) < 1e-15);
+  assert_true(fabs(s->a[3][0] - 2.0 / 4 * slope) < 1e-15); /* dv_x/dx = m/rho (v_1 - v_0) W' (x_0 - x_1)/r: compression */
+  for (int i = 0; i < 2; i++)
+    c->a[4][i] *= -1;
+  struct summed *apart = sum(c, &usual);
+  assert_true(apart->a[0][0] == 0 && apart->a[12][0] == 0 && apart->a[13][0] == 0);
+  free(s), free(apart), free(c);
+}
+
+/* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle flung over 1e12 m. */
+static void memory_does_not_grow_with_the_extent(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(SIDE, 1, false, 12);
+  size_t bytes[2];
+  for (int flung = 0; flung < 2; flung++) {
+    struct sph_pairs *pairs;
+    struct error error = {0};
+    for (size_t i = 0; flung && i < c->n; i += 3)
+      for (int k = 0; k < 3; k++)
+        c->a[k][i] *= 1e11;
+    assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
+    assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+    bytes[flung] = sph_pairs_bytes(pairs) / c->n;
+    sph_pairs_free(pairs);
+  }
+  assert_in_range(bytes[0], 100, 1000);
+  assert_true(bytes[1] <= bytes[0]);
+  free(c);
+}
+
+/* What is not finite neither crashes nor hangs a search or a sum, and lists are stale at once. */
+static void not_finite_does_no_harm(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(10, 1, true, 13);
+  static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
+  struct sph_pairs *pairs;
+  struct error error = {0};
+  for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
+    struct sph_pair_options options = usual;
+    struct summed *s = calloc(1, sizeof *s);
+    options.precision = precision;
+    assert_int_equal(sph_pairs_create(c->n, &options, &pairs, &error), STATUS_OK);
+    struct sph_pair_fields f = fields_of(c);
+    struct sph_pair_sums sums = sums_of(s);
+    assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+    for (int k = 0; k < 4; k++) {
+      const double x = c->a[k][5 + k];
+      c->a[k][5 + k] = bad[k];
+      assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+      assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
+      sph_pairs_sum(pairs, c->n, &f, &sums);
+      c->a[k][5 + k] = x;
+    }
+    sph_pairs_free(pairs);
+    free(s);
+  }
+  free(c);
+}
+
 static void coincident_particles_do_no_harm(void **state) {
   (void)state;
   struct cloud *c = cloud_make(10, 1, false, 6);
@@ -392,6 +511,11 @@ int main(void) {
       cmocka_unit_test(momentum_is_conserved),
       cmocka_unit_test(work_equals_strain_energy),
       cmocka_unit_test(corrected_gradient_is_linear),
+      cmocka_unit_test(each_pair_is_summed_once),
+      cmocka_unit_test(angular_momentum_is_conserved),
+      cmocka_unit_test(viscosity_of_two_by_hand),
+      cmocka_unit_test(memory_does_not_grow_with_the_extent),
+      cmocka_unit_test(not_finite_does_no_harm),
       cmocka_unit_test(coincident_particles_do_no_harm),
       cmocka_unit_test(float_is_as_good_far_away),
       cmocka_unit_test(bits_do_not_depend_on_threads),
