@@ -342,6 +342,16 @@ static void not_finite_does_no_harm(void **state) {
   free(c);
 }
 
+/* Sums leave the caller's arithmetic as it was: numbers below the normal ones are not flushed there. */
+static void tiny_numbers_stay_the_callers(void **state) {
+  (void)state;
+  struct cloud *c = cloud_make(4, 1, false, 14);
+  volatile double least = 0x1p-1022;
+  free(sum(c, &usual));
+  assert_true(least / 2 > 0);
+  free(c);
+}
+
 static void coincident_particles_do_no_harm(void **state) {
   (void)state;
   struct cloud *c = cloud_make(10, 1, false, 6);
@@ -516,6 +526,7 @@ int main(void) {
       cmocka_unit_test(viscosity_of_two_by_hand),
       cmocka_unit_test(memory_does_not_grow_with_the_extent),
       cmocka_unit_test(not_finite_does_no_harm),
+      cmocka_unit_test(tiny_numbers_stay_the_callers),
       cmocka_unit_test(coincident_particles_do_no_harm),
       cmocka_unit_test(float_is_as_good_far_away),
       cmocka_unit_test(bits_do_not_depend_on_threads),
