@@ -88,11 +88,18 @@ static status make_bodies(struct sph_run *run, struct error *error) {
   return sph_bodies_make(body, (size_t)run->body_count, arrays_of(in), &run->start, run->range, error);
 }
 
-/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends. */
+/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends; and the sides'
+ * share of it, by Poisson's ratio. */
 static void ring(struct sph_run *run) {
   struct sph_particles *p = run->start;
-  for (size_t i = 0; i < p->n; i++)
-    p->vz[i] += run->inputs.vibration.speed * sin(pi * p->z[i] / run->inputs.target.length);
+  double speed = run->inputs.vibration.speed, k = pi / run->inputs.target.length;
+  double ratio = run->inputs.target.strength ? sph_scale_poisson_ratio(&run->inputs.target.material) : 0;
+  for (size_t i = 0; i < p->n; i++) {
+    double aside = -ratio * k * speed * cos(k * p->z[i]);
+    p->vz[i] += speed * sin(k * p->z[i]);
+    p->vx[i] += aside * p->x[i];
+    p->vy[i] += aside * p->y[i];
+  }
 }
 
 static void set_in_motion(struct sph_run *run, const double flight[3]) {

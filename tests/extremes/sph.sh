@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Bad input and extremes of engine sph on the command line: a clear error with file, line and remedy and the right exit code, or a
+# run with an honest status.
+. "$(dirname "$0")/../cli/lib.bash"
+
+small=(--set fidelity.particles=200 --set fidelity.projectile_spacing=0.7)
+write() { printf '%b' "engine: sph\n$1\n" >scene.yaml; }
+refuse() { # CODE WORD: scene.yaml is refused
+  expect "$1" "$clast" simulate ./scene.yaml --seed 1
+  says "$2"
+}
+
+write 'target: {material: {density: 3 GPa}}';                       refuse 65 "scene.yaml:2:30"
+says "kg/m^3"
+write 'target: {material: {name: basalr}}';                          refuse 65 "did you mean 'basalt'"
+write 'target: {fracture: on, material: {name: aluminium}}';         refuse 65 "target.material.weibull.m is needed because fracture is on"
+says "target.fracture: off"
+write 'target: {material: {name: custom}}';                          refuse 65 "target.material.density is needed"
+write 'fidelity: {particles: 0}';                                    refuse 65 "fidelity.particles"
+write 'fidelity: {particles: 2e9}';                                  refuse 65 "fidelity.particles"
+write 'impact: {speed: -1 m/s}';                                     refuse 65 "impact.speed"
+write 'impact: {speed: 3 cm}';                                       refuse 65 "m/s"
+write 'impact: {gap: 1 km}\nstop: {end_time: 1 ms}';                                         refuse 65 "impact.gap"
+write 'target: {shape: cylinder, radius: 2 cm, inner_radius: 1 cm}'; refuse 65 "misses"
+write 'kind: collision\ntarget: {shape: cylinder, length: 1 cm}\ncollision: {gap: 0}'; refuse 65 "overlap"
+write 'target: {radius: .nan}';                                      refuse 65 "target.radius"
+write 'target: {material: {weibull: {m: 0.9}}}';                     refuse 65 "weibull.m"
+write 'stop: {end_time: 0}';                                         refuse 65 "stop.end_time"
+
+# More particles than memory: refused with the number, at once and before anything is allocated.
+write 'fidelity: {particles: 1000000000}'
+(ulimit -v 4000000 2>/dev/null; timeout 20 "$clast" simulate ./scene.yaml --seed 1 >out 2>err) && fail "1e9 particles were run"
+says "GB of memory"
+ok "more particles than memory"
+
+# Any speed, size and flaws: a run with a status.
+for change in impact.speed=0 "impact.speed=70 km/s" target.radius=1um target.radius=1e6 target.material.weibull.k=1e200 \
+  target.material.weibull.m=1 target.material.weibull.m=200; do
+  write "projectile: {radius: $([[ $change == target.radius=1um ]] && echo 0.3 um || { [[ $change == target.radius=1e6 ]] && echo 300 km || echo 1 cm; })}"
+  got=0
+  timeout 100 "$clast" simulate ./scene.yaml --seed 1 "${small[@]}" --set "$change" --json >out 2>err || got=$?
+  [ "$got" -eq 0 ] || [ "$got" -eq 1 ] || fail "exit $got with $change"
+  grep -q '"state"' out || fail "no state with $change"
+  ! grep -qi 'nan' out || fail "NaN with $change"
+  ok "$change: exit $got"
+done
+
+# Axes that differ by case alone (Tillotson's A and a) keep their columns apart.
+cat >ab.yaml <<'Y'
+name: ab
+scene: basalt-sphere
+vary: {target.material.tillotson.A: [20 GPa, 26.7 GPa], target.material.tillotson.a: [0.4, 0.5]}
+set: {fidelity.particles: 100, fidelity.projectile_spacing: 0.9, stop.end_time: 10 us}
+store: ab.db
+Y
+expect 0 "$clast" run ab.yaml
+expect 0 "$clast" query ab.db "select count(distinct point_id) as n from point_input where path = 'target.material.tillotson.a'" --csv
+prints 4
+expect 0 "$clast" check ab.db
+done_after 25
