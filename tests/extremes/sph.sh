@@ -50,7 +50,7 @@ cat >ab.yaml <<'Y'
 name: ab
 scene: basalt-sphere
 vary: {target.material.tillotson.A: [20 GPa, 26.7 GPa], target.material.tillotson.a: [0.4, 0.5]}
-set: {fidelity.particles: 100, fidelity.projectile_spacing: 0.9, stop.end_time: 10 us}
+set: {fidelity.particles: 200, fidelity.projectile_spacing: 0.5, stop.end_time: 10 us}
 store: ab.db
 Y
 expect 0 "$clast" run ab.yaml
