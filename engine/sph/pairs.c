@@ -28,6 +28,12 @@ struct chunk {
   size_t record_at;           /* its first record of sums */
 };
 
+/* Units in which the numbers of float records are of the order of 1; in double all are 1. per_...: their inverses. */
+struct units {
+  double length, mass, velocity, density, specific; /* specific: of stress over density squared */
+  double per_length, per_mass, per_velocity, per_density, per_specific;
+};
+
 struct sph_pairs {
   struct sph_pair_options options;
   const struct sph_pair_kernels *kernels;
@@ -44,6 +50,8 @@ struct sph_pairs {
   size_t in_capacity;
   void *out;         /* records of sums, of all chunks */
   double quantum[3];
+  struct units units;
+  bool units_chosen; /* since the last listing; in double they stay 1 */
   size_t within;     /* pairs inside the support at the last pass, twice */
 };
 
@@ -64,6 +72,7 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
   *out = NULL;
   if (p) {
     p->options = *options;
+    p->units = (struct units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
     p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
@@ -205,34 +214,34 @@ status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const doub
            grow(&p->in, &p->in_capacity, threads * p->most_slots, p->in_columns * p->real);
   if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
   choose_quantum(p, n, h);
+  p->units_chosen = p->real == sizeof(double);
   for (int k = 0; k < 5; k++)
     memcpy(p->listed[k], now[k], n * sizeof(double));
   return STATUS_OK;
 }
 
-/* Units in which the numbers of float records are of the order of 1; in double all are 1. per_...: their inverses. */
-struct units {
-  double length, mass, velocity, density, specific; /* specific: of stress over density squared */
-  double per_length, per_mass, per_velocity, per_density, per_specific;
-};
+static double power_of_two(double x) {
+  int exponent;
+  return x > 0 && isfinite(x) ? (frexp(x, &exponent), ldexp(1, exponent)) : 1;
+}
 
-static struct units choose_units(const struct sph_pairs *p, size_t n, const struct sph_pair_fields *f) {
-  struct units u = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
-  if (p->options.precision != SPH_FLOAT) return u;
+/* Powers of two: whatever they are, they change no bit of a result, so that they need not be those of before a restart. */
+static void choose_units(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f) {
+  struct units *u = &p->units;
   double h = 0, density = 0, sound = 0;
   for (size_t i = 0; i < n; i++) {
     h = f->h[i] > h ? f->h[i] : h;
     density = f->density[i] > density ? f->density[i] : density;
     sound = f->sound_speed[i] > sound ? f->sound_speed[i] : sound;
   }
-  u.length = h > 0 && isfinite(h) ? h : 1;
-  u.density = density > 0 && isfinite(density) ? density : 1;
-  u.velocity = sound > 0 && isfinite(sound) ? sound : 1;
-  u.mass = u.density * u.length * u.length * u.length;
-  u.specific = u.velocity * u.velocity / u.density;
-  u.per_length = 1 / u.length, u.per_mass = 1 / u.mass, u.per_velocity = 1 / u.velocity;
-  u.per_density = 1 / u.density, u.per_specific = 1 / u.specific;
-  return u;
+  u->length = power_of_two(h);
+  u->density = power_of_two(density);
+  u->velocity = power_of_two(sound);
+  u->mass = u->density * u->length * u->length * u->length;
+  u->specific = u->velocity * u->velocity / u->density;
+  u->per_length = 1 / u->length, u->per_mass = 1 / u->mass, u->per_velocity = 1 / u->velocity;
+  u->per_density = 1 / u->density, u->per_specific = 1 / u->specific;
+  p->units_chosen = true;
 }
 
 /* The record of particle i but for its position. */
@@ -250,16 +259,18 @@ static inline __attribute__((always_inline)) void record(const struct sph_pair_f
   out[PAIR_DENSITY] = f->density[i] * u->per_density;
 }
 
-static int32_t quanta(double x, double quantum) {
-  double t = x / quantum;
-  t -= 0x1p32 * floor(t * 0x1p-32 + 0.5);
-  return t >= 0x1p31 ? INT32_MIN : t >= -0x1p31 ? (int32_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
+/* Towards zero, and round the 2^32 quanta that a record can tell apart. */
+static inline int32_t quanta(double x, double per_quantum) {
+  const double t = x * per_quantum;
+  const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
+  return (int32_t)(uint32_t)(uint64_t)whole;
 }
 
 static void pack(const struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
                  void *in) {
   const uint32_t *foreign = p->foreign + c->foreign_at;
   const bool artificial = p->in_columns == PAIR_WIDE;
+  const double per[3] = {1 / p->quantum[0], 1 / p->quantum[1], 1 / p->quantum[2]};
   for (size_t k = 0; k < c->own + c->foreign; k++) {
     const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
     double room[PAIR_WIDE], *real = p->real == sizeof(double) ? (double *)in + k * p->in_columns : room;
@@ -269,8 +280,7 @@ static void pack(const struct sph_pairs *p, const struct chunk *c, const struct 
     float *to = (float *)in + k * p->in_columns;
     for (size_t column = PAIR_H; column < (artificial ? PAIR_ARTIFICIAL + 6 : PAIR_NARROW); column++)
       to[column] = (float)real[column];
-    const int32_t at[3] = {quanta(real[PAIR_X], p->quantum[0]), quanta(real[PAIR_Y], p->quantum[1]),
-                           quanta(real[PAIR_Z], p->quantum[2])};
+    const int32_t at[3] = {quanta(real[PAIR_X], per[0]), quanta(real[PAIR_Y], per[1]), quanta(real[PAIR_Z], per[2])};
     memcpy(to, at, sizeof at);
   }
 }
@@ -429,7 +439,8 @@ static size_t unpack_chunk(const struct sph_pairs *p, size_t k, const struct uni
 
 void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
   const struct sph_pair_options *o = &p->options;
-  const struct units u = choose_units(p, n, f);
+  if (!p->units_chosen) choose_units(p, n, f);
+  const struct units u = p->units;
   struct sph_pair_constants constants = {.alpha = o->viscosity_alpha,
                                          .twice_beta = 2 * o->viscosity_beta,
                                          .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,

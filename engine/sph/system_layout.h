@@ -7,6 +7,7 @@
 #define CLAST_ENGINE_SPH_SYSTEM_LAYOUT_H
 
 #include "engine/sph/modules.h"
+#include "engine/sph/system.h"
 #include "engine/sph/weibull.h"
 
 enum { SPH_BLOCK = 512, SPH_HOOKS = 24 };
@@ -99,6 +100,8 @@ struct sph_system {
   bool damage;                    /* of flaws, or of pores that close */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
+  struct sph_phases phases;
+  bool watched;
   char failure[256];
 };
 
