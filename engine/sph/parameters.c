@@ -15,7 +15,7 @@ struct sph_parameters sph_parameters_default(void) {
       .cap = SPH_CAP_BA95,
       .h_lowest = 0.5,
       .h_highest = 2,
-      .density_lowest = 1e-3,
+      .density_lowest = 0.03, /* a particle alone, m W(0): h stays within twice its first size. Thinner ones have P/rho^2 without bound */
       .skin = 0.05,
       .periodic = {NAN, NAN, NAN},
       .precision = SPH_DOUBLE,

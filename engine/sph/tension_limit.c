@@ -9,8 +9,9 @@ static bool on(const struct sph_body_physics *body, const struct sph_parameters 
 
 const struct sph_module sph_tension_limit_module = {
     .name = "tension_limit",
-    .doc = "Pressure is not below -tension_limit: a spall strength for matter without flaws.",
-    .source = "Asphaug & Melosh 1993",
+    .doc = "Pressure is not below -tension_limit: a spall strength for matter without flaws. It falls with expansion and is gone at "
+           "0.9 of the density: torn matter does not pull (nor shear), or P/rho^2 of thin debris would grow without bound.",
+    .source = "Asphaug & Melosh 1993; the fall with expansion is our choice",
     .when = "a material with a tension_limit in a body without flaws",
     .on = on,
     .bytes = 0,

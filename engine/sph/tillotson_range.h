@@ -35,11 +35,15 @@ RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *bo
 }
 
 RANGE_HOOK void tillotson_tension_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double lowest = -body->physics.material.tension_limit;
+  const double lowest = -body->physics.material.tension_limit, per_density = 1 / body->physics.material.density;
+  const double *density = s->c.density, *distention = s->c.distention;
   double *pressure = s->c.pressure;
   RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++)
-    pressure[i] = range_larger(pressure[i], lowest);
+  for (size_t i = b->low; i < b->high; i++) {
+    const double of_solid = (distention ? distention[i] : 1) * density[i] * per_density;
+    const double whole = range_smaller(range_larger(10 * (of_solid - 0.9), 0), 1); /* torn matter does not pull */
+    pressure[i] = range_larger(pressure[i], lowest * whole);
+  }
 }
 
 #endif

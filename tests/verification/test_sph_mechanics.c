@@ -407,7 +407,8 @@ static void pressures(void **state) {
     struct sph_system *s = case_system(p, 1, &fluid, &parameters);
     for (size_t i = 0; i < s->n; i++) {
       const struct sph_pressure plain = sph_tillotson(&m.tillotson, 2700, s->c.density[i], s->c.energy[i]);
-      const double expected = limited ? fmax(plain.pressure, -1e9) : plain.pressure;
+      const double whole = fmin(fmax((s->c.density[i] / 2700 - 0.9) / 0.1, 0), 1); /* torn at 0.9 of the density */
+      const double expected = limited ? fmax(plain.pressure, -1e9 * whole) : plain.pressure;
       /* products in another order: some rounding of the largest term */
       assert_true(fabs(s->c.pressure[i] - expected) < 1e-13 * (fabs(expected) + 1e11));
       assert_true(fabs(s->c.sound_speed[i] / plain.sound_speed - 1) < 1e-11);
