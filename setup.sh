@@ -47,7 +47,12 @@ install_missing() {
 build() { # preset
   say "building build/$1"
   cmake --preset "$1" >/dev/null
-  cmake --build --preset "$1" -j "$(nproc)" | tail -n 1
+  if ! cmake --build --preset "$1" -j "$(nproc)" >"build/$1/build.log" 2>&1; then
+    grep -E -A12 "^FAILED|error" "build/$1/build.log" >&2
+    say "the build failed; all it printed is in build/$1/build.log" >&2
+    exit 70
+  fi
+  tail -n 1 "build/$1/build.log"
 }
 
 case "${1:-}" in

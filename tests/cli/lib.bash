@@ -78,10 +78,14 @@ slow() {
   local set=(body.diameter="14 cm" charge.energy="6 kJ/m" stop.end_time="1.5 ms")
   local items=() item before after
   for item in "${set[@]}"; do items+=(--set "$item"); done
-  before=$(date +%s%N)
-  "$clast" simulate disc-explosion --seed 1 "${items[@]}" >/dev/null 2>&1 || fail "one run of the slow campaign"
-  after=$(date +%s%N)
-  slow_seeds=$((4000000000 / (3 * (after - before)) + 4))
+  local least=4000000000
+  for item in 1 2 3 4; do # the quickest: other tests may run beside this one now, and not later
+    before=$(date +%s%N)
+    "$clast" simulate disc-explosion --seed 1 "${items[@]}" >/dev/null 2>&1 || fail "one run of the slow campaign"
+    after=$(date +%s%N)
+    [ $((after - before)) -ge "$least" ] || least=$((after - before))
+  done
+  slow_seeds=$((4000000000 / (3 * least) + 4))
   [ "$slow_seeds" -le 300 ] || slow_seeds=300
   cat >"$1.yaml" <<YAML
 name: slow

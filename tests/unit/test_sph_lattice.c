@@ -56,7 +56,7 @@ static struct around look(const struct sph_points *points, const struct sph_near
     double p[3] = {points->x[i], points->y[i], points->z[i]};
     int repeats = 1;
     for (int k = 0; k < 3; k++)
-      if (shift[k]) {
+      if (length && shift[k]) {
         repeats &= length[k] > 0;
         p[k] += shift[k] * length[k];
       }

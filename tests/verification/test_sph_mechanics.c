@@ -89,7 +89,7 @@ static double turned(bool correction, double steps, bool whole_body) {
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   /* about the axis (1, 1, 1)/sqrt(3): Rodrigues */
   const double n = 1 / sqrt(3.0);
-  double angle = 0, rotation[3][3];
+  double angle = 0, rotation[3][3] = {{0}};
   for (int step = 0; step <= (int)steps; step++) {
     angle = w * sph_system_time(s);
     const double c = cos(angle), q = sin(angle);
