@@ -235,7 +235,7 @@ static void stack_layers(struct cut *c, double spacing, double layers) { /* alon
   c->side[2] = spacing * period(c->cell, 2) * taller;
 }
 
-/* Does the body, one spacing wider all round, have a hundred times its volume? Then the lattice mostly misses it, and
+/* Does the body, one spacing wider all round, have forty times its volume? Then the lattice mostly misses it, and
  * looking for better offsets would take long. Layers have no ends to miss. */
 static bool thin(const struct cut *c) {
   const struct sph_shape *s = c->shape;
@@ -249,7 +249,7 @@ static bool thin(const struct cut *c) {
     const double outer = s->radius + across, inner = fmax(0, s->inner_radius - across);
     wider = 3.14159265358979323846 * (outer - inner) * (outer + inner) * (s->length + 2 * along);
   }
-  return !(wider < 100 * sph_shape_volume(s));
+  return !(wider < 40 * sph_shape_volume(s));
 }
 
 /* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
