@@ -59,4 +59,4 @@ for what in scene campaign; do
   python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
 done
 expect 64 "$clast" schema elephant
-done_after 54
+done_after $((21 + 3 * $(echo "$scenes" | wc -w)))
