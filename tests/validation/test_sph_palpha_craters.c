@@ -74,12 +74,17 @@ static void ice(void **state) {
                   porous.sph.mean_damage, solid.sph.mean_damage, porous.sph.compaction.mass_fraction * porous.sph.target_mass,
                   porous.sph.crater.volume, porous.sph.crater.compaction_share);
     assert_true(isnan(solid.sph.compaction.mass_fraction)); /* nothing to compact */
-    /* alpha along the axis: rises from the crater to alpha_0 */
-      assert_true(porous.layers > 5);
-    double first = porous.axis[0].distention, last = porous.axis[porous.layers - 1].distention;
-assert_true(last > first + 0.1 && last > 1.4);
     for (size_t k = 0; seed == 1 && k < porous.layers; k++)
       print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention, porous.axis[k].damage);
+    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers are by the
+     * depth at the start, and what stood on top was pushed aside, so that alpha need not rise from layer to layer. */
+    assert_true(porous.sph.compaction.mass_fraction > 0 && porous.sph.compaction.depth < 0.03);
+    assert_true(porous.sph.compaction.reach > 3 * porous.sph.compaction.depth);
+    assert_true(porous.layers > 5);
+    double lowest = 1.5, last = porous.axis[porous.layers - 1].distention; /* rising to alpha_0 = 1.5 */
+    for (size_t k = 0; k < porous.layers; k++)
+      lowest = fmin(lowest, porous.axis[k].distention);
+    assert_true(last > 1.45 && last > lowest);
     assert_true(porous.sph.compaction.mass_fraction < 0.05); /* alpha = 1 near the crater only */
   }
   double mean = sum / seeds, error = seeds > 1 ? sqrt(fmax(0, squares / seeds - mean * mean) / (seeds - 1)) : 0;
