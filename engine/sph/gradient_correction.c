@@ -9,11 +9,11 @@ static bool on(const struct sph_body_physics *body, const struct sph_parameters 
 
 const struct sph_module sph_gradient_correction_module = {
     .name = "gradient_correction",
-    .doc = "The velocity gradient is exact for linear fields, also at surfaces: a rigid rotation strains nothing, and "
-           "angular momentum keeps. Energy follows the uncorrected gradient, which balances the forces.",
-    .source = "Randles & Libersky 1996",
+    .doc = "Velocity gradients are exact for linear fields, also at surfaces, and forces are conjugate to them: a rigid rotation "
+           "strains nothing, energy and angular momentum keep, free sides are as stiff as the inside.",
+    .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
     .when = "gradient_correction is asked for",
     .on = on,
-    .bytes = 7 * sizeof(double), /* with the moment of the pair loop */
+    .bytes = (7 + 16) * sizeof(double), /* B, the work, and records of sums twice as wide */
     .hook = {0},
 };

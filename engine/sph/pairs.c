@@ -38,6 +38,7 @@ struct sph_pairs {
   struct sph_pair_options options;
   const struct sph_pair_kernels *kernels;
   size_t n, chunks, in_columns, out_columns, real; /* real: bytes of a number in records */
+  bool artificial;                                 /* there is artificial stress */
   double *listed[5]; /* x y z h slack when the lists were made */
   double *reach;
   struct sph_neighbours found; /* global lists, between listings only */
@@ -76,7 +77,8 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
     p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
-    p->in_columns = options->artificial_stress > 0 && options->strength ? PAIR_WIDE : PAIR_NARROW;
+    p->artificial = options->artificial_stress > 0 && options->strength;
+    p->in_columns = p->artificial || options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->chunks = (n + CHUNK - 1) / CHUNK;
     p->listed[0] = malloc(6 * (n + 1) * sizeof(double));
@@ -259,6 +261,27 @@ static inline __attribute__((always_inline)) void record(const struct sph_pair_f
   out[PAIR_DENSITY] = f->density[i] * u->per_density;
 }
 
+/* v = M w for a symmetric M (xx xy xz yy yz zz). */
+static void apply(const double *m, const double w[3], double v[3]) {
+  v[0] = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
+  v[1] = m[1] * w[0] + m[3] * w[1] + m[4] * w[2];
+  v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
+}
+
+/* T = sigma B / rho^2, which is not symmetric. */
+static void turn(const struct sph_pair_fields *f, size_t i, double *record) {
+  double b[6], row[3][3];
+  for (int k = 0; k < 6; k++)
+    b[k] = f->correction[k][i];
+  const double *t = record + PAIR_XX;
+  const double s[3][3] = {{t[0], t[1], t[2]}, {t[1], t[3], t[4]}, {t[2], t[4], t[5]}};
+  for (int k = 0; k < 3; k++)
+    apply(b, s[k], row[k]);
+  record[PAIR_XX] = row[0][0], record[PAIR_XY] = row[0][1], record[PAIR_XZ] = row[0][2];
+  record[PAIR_YX] = row[1][0], record[PAIR_YY] = row[1][1], record[PAIR_YZ] = row[1][2];
+  record[PAIR_ZX] = row[2][0], record[PAIR_ZY] = row[2][1], record[PAIR_ZZ] = row[2][2];
+}
+
 /* Towards zero, and round the 2^32 quanta that a record can tell apart. */
 static inline int32_t quanta(double x, double per_quantum) {
   const double t = x * per_quantum;
@@ -269,16 +292,24 @@ static inline int32_t quanta(double x, double per_quantum) {
 static void pack(const struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
                  void *in) {
   const uint32_t *foreign = p->foreign + c->foreign_at;
-  const bool artificial = p->in_columns == PAIR_WIDE;
+  const bool corrected = p->options.gradient_correction, volumes = p->options.volume_weights;
   const double per[3] = {1 / p->quantum[0], 1 / p->quantum[1], 1 / p->quantum[2]};
   for (size_t k = 0; k < c->own + c->foreign; k++) {
     const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
     double room[PAIR_WIDE], *real = p->real == sizeof(double) ? (double *)in + k * p->in_columns : room;
     record(f, u, p->options.strength, i, real);
-    if (artificial) sph_tension_opposed(p->options.artificial_stress, real + PAIR_XX, real + PAIR_ARTIFICIAL);
+    if (volumes) /* sigma */
+      for (int column = PAIR_XX; column <= PAIR_ZZ; column++)
+        real[column] *= real[PAIR_DENSITY] * real[PAIR_DENSITY];
+    if (p->artificial) sph_tension_opposed(p->options.artificial_stress, real + PAIR_XX, real + PAIR_ARTIFICIAL);
+    if (corrected) turn(f, i, real);
     if (p->real == sizeof(double)) continue;
     float *to = (float *)in + k * p->in_columns;
-    for (size_t column = PAIR_H; column < (artificial ? PAIR_ARTIFICIAL + 6 : PAIR_NARROW); column++)
+    for (size_t column = PAIR_H; column < PAIR_NARROW; column++)
+      to[column] = (float)real[column];
+    for (size_t column = PAIR_ARTIFICIAL; p->artificial && column < PAIR_ARTIFICIAL + 6; column++)
+      to[column] = (float)real[column];
+    for (size_t column = PAIR_YX; corrected && column <= PAIR_ZY; column++)
       to[column] = (float)real[column];
     const int32_t at[3] = {quanta(real[PAIR_X], per[0]), quanta(real[PAIR_Y], per[1]), quanta(real[PAIR_Z], per[2])};
     memcpy(to, at, sizeof at);
@@ -312,7 +343,7 @@ static void sum_chunk(struct sph_pairs *p, const struct chunk *c, const struct s
                                       .count = p->count + c->first,
                                       .neighbour = p->neighbour + c->list_at};
   char *out = (char *)p->out + c->record_at * p->out_columns * p->real;
-  const bool corrected = p->out_columns == PAIR_WIDE, artificial = p->in_columns == PAIR_WIDE;
+  const bool corrected = p->out_columns == PAIR_WIDE, artificial = p->artificial;
   const unsigned mode = flush_tiny();
   pack(p, c, f, u, in);
   memset(out, 0, view.slots * p->out_columns * p->real);
@@ -323,26 +354,21 @@ static void sum_chunk(struct sph_pairs *p, const struct chunk *c, const struct s
   restore_tiny(mode);
 }
 
-/* v = M w for a symmetric M (xx xy xz yy yz zz). */
-static void apply(const double *m, const double w[3], double v[3]) {
-  v[0] = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
-  v[1] = m[1] * w[0] + m[3] * w[1] + m[4] * w[2];
-  v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
-}
-
-/* The gradient times the inverse of sum V (x_i - x_j) grad W: exact for linear fields. */
-static void correct(const double *m, double gradient[9]) {
+/* B, the inverse of the moment sum V (x_i - x_j) grad W; 1 where there are too few neighbours, or all in a plane. */
+static void invert(const double m[6], double inverse[6]) {
   double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
   double determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3; /* 1 inside, 1/8 in a corner */
-  if (!(mean > 0.02 && determinant > 0.02 * mean * mean * mean)) return; /* too few neighbours, or all in a plane */
-  double s = 1 / determinant;
-  double inverse[6] = {s * a, s * b, s * c, s * (m[0] * m[5] - m[2] * m[2]), s * (m[1] * m[2] - m[0] * m[4]),
-                       s * (m[0] * m[3] - m[1] * m[1])};
-  for (int row = 0; row < 3; row++) {
-    double v[3];
-    apply(inverse, gradient + 3 * row, v);
-    memcpy(gradient + 3 * row, v, sizeof v);
-  }
+  const bool regular = mean > 0.02 && determinant > 0.02 * mean * mean * mean;
+  const double s = 1 / determinant;
+  inverse[0] = regular ? s * a : 1, inverse[1] = regular ? s * b : 0, inverse[2] = regular ? s * c : 0;
+  inverse[3] = regular ? s * (m[0] * m[5] - m[2] * m[2]) : 1;
+  inverse[4] = regular ? s * (m[1] * m[2] - m[0] * m[4]) : 0;
+  inverse[5] = regular ? s * (m[0] * m[3] - m[1] * m[1]) : 1;
+}
+
+static void times(const double symmetric[6], const double gradient[9], double out[9]) {
+  for (int row = 0; row < 3; row++)
+    apply(symmetric, gradient + 3 * row, out + 3 * row);
 }
 
 /* rho (sigma/rho^2) : gradient, J/kg/s. */
@@ -420,8 +446,16 @@ INLINE size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u,
     if (corrected) {
       for (size_t m = 0; m < 6; m++)
         moment[m] = at(whole, own, SUM_MOMENT + m) * weight;
-      if (sums->power) sums->power[i] = power(f, p->options.strength, i, gradient);
-      correct(moment, gradient);
+      double correction[6], conjugate[9];
+      for (int m = 0; m < 6; m++)
+        correction[m] = f->correction[m][i];
+      times(correction, gradient, conjugate);
+      sums->power[i] = power(f, p->options.strength, i, conjugate);
+      invert(moment, correction);
+      for (int m = 0; m < 6; m++)
+        sums->correction[m][i] = correction[m];
+      times(correction, gradient, conjugate);
+      memcpy(gradient, conjugate, sizeof gradient);
     }
     for (int m = 0; m < 9; m++)
       sums->gradient[m][i] = gradient[m];

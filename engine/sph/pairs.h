@@ -5,7 +5,15 @@
  *   dv_i/dt   = sum_j m_j (sigma_i/rho_i^2 + sigma_j/rho_j^2 - Pi_ij + f^n (R_i + R_j)) . grad_i W      [BA95 eq. 17]
  *   dv_a/dx_b = sum_j (m_j/rho_i) (v_j - v_i)_a grad_i W_b          [BA95 eq. 18]; m_j/rho_j with `volume_weights`
  *   heating   = 1/2 sum_j m_j Pi_ij (v_i - v_j) . grad_i W          (viscous, J/kg/s; eq. 4 lacks it)
- * Pi: Monaghan's viscosity, approaching pairs only (damaged ones included). */
+ * Pi: Monaghan's viscosity, approaching pairs only (damaged ones included).
+ *
+ * With the gradient correction dv_a/dx_b is multiplied by B_i, the inverse of M_i = sum_j (m_j/rho_i) (x_j - x_i) grad_i W, so that
+ * it is exact for linear fields, and sigma_i/rho_i^2 in the forces becomes sigma_i B_i/rho_i^2, which makes them conjugate to it: then
+ * energy and angular momentum are conserved, and a free side is as stiff as the inside [Bonet & Lok 1999, Comput. Methods Appl.
+ * Mech. Eng. 180, 97]. M_i is a sum of the same pass, so the forces use B_i of the pass before.
+ *
+ * With `volume_weights` dv_a/dx_b has m_j/rho_j, and sigma_i/rho_i^2 + sigma_j/rho_j^2 becomes (sigma_i + sigma_j)/(rho_i rho_j), for the
+ * same reason. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_H
 #define CLAST_ENGINE_SPH_PAIRS_H
 
@@ -22,7 +30,7 @@ enum sph_precision { SPH_DOUBLE, SPH_FLOAT };
 struct sph_pair_options {
   double viscosity_alpha, viscosity_beta;
   bool strength;            /* stress[] is given; else the pressure alone */
-  bool gradient_correction; /* `moment` is summed and applied to `gradient` */
+  bool gradient_correction;
   double artificial_stress; /* Monaghan 2000, epsilon of R; 0: absent (not computed) */
   double spacing_over_h;    /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
   bool volume_weights;      /* m_j/rho_j instead of m_j/rho_i in the velocity gradient */
@@ -36,6 +44,7 @@ struct sph_pair_fields {
   const double *x, *y, *z, *h, *vx, *vy, *vz, *mass, *density, *sound_speed;
   const double *pressure_term; /* -P/rho^2 with the damaged bulk pressure */
   const double *stress[6];     /* S/rho^2, damaged deviator; NULL without strength. sigma/rho^2 = stress + pressure_term I */
+  const double *correction[6]; /* B of the pass before (at first: 1); only with gradient_correction */
 };
 
 /* Arrays of n in sorted order; overwritten by each pass. */
@@ -43,10 +52,10 @@ struct sph_pair_sums {
   double *ax, *ay, *az;    /* m/s^2 */
   double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
   double *heating;         /* J/kg/s */
-  /* J/kg/s, only with gradient_correction, else NULL: rho_i (pressure_term tr(g) + stress : g) of the velocity gradient g
-   * *before* its correction. That one is conjugate to the forces: with it total energy is conserved, with the corrected one
-   * it is not (by 10 % in a collision of bodies six particles wide). */
+  /* Only with gradient_correction, else NULL. The work of the forces' B, J/kg/s, rho_i (pressure_term tr(g) + stress : g) with g the
+   * sum times that B: total energy is then conserved however much B changes between two passes. */
   double *power;
+  double *correction[6]; /* the new B; may be the same arrays as the old */
   double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step; -1 without
                               neighbours: what nobody feels need not be resolved */
 };

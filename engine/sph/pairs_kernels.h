@@ -15,16 +15,17 @@
  * round harmlessly, so that precision does not depend on where in a scene of kilometres a particle is. */
 enum sph_pair_column {
   PAIR_X, PAIR_Y, PAIR_Z, PAIR_H, PAIR_VX, PAIR_VY, PAIR_VZ, PAIR_MASS,
-  PAIR_XX, PAIR_XY, PAIR_XZ, PAIR_YY, PAIR_YZ, PAIR_ZZ, /* sigma/rho^2, the pressure term in it */
+  PAIR_XX, PAIR_XY, PAIR_XZ, PAIR_YY, PAIR_YZ, PAIR_ZZ, /* T: sigma/rho^2, the pressure term in it; times B where corrected */
   PAIR_SOUND, PAIR_DENSITY,
-  PAIR_ARTIFICIAL, /* six more where there is artificial stress: R */
+  PAIR_ARTIFICIAL,      /* six more where there is artificial stress: R */
+  PAIR_YX = 24, PAIR_ZX, PAIR_ZY, /* three more where the gradient is corrected: T is no longer symmetric */
 };
 /* Columns of a record of sums. */
 enum sph_pair_sum {
   SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12, SUM_SIGNAL, SUM_COUNT,
   SUM_MOMENT = 16, /* six more where the gradient is corrected */
 };
-enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with the six more; whole cache lines */
+enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with more; whole cache lines */
 
 struct sph_pair_chunk {
   size_t own, slots;        /* particles whose lists these are; those and the foreign ones behind them */

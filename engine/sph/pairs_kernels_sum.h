@@ -164,10 +164,11 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
 INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
                       const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
-  const size_t in_stride = artificial ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
+  const size_t in_stride = artificial || corrected ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
   const REAL norm = (REAL)SPH_SPLINE_NORM, quarter = (REAL)0.25, half = (REAL)0.5;
   for (size_t i = 0; i < chunk->own; i++) {
     const REAL *mine = in + i * in_stride;
+    const REAL per_mine = k.volume_weights ? 1 / mine[PAIR_DENSITY] : 0;
     VECTOR s[PAIR_WIDE]; /* my sums, lane by lane */
     UNROLL for (int column = 0; column < PAIR_WIDE; column++)
       s[column] = (VECTOR){0};
@@ -194,16 +195,27 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       const VECTOR densities = mine[PAIR_DENSITY] + c[PAIR_DENSITY];
       const VECTOR per = INVERSE(densities * (square + (REAL)0.01 * hh));
       const VECTOR mu_per = h * NAME(select)(NAME(less)(closing, zero), closing, zero) * per, mu = mu_per * densities;
+      VECTOR per_its = zero, per_densities = zero; /* the inverse of its density and of both */
+      if (k.volume_weights) {
+        per_its = INVERSE(c[PAIR_DENSITY]);
+        per_densities = per_mine * per_its;
+      }
       const VECTOR viscous = mu_per * ((REAL)k.twice_beta * mu - (REAL)k.alpha * (mine[PAIR_SOUND] + c[PAIR_SOUND]));
       VECTOR fx, fy, fz;
-      if (k.strength) {
-        VECTOR xx = mine[PAIR_XX] + c[PAIR_XX] - viscous, yy = mine[PAIR_YY] + c[PAIR_YY] - viscous,
-               zz = mine[PAIR_ZZ] + c[PAIR_ZZ] - viscous, xy = mine[PAIR_XY] + c[PAIR_XY], xz = mine[PAIR_XZ] + c[PAIR_XZ],
-               yz = mine[PAIR_YZ] + c[PAIR_YZ];
+      if (k.strength || corrected) {
+        VECTOR more[PAIR_WIDE - PAIR_NARROW];
+        UNROLL for (size_t column = 0; column < PAIR_WIDE - PAIR_NARROW; column += LANES)
+          if ((artificial && column < 6) || (corrected && column + LANES > 8 && column < 11))
+            NAME(fetch)(in, in_stride, PAIR_NARROW + column, slot, more + column);
+        VECTOR xx = mine[PAIR_XX] + c[PAIR_XX], yy = mine[PAIR_YY] + c[PAIR_YY], zz = mine[PAIR_ZZ] + c[PAIR_ZZ],
+               xy = mine[PAIR_XY] + c[PAIR_XY], xz = mine[PAIR_XZ] + c[PAIR_XZ], yz = mine[PAIR_YZ] + c[PAIR_YZ];
+        VECTOR yx = xy, zx = xz, zy = yz;
+        if (corrected) {
+          yx = mine[PAIR_YX] + more[PAIR_YX - PAIR_NARROW];
+          zx = mine[PAIR_ZX] + more[PAIR_ZX - PAIR_NARROW];
+          zy = mine[PAIR_ZY] + more[PAIR_ZY - PAIR_NARROW];
+        }
         if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
-          VECTOR more[PAIR_WIDE - PAIR_NARROW];
-          UNROLL for (size_t column = 0; column < 6; column += LANES)
-            NAME(fetch)(in, in_stride, PAIR_ARTIFICIAL + column, slot, more + column);
           VECTOR f = NAME(select)(within_h, 1 - q * q * ((REAL)1.5 - (REAL)0.75 * q), quarter * t * t * t);
           f *= (REAL)(1 / k.spline_at_spacing);
           f *= f;
@@ -211,12 +223,22 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
           const REAL *own = mine + PAIR_ARTIFICIAL;
           xx += f * (own[0] + more[0]), xy += f * (own[1] + more[1]), xz += f * (own[2] + more[2]);
           yy += f * (own[3] + more[3]), yz += f * (own[4] + more[4]), zz += f * (own[5] + more[5]);
+          if (corrected) yx += f * (own[1] + more[1]), zx += f * (own[2] + more[2]), zy += f * (own[4] + more[4]);
         }
+        if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
+          xx *= per_densities, xy *= per_densities, xz *= per_densities;
+          yy *= per_densities, yz *= per_densities, zz *= per_densities;
+          if (corrected) yx *= per_densities, zx *= per_densities, zy *= per_densities;
+        }
+        if (!corrected) yx = xy, zx = xz, zy = yz;
+        xx -= viscous, yy -= viscous, zz -= viscous;
         fx = xx * wx + xy * wy + xz * wz;
-        fy = xy * wx + yy * wy + yz * wz;
-        fz = xz * wx + yz * wy + zz * wz;
+        fy = yx * wx + yy * wy + yz * wz;
+        fz = zx * wx + zy * wy + zz * wz;
       } else {
-        const VECTOR p = mine[PAIR_XX] + c[PAIR_XX] - viscous;
+        VECTOR p = mine[PAIR_XX] + c[PAIR_XX];
+        if (k.volume_weights) p *= per_densities;
+        p -= viscous;
         fx = p * wx, fy = p * wy, fz = p * wz;
       }
       const VECTOR heat = half * viscous * slope * closing, signal = NAME(keep)(near, -mu);
@@ -233,8 +255,8 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       g[SUM_COUNT] = one;
       g[SUM_COUNT + 1] = zero;
       if (k.volume_weights) { /* volumes; else the sum is divided by rho_i afterwards */
-        opposite *= 1 / mine[PAIR_DENSITY];
-        mj *= INVERSE(c[PAIR_DENSITY]);
+        opposite *= per_mine;
+        mj *= per_its;
       }
       VECTOR ax = mj * wx, ay = mj * wy, az = mj * wz;
       s[3] -= ux * ax, s[4] -= ux * ay, s[5] -= ux * az;

@@ -64,6 +64,12 @@ static const struct {
     {COLUMN(shear_factor), DISTENTION},
     {COLUMN(compaction), COMPACTION},
     {COLUMN(tension), TENSION},
+    {COLUMN(correction[0]), CORRECTION},
+    {COLUMN(correction[1]), CORRECTION},
+    {COLUMN(correction[2]), CORRECTION},
+    {COLUMN(correction[3]), CORRECTION},
+    {COLUMN(correction[4]), CORRECTION},
+    {COLUMN(correction[5]), CORRECTION},
     /* scratch of the pair loop, not kept */
     {COLUMN(new_ax), ALWAYS},
     {COLUMN(new_ay), ALWAYS},
@@ -219,6 +225,8 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
   if (s->c.damping) memcpy(s->c.damping, p->damping, s->n * sizeof(double));
   for (size_t i = 0; i < s->n; i++) {
     s->id[i] = (uint32_t)i;
+    for (int k = 0; s->p.gradient_correction && k < 6; k++)
+      s->c.correction[k][i] = k == 0 || k == 3 || k == 5;
     const struct sph_solid *b = &s->solid[p->body[i]];
     if (s->strength && b->physics.strength && p->stress[0]) {
       const double third = (p->stress[0][i] + p->stress[3][i] + p->stress[5][i]) / 3;

@@ -35,6 +35,7 @@ struct sph_columns {
   double *distention, *rest_distention; /* alpha, now and at P = 0 (palpha.h) */
   double *shear_factor;             /* f of the last evaluation */
   double *tension, *compaction;     /* D^(1/3) by flaws and by closed pores, of which `damage` is made */
+  double *correction[6];            /* B, of the gradient correction, at the last pair loop */
   /* overwritten by each pair loop */
   double *new_ax, *new_ay, *new_az, *gradient[9], *heating, *signal;
   double *power; /* NULL without gradient correction */

@@ -126,8 +126,10 @@ static void sum_pairs(struct sph_system *s) {
                                    .sound_speed = c->sound_speed,
                                    .pressure_term = c->pressure_term};
   struct sph_pair_sums sums = {.ax = c->new_ax, .ay = c->new_ay, .az = c->new_az, .heating = c->heating, .power = c->power, .signal = c->signal};
-  for (int k = 0; k < 6; k++)
+  for (int k = 0; k < 6; k++) {
     fields.stress[k] = c->damaged[k];
+    fields.correction[k] = sums.correction[k] = c->correction[k];
+  }
   for (int k = 0; k < 9; k++)
     sums.gradient[k] = c->gradient[k];
   sph_pairs_sum(s->pairs, s->n, &fields, &sums);
@@ -194,6 +196,7 @@ static bool advance(struct sph_system *s, double dt) {
 }
 
 bool sph_system_step_begin(struct sph_system *s) {
+  if (s->p.gradient_correction && !advance(s, 0)) return false; /* forces need the correction of the pass before */
   return advance(s, 0);
 }
 

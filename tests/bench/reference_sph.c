@@ -31,11 +31,13 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
       double mu = h * fmin(closing, 0) / (square + 0.01 * h * h);
       double viscous = mu * (2 * o->viscosity_beta * mu - o->viscosity_alpha * (f->sound_speed[i] + f->sound_speed[j])) /
                        (f->density[i] + f->density[j]);
-      double along = f->pressure_term[i] + f->pressure_term[j] - viscous, t[6] = {along, 0, 0, along, 0, along};
+      double si = 1, sj = 1; /* of sigma/rho^2 */
+      if (o->volume_weights) si = f->density[i] / f->density[j], sj = f->density[j] / f->density[i];
+      double along = si * f->pressure_term[i] + sj * f->pressure_term[j] - viscous, t[6] = {along, 0, 0, along, 0, along};
       double ratio = artificial ? sph_spline(r, h) / sph_spline(o->spacing_over_h * h, h) : 0;
       for (int c = 0; c < 6; c++) {
-        if (o->strength) t[c] += f->stress[c][i] + f->stress[c][j];
-        if (artificial) t[c] += pow(ratio, 4) * (artificial[c][i] + artificial[c][j]);
+        if (o->strength) t[c] += si * f->stress[c][i] + sj * f->stress[c][j];
+        if (artificial) t[c] += pow(ratio, 4) * (si * artificial[c][i] + sj * artificial[c][j]);
       }
       double force[3] = {t[0] * w[0] + t[1] * w[1] + t[2] * w[2], t[1] * w[0] + t[3] * w[1] + t[4] * w[2],
                          t[2] * w[0] + t[4] * w[1] + t[5] * w[2]};

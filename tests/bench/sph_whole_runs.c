@@ -46,7 +46,7 @@ struct phases {
 
 static struct phases measure(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
-  struct sph_pair_fields f = {c->x, c->y, c->z, c->h, c->vx, c->vy, c->vz, c->mass, c->density, c->sound_speed, c->pressure_term, {0}};
+  struct sph_pair_fields f = {c->x, c->y, c->z, c->h, c->vx, c->vy, c->vz, c->mass, c->density, c->sound_speed, c->pressure_term, {0}, {0}};
   struct sph_pair_sums sums = {
       .ax = c->new_ax, .ay = c->new_ay, .az = c->new_az, .heating = c->heating, .power = c->power, .signal = c->signal};
   for (int k = 0; k < 6; k++)
