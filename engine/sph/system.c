@@ -112,12 +112,3 @@ double sph_system_damage(const struct sph_system *s, double *rate) {
   if (rate) *rate = volume > 0 ? growth / volume : 0;
   return volume > 0 ? damage / volume : 0;
 }
-
-void sph_system_watch(struct sph_system *s) {
-  s->watched = true;
-  s->phases = (struct sph_phases){0};
-}
-
-struct sph_phases sph_system_phases(const struct sph_system *s) {
-  return s->phases;
-}

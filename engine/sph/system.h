@@ -85,14 +85,6 @@ void sph_system_read(const struct sph_system *system, struct sph_particles *out)
 bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
 double sph_system_neighbours(const struct sph_system *system); /* mean number within 2h */
 
-/* Where the time went, s of wall clock: making lists, the pair loop, the loops over particles before and after it. Counted only
- * from sph_system_watch on; no part of the state. */
-struct sph_phases {
-  double listing, pairs, before, after;
-};
-void sph_system_watch(struct sph_system *system);
-struct sph_phases sph_system_phases(const struct sph_system *system);
-
 size_t sph_system_state_size(const struct sph_system *system);
 void sph_system_state_save(const struct sph_system *system, void *bytes);
 bool sph_system_state_load(struct sph_system *system, const void *bytes, size_t size); /* then the same bits */

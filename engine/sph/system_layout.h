@@ -101,8 +101,6 @@ struct sph_system {
   bool damage;                    /* of flaws, or of pores that close */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
-  struct sph_phases phases;
-  bool watched;
   char failure[256];
 };
 

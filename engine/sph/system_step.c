@@ -9,7 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 #include "engine/sph/limits.h"
 #include "engine/sph/order.h"
@@ -164,12 +163,6 @@ static bool gather(struct sph_system *s, double dt) {
   return true;
 }
 
-static double watch(const struct sph_system *s) {
-  struct timespec t = {0};
-  if (s->watched) clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Carries the state over dt, with one evaluation of the forces at its end. */
 static bool advance(struct sph_system *s, double dt) {
   s->dt = dt;
@@ -180,18 +173,10 @@ static bool advance(struct sph_system *s, double dt) {
     b->density_held = 0;
     b->lost = s->n;
   }
-  const double start = watch(s);
   run_blocks(s, false);
-  const double ranged = watch(s);
   if (!list(s)) return false;
-  const double listed = watch(s);
   sum_pairs(s);
-  const double summed = watch(s);
   run_blocks(s, true);
-  s->phases.before += ranged - start;
-  s->phases.listing += listed - ranged;
-  s->phases.pairs += summed - listed;
-  s->phases.after += watch(s) - summed;
   return gather(s, dt);
 }
 
