@@ -46,6 +46,7 @@ static struct sph_particles *make_bar(size_t along, double speed, struct sph_par
     }
   }
   *parameters = sph_parameters_default();
+  parameters->gradient_correction = true; /* sums on a lattice squeezed one way are 0.996, at rest 1.02: 1 % of P, 2 % of speeds */
   parameters->periodic[1] = parameters->periodic[2] = ACROSS * dx;
   return p;
 }
@@ -149,18 +150,15 @@ static void near(double got, double want, double relative, const char *what) {
     fail_msg("%s: got %.6g, expected %.6g +- %g", what, got, want, relative);
 }
 
-/* The solid is stiff: P follows rho with K/P = 38 times the error of rho at 1960 MPa, and a summed gradient on a lattice that
- * was squeezed by 1.3 one way is good to some 1e-3 (sum over neighbours: 0.996; at rest 1.0196, which makes the precursor 1.8 %
- * too fast at 800 points; at h = 1.113 spacings it would be exact, but there the squeezed lattice buckles). So P may be 2 % off where rho is 1e-3 off. Of
- * 200 points only 24 lie between piston and weak shock, which viscosity spreads over about ten; the precursor, a weak step,
- * over 15. Energy: what the step's order leaves. */
+/* Of 200 points only 24 lie between piston and weak shock, which viscosity spreads over about ten; the precursor, a weak step,
+ * over 15. The solid is stiff: P follows rho with K/P = 38 times its error at 1960 MPa. Energy: what the step's order leaves. */
 static void check(const struct outcome *o, size_t along) {
   const bool coarse = along < 400;
   near(o->Us, o->shock.speed, 0.01, "Us");
-  near(o->last.density, o->shock.density, coarse ? 0.005 : 0.002, "density behind the shock");
-  near(o->last.pressure, o->shock.pressure, coarse ? 0.03 : 0.02, "pressure behind the shock");
+  near(o->last.density, o->shock.density, coarse ? 0.005 : 0.001, "density behind the shock");
+  near(o->last.pressure, o->shock.pressure, coarse ? 0.03 : 0.01, "pressure behind the shock");
   near(o->last.alpha, o->shock.alpha, 0.005 / o->shock.alpha, "alpha behind the shock");
-  near(o->precursor_speed, o->precursor.speed, coarse ? 0.03 : 0.02, "precursor");
+  near(o->precursor_speed, o->precursor.speed, coarse ? 0.02 : 0.005, "precursor");
   near(o->last.precursor_pressure, o->precursor.pressure, 0.01, "pressure of the precursor");
   if (!(fabs(o->drift) < 0.005)) fail_msg("energy is off by %g of the work done", o->drift);
 }
@@ -176,10 +174,10 @@ static void both_states(void **state) {
     struct outcome strong = run(along, 458), weak = run(along, 200);
     check(&strong, along);
     check(&weak, along);
-    if (along > 200) continue; /* beyond, errors are those of the lattice, no longer of the resolution */
     assert_true(fabs(weak.last.alpha - weak.shock.alpha) < 0.5 * fabs(coarse.last.alpha - coarse.shock.alpha));
     assert_true(fabs(weak.last.density - weak.shock.density) < 0.5 * fabs(coarse.last.density - coarse.shock.density));
-    assert_true(fabs(weak.precursor_speed - weak.precursor.speed) < 0.7 * fabs(coarse.precursor_speed - coarse.precursor.speed));
+    assert_true(fabs(weak.precursor_speed - weak.precursor.speed) < 0.5 * fabs(coarse.precursor_speed - coarse.precursor.speed));
+    coarse = weak;
   }
 }
 
