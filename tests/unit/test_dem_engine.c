@@ -1,5 +1,5 @@
 /* Engine dem as its callers see it: tables, built-in scenes, refusals, stop rules, chunks that do not matter. */
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 #include "engine/dem/assemble.h"
 #include "engine/dem/run.h"
@@ -191,34 +191,25 @@ static struct dem_inputs small(void) {
 static void chunks_do_not_matter(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
-  struct dem_ran whole = dem_case_run(&inputs, 3);
+  struct ran whole = run_case_run(&dem_engine, &inputs, 3);
   void *run;
-  bool finished = false;
   assert_int_equal(dem_engine.prepare(&inputs, 3, &run, NULL), STATUS_OK);
-  for (uint64_t k = 1; !finished; k = k * 7 % 23 + 1)
-    assert_int_equal(dem_engine.step(run, k, &finished, NULL), STATUS_OK);
-  struct dem_ran parts = {0};
-  assert_int_equal(dem_engine.finish(run, &parts.outcome, &parts.results, &parts.fragments, &parts.count, NULL), STATUS_OK);
+  run_case_same(&dem_engine, &whole, run_case_end(&dem_engine, run, 0));
   dem_engine.free(run);
-  assert_memory_equal(&whole.outcome, &parts.outcome, sizeof whole.outcome);
-  assert_memory_equal(&whole.results, &parts.results, sizeof whole.results);
-  assert_int_equal(whole.count, parts.count);
-  assert_memory_equal(whole.fragments, parts.fragments, whole.count * sizeof *whole.fragments);
   free(whole.fragments);
-  free(parts.fragments);
 }
 
 static void stop_rules(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
-  struct dem_ran ran = dem_case_run(&inputs, 3);
-  assert_true(ran.results.broken > 10);
-  assert_int_equal(ran.results.broken, ran.results.broken_stretch + ran.results.broken_bend);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
+  assert_true(ran.results.dem.broken > 10);
+  assert_int_equal(ran.results.dem.broken, ran.results.dem.broken_stretch + ran.results.dem.broken_bend);
   if (ran.outcome.state == OUTCOME_COMPLETED) {
-    assert_int_equal(ran.results.stop_reason, DEM_STOP_QUIET);
-    assert_true(fabs(ran.outcome.time - ran.results.last_break - inputs.stop.quiet_time) < 1.5 * inputs.fidelity.time_step);
+    assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_QUIET);
+    assert_true(fabs(ran.outcome.time - ran.results.dem.last_break - inputs.stop.quiet_time) < 1.5 * inputs.fidelity.time_step);
   } else
-    assert_int_equal(ran.results.stop_reason, DEM_STOP_END_TIME);
+    assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_END_TIME);
   assert_true(ran.outcome.energy_error < 0.02); /* Verlet at 1 us with breaking; physics: 0.1 % unbroken */
   assert_true(ran.outcome.momentum_error < 1e-10);
   double mass = 0;
@@ -228,12 +219,12 @@ static void stop_rules(void **state) {
     grains += ran.fragments[k].count;
     assert_true(k == 0 || ran.fragments[k].mass <= ran.fragments[k - 1].mass);
   }
-  assert_int_equal(grains, ran.results.grains);
+  assert_int_equal(grains, ran.results.dem.grains);
   assert_true(fabs(mass / ran.outcome.total_mass - 1) < 1e-12);
   free(ran.fragments);
 
   inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
-  ran = dem_case_run(&inputs, 3);
+  ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
   assert_non_null(strstr(ran.outcome.message, "end_time"));
   assert_int_equal(ran.outcome.steps, 2000);
@@ -241,16 +232,16 @@ static void stop_rules(void **state) {
 
   inputs = small(); /* too little to break anything: one fragment, complete at the end */
   inputs.charge.energy = 1e-3;
-  ran = dem_case_run(&inputs, 3);
+  ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-  assert_int_equal(ran.results.stop_reason, DEM_STOP_END_TIME);
+  assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_END_TIME);
   assert_int_equal(ran.count, 1);
-  assert_true(isnan(ran.results.last_break));
+  assert_true(isnan(ran.results.dem.last_break));
   free(ran.fragments);
 
   inputs = small(); /* breaking at the least strain: dust, and still finite */
   inputs.threshold.strain = inputs.threshold.angle = 1e-9;
-  ran = dem_case_run(&inputs, 3);
+  ran = run_case_run(&dem_engine, &inputs, 3);
   assert_true(ran.outcome.dust_fraction > 0.5);
   free(ran.fragments);
 }
@@ -277,7 +268,7 @@ static void short_common_sides_do_not_blow_up(void **state) {
   assert_true(dem_assemble_reference_side(0.4, 1, 1) == 0.4);
   struct dem_inputs disc = DEM_CASE("disc-explosion", "threshold.strain=6 %", "threshold.angle=4 deg", "stop.end_time=3 ms");
   struct dem_inputs block = DEM_CASE("block-impact", "stop.end_time=0.5 ms");
-  const struct dem_ran ran[] = {dem_case_run(&disc, 20), dem_case_run(&block, 20)};
+  const struct ran ran[] = {run_case_run(&dem_engine, &disc, 20), run_case_run(&dem_engine, &block, 20)};
   for (int k = 0; k < 2; k++) {
     assert_true(ran[k].outcome.state == OUTCOME_END_TIME || ran[k].outcome.state == OUTCOME_COMPLETED);
     assert_true(ran[k].outcome.energy_error < 1e-2);
@@ -289,13 +280,13 @@ static void energy_bound_ends_a_run(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
   inputs.fidelity.energy_bound = 1e-9;
-  struct dem_ran ran = dem_case_run(&inputs, 3);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
-  assert_int_equal(ran.results.stop_reason, DEM_STOP_FAULT);
+  assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
   assert_non_null(strstr(ran.outcome.message, "time step"));
   free(ran.fragments);
   inputs.stop.end_time = 5e-5; /* over before the first regular look at the ledger: the last look counts */
-  ran = dem_case_run(&inputs, 3);
+  ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_int_equal(ran.outcome.steps, 50);
   free(ran.fragments);
@@ -310,15 +301,15 @@ static void grains_too_fast_for_the_step_end_a_run(void **state) {
   struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "impact.speed=12 km/s");
   const struct dem_inputs *const inputs[] = {&disc, &discs, &block};
   for (int k = 0; k < 3; k++) {
-    struct dem_ran ran = dem_case_run(inputs[k], 3);
+    struct ran ran = run_case_run(&dem_engine, inputs[k], 3);
     assert_int_equal(ran.outcome.state, OUTCOME_TIME_STEP);
-    assert_int_equal(ran.results.stop_reason, DEM_STOP_FAULT);
+    assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
     assert_int_equal(ran.outcome.steps, 0);
     assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
     free(ran.fragments);
   }
   block.impact.speed = 3000; /* 3 mm a step, of grains of 12 mm */
-  struct dem_ran ran = dem_case_run(&block, 3);
+  struct ran ran = run_case_run(&dem_engine, &block, 3);
   assert_true(ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME);
   free(ran.fragments);
 }

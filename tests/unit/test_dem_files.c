@@ -1,5 +1,5 @@
 /* Restart files give the same bits; fields files say what they hold; both are whole or not there. */
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 #include <hdf5.h>
 #include <signal.h>
@@ -39,7 +39,7 @@ static void restart_continues_with_the_same_bits(void **state) {
                                 DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s", "loading.ramp=0.5 ms",
                                          "loading.strain_end=3 %")};
   for (int c = 0; c < 3; c++) {
-    struct dem_ran straight = dem_case_run(&cases[c], 11), resumed = {0};
+    struct ran straight = run_case_run(&dem_engine, &cases[c], 11);
     void *run, *again;
     bool finished = false;
     struct error error = {0};
@@ -52,16 +52,9 @@ static void restart_continues_with_the_same_bits(void **state) {
     dem_engine.free(run);
     if (dem_engine.restore(&cases[c], in_folder("run.restart"), &again, &error))
       fail_msg("%s", error.message);
-    while (!finished)
-      assert_int_equal(dem_engine.step(again, 100, &finished, &error), STATUS_OK);
-    assert_int_equal(dem_engine.finish(again, &resumed.outcome, &resumed.results, &resumed.fragments, &resumed.count, &error), STATUS_OK);
+    run_case_same(&dem_engine, &straight, run_case_end(&dem_engine, again, 100));
     dem_engine.free(again);
-    assert_memory_equal(&straight.outcome, &resumed.outcome, sizeof straight.outcome);
-    assert_memory_equal(&straight.results, &resumed.results, sizeof straight.results);
-    assert_int_equal(straight.count, resumed.count);
-    assert_memory_equal(straight.fragments, resumed.fragments, straight.count * sizeof *straight.fragments);
     free(straight.fragments);
-    free(resumed.fragments);
     unlink(in_folder("run.restart"));
   }
 }
@@ -147,15 +140,11 @@ static void fields_describe_themselves(void **state) {
                                                        "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
   for (int c = 0; c < 2; c++) {
     void *run;
-    bool finished = false;
     struct error error = {0};
-    struct dem_ran ran = {0};
     char path[200];
     snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
     assert_int_equal(dem_engine.prepare(&cases[c], 5, &run, NULL), STATUS_OK);
-    while (!finished)
-      dem_engine.step(run, 1000, &finished, NULL);
-    assert_int_equal(dem_engine.finish(run, &ran.outcome, &ran.results, &ran.fragments, &ran.count, NULL), STATUS_OK);
+    struct ran ran = run_case_end(&dem_engine, run, 1000);
     if (dem_engine.write_fields(run, path, &error))
       fail_msg("%s", error.message);
     size_t n = ((struct dem_run *)run)->tessellation->cell_count, beams = ((struct dem_run *)run)->tessellation->pair_count;
@@ -163,13 +152,13 @@ static void fields_describe_themselves(void **state) {
     assert_true(file >= 0);
     assert_int_equal(rows(file, "grains/position"), n);
     assert_int_equal(rows(file, "beams/strain"), beams);
-    assert_int_equal(rows(file, "breaks/time"), ran.results.broken);
+    assert_int_equal(rows(file, "breaks/time"), ran.results.dem.broken);
     assert_int_equal(rows(file, "fragments/mass"), ran.count);
-    assert_int_equal(rows(file, "VTKHDF/Offsets"), ran.results.grains + 1);
-    assert_int_equal(rows(file, "VTKHDF/Types"), ran.results.grains);
+    assert_int_equal(rows(file, "VTKHDF/Offsets"), ran.results.dem.grains + 1);
+    assert_int_equal(rows(file, "VTKHDF/Types"), ran.results.dem.grains);
     assert_true(H5Lexists(file, "curve", H5P_DEFAULT) == (c == 1));
     assert_true(scalar(file, "outcome/time") == ran.outcome.time);
-    assert_true(scalar(file, "results/broken_share") == ran.results.broken_share);
+    assert_true(scalar(file, "results/broken_share") == ran.results.dem.broken_share);
     assert_true(scalar(file, "inputs/grain.density") == 5000);
     size_t datasets = 0;
     assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
@@ -186,7 +175,7 @@ static void fields_describe_themselves(void **state) {
     set = H5Dopen2(file, "VTKHDF/CellData/mass", H5P_DEFAULT);
     H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, mass);
     H5Dclose(set);
-    for (int64_t k = 0; k < ran.results.grains; k++) {
+    for (int64_t k = 0; k < ran.results.dem.grains; k++) {
       double area = 0;
       for (int64_t p = offset[k]; p < offset[k + 1]; p++) {
         int64_t q = p + 1 < offset[k + 1] ? p + 1 : offset[k];

@@ -1,6 +1,6 @@
 /* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that do not
  * matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
-#include "tests/sph_run_case.h"
+#include "tests/run_case.h"
 
 #include <unistd.h>
 
@@ -12,7 +12,7 @@ static const char *const scenes[] = {"basalt-sphere", "tensile-rod", "gabbro-cra
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
 /* A small sphere that is over soon. */
-#define SMALL(...) SPH_RUN_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
+#define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
 
 static void results_table_is_whole(void **state) {
   (void)state;
@@ -31,7 +31,7 @@ static void results_table_is_whole(void **state) {
 static void builtin_scenes_say_what_they_model(void **state) {
   (void)state;
   for (size_t k = 0; k < SCENES; k++) {
-    struct sph_inputs inputs = SPH_RUN_CASE(scenes[k], NULL);
+    struct sph_inputs inputs = SPH_CASE(scenes[k], NULL);
     char *text = sph_engine.describe(&inputs);
     assert_non_null(strstr(text, "c_p "));
     assert_non_null(strstr(text, "bytes per particle"));
@@ -91,7 +91,7 @@ static void impact_starts_as_described(void **state) {
 
 static void stretch_and_vibration_start(void **state) {
   (void)state;
-  struct sph_inputs rod = SPH_RUN_CASE("tensile-rod", "fidelity.particles=1500");
+  struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=1500");
   struct sph_run *run;
   assert_int_equal(sph_run_create(&rod, 3, &run, NULL), STATUS_OK);
   size_t held = 0;
@@ -105,7 +105,7 @@ static void stretch_and_vibration_start(void **state) {
   assert_true(held > 20 && held < run->start->n / 2);
   sph_run_free(run);
 
-  struct sph_inputs bar = SPH_RUN_CASE("elastic-bar", "fidelity.particles=1500");
+  struct sph_inputs bar = SPH_CASE("elastic-bar", "fidelity.particles=1500");
   assert_int_equal(sph_run_create(&bar, 3, &run, NULL), STATUS_OK);
   for (size_t i = 0; i < run->start->n; i++) { /* the mode, and its sides' share: div v = (1 - 2 nu) dv_z/dz */
     double k = 3.14159265358979323846 / 0.04, aside = -sph_scale_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
@@ -115,35 +115,18 @@ static void stretch_and_vibration_start(void **state) {
   sph_run_free(run);
 }
 
-static void same(const struct sph_ran *a, const struct sph_ran *b) {
-  assert_memory_equal(&a->outcome, &b->outcome, sizeof a->outcome);
-  assert_memory_equal(&a->results, &b->results, sizeof a->results);
-  assert_int_equal(a->count, b->count);
-  assert_memory_equal(a->fragments, b->fragments, a->count * sizeof *a->fragments);
-}
-
-static struct sph_ran end_of(void *run) {
-  struct sph_ran ran = {0};
-  bool finished = false;
-  for (uint64_t k = 1; !finished; k = k * 7 % 23 + 1)
-    assert_int_equal(sph_engine.step(run, k, &finished, NULL), STATUS_OK);
-  assert_int_equal(sph_engine.finish(run, &ran.outcome, &ran.results, &ran.fragments, &ran.count, NULL), STATUS_OK);
-  sph_engine.free(run);
-  return ran;
-}
-
 static void chunks_and_restarts_do_not_matter(void **state) {
   (void)state;
   char path[100];
   snprintf(path, sizeof path, "/tmp/clast_sph_engine_%d.restart", (int)getpid());
   struct sph_inputs cases[] = {
       SMALL("stop.end_time=40 us"),
-      SPH_RUN_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
-      SPH_RUN_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=20 us"),
-      SPH_RUN_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms"),
+      SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
+      SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=20 us"),
+      SPH_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms"),
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
-    struct sph_ran whole = sph_run_case_run(&cases[c], 3), parts, resumed;
+    struct ran whole = run_case_run(&sph_engine, &cases[c], 3);
     void *run;
     bool finished = false;
     struct error error = {0};
@@ -152,38 +135,36 @@ static void chunks_and_restarts_do_not_matter(void **state) {
     assert_false(finished);
     if (sph_engine.save(run, path, &error))
       fail_msg("%s", error.message);
-    parts = end_of(run);
-    same(&whole, &parts);
+    run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
+    sph_engine.free(run);
     if (sph_engine.restore(&cases[c], path, &run, &error))
       fail_msg("%s", error.message);
-    resumed = end_of(run);
-    same(&whole, &resumed);
+    run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
+    sph_engine.free(run);
     cases[c].viscosity.alpha += 0.1;
     assert_int_equal(sph_engine.restore(&cases[c], path, &run, &error), STATUS_CONTENT);
     assert_null(run);
     unlink(path);
     free(whole.fragments);
-    free(parts.fragments);
-    free(resumed.fragments);
   }
 }
 
 static void stop_rules(void **state) {
   (void)state;
   struct sph_inputs inputs = SMALL(NULL);
-  struct sph_ran ran = sph_run_case_run(&inputs, 3);
+  struct ran ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-  assert_int_equal(ran.results.stop_reason, SPH_STOP_QUIET);
-  assert_true(ran.results.fracture_ceased && ran.results.first_damage > 0);
+  assert_int_equal(ran.results.sph.stop_reason, SPH_STOP_QUIET);
+  assert_true(ran.results.sph.fracture_ceased && ran.results.sph.first_damage > 0);
   /* looks come every 8 steps, each of less than the Courant limit of matter at rest */
   double step = inputs.fidelity.cfl * inputs.fidelity.smoothing * sph_scale_smallest_spacing(&inputs) / 0.7 / sph_scale_wave_speed(&inputs.target);
-  assert_true(ran.outcome.time - ran.results.cease_time >= inputs.stop.quiet_time);
-  assert_true(ran.outcome.time - ran.results.cease_time < inputs.stop.quiet_time + 9 * step);
+  assert_true(ran.outcome.time - ran.results.sph.cease_time >= inputs.stop.quiet_time);
+  assert_true(ran.outcome.time - ran.results.sph.cease_time < inputs.stop.quiet_time + 9 * step);
   assert_true(ran.outcome.energy_error < 5e-3);   /* the issue's bound for this scene, clamps not credited */
   assert_true(ran.outcome.momentum_error < 1e-12); /* pair forces cancel to rounding */
-  assert_true(ran.results.largest.bare_fraction <= ran.results.largest.veneer_fraction);
-  assert_true(ran.results.largest.veneer_fraction <= ran.results.largest.dynamic_fraction + 0.05);
-  assert_true(ran.results.mean_damage > 0.2 && ran.results.mean_damage < 1);
+  assert_true(ran.results.sph.largest.bare_fraction <= ran.results.sph.largest.veneer_fraction);
+  assert_true(ran.results.sph.largest.veneer_fraction <= ran.results.sph.largest.dynamic_fraction + 0.05);
+  assert_true(ran.results.sph.mean_damage > 0.2 && ran.results.sph.mean_damage < 1);
   double mass = 0, parts = 0;
   uint64_t count = 0;
   for (size_t k = 0; k < ran.count; k++) {
@@ -191,10 +172,10 @@ static void stop_rules(void **state) {
     count += ran.fragments[k].count;
     assert_true(k == 0 || ran.fragments[k].mass <= ran.fragments[k - 1].mass);
   }
-  assert_int_equal(count, ran.results.particles); /* the projectile is in no fragment */
+  assert_int_equal(count, ran.results.sph.particles); /* the projectile is in no fragment */
   assert_true(fabs(mass / sph_scale_target_mass(&inputs) - 1) < 1e-12);
-  const double shares[] = {ran.results.limited.courant, ran.results.limited.force,  ran.results.limited.damage,
-                           ran.results.limited.energy,  ran.results.limited.density};
+  const double shares[] = {ran.results.sph.limited.courant, ran.results.sph.limited.force,  ran.results.sph.limited.damage,
+                           ran.results.sph.limited.energy,  ran.results.sph.limited.density};
   for (size_t k = 0; k < 5; k++)
     parts += shares[k];
   assert_true(parts > 0.99 && parts <= 1 + 1e-12);
@@ -202,23 +183,23 @@ static void stop_rules(void **state) {
 
   inputs.stop.quiet_time = 1; /* never quiet: the hard end, and it says so */
   inputs.stop.end_time = 2e-5;
-  ran = sph_run_case_run(&inputs, 3);
+  ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_END_TIME);
-  assert_false(ran.results.fracture_ceased);
-  assert_true(isnan(ran.results.cease_time));
+  assert_false(ran.results.sph.fracture_ceased);
+  assert_true(isnan(ran.results.sph.cease_time));
   assert_non_null(strstr(ran.outcome.message, "stop.end_time"));
   assert_true(ran.outcome.time == 2e-5);
   free(ran.fragments);
 
   inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms", "fragments.static_strength=off"); /* nothing breaks: one piece */
-  ran = sph_run_case_run(&inputs, 3);
+  ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-  assert_true(ran.results.fracture_ceased && isnan(ran.results.first_damage));
+  assert_true(ran.results.sph.fracture_ceased && isnan(ran.results.sph.first_damage));
   assert_int_equal(ran.count, 1);
   free(ran.fragments);
 
   inputs = SMALL("fidelity.energy_bound=1e-9");
-  ran = sph_run_case_run(&inputs, 3);
+  ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "fidelity.energy_bound"));
   free(ran.fragments);
@@ -227,9 +208,9 @@ static void stop_rules(void **state) {
 static void seeds_move_flaws(void **state) {
   (void)state;
   struct sph_inputs inputs = SMALL("stop.end_time=30 us"), poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
-  struct sph_ran a = sph_run_case_run(&inputs, 1), b = sph_run_case_run(&inputs, 2), c = sph_run_case_run(&poisson, 1);
-  assert_true(a.results.mean_damage != b.results.mean_damage && a.results.mean_damage != c.results.mean_damage);
-  assert_true(fabs(a.results.mean_damage - b.results.mean_damage) < 0.3); /* the same body by and large */
+  struct ran a = run_case_run(&sph_engine, &inputs, 1), b = run_case_run(&sph_engine, &inputs, 2), c = run_case_run(&sph_engine, &poisson, 1);
+  assert_true(a.results.sph.mean_damage != b.results.sph.mean_damage && a.results.sph.mean_damage != c.results.sph.mean_damage);
+  assert_true(fabs(a.results.sph.mean_damage - b.results.sph.mean_damage) < 0.3); /* the same body by and large */
   free(a.fragments);
   free(b.fragments);
   free(c.fragments);
@@ -237,7 +218,7 @@ static void seeds_move_flaws(void **state) {
 
 static void more_than_memory_is_refused(void **state) {
   (void)state;
-  struct sph_inputs inputs = SPH_RUN_CASE("disruption", "fidelity.particles=1900000000");
+  struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=1900000000");
   void *run = &run;
   struct error error = {0};
   assert_int_equal(sph_engine.prepare(&inputs, 1, &run, &error), STATUS_MEMORY);
@@ -249,7 +230,7 @@ static void more_than_memory_is_refused(void **state) {
 /* Overlaps are refused by name. */
 static void overlapping_bodies_are_refused(void **state) {
   (void)state;
-  struct sph_inputs inputs = SPH_RUN_CASE("colliding-cylinders", "fidelity.particles=300");
+  struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300");
   inputs.collision.gap = 1e-6;
   void *run;
   struct error error = {0};
@@ -261,7 +242,7 @@ static void overlapping_bodies_are_refused(void **state) {
 static const char *scene; /* a file: 3.4 mm of nylon into 3 cm of basalt */
 static void extreme(const char *a, const char *b, const char *c, const char *d) {
   const char *const overrides[] = {"fidelity.particles=150", "fidelity.projectile_spacing=0.5", a, b, c, d, NULL};
-  struct sph_inputs inputs = sph_run_case(scene, overrides);
+  struct sph_inputs inputs = run_case(scene, overrides).sph;
   void *made = NULL;
   struct error error = {0};
   bool finished = false;
@@ -269,7 +250,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
     assert_true(error.status == STATUS_CONTENT && strlen(error.message) > 20);
     return;
   }
-  struct sph_ran ran = {0};
+  struct ran ran = {0};
   for (int k = 0; k < 40 && !finished; k++) /* at most 4000 steps of 170 particles */
     assert_int_equal(sph_engine.step(made, 100, &finished, &error), STATUS_OK);
   assert_int_equal(sph_engine.finish(made, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error), STATUS_OK);
@@ -283,7 +264,7 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
     for (size_t k = 0; k < ran.count; k++)
       assert_true(isfinite(ran.fragments[k].position[0]) && isfinite(ran.fragments[k].velocity[2]));
   if (strcmp(a, "impact.speed=0") == 0)
-    assert_true(fine && ran.results.mean_damage == 0);
+    assert_true(fine && ran.results.sph.mean_damage == 0);
   print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state, (long long)o->steps,
                 o->largest_fraction, o->energy_error, o->message);
   free(ran.fragments);

@@ -1,6 +1,6 @@
 /* Files of a run of engine sph: restart files give the same bits and refuse what is not theirs; fields files explain
  * themselves and hold what the run reports; both are whole or not there. */
-#include "tests/sph_run_case.h"
+#include "tests/run_case.h"
 
 #include <hdf5.h>
 #include <signal.h>
@@ -30,34 +30,23 @@ static int remove_folder(void **state) {
 }
 
 static struct sph_inputs impact(void) {
-  return SPH_RUN_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
-}
-
-/* Everything that a run reports, at the end of what is left of it. */
-static struct sph_ran finish(void *run) {
-  struct sph_ran ran = {0};
-  struct error error = {0};
-  bool finished = false;
-  while (!finished)
-    assert_int_equal(sph_engine.step(run, 37, &finished, &error), STATUS_OK);
-  assert_int_equal(sph_engine.finish(run, &ran.outcome, &ran.results, &ran.fragments, &ran.count, &error), STATUS_OK);
-  return ran;
+  return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
 }
 
 static void restart_continues_with_the_same_bits(void **state) {
   (void)state;
   const struct sph_inputs cases[] = {
       impact(),
-      SPH_RUN_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float", "fidelity.threads=2"),
-      SPH_RUN_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
-      SPH_RUN_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
+      SPH_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float", "fidelity.threads=2"),
+      SPH_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
+      SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
   };
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     void *run, *again;
     bool finished = false;
     struct error error = {0};
     if (sph_engine.prepare(&cases[c], 11, &run, &error)) fail_msg("%s", error.message);
-    struct sph_ran straight = finish(run);
+    struct ran straight = run_case_end(&sph_engine, run, 37);
     sph_engine.free(run);
     assert_int_equal(sph_engine.prepare(&cases[c], 11, &run, &error), STATUS_OK);
     uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* amid lists that are reused */
@@ -67,20 +56,9 @@ static void restart_continues_with_the_same_bits(void **state) {
     sph_engine.free(run);
     if (sph_engine.restore(&cases[c], in_folder("run.restart"), &again, &error)) fail_msg("%s", error.message);
     assert_int_equal(sph_system_steps(((struct sph_run *)again)->system), half);
-    struct sph_ran resumed = finish(again);
+    run_case_same(&sph_engine, &straight, run_case_end(&sph_engine, again, 37));
     sph_engine.free(again);
-    if (straight.outcome.steps != resumed.outcome.steps) fail_msg("case %zu: %lld steps, resumed %lld", c, (long long)straight.outcome.steps, (long long)resumed.outcome.steps);
-    uint8_t a[4096], b[4096];
-    size_t size = field_encode(&outcome_table, &straight.outcome, a); /* row by row: padding is not compared */
-    assert_true(size < sizeof a && size == field_encode(&outcome_table, &resumed.outcome, b));
-    assert_memory_equal(a, b, size);
-    size = field_encode(&sph_results, &straight.results, a);
-    assert_true(size < sizeof a && size == field_encode(&sph_results, &resumed.results, b));
-    assert_memory_equal(a, b, size);
-    assert_int_equal(straight.count, resumed.count);
-    assert_memory_equal(straight.fragments, resumed.fragments, straight.count * sizeof *straight.fragments);
     free(straight.fragments);
-    free(resumed.fragments);
     unlink(in_folder("run.restart"));
   }
 }
@@ -160,14 +138,14 @@ static void fields_hold_what_the_run_reports(void **state) {
   assert_int_equal(sph_engine.prepare(&inputs, 5, &handle, NULL), STATUS_OK);
   struct sph_run *run = handle;
   if (sph_engine.write_fields(run, path, &error)) fail_msg("before the first step: %s", error.message);
-  struct sph_ran ran = finish(run);
+  struct ran ran = run_case_end(&sph_engine, run, 1000);
   if (sph_engine.write_fields(run, path, &error)) fail_msg("%s", error.message);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   size_t datasets = 0;
   assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
   assert_true(datasets > sph_results.count / 2 + outcome_table.count + 20);
   assert_true(scalar(file, "outcome/time") == ran.outcome.time && sph_engine.time(run) == ran.outcome.time);
-  assert_true(scalar(file, "results/largest.veneer_fraction") == ran.results.largest.veneer_fraction);
+  assert_true(scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
   H5Fclose(file);
   struct cloud cloud;
   if (cloud_read(path, &cloud, &error)) fail_msg("%s", error.message);
@@ -192,7 +170,7 @@ static void fields_hold_what_the_run_reports(void **state) {
     assert_true(i < run->targets ? column[i] >= 1 : column[i] == 0); /* every particle of the target has one */
     flaws += column[i];
   }
-  assert_true(flaws == (double)ran.results.flaws);
+  assert_true(flaws == (double)ran.results.sph.flaws);
   free(column);
   free(heaviest);
   free(ran.fragments);

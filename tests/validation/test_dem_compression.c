@@ -1,6 +1,6 @@
 /* Compressive strength test (K99 section 3.2, figures 8 and 9): linear, then abrupt failure; cracks along the load;
  * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: five, and again at half the rate. */
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 #include "engine/dem/run.h"
 
@@ -72,16 +72,16 @@ static struct figures press_all(const struct dem_inputs *inputs, uint64_t bodies
 static void failure_is_abrupt_and_cracks_are_upright(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("compression", NULL);
-  if (!dem_case_full())
+  if (!run_case_full())
     inputs.loading.rate *= 2;
-  struct figures f = press_all(&inputs, dem_case_seeds(1, 5));
+  struct figures f = press_all(&inputs, run_case_seeds(1, 5));
   assert_true(f.residue < 0.1); /* "linear until it fails": within a tenth of the strength up to 70 % of the strain */
   assert_true(f.drop < 3);      /* "abruptly": half of the stress is gone within a few wave passages */
   assert_true(f.upright > 0.5); /* isotropic cracks: 1/3 */
   assert_true(f.triangle < 0.2); /* "practically intact": 0.02 to 0.1 here; sides free to slide give 0.48 */
-  if (dem_case_full()) {
+  if (run_case_full()) {
     inputs.loading.rate /= 2;
-    struct figures slow = press_all(&inputs, dem_case_seeds(1, 5));
+    struct figures slow = press_all(&inputs, run_case_seeds(1, 5));
     assert_true(fabs(slow.strength / f.strength - 1) < 0.1); /* quasi-static: the rate does not make the strength */
   }
 }

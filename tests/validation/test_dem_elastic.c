@@ -3,7 +3,7 @@
  * both tending to the pure beam lattice's. Prints the table; engine/dem/VALIDATION.md quotes it.
  *
  * Quick: one body of 16 x 24 grains. CLAST_FULL=1: three bodies of 25 x 40. */
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 enum { MODULI = 6 };
 
@@ -13,7 +13,7 @@ struct moduli {
 
 static struct moduli measure(double beam_modulus, bool extension, bool contact, double disorder, uint64_t seed) {
   struct dem_inputs in = DEM_CASE("uniaxial", NULL);
-  if (!dem_case_full()) {
+  if (!run_case_full()) {
     in.body.columns = 16;
     in.body.rows = 24;
   }
@@ -29,11 +29,11 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
   in.loading.ramp = 5 * wave;
   /* a fifth of the square lattice's limit 2/omega_max = spacing sqrt(rho/modulus) (beams and contacts) or less */
   in.fidelity.time_step = 0.2 * in.grain.spacing * sqrt(in.grain.density / (beam_modulus + 0.9 * in.grain.young_modulus));
-  struct dem_ran ran = dem_case_run(&in, seed);
+  struct ran ran = run_case_run(&dem_engine, &in, seed);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-  assert_int_equal(ran.results.stop_reason, 3); /* strain */
+  assert_int_equal(ran.results.dem.stop_reason, 3); /* strain */
   free(ran.fragments);
-  return (struct moduli){ran.results.young_modulus, ran.results.poisson_ratio};
+  return (struct moduli){ran.results.dem.young_modulus, ran.results.dem.poisson_ratio};
 }
 
 static void square_lattice_is_exact(void **state) {
@@ -54,7 +54,7 @@ static void trends(void **state) {
   (void)state;
   const double e[MODULI] = {1e8, 2e8, 5e8, 1e9, 2e9, 4e9}; /* figures 5 and 6: 1e9 to 4e10 dyn/cm^2 at Y = 1e10 */
   struct moduli pulled[MODULI] = {0}, pressed[MODULI] = {0}, beams[MODULI] = {0};
-  int bodies = (int)dem_case_seeds(1, 3);
+  int bodies = (int)run_case_seeds(1, 3);
   print_message("%10s %12s %12s %12s %8s %8s %8s\n", "E, Pa", "K_ext, Pa", "K_comp, Pa", "K_beams, Pa", "nu_ext", "nu_comp",
                 "nu_beams");
   for (int k = 0; k < MODULI; k++) {

@@ -7,7 +7,7 @@
  * Quick: few seeds, a gate widened by their own error. CLAST_FULL=1: 30 seeds of each, thresholds of figure 11, and the
  * choices that the paper leaves open (contact law, damping, disorder, stop), for engine/dem/VALIDATION.md.
  * CLAST_SEEDS=n changes the number. */
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 #include "analysis/exponent.h"
 #include "analysis/sample.h"
@@ -139,7 +139,7 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
 static void gate(const struct spectrum_case *c) {
   for (int m = 0; m < 2; m++)
     for (int w = 0; w < 2; w++) {
-      double error = c->beta[m][w].standard_error, room = 0.3 + (dem_case_full() ? 0 : 2 * error);
+      double error = c->beta[m][w].standard_error, room = 0.3 + (run_case_full() ? 0 : 2 * error);
       if (!(error < 0.3 && fabs(c->beta[m][w].estimate - 2) < room))
         fail_msg("method %d, window %d: beta %.3f +- %.3f is not 2.0 +- %.2f", m, w, c->beta[m][w].estimate, error, room);
     }
@@ -151,7 +151,7 @@ static void explosion(void **state) {
   (void)state;
   header();
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL);
-  struct spectrum_case c = pool("disc-explosion", &inputs, dem_case_seeds(3, 30));
+  struct spectrum_case c = pool("disc-explosion", &inputs, run_case_seeds(3, 30));
   gate(&c);
   assert_true(c.radial[0] > 0.95);                 /* the mirror spot: "practically all the beams are broken" */
   assert_true(c.radial[8] > 1.25 * c.radial[6]);   /* "the complete break-off of a boundary layer" */
@@ -161,7 +161,7 @@ static void explosion(void **state) {
 static void impact(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("block-impact", NULL);
-  struct spectrum_case c = pool("block-impact", &inputs, dem_case_seeds(5, 30));
+  struct spectrum_case c = pool("block-impact", &inputs, run_case_seeds(5, 30));
   gate(&c);
   /* "when the shock wave reaches the boundary opposite to the collision point it gives rise to the break-off of a
    * boundary layer": more breaks in the last fifth than in the middle one */
@@ -170,7 +170,7 @@ static void impact(void **state) {
 
 static void thresholds_and_choices(void **state) {
   (void)state;
-  if (!dem_case_full())
+  if (!run_case_full())
     return;
   const char *const cases[][2] = {
       {"threshold.strain=1 %", NULL},           {"threshold.strain=2 %", NULL},
@@ -183,11 +183,11 @@ static void thresholds_and_choices(void **state) {
       {"fidelity.integrator=gear", NULL},       {"fidelity.time_step=0.5 us", NULL},
   };
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
-    struct dem_inputs inputs = dem_case("disc-explosion", (const char *const[]){cases[k][0], cases[k][1], NULL});
+    struct dem_inputs inputs = run_case("disc-explosion", (const char *const[]){cases[k][0], cases[k][1], NULL}).dem;
     inputs.fidelity.energy_bound = NAN; /* the printed law gains energy: reported, not refused */
     char label[100];
     snprintf(label, sizeof label, "%s%s", cases[k][0], cases[k][1] ? " (bonded)" : "");
-    pool(label, &inputs, dem_case_seeds(10, 10));
+    pool(label, &inputs, run_case_seeds(10, 10));
   }
 }
 

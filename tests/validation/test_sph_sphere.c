@@ -7,7 +7,7 @@
  *
  * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a wrong
  * speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own numbers. */
-#include "tests/sph_run_case.h"
+#include "tests/run_case.h"
 
 #include "analysis/sample.h"
 #include "engine/sph/run.h"
@@ -18,7 +18,7 @@ static const double radius = 0.03;
 static const char *particles(const char *quick, const char *full) {
   static char text[64];
   const char *asked = getenv("CLAST_PARTICLES");
-  snprintf(text, sizeof text, "fidelity.particles=%s", asked ? asked : sph_run_case_full() ? full : quick);
+  snprintf(text, sizeof text, "fidelity.particles=%s", asked ? asked : run_case_full() ? full : quick);
   return text;
 }
 
@@ -103,7 +103,7 @@ static void damage_on_its_way(void **state) {
   enum { SEEDS = 3 };
   static const double times[] = {3e-6, 16e-6};
   double damage[] = {0, 0}, reached[] = {0, 0}; /* means over particles, all of one mass, and seeds */
-  struct sph_inputs inputs = SPH_RUN_CASE("basalt-sphere", "fidelity.particles=3000");
+  struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.particles=3000");
   for (uint64_t seed = 1; seed <= SEEDS; seed++) {
     struct sph_run *run;
     struct error error = {0};
@@ -126,8 +126,8 @@ static void damage_on_its_way(void **state) {
 
 static void core_and_spall(void **state) {
   (void)state;
-  struct sph_inputs inputs = SPH_RUN_CASE("basalt-sphere", particles("3000", "45000"));
-  size_t n = sph_run_case_seeds(3, 10), opposite = 0;
+  struct sph_inputs inputs = SPH_CASE("basalt-sphere", particles("3000", "45000"));
+  size_t n = run_case_seeds(3, 10), opposite = 0;
   double largest[MOST_RUNS], bare[MOST_RUNS], second[MOST_RUNS], angle[MOST_RUNS];
   for (size_t r = 0; r < n; r++) {
     struct sphere s = run_sphere(&inputs, r + 1);
@@ -157,15 +157,15 @@ static void core_and_spall(void **state) {
 static void energy_ladder(void **state) {
   (void)state;
   static const char *const quick[] = {"0.5", "2", "6"}, *const all[] = {"0.5", "1", "1.5", "2", "2.5", "3", "4.5", "7"};
-  bool full = sph_run_case_full();
+  bool full = run_case_full();
   const char *const *ladder = full ? all : quick;
-  size_t rungs = full ? sizeof all / sizeof *all : sizeof quick / sizeof *quick, n = sph_run_case_seeds(2, 5);
+  size_t rungs = full ? sizeof all / sizeof *all : sizeof quick / sizeof *quick, n = run_case_seeds(2, 5);
   double mean[8], q[8], star = NAN, slope = NAN;
   for (size_t k = 0; k < rungs; k++) {
     char energy[64];
     double largest[MOST_RUNS];
     snprintf(energy, sizeof energy, "impact.specific_energy=%s kJ/kg", ladder[k]);
-    struct sph_inputs inputs = SPH_RUN_CASE("disruption", particles("2500", "5000"), energy);
+    struct sph_inputs inputs = SPH_CASE("disruption", particles("2500", "5000"), energy);
     for (size_t r = 0; r < n; r++) {
       struct sphere s = run_sphere(&inputs, r + 1);
       sound(&s);

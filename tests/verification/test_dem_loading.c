@@ -3,7 +3,7 @@
 #include "tests/verification/dem_fixture.h"
 
 #include "engine/dem/run.h"
-#include "tests/dem_case.h"
+#include "tests/run_case.h"
 
 /* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion. */
 static void driven_grains_do_work(void **state) {
@@ -45,9 +45,9 @@ static void loads_balance(void **state) {
       DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms"),
       DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms")};
   for (int k = 0; k < 2; ++k) {
-    struct dem_ran ran = dem_case_run(&cases[k], 3);
+    struct ran ran = run_case_run(&dem_engine, &cases[k], 3);
     assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-    assert_true(ran.results.energy.external_work > 0.0);
+    assert_true(ran.results.dem.energy.external_work > 0.0);
     assert_true(ran.outcome.energy_error < 1e-3);   /* Verlet at a tenth of the stability limit, with breaks */
     assert_true(ran.outcome.momentum_error < 1e-11); /* sums of 1e4 steps' roundings */
     free(ran.fragments);
@@ -137,11 +137,11 @@ static void modes_of_breaking(void **state) {
 static void threshold_energy_of_a_square_lattice(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("block-impact", "body.columns=6", "body.rows=5", "grain.disorder=0", "stop.end_time=2 us");
-  struct dem_ran ran = dem_case_run(&inputs, 1);
-  assert_int_equal(ran.results.beams, 5 * 5 + 6 * 4);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 1);
+  assert_int_equal(ran.results.dem.beams, 5 * 5 + 6 * 4);
   const double one = 0.5 * inputs.beam.young_modulus * inputs.grain.spacing * inputs.grain.spacing *
                      inputs.threshold.strain * inputs.threshold.strain;
-  fixture_near(ran.results.threshold_energy, 49.0 * one, 1e-10 * one, "threshold energy");
+  fixture_near(ran.results.dem.threshold_energy, 49.0 * one, 1e-10 * one, "threshold energy");
   free(ran.fragments);
 }
 
@@ -227,10 +227,10 @@ static void energy_of_two_discs_on_approach(void **state) {
   (void)state;
   struct dem_inputs inputs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=10 m/s", "stop.end_time=2 us",
                                       "collision.impact_parameter=0.4");
-  struct dem_ran ran = dem_case_run(&inputs, 1);
+  struct ran ran = run_case_run(&dem_engine, &inputs, 1);
   assert_int_equal(ran.count, 2);
   fixture_near(ran.outcome.kinetic_energy_share, 1.0, 1e-12, "share");
-  fixture_near(ran.results.energy_input, 0.5 * ran.outcome.total_mass * 25.0, 1e-9 * ran.results.energy_input, "input");
+  fixture_near(ran.results.dem.energy_input, 0.5 * ran.outcome.total_mass * 25.0, 1e-9 * ran.results.dem.energy_input, "input");
   const double *a = ran.fragments[0].position, *b = ran.fragments[1].position;
   /* centres 0.4 diameters apart across the approach, to a fraction of a grain: the lattices' outlines are random */
   fixture_near(fabs(a[1] - b[1]), 0.4 * inputs.body.diameter, 0.25 * inputs.grain.spacing, "impact parameter");
