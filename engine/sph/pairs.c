@@ -24,7 +24,7 @@ struct chunk {
   size_t first, own, foreign; /* foreign: how many */
   size_t foreign_at;          /* its first in pairs->foreign */
   size_t start_at;            /* its own + 1 in pairs->start */
-  size_t list_at;             /* its lists in pairs->neighbour */
+  size_t list_at, listed;     /* its lists in pairs->neighbour, padded */
   size_t record_at;           /* its first record of sums */
 };
 
@@ -38,6 +38,7 @@ struct sph_pairs {
   struct sph_pair_options options;
   const struct sph_pair_kernels *kernels;
   size_t n, chunks, in_columns, out_columns, real; /* real: bytes of a number in records */
+  size_t group;                                    /* particles that share a list */
   bool artificial;                                 /* there is artificial stress */
   double *listed[5]; /* x y z h slack when the lists were made */
   double *reach;
@@ -77,6 +78,7 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
     p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
+    p->group = options->precision == SPH_FLOAT ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE;
     p->artificial = options->artificial_stress > 0 && options->strength;
     p->in_columns = p->artificial || options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
@@ -142,9 +144,10 @@ static int ascending(const void *a, const void *b) {
   return left < right ? -1 : left > right;
 }
 
-/* From numbers of particles to slots of a chunk, padded to whole registers with the particle itself. */
+/* From numbers of particles to slots of a chunk, one list per group, padded to whole registers with its first particle. */
 static bool fill(struct sph_pairs *p, struct chunk *c) {
   const size_t end = c->first + c->own;
+  const uint32_t taken = 1U << 31;
   size_t padded = 0;
   c->foreign = 0;
   for (size_t i = c->first; i < end; i++) {
@@ -163,16 +166,28 @@ static bool fill(struct sph_pairs *p, struct chunk *c) {
     p->slot[foreign[k]] = (uint32_t)(c->own + k);
   if (!grow((void **)&p->neighbour, &p->neighbour_capacity, c->list_at + padded, sizeof *p->neighbour)) return false;
   uint32_t *to = p->neighbour + c->list_at, at = 0;
-  for (size_t i = c->first; i < end; i++) {
-    const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
-    p->start[c->start_at + i - c->first] = at;
-    p->count[i] = count;
-    for (size_t k = 0; k < count; k++)
-      to[at + k] = j[k] < end ? j[k] - (uint32_t)c->first : p->slot[j[k]];
-    at += count;
+  for (size_t g = 0; g * p->group < c->own; g++) {
+    const size_t first = c->first + g * p->group, last = first + p->group < end ? first + p->group : end;
+    const uint32_t begin = at;
+    for (size_t i = first; i < last; i++) {
+      const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
+      for (size_t k = 0; k < count; k++) {
+        if (p->slot[j[k]] & taken) continue;
+        to[at++] = j[k] < end ? j[k] - (uint32_t)c->first : p->slot[j[k]];
+        if (p->group > 1) p->slot[j[k]] |= taken;
+      }
+    }
+    for (size_t i = first; i < last && p->group > 1; i++) {
+      const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
+      for (size_t k = 0; k < count; k++)
+        p->slot[j[k]] &= ~taken;
+    }
+    p->start[c->start_at + g] = begin;
+    p->count[c->first + g] = at - begin;
     for (; at % LANES_MOST; at++)
-      to[at] = (uint32_t)(i - c->first);
+      to[at] = (uint32_t)(first - c->first);
   }
+  c->listed = at;
   for (size_t k = 0; k < c->foreign; k++)
     p->slot[foreign[k]] = 0;
   return true;
@@ -202,13 +217,10 @@ status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const doub
     c->own = n - c->first < CHUNK ? n - c->first : CHUNK;
     enough = fill(p, c);
     if (c->own + c->foreign > p->most_slots) p->most_slots = c->own + c->foreign;
-    size_t padded = 0;
-    for (size_t i = c->first; i < c->first + c->own; i++)
-      padded += (p->count[i] + LANES_MOST - 1) / LANES_MOST * LANES_MOST;
     at = (struct chunk){.first = c->first + c->own,
                         .foreign_at = c->foreign_at + c->foreign,
                         .start_at = c->start_at + c->own + 1,
-                        .list_at = c->list_at + padded,
+                        .list_at = c->list_at + c->listed,
                         .record_at = c->record_at + c->own + c->foreign};
   }
   const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;

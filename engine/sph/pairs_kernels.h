@@ -27,11 +27,15 @@ enum sph_pair_sum {
 };
 enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with more; whole cache lines */
 
+/* So many particles that follow each other share one list: what any of them may meet. A neighbour is then loaded and its sums
+ * are stored once for all of them. */
+enum { PAIR_GROUP_DOUBLE = 1, PAIR_GROUP_FLOAT = 2 };
+
 struct sph_pair_chunk {
   size_t own, slots;        /* particles whose lists these are; those and the foreign ones behind them */
-  const uint32_t *start;    /* own + 1: multiples of 16 */
-  const uint32_t *count;    /* own: how many of them are neighbours */
-  const uint32_t *neighbour; /* slots */
+  const uint32_t *start;    /* by group: multiples of 16 */
+  const uint32_t *count;    /* by group: how many of them are neighbours */
+  const uint32_t *neighbour; /* slots; among them members of the group but the first, and never one before its first */
 };
 
 struct sph_pair_constants {

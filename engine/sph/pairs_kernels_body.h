@@ -56,6 +56,7 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define REAL    double
 #define INT     int64_t
 #define LANES   (WIDTH / 8)
+#define GROUP   PAIR_GROUP_DOUBLE
 #define NAME(x) double_##x
 #define FIXED   0
 #define ROOT    root_d
@@ -68,6 +69,7 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef REAL
 #undef INT
 #undef LANES
+#undef GROUP
 #undef NAME
 #undef FIXED
 #undef ROOT
@@ -79,6 +81,7 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define REAL    float
 #define INT     int32_t
 #define LANES   (WIDTH / 4)
+#define GROUP   PAIR_GROUP_FLOAT
 #define NAME(x) float_##x
 #define FIXED   1
 #define ROOT    root_f

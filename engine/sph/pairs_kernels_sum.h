@@ -86,8 +86,11 @@ INLINE VECTOR NAME(select)(NAME(choice) choice, VECTOR yes, VECTOR no) {
 INLINE VECTOR NAME(keep)(NAME(choice) choice, VECTOR yes) {
   return (VECTOR)AVX512(maskz_mov_, )(choice, yes);
 }
-INLINE VECTOR NAME(larger_at)(size_t lane, VECTOR a, VECTOR b, VECTOR elsewhere) {
-  return (VECTOR)AVX512(mask_max_, )(elsewhere, (AVX512_MASK)(1U << lane), a, b);
+INLINE VECTOR NAME(larger)(VECTOR a, VECTOR b) {
+  return (VECTOR)AVX512(max_, )(a, b);
+}
+INLINE VECTOR NAME(larger_at)(unsigned lanes, VECTOR a, VECTOR b, VECTOR elsewhere) {
+  return (VECTOR)AVX512(mask_max_, )(elsewhere, (AVX512_MASK)lanes, a, b);
 }
 #else
 typedef MASK NAME(choice);
@@ -106,10 +109,14 @@ INLINE VECTOR NAME(select)(MASK choice, VECTOR yes, VECTOR no) {
 INLINE VECTOR NAME(keep)(MASK choice, VECTOR yes) {
   return (VECTOR)(choice & (MASK)yes);
 }
-INLINE VECTOR NAME(larger_at)(size_t lane, VECTOR a, VECTOR b, VECTOR elsewhere) {
+INLINE VECTOR NAME(larger)(VECTOR a, VECTOR b) {
+  return NAME(select)(a > b, a, b);
+}
+INLINE VECTOR NAME(larger_at)(unsigned lanes, VECTOR a, VECTOR b, VECTOR elsewhere) {
   MASK pick = {0};
-  pick[lane] = -1;
-  return NAME(select)(pick, NAME(select)(a > b, a, b), elsewhere);
+  UNROLL for (int lane = 0; lane < LANES; lane++)
+    pick[lane] = lanes >> lane & 1 ? -1 : 0;
+  return NAME(select)(pick, NAME(larger)(a, b), elsewhere);
 }
 #endif
 
@@ -120,10 +127,14 @@ INLINE void NAME(fetch)(const REAL *in, size_t stride, size_t column, const uint
   NAME(transpose)(r);
 }
 
-/* was + is, but where it is a largest value and not a sum. */
-INLINE VECTOR NAME(add)(VECTOR was, VECTOR is, size_t column) {
-  const VECTOR sum = was + is;
-  return column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES ? NAME(larger_at)(SUM_SIGNAL - column, was, is, sum) : sum;
+/* a + b, but the larger of both in the given lanes. */
+INLINE VECTOR NAME(add)(VECTOR a, VECTOR b, unsigned largest) {
+  return largest ? NAME(larger_at)(largest, a, b, a + b) : a + b;
+}
+
+/* The lane of LANES columns from `column` on where the largest value is wanted and not the sum. */
+INLINE unsigned NAME(largest)(size_t column) {
+  return column <= SUM_SIGNAL && SUM_SIGNAL < column + LANES ? 1U << (SUM_SIGNAL - column) : 0;
 }
 
 /* r[k] is column + k of what LANES records get. */
@@ -131,18 +142,36 @@ INLINE void NAME(spread)(REAL *out, size_t stride, size_t column, const uint32_t
   NAME(transpose)(r);
   UNROLL for (int lane = 0; lane < LANES; lane++) {
     VECTOR *to = (VECTOR *)(void *)(out + slot[lane] * stride + column);
-    *to = NAME(add)(*to, r[lane], column);
+    *to = NAME(add)(*to, r[lane], NAME(largest)(column));
   }
 }
 
-/* r[k] is column + k of what one record gets, lane by lane. */
+/* r[k] is column + k of what one record gets, lane by lane: the transposition's tree, but two registers become one at each of
+ * its nodes. The signal is the
+ * odd one of a pair. */
 INLINE void NAME(collect)(REAL *out, size_t column, VECTOR r[LANES]) {
-  VECTOR *to = (VECTOR *)(void *)(out + column), total;
-  NAME(transpose)(r);
-  total = r[0];
-  UNROLL for (int lane = 1; lane < LANES; lane++)
-    total = NAME(add)(total, r[lane], column);
-  *to = NAME(add)(*to, total, column);
+  enum { PART = 16 / sizeof(REAL), PARTS = LANES / PART, SIGNAL_PART = SUM_SIGNAL % LANES / PART, PLACE = SUM_SIGNAL % PART };
+  const bool has = NAME(largest)(column) != 0;
+  VECTOR *to = (VECTOR *)(void *)(out + column), u[PARTS];
+  UNROLL for (int g = 0; g < PARTS; g++) {
+    const bool here = has && g == SIGNAL_PART;
+    VECTOR *p = r + g * PART;
+#if FIXED
+    const VECTOR a = NAME(add)(LOW(p[0], p[1]), HIGH(p[0], p[1]), here ? 0xaaaaU : 0), b = LOW(p[2], p[3]) + HIGH(p[2], p[3]);
+    u[g] = NAME(add)(FIRST(a, b), SECOND(a, b), here ? 0x1111U << PLACE : 0);
+#else
+    u[g] = NAME(add)(FIRST(p[0], p[1]), SECOND(p[0], p[1]), here ? 0xaaU : 0);
+#endif
+  }
+#ifdef EVEN
+  if (PARTS == 4) { /* of u[0], u[1] and of u[2], u[3]; the signal's quarters lie next to each other then */
+    const unsigned lanes = ((1U << PLACE) + (1U << (PART + PLACE))) << SIGNAL_PART % 2 * LANES / 2;
+    u[0] = NAME(add)(EVEN(u[0], u[1]), ODD(u[0], u[1]), has && SIGNAL_PART < 2 ? lanes : 0);
+    u[1] = NAME(add)(EVEN(u[2], u[3]), ODD(u[2], u[3]), has && SIGNAL_PART >= 2 ? lanes : 0);
+  }
+  u[0] = NAME(add)(EVEN(u[0], u[1]), ODD(u[0], u[1]), NAME(largest)(column));
+#endif
+  *to = NAME(add)(*to, u[0], NAME(largest)(column));
 }
 
 INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair_constants *k) {
@@ -161,131 +190,167 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
 #endif
 }
 
+#define EACH UNROLL for (int m = 0; m < GROUP; m++)
+#define GAIN(column, value) (g[column] = m ? g[column] + (value) : (value)) /* of a neighbour, from member m */
+
 INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
                       const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
   const size_t in_stride = artificial || corrected ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
   const REAL norm = (REAL)SPH_SPLINE_NORM, quarter = (REAL)0.25, half = (REAL)0.5;
-  for (size_t i = 0; i < chunk->own; i++) {
-    const REAL *mine = in + i * in_stride;
-    const REAL per_mine = k.volume_weights ? 1 / mine[PAIR_DENSITY] : 0;
-    VECTOR s[PAIR_WIDE]; /* my sums, lane by lane */
-    UNROLL for (int column = 0; column < PAIR_WIDE; column++)
-      s[column] = (VECTOR){0};
-    const uint32_t *slot = chunk->neighbour + chunk->start[i];
-    const INT total = (INT)chunk->count[i];
+  const VECTOR zero = {0};
+  for (size_t i = 0; i < chunk->own; i += GROUP) {
+    const REAL *mine[GROUP];
+    REAL per_mine[GROUP];
+    VECTOR s[GROUP][PAIR_WIDE]; /* my sums, lane by lane */
+    EACH {
+      mine[m] = in + (i + (size_t)m < chunk->own ? i + (size_t)m : i) * in_stride;
+      per_mine[m] = k.volume_weights ? 1 / mine[m][PAIR_DENSITY] : 0;
+      UNROLL for (int column = 0; column < PAIR_WIDE; column++)
+        s[m][column] = zero;
+    }
+    const uint32_t *slot = chunk->neighbour + chunk->start[i / GROUP];
+    const INT total = (INT)chunk->count[i / GROUP];
+    const bool whole = i + GROUP <= chunk->own;
     for (INT done = 0; done < total; done += LANES, slot += LANES) {
-      VECTOR c[PAIR_NARROW];
+      VECTOR c[PAIR_NARROW], g[PAIR_WIDE];
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(fetch)(in, in_stride, column, slot, c + column);
-      const VECTOR dx = NAME(along)(mine[PAIR_X], c[PAIR_X], 0, &k), dy = NAME(along)(mine[PAIR_Y], c[PAIR_Y], 1, &k),
-                   dz = NAME(along)(mine[PAIR_Z], c[PAIR_Z], 2, &k);
-      const VECTOR h = half * (mine[PAIR_H] + c[PAIR_H]), hh = h * h, square = dx * dx + dy * dy + dz * dz;
-      const NAME(choice) near = NAME(less)(square, 4 * hh) & NAME(first_lanes)(total - done);
-      const VECTOR floor_square = (REAL)1e-12 * hh; /* coincident particles: no force, no division by zero */
-      const VECTOR inverse_r = ROOT(NAME(select)(NAME(less)(floor_square, square), square, floor_square));
-      const VECTOR inverse_h = INVERSE(h), q = square * inverse_r * inverse_h, t = 2 - q;
-      const VECTOR inner = (REAL)2.25 * q - 3, outer = (REAL)-0.75 * t * t * (h * inverse_r);
-      const VECTOR inverse_hh = inverse_h * inverse_h;
-      const NAME(choice) within_h = NAME(less)(q, (VECTOR){0} + 1);
-      const VECTOR slope = NAME(keep)(near, NAME(select)(within_h, inner, outer) * (inverse_hh * inverse_hh * inverse_h * norm)); /* W'/r */
-      const VECTOR wx = slope * dx, wy = slope * dy, wz = slope * dz;
-      const VECTOR ux = mine[PAIR_VX] - c[PAIR_VX], uy = mine[PAIR_VY] - c[PAIR_VY], uz = mine[PAIR_VZ] - c[PAIR_VZ];
-      const VECTOR closing = ux * dx + uy * dy + uz * dz, zero = {0};
-      const VECTOR densities = mine[PAIR_DENSITY] + c[PAIR_DENSITY];
-      const VECTOR per = INVERSE(densities * (square + (REAL)0.01 * hh));
-      const VECTOR mu_per = h * NAME(select)(NAME(less)(closing, zero), closing, zero) * per, mu = mu_per * densities;
-      VECTOR per_its = zero, per_densities = zero; /* the inverse of its density and of both */
+      VECTOR dx[GROUP], dy[GROUP], dz[GROUP], h[GROUP], hh[GROUP], square[GROUP], inverse_r[GROUP], inverse_h[GROUP], q[GROUP],
+          t[GROUP], slope[GROUP], wx[GROUP], wy[GROUP], wz[GROUP], ux[GROUP], uy[GROUP], uz[GROUP], closing[GROUP], mu[GROUP],
+          viscous[GROUP], fx[GROUP], fy[GROUP], fz[GROUP];
+      NAME(choice) near[GROUP], within_h[GROUP];
+      EACH {
+        dx[m] = NAME(along)(mine[m][PAIR_X], c[PAIR_X], 0, &k);
+        dy[m] = NAME(along)(mine[m][PAIR_Y], c[PAIR_Y], 1, &k);
+        dz[m] = NAME(along)(mine[m][PAIR_Z], c[PAIR_Z], 2, &k);
+      }
+      EACH {
+        h[m] = half * (mine[m][PAIR_H] + c[PAIR_H]), hh[m] = h[m] * h[m];
+        square[m] = dx[m] * dx[m] + dy[m] * dy[m] + dz[m] * dz[m];
+        near[m] = NAME(less)(square[m], 4 * hh[m]) & NAME(first_lanes)(total - done);
+        if (m > 0) near[m] &= NAME(less)(zero, square[m]); /* I stand in the list of the one before me */
+        if (m > 0 && !whole) near[m] &= NAME(less)(zero, zero);
+      }
+      EACH {
+        const VECTOR floor_square = (REAL)1e-12 * hh[m]; /* coincident particles: no force, no division by zero */
+        inverse_r[m] = ROOT(NAME(select)(NAME(less)(floor_square, square[m]), square[m], floor_square));
+        inverse_h[m] = INVERSE(h[m]), q[m] = square[m] * inverse_r[m] * inverse_h[m], t[m] = 2 - q[m];
+      }
+      EACH {
+        const VECTOR inner = (REAL)2.25 * q[m] - 3, outer = (REAL)-0.75 * t[m] * t[m] * (h[m] * inverse_r[m]);
+        const VECTOR inverse_hh = inverse_h[m] * inverse_h[m];
+        within_h[m] = NAME(less)(q[m], zero + 1);
+        slope[m] = NAME(keep)(near[m], NAME(select)(within_h[m], inner, outer) * (inverse_hh * inverse_hh * inverse_h[m] * norm)); /* W'/r */
+        wx[m] = slope[m] * dx[m], wy[m] = slope[m] * dy[m], wz[m] = slope[m] * dz[m];
+      }
+      EACH {
+        ux[m] = mine[m][PAIR_VX] - c[PAIR_VX], uy[m] = mine[m][PAIR_VY] - c[PAIR_VY], uz[m] = mine[m][PAIR_VZ] - c[PAIR_VZ];
+        closing[m] = ux[m] * dx[m] + uy[m] * dy[m] + uz[m] * dz[m];
+        const VECTOR densities = mine[m][PAIR_DENSITY] + c[PAIR_DENSITY];
+        const VECTOR per = INVERSE(densities * (square[m] + (REAL)0.01 * hh[m]));
+        const VECTOR mu_per = h[m] * NAME(select)(NAME(less)(closing[m], zero), closing[m], zero) * per;
+        mu[m] = mu_per * densities;
+        viscous[m] = mu_per * ((REAL)k.twice_beta * mu[m] - (REAL)k.alpha * (mine[m][PAIR_SOUND] + c[PAIR_SOUND]));
+      }
+      VECTOR per_its = zero, per_densities[GROUP]; /* the inverse of its density and of both */
       if (k.volume_weights) {
         per_its = INVERSE(c[PAIR_DENSITY]);
-        per_densities = per_mine * per_its;
+        EACH per_densities[m] = per_mine[m] * per_its;
       }
-      const VECTOR viscous = mu_per * ((REAL)k.twice_beta * mu - (REAL)k.alpha * (mine[PAIR_SOUND] + c[PAIR_SOUND]));
-      VECTOR fx, fy, fz;
       if (k.strength || corrected) {
         VECTOR more[PAIR_WIDE - PAIR_NARROW];
         UNROLL for (size_t column = 0; column < PAIR_WIDE - PAIR_NARROW; column += LANES)
           if ((artificial && column < 6) || (corrected && column + LANES > 8 && column < 11))
             NAME(fetch)(in, in_stride, PAIR_NARROW + column, slot, more + column);
-        VECTOR xx = mine[PAIR_XX] + c[PAIR_XX], yy = mine[PAIR_YY] + c[PAIR_YY], zz = mine[PAIR_ZZ] + c[PAIR_ZZ],
-               xy = mine[PAIR_XY] + c[PAIR_XY], xz = mine[PAIR_XZ] + c[PAIR_XZ], yz = mine[PAIR_YZ] + c[PAIR_YZ];
-        VECTOR yx = xy, zx = xz, zy = yz;
-        if (corrected) {
-          yx = mine[PAIR_YX] + more[PAIR_YX - PAIR_NARROW];
-          zx = mine[PAIR_ZX] + more[PAIR_ZX - PAIR_NARROW];
-          zy = mine[PAIR_ZY] + more[PAIR_ZY - PAIR_NARROW];
+        EACH {
+          VECTOR xx = mine[m][PAIR_XX] + c[PAIR_XX], yy = mine[m][PAIR_YY] + c[PAIR_YY], zz = mine[m][PAIR_ZZ] + c[PAIR_ZZ],
+                 xy = mine[m][PAIR_XY] + c[PAIR_XY], xz = mine[m][PAIR_XZ] + c[PAIR_XZ], yz = mine[m][PAIR_YZ] + c[PAIR_YZ];
+          VECTOR yx = xy, zx = xz, zy = yz;
+          if (corrected) {
+            yx = mine[m][PAIR_YX] + more[PAIR_YX - PAIR_NARROW];
+            zx = mine[m][PAIR_ZX] + more[PAIR_ZX - PAIR_NARROW];
+            zy = mine[m][PAIR_ZY] + more[PAIR_ZY - PAIR_NARROW];
+          }
+          if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
+            VECTOR f = NAME(select)(within_h[m], 1 - q[m] * q[m] * ((REAL)1.5 - (REAL)0.75 * q[m]), quarter * t[m] * t[m] * t[m]);
+            f *= (REAL)(1 / k.spline_at_spacing);
+            f *= f;
+            f *= f;
+            const REAL *own = mine[m] + PAIR_ARTIFICIAL;
+            xx += f * (own[0] + more[0]), xy += f * (own[1] + more[1]), xz += f * (own[2] + more[2]);
+            yy += f * (own[3] + more[3]), yz += f * (own[4] + more[4]), zz += f * (own[5] + more[5]);
+            if (corrected) yx += f * (own[1] + more[1]), zx += f * (own[2] + more[2]), zy += f * (own[4] + more[4]);
+          }
+          if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
+            const VECTOR per = per_densities[m];
+            xx *= per, xy *= per, xz *= per, yy *= per, yz *= per, zz *= per;
+            if (corrected) yx *= per, zx *= per, zy *= per;
+          }
+          if (!corrected) yx = xy, zx = xz, zy = yz;
+          xx -= viscous[m], yy -= viscous[m], zz -= viscous[m];
+          fx[m] = xx * wx[m] + xy * wy[m] + xz * wz[m];
+          fy[m] = yx * wx[m] + yy * wy[m] + yz * wz[m];
+          fz[m] = zx * wx[m] + zy * wy[m] + zz * wz[m];
         }
-        if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
-          VECTOR f = NAME(select)(within_h, 1 - q * q * ((REAL)1.5 - (REAL)0.75 * q), quarter * t * t * t);
-          f *= (REAL)(1 / k.spline_at_spacing);
-          f *= f;
-          f *= f;
-          const REAL *own = mine + PAIR_ARTIFICIAL;
-          xx += f * (own[0] + more[0]), xy += f * (own[1] + more[1]), xz += f * (own[2] + more[2]);
-          yy += f * (own[3] + more[3]), yz += f * (own[4] + more[4]), zz += f * (own[5] + more[5]);
-          if (corrected) yx += f * (own[1] + more[1]), zx += f * (own[2] + more[2]), zy += f * (own[4] + more[4]);
-        }
-        if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
-          xx *= per_densities, xy *= per_densities, xz *= per_densities;
-          yy *= per_densities, yz *= per_densities, zz *= per_densities;
-          if (corrected) yx *= per_densities, zx *= per_densities, zy *= per_densities;
-        }
-        if (!corrected) yx = xy, zx = xz, zy = yz;
-        xx -= viscous, yy -= viscous, zz -= viscous;
-        fx = xx * wx + xy * wy + xz * wz;
-        fy = yx * wx + yy * wy + yz * wz;
-        fz = zx * wx + zy * wy + zz * wz;
       } else {
-        VECTOR p = mine[PAIR_XX] + c[PAIR_XX];
-        if (k.volume_weights) p *= per_densities;
-        p -= viscous;
-        fx = p * wx, fy = p * wy, fz = p * wz;
+        EACH {
+          VECTOR p = mine[m][PAIR_XX] + c[PAIR_XX];
+          if (k.volume_weights) p *= per_densities[m];
+          p -= viscous[m];
+          fx[m] = p * wx[m], fy[m] = p * wy[m], fz[m] = p * wz[m];
+        }
       }
-      const VECTOR heat = half * viscous * slope * closing, signal = NAME(keep)(near, -mu);
-      const VECTOR one = NAME(keep)(near, zero + 1), mi = zero + mine[PAIR_MASS];
-      VECTOR mj = c[PAIR_MASS], opposite = zero - mine[PAIR_MASS];
-      s[0] += mj * fx, s[1] += mj * fy, s[2] += mj * fz;
-      s[SUM_HEATING] += mj * heat;
-      s[SUM_SIGNAL] = NAME(select)(NAME(less)(s[SUM_SIGNAL], signal), signal, s[SUM_SIGNAL]);
-      s[SUM_COUNT] += one;
-      VECTOR g[PAIR_WIDE];
-      g[0] = opposite * fx, g[1] = opposite * fy, g[2] = opposite * fz;
-      g[SUM_HEATING] = mi * heat;
-      g[SUM_SIGNAL] = signal;
-      g[SUM_COUNT] = one;
+      VECTOR volume = c[PAIR_MASS]; /* with volume weights; else the sum is divided by rho_i afterwards */
+      if (k.volume_weights) volume *= per_its;
+      EACH {
+        const VECTOR heat = half * viscous[m] * slope[m] * closing[m], signal = NAME(keep)(near[m], -mu[m]);
+        const VECTOR one = NAME(keep)(near[m], zero + 1), mj = c[PAIR_MASS], mi = zero + mine[m][PAIR_MASS];
+        VECTOR opposite = zero - mine[m][PAIR_MASS];
+        s[m][0] += mj * fx[m], s[m][1] += mj * fy[m], s[m][2] += mj * fz[m];
+        s[m][SUM_HEATING] += mj * heat;
+        s[m][SUM_SIGNAL] = NAME(larger)(s[m][SUM_SIGNAL], signal);
+        s[m][SUM_COUNT] += one;
+        GAIN(0, opposite * fx[m]), GAIN(1, opposite * fy[m]), GAIN(2, opposite * fz[m]);
+        GAIN(SUM_HEATING, mi * heat);
+        g[SUM_SIGNAL] = m ? NAME(larger)(g[SUM_SIGNAL], signal) : signal;
+        GAIN(SUM_COUNT, one);
+        VECTOR ax = volume * wx[m], ay = volume * wy[m], az = volume * wz[m];
+        s[m][3] -= ux[m] * ax, s[m][4] -= ux[m] * ay, s[m][5] -= ux[m] * az;
+        s[m][6] -= uy[m] * ax, s[m][7] -= uy[m] * ay, s[m][8] -= uy[m] * az;
+        s[m][9] -= uz[m] * ax, s[m][10] -= uz[m] * ay, s[m][11] -= uz[m] * az;
+        if (corrected) {
+          s[m][16] -= dx[m] * ax, s[m][17] -= dx[m] * ay, s[m][18] -= dx[m] * az;
+          s[m][19] -= dy[m] * ay, s[m][20] -= dy[m] * az, s[m][21] -= dz[m] * az;
+        }
+        if (k.volume_weights) opposite *= per_mine[m];
+        ax = opposite * wx[m], ay = opposite * wy[m], az = opposite * wz[m];
+        GAIN(3, ux[m] * ax), GAIN(4, ux[m] * ay), GAIN(5, ux[m] * az);
+        GAIN(6, uy[m] * ax), GAIN(7, uy[m] * ay), GAIN(8, uy[m] * az);
+        GAIN(9, uz[m] * ax), GAIN(10, uz[m] * ay), GAIN(11, uz[m] * az);
+        if (corrected) {
+          GAIN(16, dx[m] * ax), GAIN(17, dx[m] * ay), GAIN(18, dx[m] * az);
+          GAIN(19, dy[m] * ay), GAIN(20, dy[m] * az), GAIN(21, dz[m] * az);
+        }
+      }
       g[SUM_COUNT + 1] = zero;
-      if (k.volume_weights) { /* volumes; else the sum is divided by rho_i afterwards */
-        opposite *= per_mine;
-        mj *= per_its;
-      }
-      VECTOR ax = mj * wx, ay = mj * wy, az = mj * wz;
-      s[3] -= ux * ax, s[4] -= ux * ay, s[5] -= ux * az;
-      s[6] -= uy * ax, s[7] -= uy * ay, s[8] -= uy * az;
-      s[9] -= uz * ax, s[10] -= uz * ay, s[11] -= uz * az;
-      if (corrected) {
-        s[16] -= dx * ax, s[17] -= dx * ay, s[18] -= dx * az;
-        s[19] -= dy * ay, s[20] -= dy * az, s[21] -= dz * az;
-      }
-      ax = opposite * wx, ay = opposite * wy, az = opposite * wz;
-      g[3] = ux * ax, g[4] = ux * ay, g[5] = ux * az;
-      g[6] = uy * ax, g[7] = uy * ay, g[8] = uy * az;
-      g[9] = uz * ax, g[10] = uz * ay, g[11] = uz * az;
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(spread)(out, out_stride, column, slot, g + column);
       if (corrected) {
-        g[16] = dx * ax, g[17] = dx * ay, g[18] = dx * az;
-        g[19] = dy * ay, g[20] = dy * az, g[21] = dz * az;
         UNROLL for (int column = 22; column < PAIR_WIDE; column++)
           g[column] = zero;
         UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
           NAME(spread)(out, out_stride, column, slot, g + column);
       }
     }
-    UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
-      NAME(collect)(out + i * out_stride, column, s + column);
-    if (corrected) {
-      UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
-        NAME(collect)(out + i * out_stride, column, s + column);
+    EACH {
+      if (m > 0 && !whole) continue;
+      UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+        NAME(collect)(out + (i + (size_t)m) * out_stride, column, s[m] + column);
+      if (corrected) {
+        UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
+          NAME(collect)(out + (i + (size_t)m) * out_stride, column, s[m] + column);
+      }
     }
   }
 }
@@ -306,6 +371,8 @@ static void NAME(sum_both)(const struct sph_pair_chunk *c, const struct sph_pair
 #undef VECTOR
 #undef MASK
 #undef UNROLL
+#undef EACH
+#undef GAIN
 #undef LOW
 #undef HIGH
 #undef FIRST
