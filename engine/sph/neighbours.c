@@ -1,305 +1,359 @@
 #include "engine/sph/neighbours.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEVELS = 64, PAD = 8, CELLS = 27 };
+enum { GROUP = 16 /* a multiple of any share */, EIGHT = 8, LEVELS = 12, TOP = 8, LINE = 64 };
+static const double widest = 4; /* of a group, in reaches: a fragment far off stands alone and does not widen a box */
 
-/* Particles whose reach is within a factor of 2, in cells of twice the largest reach among them. */
-struct level {
-  double reach, size[3];
-  int64_t wrap[3]; /* cells round a periodic axis; 0 = open */
-  size_t first, count, mask, bucket; /* its particles in `sorted`; its buckets in `start` */
+/* Level 0: groups of particles, in eights that belong to one chunk. Level l + 1: eights of level l. */
+struct sph_neighbours {
+  const struct sph_pair_kernels *kernels;
+  size_t chunk, chunks, share;
+  size_t levels, eights[LEVELS]; /* how many there are of each */
+  size_t first_eight[LEVELS];    /* where they stand in `box` */
+  struct sph_near_boxes *box;
+  size_t *chunk_at;              /* by chunk: its first eight of groups */
+  uint32_t *group_first;         /* by group, those that are not there included */
+  uint8_t *group_size;
+  size_t box_capacity, group_capacity, size_capacity;
+  struct sph_near_particles particles;
+  double period[3];
 };
 
-/* Particles in the order of levels and buckets: candidates stand side by side. */
-struct search {
-  size_t n, levels;
-  struct level level[LEVELS];
-  double *x, *y, *z, *reach;
-  uint32_t *id, *start;
-  uint8_t *level_of; /* by particle */
-  uint32_t (*across)[2]; /* pairs of different levels, lower number first */
-  size_t across_count, across_capacity;
-  const double *given[4]; /* x y z reach by particle */
-  struct {                /* gathered candidates */
-    size_t count, capacity, reals_capacity;
-    uint32_t *place;
-    double *reals; /* x y z reach, each count + PAD */
-  } near;
-};
-
-static int64_t cell_along(const struct level *level, int axis, double x) {
-  double t = floor(x / level->size[axis]);
-  int64_t at = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* what is not finite: its distances are not below any reach */
-  if (level->wrap[axis]) {
-    at %= level->wrap[axis];
-    if (at < 0) at += level->wrap[axis];
-  }
-  return at;
-}
-
-static size_t bucket_of(const struct level *level, const int64_t at[3]) {
-  uint64_t key = (uint64_t)at[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)at[1] * 0xc2b2ae3d27d4eb4fu ^
-                 (uint64_t)at[2] * 0x165667b19e3779f9u;
-  key = (key ^ key >> 32) * 0xd6e8feb86659fd93u;
-  return level->bucket + ((size_t)(key >> 20) & level->mask);
-}
-
-/* The buckets of a cell and those round it, each once. */
-static size_t buckets_round(const struct level *level, const int64_t cell[3], size_t out[CELLS]) {
-  size_t count = 0;
-  for (int k = 0; k < CELLS; k++) {
-    int64_t at[3];
-    const int64_t offset[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-    for (int d = 0; d < 3; d++) {
-      at[d] = (int64_t)((uint64_t)cell[d] + (uint64_t)offset[d]);
-      if (level->wrap[d]) at[d] = (at[d] + level->wrap[d]) % level->wrap[d];
-    }
-    const size_t bucket = bucket_of(level, at);
-    bool again = false;
-    for (size_t m = 0; m < count; m++)
-      again |= out[m] == bucket;
-    if (!again) out[count++] = bucket;
-  }
-  return count;
-}
-
-static status set_levels(struct search *s, const double *reach, const double periodic[3], struct error *error) {
-  double least = INFINITY;
-  for (size_t i = 0; i < s->n; i++)
-    if (reach[i] > 0 && reach[i] < least) least = reach[i];
-  size_t count[LEVELS] = {0}, buckets = 0, first = 0;
-  double largest[LEVELS] = {0};
-  for (size_t i = 0; i < s->n; i++) {
-    const double ratio = reach[i] / least;
-    const int k = ratio >= 1 && isfinite(ratio) ? ilogb(ratio) : 0;
-    s->level_of[i] = (uint8_t)(k < LEVELS ? k : LEVELS - 1);
-    count[s->level_of[i]]++;
-    if (reach[i] > largest[s->level_of[i]] && isfinite(reach[i])) largest[s->level_of[i]] = reach[i];
-  }
-  uint8_t number[LEVELS] = {0}; /* empty levels are left out */
-  for (int k = 0; k < LEVELS; k++) {
-    if (!count[k]) continue;
-    struct level *level = &s->level[s->levels];
-    *level = (struct level){.reach = largest[k] > 0 ? largest[k] : 1, .first = first, .count = count[k], .mask = 1, .bucket = buckets};
-    number[k] = (uint8_t)s->levels++;
-    while (level->mask < level->count)
-      level->mask = 2 * level->mask + 1;
-    buckets += level->mask + 1;
-    first += level->count;
-    for (int d = 0; d < 3; d++) {
-      level->size[d] = 2 * level->reach;
-      if (isnan(periodic[d])) continue;
-      if (periodic[d] < 4 * level->reach)
-        return status_fail(error, STATUS_CONTENT,
-                           "a periodic box of %.4g m is too thin for its particles: it must hold twice their reach, %.4g m",
-                           periodic[d], 4 * level->reach);
-      level->wrap[d] = (int64_t)fmin(floor(periodic[d] / level->size[d]), 1e15);
-      level->size[d] = periodic[d] / (double)level->wrap[d];
-    }
-  }
-  for (size_t i = 0; i < s->n; i++)
-    s->level_of[i] = number[s->level_of[i]];
-  s->start = calloc(buckets + 2, sizeof *s->start);
-  return s->start ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", s->n);
-}
-
-static void cell_of(const struct level *level, double x, double y, double z, int64_t cell[3]) {
-  cell[0] = cell_along(level, 0, x);
-  cell[1] = cell_along(level, 1, y);
-  cell[2] = cell_along(level, 2, z);
-}
-
-static void sort(struct search *s, const double *x, const double *y, const double *z, const double *reach) {
-  const struct level *last = &s->level[s->levels - 1];
-  const size_t buckets = last->bucket + last->mask + 1;
-  int64_t cell[3];
-  for (size_t i = 0; i < s->n; i++) {
-    const struct level *level = &s->level[s->level_of[i]];
-    cell_of(level, x[i], y[i], z[i], cell);
-    s->start[bucket_of(level, cell) + 1]++;
-  }
-  for (size_t b = 0; b <= buckets; b++)
-    s->start[b + 1] += s->start[b];
-  for (size_t i = s->n; i-- > 0;) { /* downwards: within a bucket by number. start[b + 1] becomes the start of b */
-    const struct level *level = &s->level[s->level_of[i]];
-    cell_of(level, x[i], y[i], z[i], cell);
-    const size_t k = --s->start[bucket_of(level, cell) + 1];
-    s->x[k] = x[i], s->y[k] = y[i], s->z[k] = z[i], s->reach[k] = reach[i];
-    s->id[k] = (uint32_t)i;
-  }
-}
-
-static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
+static bool grow(void **array, size_t *capacity, size_t wanted, size_t keep, size_t size) {
   if (wanted <= *capacity) return true;
-  const size_t more = wanted + wanted / 4 + 1024;
-  void *grown = realloc(*array, more * size);
+  const size_t more = wanted + wanted / 8 + LINE;
+  void *grown = aligned_alloc(LINE, (more * size + LINE - 1) / LINE * LINE);
   if (!grown) return false;
+  if (keep) memcpy(grown, *array, keep * size);
+  free(*array);
   *array = grown;
   *capacity = more;
   return true;
 }
 
-/* What may be near the particles `first` .. `last` - 1 of the sorted order, which share a cell of `level`: those of the
- * buckets round it (of a higher number than the lowest of ours, among equals), gathered side by side. */
-static bool gather(struct search *s, size_t first, size_t last, const struct level *level, const int64_t cell[3],
-                   const double periodic[3], const struct sph_pair_kernels *kernels, bool equals) {
-  size_t bucket[CELLS];
-  const size_t buckets = buckets_round(level, cell, bucket);
-  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, reach = 0, square = 0, middle[3];
-  uint32_t lowest = UINT32_MAX;
-  for (size_t k = first; k < last; k++) {
-    const double at[3] = {s->x[k], s->y[k], s->z[k]};
-    for (int d = 0; d < 3; d++) {
-      low[d] = at[d] < low[d] ? at[d] : low[d];
-      high[d] = at[d] > high[d] ? at[d] : high[d];
-    }
-    reach = s->reach[k] > reach ? s->reach[k] : reach;
-    lowest = s->id[k] < lowest ? s->id[k] : lowest;
-  }
+struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t share, const struct sph_pair_kernels *kernels) {
+  struct sph_neighbours *s = calloc(1, sizeof *s);
+  if (!s) return NULL;
+  s->kernels = kernels;
+  s->chunk = chunk;
+  s->share = share;
+  s->chunk_at = calloc(n / chunk + 2, sizeof *s->chunk_at);
+  if (s->chunk_at) return s;
+  free(s);
+  return NULL;
+}
+
+void sph_neighbours_free(struct sph_neighbours *s) {
+  if (!s) return;
+  free(s->box);
+  free(s->chunk_at);
+  free(s->group_first);
+  free(s->group_size);
+  free(s);
+}
+
+size_t sph_neighbours_bytes(const struct sph_neighbours *s) {
+  return sizeof *s + s->box_capacity * sizeof *s->box + s->group_capacity * sizeof *s->group_first + s->size_capacity;
+}
+
+struct bounds {
+  double low[3], high[3], reach;
+};
+static const struct bounds nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+
+static struct bounds widen(struct bounds b, const struct sph_near_particles *p, size_t i) {
+  b.reach = p->reach[i] > b.reach ? p->reach[i] : b.reach;
   for (int d = 0; d < 3; d++) {
-    middle[d] = 0.5 * (low[d] + high[d]);
-    square += 0.25 * (high[d] - low[d]) * (high[d] - low[d]);
+    const double at = p->place[d][i];
+    b.low[d] = at < b.low[d] ? at : b.low[d];
+    b.high[d] = at > b.high[d] ? at : b.high[d];
   }
-  const double far = fabs(middle[0]) + fabs(middle[1]) + fabs(middle[2]);
-  const double round = (reach + sqrt(square)) * (1 + 1e-12) + 1e-15 * far; /* a sphere that holds all of ours with their reach */
+  return b;
+}
+
+static bool is_wide(const struct bounds *b) {
+  const double most = widest * b->reach;
+  return b->high[0] - b->low[0] > most || b->high[1] - b->low[1] > most || b->high[2] - b->low[2] > most;
+}
+
+/* The end of the group that begins at `first`. Those that share a list stay together, but when they are far apart. */
+static size_t take_group(const struct sph_neighbours *s, size_t first, size_t last, struct bounds *out) {
+  struct bounds whole = nothing, all = nothing; /* of full shares, of all so far */
+  const size_t full = first - first % s->share + GROUP;
+  size_t end = first;
+  for (; end < last && end < full; end++) {
+    const struct bounds more = widen(all, &s->particles, end);
+    const size_t cut = end - end % s->share;
+    if (end == cut) whole = all;
+    if (end > first && is_wide(&more)) {
+      *out = cut > first ? whole : all;
+      return cut > first ? cut : end;
+    }
+    all = more;
+  }
+  *out = all;
+  return end;
+}
+
+/* Everything within bounds, rounding allowed for. Nothing at all: NaN, which is near nothing; what is beyond all measure is near
+ * everything. */
+static struct sph_near_box make_box(const struct bounds *b) {
+  struct sph_near_box box = {.reach = b->reach * (1 + 1e-12)};
+  for (int d = 0; d < 3; d++) {
+    if (b->low[d] < -1e100 || b->high[d] > 1e100) return (struct sph_near_box){.reach = INFINITY};
+    box.middle[d] = 0.5 * (b->low[d] + b->high[d]);
+    box.half[d] = 0.5 * (b->high[d] - b->low[d]);
+    box.reach += 1e-15 * (fabs(b->low[d]) + fabs(b->high[d]));
+  }
+  return box;
+}
+
+static void put(struct sph_near_boxes *to, size_t lane, const struct sph_near_box *box) {
+  for (int d = 0; d < 3; d++)
+    to->middle[d][lane] = box->middle[d], to->half[d][lane] = box->half[d];
+  to->reach[lane] = box->reach;
+}
+static struct sph_near_box get(const struct sph_near_boxes *from, size_t lane) {
+  struct sph_near_box box = {.reach = from->reach[lane]};
+  for (int d = 0; d < 3; d++)
+    box.middle[d] = from->middle[d][lane], box.half[d] = from->half[d][lane];
+  return box;
+}
+
+static size_t count_groups(const struct sph_neighbours *s, size_t first, size_t last) {
+  struct bounds b;
+  size_t count = 0;
+  for (; first < last; count++)
+    first = take_group(s, first, last, &b);
+  return count;
+}
+
+static void make_groups(struct sph_neighbours *s, size_t chunk, size_t last) {
+  const struct sph_near_box none = {{NAN, NAN, NAN}, {0}, 0};
+  size_t first = chunk * s->chunk;
+  for (size_t g = EIGHT * s->chunk_at[chunk]; g < EIGHT * s->chunk_at[chunk + 1]; g++) {
+    struct bounds b;
+    struct sph_near_box box = none;
+    s->group_first[g] = (uint32_t)first;
+    s->group_size[g] = 0;
+    if (first < last) {
+      const size_t end = take_group(s, first, last, &b);
+      s->group_size[g] = (uint8_t)(end - first);
+      first = end;
+      box = make_box(&b);
+      for (int d = 0; d < 3; d++)
+        if (!(b.low[d] <= b.high[d])) box = none;
+    }
+    put(&s->box[g / EIGHT], g % EIGHT, &box);
+  }
+}
+
+/* One box round eight. */
+static struct sph_near_box surround(const struct sph_near_boxes *eight) {
+  struct bounds b = nothing;
+  for (size_t lane = 0; lane < EIGHT; lane++) {
+    const struct sph_near_box one = get(eight, lane);
+    if (isnan(one.middle[0])) continue;
+    if (isinf(one.reach)) return one;
+    b.reach = one.reach > b.reach ? one.reach : b.reach;
+    for (int d = 0; d < 3; d++) {
+      b.low[d] = fmin(b.low[d], one.middle[d] - one.half[d]);
+      b.high[d] = fmax(b.high[d], one.middle[d] + one.half[d]);
+    }
+  }
+  return b.low[0] <= b.high[0] ? make_box(&b) : (struct sph_near_box){{NAN, NAN, NAN}, {0}, 0};
+}
+
+static void make_level(struct sph_neighbours *s, size_t level) {
+  const struct sph_near_box none = {{NAN, NAN, NAN}, {0}, 0};
+  const size_t below = s->eights[level - 1];
+  for (size_t k = 0; k < EIGHT * s->eights[level]; k++) {
+    const struct sph_near_box box = k < below ? surround(&s->box[s->first_eight[level - 1] + k]) : none;
+    put(&s->box[s->first_eight[level] + k / EIGHT], k % EIGHT, &box);
+  }
+}
+
+static status check_periods(struct sph_neighbours *s, const double *reach, size_t n, const double periodic[3], struct error *error) {
+  double largest = 0;
+  bool wrapped = false;
+  for (int d = 0; d < 3; d++) {
+    s->period[d] = periodic[d];
+    wrapped |= !isnan(periodic[d]);
+  }
+  for (size_t i = 0; wrapped && i < n; i++)
+    largest = reach[i] > largest && isfinite(reach[i]) ? reach[i] : largest;
+  for (int d = 0; d < 3; d++)
+    if (periodic[d] < 4 * largest)
+      return status_fail(error, STATUS_CONTENT,
+                         "a periodic box of %.4g m is too thin for its particles: it must hold twice their reach, %.4g m", periodic[d],
+                         4 * largest);
+  return STATUS_OK;
+}
+
+status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, const double *y, const double *z, const double *reach,
+                           const double periodic[3], int threads, struct error *error) {
+  s->particles = (struct sph_near_particles){.place = {x, y, z}, .reach = reach};
+  s->chunks = (n + s->chunk - 1) / s->chunk;
+  const status code = check_periods(s, reach, n, periodic, error);
+  if (code) return code;
+  (void)threads;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+#endif
+  for (size_t k = 0; k < s->chunks; k++) {
+    const size_t last = (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n;
+    s->chunk_at[k + 1] = (count_groups(s, k * s->chunk, last) + EIGHT - 1) / EIGHT;
+  }
+  for (size_t k = 0; k < s->chunks; k++)
+    s->chunk_at[k + 1] += s->chunk_at[k];
+  size_t boxes = 0;
+  s->levels = 0;
+  for (size_t count = s->chunk_at[s->chunks]; s->levels == 0 || s->eights[s->levels - 1] > TOP; count = (count + EIGHT - 1) / EIGHT) {
+    s->eights[s->levels] = count;
+    s->first_eight[s->levels++] = boxes;
+    boxes += count;
+  }
+  const size_t groups = EIGHT * s->eights[0];
+  if (!grow((void **)&s->box, &s->box_capacity, boxes, 0, sizeof *s->box) ||
+      !grow((void **)&s->group_first, &s->group_capacity, groups, 0, sizeof *s->group_first) ||
+      !grow((void **)&s->group_size, &s->size_capacity, groups, 0, sizeof *s->group_size))
+    return status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
+  s->particles.first = s->group_first;
+  s->particles.size = s->group_size;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+#endif
+  for (size_t k = 0; k < s->chunks; k++)
+    make_groups(s, k, (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n);
+  for (size_t level = 1; level < s->levels; level++)
+    make_level(s, level);
+  return STATUS_OK;
+}
+
+/* What a search has found so far. */
+struct search {
+  uint32_t *eight[2], *group;                /* numbers of boxes */
+  size_t eight_capacity[2], group_capacity;
+  double *real;                              /* x y z reach of candidates, `row` each */
+  uint32_t *number;                          /* of candidates: from the chunk's first one on */
+  uint32_t *joint;                           /* a list that began in the group before */
+  size_t real_capacity, number_capacity, joint_capacity;
+};
+
+/* The eights of groups that may hold neighbours of the groups of `eight`, that one first. */
+static bool find_eights(const struct sph_neighbours *s, size_t eight, struct search *w, const uint32_t **found, size_t *count) {
+  const struct sph_near_box own = surround(&s->box[eight]);
+  size_t used = s->eights[s->levels - 1], from = 0;
+  if (!grow((void **)&w->eight[0], &w->eight_capacity[0], used, 0, sizeof **w->eight)) return false;
+  for (size_t k = 0; k < used; k++)
+    w->eight[0][k] = (uint32_t)k;
+  for (size_t level = s->levels; level-- > 1; from = 1 - from) {
+    const uint32_t lowest = (uint32_t)(eight >> 3 * (level - 1));
+    if (!grow((void **)&w->eight[1 - from], &w->eight_capacity[1 - from], EIGHT * used, 0, sizeof **w->eight)) return false;
+    used = s->kernels->near_boxes(s->box + s->first_eight[level], w->eight[from], used, &own, s->period, lowest, w->eight[1 - from]);
+  }
+  *found = w->eight[from];
+  *count = used;
+  return true;
+}
+
+/* Those of the group itself, then all that may be neighbours of one of them. */
+static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t group, const uint32_t *eights, size_t count,
+                            struct search *w, double *at[4], size_t *candidates) {
+  const struct sph_near_box own = get(&s->box[group / EIGHT], group % EIGHT);
+  const size_t first = s->group_first[group], size = s->group_size[group];
+  if (!grow((void **)&w->group, &w->group_capacity, EIGHT * count, 0, sizeof *w->group)) return false;
+  const size_t groups = s->kernels->near_boxes(s->box, eights, count, &own, s->period, (uint32_t)group + 1, w->group);
+  const size_t row = (groups + 1) * (GROUP + 1) + EIGHT;
+  if (!grow((void **)&w->real, &w->real_capacity, 4 * row, 0, sizeof *w->real) ||
+      !grow((void **)&w->number, &w->number_capacity, row, 0, sizeof *w->number))
+    return false;
+  double *rest[4];
+  for (int d = 0; d < 4; d++) {
+    at[d] = w->real + (size_t)d * row;
+    rest[d] = at[d] + size;
+    memcpy(at[d], (d < 3 ? s->particles.place[d] : s->particles.reach) + first, size * sizeof *w->real);
+  }
+  for (size_t k = 0; k < size; k++)
+    w->number[k] = (uint32_t)(first + k);
+  *candidates = size + s->kernels->near_particles(&s->particles, w->group, groups, &own, s->period, rest, w->number + size);
+  for (size_t k = 0; k < *candidates; k++)
+    w->number[k] -= (uint32_t)(chunk * s->chunk);
+  for (int d = 0; d < 4; d++)
+    memset(at[d] + *candidates, 0, EIGHT * sizeof *w->real);
+  memset(w->number + *candidates, 0, EIGHT * sizeof *w->number);
+  return true;
+}
+
+/* Joins two ascending lists, the second of which stands at `more`, in the place of the first. */
+static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t *more, size_t more_count, size_t *joined) {
+  if (!grow((void **)&w->joint, &w->joint_capacity, count + more_count, 0, sizeof *w->joint)) return false;
   size_t used = 0;
-  for (size_t b = 0; b < buckets; b++) {
-    const size_t from = s->start[bucket[b] + 1], count = s->start[bucket[b] + 2] - from;
-    if (!count) continue;
-    if (!grow((void **)&s->near.place, &s->near.capacity, used + count + PAD, sizeof *s->near.place)) return false;
-    used += kernels->within(count, s->x + from, s->y + from, s->z + from, s->reach + from, s->id + from, middle, round, periodic,
-                            equals ? lowest + 1 : 0, s->near.place + used);
+  for (size_t a = 0, b = 0; a < count || b < more_count; used++) {
+    const uint32_t left = a < count ? list[a] : UINT32_MAX, right = b < more_count ? more[b] : UINT32_MAX;
+    w->joint[used] = left < right ? left : right;
+    a += left <= right;
+    b += right <= left;
   }
-  if (!grow((void **)&s->near.reals, &s->near.reals_capacity, 4 * (used + PAD), sizeof *s->near.reals)) return false;
-  s->near.count = used;
-  double *x = s->near.reals, *y = x + used + PAD, *z = y + used + PAD, *its = z + used + PAD;
-  for (size_t m = 0; m < used; m++) {
-    const size_t j = s->near.place[m];
-    x[m] = s->given[0][j], y[m] = s->given[1][j], z[m] = s->given[2][j], its[m] = s->given[3][j];
-  }
-  memset(x + used, 0, PAD * sizeof *x);
-  memset(y + used, 0, PAD * sizeof *y);
-  memset(z + used, 0, PAD * sizeof *z);
-  memset(its + used, 0, PAD * sizeof *its);
+  memcpy(list, w->joint, used * sizeof *list);
+  *joined = used;
   return true;
 }
 
-/* Of particle k (in the sorted order) with what was gathered: pairs of equals go to `lists`, others aside. */
-static bool look(struct search *s, size_t k, bool equals, const double periodic[3], const struct sph_pair_kernels *kernels,
-                 struct sph_neighbours *lists) {
-  const uint32_t i = s->id[k];
-  const double at[3] = {s->x[k], s->y[k], s->z[k]}, *x = s->near.reals;
-  const size_t count = s->near.count, row = count + PAD;
-  if (!grow((void **)&lists->j, &lists->capacity, lists->used + count + PAD, sizeof *lists->j)) return false;
-  uint32_t *found = lists->j + lists->used;
-  const size_t used = kernels->within(count, x, x + row, x + 2 * row, x + 3 * row, s->near.place, at, s->reach[k], periodic,
-                                      equals ? i + 1 : 0, found);
-  if (equals) {
-    lists->start[i] = lists->used;
-    lists->count[i] = (uint32_t)used;
-    lists->used += used;
-    return true;
-  }
-  if (!grow((void **)&s->across, &s->across_capacity, s->across_count + used, sizeof *s->across)) return false;
-  for (size_t m = 0; m < used; m++, s->across_count++) {
-    const uint32_t j = found[m];
-    s->across[s->across_count][0] = i < j ? i : j;
-    s->across[s->across_count][1] = i < j ? j : i;
+/* The lists of a group, of which the first may have begun in the group before. */
+static bool list_group(const struct sph_neighbours *s, size_t group, size_t first, double *const at[4], size_t candidates,
+                       struct search *w, struct sph_neighbour_lists *lists, size_t *used) {
+  const size_t size = s->group_size[group], base = s->group_first[group] - first, room = candidates + 2 * SPH_LIST_ALIGN;
+  if (!grow((void **)&lists->j, &lists->capacity, *used + (size + 1) * room, *used, sizeof *lists->j)) return false;
+  double own[GROUP][4];
+  for (size_t k = 0; k < size; k++)
+    for (int d = 0; d < 4; d++)
+      own[k][d] = at[d][k];
+  for (size_t k = 0, next = 0; k < size; k = next) {
+    const size_t list = (base + k) / s->share, before = (base + k) % s->share;
+    next = k + s->share - before < size ? k + s->share - before : size;
+    double *const others[4] = {at[0] + k + 1, at[1] + k + 1, at[2] + k + 1, at[3] + k + 1};
+    size_t begin = *used, count = s->kernels->near_pairs(candidates - k - 1, others, w->number + k + 1,
+                                                         (const double(*)[4])own + k, next - k, s->period, lists->j + *used);
+    if (before) {
+      begin = lists->start[list];
+      if (!join(w, lists->j + begin, lists->count[list], lists->j + *used, count, &count)) return false;
+    }
+    size_t end = begin + count;
+    for (; end % SPH_LIST_ALIGN; end++)
+      lists->j[end] = (uint32_t)(list * s->share);
+    lists->start[list] = (uint32_t)begin;
+    lists->count[list] = (uint32_t)count;
+    lists->start[list + 1] = (uint32_t)end;
+    *used = end;
   }
   return true;
 }
 
-/* Pairs of different levels join the list of the lower number. */
-static bool merge(const struct search *s, struct sph_neighbours *lists) {
-  const size_t total = lists->used + s->across_count;
-  size_t *start = malloc((s->n + 1) * sizeof *start), at = 0;
-  uint32_t *more = calloc(s->n + 1, sizeof *more), *j = malloc((total + 1) * sizeof *j);
-  const bool enough = start && more && j;
-  if (enough) {
-    for (size_t m = 0; m < s->across_count; m++)
-      more[s->across[m][0]]++;
-    for (size_t i = 0; i < s->n; i++) {
-      start[i] = at;
-      memcpy(j + at, lists->j + lists->start[i], lists->count[i] * sizeof *j);
-      at += lists->count[i] + more[i];
+bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sph_neighbour_lists *lists) {
+  struct search w = {0};
+  const size_t first = chunk * s->chunk;
+  size_t used = 0;
+  bool enough = grow((void **)&lists->j, &lists->capacity, 1, 0, sizeof *lists->j);
+  lists->start[0] = 0;
+  for (size_t eight = s->chunk_at[chunk]; enough && eight < s->chunk_at[chunk + 1]; eight++) {
+    const uint32_t *eights;
+    size_t count, candidates;
+    enough = find_eights(s, eight, &w, &eights, &count);
+    for (size_t lane = 0; enough && lane < EIGHT && s->group_size[EIGHT * eight + lane]; lane++) {
+      double *at[4];
+      enough = find_candidates(s, chunk, EIGHT * eight + lane, eights, count, &w, at, &candidates) &&
+               list_group(s, EIGHT * eight + lane, first, at, candidates, &w, lists, &used);
     }
-    for (size_t m = 0; m < s->across_count; m++) {
-      const uint32_t i = s->across[m][0];
-      j[start[i] + lists->count[i]++] = s->across[m][1];
-    }
-    free(lists->j);
-    lists->j = j;
-    lists->used = total;
-    lists->capacity = total + 1;
-    memcpy(lists->start, start, s->n * sizeof *start);
-  } else {
-    free(j);
   }
-  free(start);
-  free(more);
+  free(w.eight[0]);
+  free(w.eight[1]);
+  free(w.group);
+  free(w.real);
+  free(w.number);
+  free(w.joint);
   return enough;
-}
-
-static bool make_lists(struct sph_neighbours *lists, size_t n) {
-  if (lists->n >= n && lists->start) return true;
-  size_t *start = realloc(lists->start, (n + 1) * sizeof *start);
-  if (start) lists->start = start;
-  uint32_t *count = realloc(lists->count, (n + 1) * sizeof *count);
-  if (count) lists->count = count;
-  if (start && count) lists->n = n;
-  return start && count;
-}
-
-status sph_neighbours_find(size_t n, const double *x, const double *y, const double *z, const double *reach,
-                           const double periodic[3], const struct sph_pair_kernels *kernels, struct sph_neighbours *lists,
-                           struct error *error) {
-  struct search s = {.n = n, .given = {x, y, z, reach}};
-  status code = STATUS_OK;
-  double *reals = malloc(4 * (n + PAD) * sizeof *reals);
-  s.id = calloc(n + PAD, sizeof *s.id);
-  s.level_of = malloc(n + 1);
-  lists->used = 0;
-  bool enough = reals && s.id && s.level_of && make_lists(lists, n);
-  if (enough && n) code = set_levels(&s, reach, periodic, error);
-  if (!enough || code || !n) goto cleanup;
-  memset(reals, 0, 4 * (n + PAD) * sizeof *reals);
-  s.x = reals, s.y = s.x + n + PAD, s.z = s.y + n + PAD, s.reach = s.z + n + PAD;
-  sort(&s, x, y, z, reach);
-  for (size_t l = 0; l < s.levels && enough; l++)
-    for (size_t m = l; m < s.levels && enough; m++) {
-      const struct level *level = &s.level[m];
-      const size_t end = s.level[l].first + s.level[l].count;
-      for (size_t first = s.level[l].first, next = first; first < end && enough; first = next) {
-        int64_t cell[3], other[3];
-        cell_of(level, s.x[first], s.y[first], s.z[first], cell);
-        do {
-          if (++next < end) cell_of(level, s.x[next], s.y[next], s.z[next], other);
-        } while (next < end && memcmp(cell, other, sizeof cell) == 0);
-        enough = gather(&s, first, next, level, cell, periodic, kernels, l == m);
-        for (size_t k = first; k < next && enough; k++)
-          enough = look(&s, k, l == m, periodic, kernels, lists);
-      }
-    }
-  if (enough && s.across_count) enough = merge(&s, lists);
-cleanup:
-  if (!code && !enough) code = status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
-  free(reals);
-  free(s.id);
-  free(s.level_of);
-  free(s.start);
-  free(s.across);
-  free(s.near.place);
-  free(s.near.reals);
-  return code;
-}
-
-void sph_neighbours_clear(struct sph_neighbours *lists) {
-  free(lists->start);
-  free(lists->count);
-  free(lists->j);
-  *lists = (struct sph_neighbours){0};
 }

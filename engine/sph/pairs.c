@@ -13,20 +13,12 @@
 #include <xmmintrin.h>
 #endif
 
-#include "engine/sph/neighbours.h"
+#include "engine/sph/chunks.h"
 #include "engine/sph/pairs_kernels.h"
 #include "engine/sph/spline.h"
 #include "engine/sph/tension.h"
 
-enum { CHUNK = 4096, LANES_MOST = 16, LINE = 64, RECORD_LINES_MOST = PAIR_WIDE * sizeof(double) / LINE };
-
-struct chunk {
-  size_t first, own, foreign; /* foreign: how many */
-  size_t foreign_at;          /* its first in pairs->foreign */
-  size_t start_at;            /* its own + 1 in pairs->start */
-  size_t list_at, listed;     /* its lists in pairs->neighbour, padded */
-  size_t record_at;           /* its first record of sums */
-};
+enum { LINE = 64, PAD = 7 }; /* PAD: how far neighbours.h reads beyond the end */
 
 /* Units in which the numbers of float records are of the order of 1; in double all are 1. per_...: their inverses. */
 struct units {
@@ -37,17 +29,12 @@ struct units {
 struct sph_pairs {
   struct sph_pair_options options;
   const struct sph_pair_kernels *kernels;
-  size_t n, chunks, in_columns, out_columns, real; /* real: bytes of a number in records */
-  size_t group;                                    /* particles that share a list */
+  size_t n, in_columns, out_columns, real; /* real: bytes of a number in records */
   bool artificial;                                 /* there is artificial stress */
   double *listed[5]; /* x y z h slack when the lists were made */
   double *reach;
-  struct sph_neighbours found; /* global lists, between listings only */
-  struct chunk *chunk;
-  uint32_t *slot;    /* by particle: its place among the foreign ones of the chunk at work */
-  uint32_t *foreign; /* by chunk: numbers of foreign particles, ascending, all above the chunk's own */
-  uint32_t *start, *count, *neighbour;
-  size_t foreign_capacity, neighbour_capacity, record_capacity, most_slots;
+  struct sph_chunks lists;
+  size_t record_capacity;
   void *in;          /* records, per thread */
   size_t in_capacity;
   void *out;         /* records of sums, of all chunks */
@@ -59,7 +46,7 @@ struct sph_pairs {
 
 static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
   if (wanted <= *capacity) return true;
-  const size_t more = wanted + wanted / 8 + LANES_MOST;
+  const size_t more = wanted + wanted / 8;
   void *grown = aligned_alloc(LINE, (more * size + LINE - 1) / LINE * LINE);
   if (!grown) return false;
   if (*array && *capacity) memcpy(grown, *array, *capacity * size);
@@ -78,160 +65,86 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
     p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
-    p->group = options->precision == SPH_FLOAT ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE;
     p->artificial = options->artificial_stress > 0 && options->strength;
     p->in_columns = p->artificial || options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
-    p->chunks = (n + CHUNK - 1) / CHUNK;
-    p->listed[0] = malloc(6 * (n + 1) * sizeof(double));
-    p->chunk = calloc(p->chunks + 1, sizeof *p->chunk);
-    p->slot = calloc(n + 1, sizeof *p->slot);
-    p->start = malloc((n + p->chunks + 1) * sizeof *p->start);
-    p->count = malloc((n + 1) * sizeof *p->count);
+    p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
   }
-  if (!p || !p->listed[0] || !p->chunk || !p->slot || !p->start || !p->count) {
+  if (!p || !p->listed[0] || sph_chunks_create(n, p->real == sizeof(float) ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error) != STATUS_OK) {
     sph_pairs_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
   }
   for (size_t k = 1; k < 5; k++)
-    p->listed[k] = p->listed[0] + k * (n + 1);
-  p->reach = p->listed[0] + 5 * (n + 1);
+    p->listed[k] = p->listed[0] + k * (n + PAD);
+  p->reach = p->listed[0] + 5 * (n + PAD);
   *out = p;
   return STATUS_OK;
 }
 
 void sph_pairs_free(struct sph_pairs *p) {
   if (!p) return;
-  sph_neighbours_clear(&p->found);
+  sph_chunks_clear(&p->lists);
   free(p->listed[0]);
-  free(p->chunk);
-  free(p->slot);
-  free(p->start);
-  free(p->count);
-  free(p->foreign);
-  free(p->neighbour);
   free(p->in);
   free(p->out);
   free(p);
 }
 
 size_t sph_pairs_bytes(const struct sph_pairs *p) {
-  return sizeof *p + (6 * sizeof(double) + 3 * sizeof(uint32_t)) * p->n + (sizeof(size_t) + sizeof(uint32_t)) * p->found.n +
-         (p->found.capacity + p->foreign_capacity + p->neighbour_capacity) * sizeof(uint32_t) +
-         p->record_capacity * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real;
+  return sizeof *p + 6 * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) + p->record_capacity * p->out_columns * p->real +
+         p->in_capacity * p->in_columns * p->real;
 }
 
 static double image(double along, double length) {
   return isnan(length) ? along : along - length * nearbyint(along / length);
 }
 
-bool sph_pairs_stale(const struct sph_pairs *p, size_t n, const double *x, const double *y, const double *z,
-                     const double *h) {
+bool sph_pairs_worn(const struct sph_pairs *p, size_t low, size_t high, const double *x, const double *y, const double *z,
+                    const double *h) {
   const double *periodic = p->options.periodic;
   const bool open = isnan(periodic[0]) && isnan(periodic[1]) && isnan(periodic[2]);
-  if (!p->neighbour) return true;
-  for (size_t i = 0; i < n; i++) { /* both partners of a pair within their slack: r_listed < h_i + h_j + both slacks */
+  bool worn = !p->lists.slots;
+  for (size_t i = low; i < high; i++) { /* both partners of a pair within their slack: r_listed < h_i + h_j + both slacks */
     double dx = x[i] - p->listed[0][i], dy = y[i] - p->listed[1][i], dz = z[i] - p->listed[2][i];
     if (!open) dx = image(dx, periodic[0]), dy = image(dy, periodic[1]), dz = image(dz, periodic[2]);
     const double left = p->listed[4][i] - (h[i] - p->listed[3][i]);
-    if (!(left >= 0 && dx * dx + dy * dy + dz * dz <= left * left)) return true;
+    worn |= !(left >= 0 && dx * dx + dy * dy + dz * dz <= left * left);
   }
-  return false;
+  return worn;
 }
 
-static int ascending(const void *a, const void *b) {
-  const uint32_t left = *(const uint32_t *)a, right = *(const uint32_t *)b;
-  return left < right ? -1 : left > right;
+double *const *sph_pairs_listed(struct sph_pairs *p) {
+  return p->listed;
 }
 
-/* From numbers of particles to slots of a chunk, one list per group, padded to whole registers with its first particle. */
-static bool fill(struct sph_pairs *p, struct chunk *c) {
-  const size_t end = c->first + c->own;
-  const uint32_t taken = 1U << 31;
-  size_t padded = 0;
-  c->foreign = 0;
-  for (size_t i = c->first; i < end; i++) {
-    const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
-    padded += (count + LANES_MOST - 1) / LANES_MOST * LANES_MOST;
-    if (!grow((void **)&p->foreign, &p->foreign_capacity, c->foreign_at + c->foreign + count, sizeof *p->foreign)) return false;
-    for (size_t k = 0; k < count; k++)
-      if (j[k] >= end && p->slot[j[k]] == 0) {
-        p->slot[j[k]] = 1;
-        p->foreign[c->foreign_at + c->foreign++] = j[k];
-      }
+status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
+  double *const *at = p->listed, least = INFINITY;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) reduction(min : least) num_threads(p->options.threads) if (p->options.threads > 1)
+#endif
+  for (size_t i = 0; i < p->n; i++) {
+    p->reach[i] = at[3][i] + at[4][i];
+    if (at[3][i] > 0 && at[3][i] < least) least = at[3][i];
   }
-  uint32_t *foreign = p->foreign + c->foreign_at;
-  qsort(foreign, c->foreign, sizeof *foreign, ascending);
-  for (size_t k = 0; k < c->foreign; k++)
-    p->slot[foreign[k]] = (uint32_t)(c->own + k);
-  if (!grow((void **)&p->neighbour, &p->neighbour_capacity, c->list_at + padded, sizeof *p->neighbour)) return false;
-  uint32_t *to = p->neighbour + c->list_at, at = 0;
-  for (size_t g = 0; g * p->group < c->own; g++) {
-    const size_t first = c->first + g * p->group, last = first + p->group < end ? first + p->group : end;
-    const uint32_t begin = at;
-    for (size_t i = first; i < last; i++) {
-      const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
-      for (size_t k = 0; k < count; k++) {
-        if (p->slot[j[k]] & taken) continue;
-        to[at++] = j[k] < end ? j[k] - (uint32_t)c->first : p->slot[j[k]];
-        if (p->group > 1) p->slot[j[k]] |= taken;
-      }
-    }
-    for (size_t i = first; i < last && p->group > 1; i++) {
-      const uint32_t *j = p->found.j + p->found.start[i], count = p->found.count[i];
-      for (size_t k = 0; k < count; k++)
-        p->slot[j[k]] &= ~taken;
-    }
-    p->start[c->start_at + g] = begin;
-    p->count[c->first + g] = at - begin;
-    for (; at % LANES_MOST; at++)
-      to[at] = (uint32_t)(first - c->first);
-  }
-  c->listed = at;
-  for (size_t k = 0; k < c->foreign; k++)
-    p->slot[foreign[k]] = 0;
-  return true;
-}
-
-static void choose_quantum(struct sph_pairs *p, size_t n, const double *h) {
-  double least = INFINITY;
-  for (size_t i = 0; i < n; i++)
-    if (h[i] > 0 && h[i] < least) least = h[i];
   for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
     p->quantum[d] = isnan(p->options.periodic[d]) ? least * 0x1p-20 : p->options.periodic[d] * 0x1p-32;
+  const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
+  const status code =
+      sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, p->options.threads, error);
+  if (code) return code;
+  if (!grow(&p->out, &p->record_capacity, p->lists.slots, p->out_columns * p->real) ||
+      !grow(&p->in, &p->in_capacity, threads * p->lists.most_slots, p->in_columns * p->real))
+    return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", p->n);
+  p->units_chosen = p->real == sizeof(double);
+  return STATUS_OK;
 }
 
 status sph_pairs_list(struct sph_pairs *p, size_t n, const double *x, const double *y, const double *z, const double *h,
                       const double *slack, struct error *error) {
   const double *const now[5] = {x, y, z, h, slack};
-  for (size_t i = 0; i < n; i++)
-    p->reach[i] = h[i] + slack[i];
-  status code = sph_neighbours_find(n, x, y, z, p->reach, p->options.periodic, p->kernels, &p->found, error);
-  if (code) return code;
-  struct chunk at = {0};
-  bool enough = grow((void **)&p->neighbour, &p->neighbour_capacity, LANES_MOST, sizeof *p->neighbour);
-  p->most_slots = 0;
-  for (size_t k = 0; k < p->chunks && enough; k++) {
-    struct chunk *c = &p->chunk[k];
-    *c = at;
-    c->own = n - c->first < CHUNK ? n - c->first : CHUNK;
-    enough = fill(p, c);
-    if (c->own + c->foreign > p->most_slots) p->most_slots = c->own + c->foreign;
-    at = (struct chunk){.first = c->first + c->own,
-                        .foreign_at = c->foreign_at + c->foreign,
-                        .start_at = c->start_at + c->own + 1,
-                        .list_at = c->list_at + c->listed,
-                        .record_at = c->record_at + c->own + c->foreign};
-  }
-  const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
-  enough = enough && grow(&p->out, &p->record_capacity, at.record_at, p->out_columns * p->real) &&
-           grow(&p->in, &p->in_capacity, threads * p->most_slots, p->in_columns * p->real);
-  if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
-  choose_quantum(p, n, h);
-  p->units_chosen = p->real == sizeof(double);
   for (int k = 0; k < 5; k++)
     memcpy(p->listed[k], now[k], n * sizeof(double));
-  return STATUS_OK;
+  return sph_pairs_relist(p, error);
 }
 
 static double power_of_two(double x) {
@@ -301,12 +214,12 @@ static inline int32_t quanta(double x, double per_quantum) {
   return (int32_t)(uint32_t)(uint64_t)whole;
 }
 
-static void pack(const struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
+static void pack(const struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct units *u,
                  void *in) {
-  const uint32_t *foreign = p->foreign + c->foreign_at;
+  const uint32_t *foreign = c->other;
   const bool corrected = p->options.gradient_correction, volumes = p->options.volume_weights;
   const double per[3] = {1 / p->quantum[0], 1 / p->quantum[1], 1 / p->quantum[2]};
-  for (size_t k = 0; k < c->own + c->foreign; k++) {
+  for (size_t k = 0; k < c->own + c->others; k++) {
     const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
     double room[PAIR_WIDE], *real = p->real == sizeof(double) ? (double *)in + k * p->in_columns : room;
     record(f, u, p->options.strength, i, real);
@@ -347,13 +260,13 @@ static void restore_tiny(unsigned before) {
 #endif
 }
 
-static void sum_chunk(struct sph_pairs *p, const struct chunk *c, const struct sph_pair_fields *f, const struct units *u,
+static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct units *u,
                       const struct sph_pair_constants *constants, void *in) {
   const struct sph_pair_chunk view = {.own = c->own,
-                                      .slots = c->own + c->foreign,
-                                      .start = p->start + c->start_at,
-                                      .count = p->count + c->first,
-                                      .neighbour = p->neighbour + c->list_at};
+                                      .slots = c->own + c->others,
+                                      .start = c->lists.start,
+                                      .count = c->lists.count,
+                                      .neighbour = c->lists.j};
   char *out = (char *)p->out + c->record_at * p->out_columns * p->real;
   const bool corrected = p->out_columns == PAIR_WIDE, artificial = p->artificial;
   const unsigned mode = flush_tiny();
@@ -412,13 +325,13 @@ static size_t first_from(const uint32_t *numbers, size_t count, size_t number) {
 }
 
 /* What the own particles of chunk k got as foreign ones of all chunks before it. */
-INLINE void add_foreign(const struct sph_pairs *p, const struct chunk *c, size_t k, const bool whole) {
+INLINE void add_foreign(const struct sph_pairs *p, const struct sph_chunk *c, size_t k, const bool whole) {
   const size_t columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : PAIR_NARROW, size = p->out_columns * p->real;
   char *own = (char *)p->out + c->record_at * size;
   for (size_t before = 0; before < k; before++) {
-    const struct chunk *b = &p->chunk[before];
-    const uint32_t *foreign = p->foreign + b->foreign_at;
-    for (size_t m = first_from(foreign, b->foreign, c->first); m < b->foreign && foreign[m] < c->first + c->own; m++) {
+    const struct sph_chunk *b = &p->lists.chunk[before];
+    const uint32_t *foreign = b->other;
+    for (size_t m = first_from(foreign, b->others, c->first); m < b->others && foreign[m] < c->first + c->own; m++) {
       char *to = own + (foreign[m] - c->first) * size;
       const char *from = (const char *)p->out + (b->record_at + b->own + m) * size;
       const double signal = fmax(at(whole, to, SUM_SIGNAL), at(whole, from, SUM_SIGNAL));
@@ -438,7 +351,7 @@ INLINE void add_foreign(const struct sph_pairs *p, const struct chunk *c, size_t
 /* The sums of chunk k in SI units; returns how many neighbours its particles have. */
 INLINE size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
                      const struct sph_pair_sums *sums, const bool whole, const bool corrected) {
-  const struct chunk *c = &p->chunk[k];
+  const struct sph_chunk *c = &p->lists.chunk[k];
   const size_t size = (corrected ? PAIR_WIDE : PAIR_NARROW) * (whole ? sizeof(double) : sizeof(float));
   const char *own = (const char *)p->out + c->record_at * size;
   const double acceleration = u->velocity * u->velocity / u->length, rate = u->velocity / u->length;
@@ -502,18 +415,18 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
 #endif
-  for (size_t k = 0; k < p->chunks; k++) {
+  for (size_t k = 0; k < p->lists.count; k++) {
 #ifdef _OPENMP
     const size_t thread = (size_t)omp_get_thread_num();
 #else
     const size_t thread = 0;
 #endif
-    sum_chunk(p, &p->chunk[k], f, &u, &constants, (char *)p->in + thread * p->most_slots * p->in_columns * p->real);
+    sum_chunk(p, &p->lists.chunk[k], f, &u, &constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
   }
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : within) num_threads(o->threads) if (o->threads > 1)
 #endif
-  for (size_t k = 0; k < p->chunks; k++)
+  for (size_t k = 0; k < p->lists.count; k++)
     within += unpack_chunk(p, k, &u, f, sums);
   p->within = within;
 }

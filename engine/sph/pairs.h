@@ -67,14 +67,18 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);
 
-/* Have particles moved (or grown in h) by more than their slack, so that a list may miss a pair? */
-bool sph_pairs_stale(const struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
-                     const double *h);
+/* Has one of the particles low .. high - 1 moved (or grown in h) by more than its slack, so that a list may miss a pair? Also when
+ * there are no lists yet. */
+bool sph_pairs_worn(const struct sph_pairs *pairs, size_t low, size_t high, const double *x, const double *y, const double *z,
+                    const double *h);
 /* New lists for particles in sorted order: pairs with r < h_i + h_j + slack_i + slack_j. `slack` (m) is how far each may go
- * before the lists are stale; fast particles are given more. Memory is bounded by n, whatever the spatial extent.
+ * before the lists are worn; fast particles are given more. Memory is bounded by n, whatever the spatial extent.
  * STATUS_MEMORY; STATUS_CONTENT when a periodic box is thinner than twice the reach of a pair. */
 status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const double *y, const double *z,
                       const double *h, const double *slack, struct error *error);
+/* x y z h slack of the last listing, n each; what the lists are made of again after a restart has put them back. */
+double *const *sph_pairs_listed(struct sph_pairs *pairs);
+status sph_pairs_relist(struct sph_pairs *pairs, struct error *error);
 void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields,
                    const struct sph_pair_sums *sums);
 /* Mean number of neighbours within 2h at the last pass (both sides counted, itself not). */

@@ -46,15 +46,35 @@ struct sph_pair_constants {
   bool strength, volume_weights, wrapped;
 };
 
+/* Boxes of neighbours.h: all particles of one lie within `half` of `middle`, and none reaches further than `reach`. */
+struct sph_near_box {
+  double middle[3], half[3], reach;
+};
+struct sph_near_boxes { /* eight, side by side; what is not there has a middle of NaN and is near nothing */
+  double middle[3][8], half[3][8], reach[8];
+};
+struct sph_near_particles {
+  const double *place[3], *reach; /* by particle */
+  const uint32_t *first;          /* by group: its first particle, and how many */
+  const uint8_t *size;
+};
+
 struct sph_pair_kernels {
   const char *name;
   /* [gradient corrected][artificial stress]: which records are wide */
   void (*sum_double[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const double *in, double *out);
   void (*sum_float[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const float *in, float *out);
-  /* Of `count` candidates those with r < reach + reach_j and a number of at least `lowest` go to `found`; returns how many. Arrays may be read, and `found`
-   * written, up to 7 beyond the end. */
-  size_t (*within)(size_t count, const double *x, const double *y, const double *z, const double *reach, const uint32_t *id,
-                   const double at[3], double own_reach, const double periodic[3], uint32_t lowest, uint32_t *found);
+  /* Of the children of `count` parent boxes (8 each) those that may hold particles within reach of `own`, and that are not below
+   * `lowest`: how many, and their numbers in `found` (8 times count). */
+  size_t (*near_boxes)(const struct sph_near_boxes *boxes, const uint32_t *parent, size_t count, const struct sph_near_box *own,
+                       const double period[3], uint32_t lowest, uint32_t *found);
+  /* Likewise of the particles of `count` groups: x y z reach to `at`, numbers to `number` (17 times count each). */
+  size_t (*near_particles)(const struct sph_near_particles *particles, const uint32_t *group, size_t count,
+                           const struct sph_near_box *own, const double period[3], double *at[4], uint32_t *number);
+  /* Of `count` candidates at x y z reach the numbers of those within the sum of reaches of one of `owns` others; `at` and `number`
+   * may be read, and `found` written, up to 7 beyond the end. */
+  size_t (*near_pairs)(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
+                       const double period[3], uint32_t *found);
 };
 
 extern const struct sph_pair_kernels sph_pairs_kernels_baseline;

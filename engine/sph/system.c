@@ -15,7 +15,6 @@ void sph_system_free(struct sph_system *s) {
   free(s->arena);
   free(s->id);
   free(s->held);
-  free(s->listed[0]);
   free(s->order);
   free(s->solid);
   free(s->block);
@@ -23,7 +22,7 @@ void sph_system_free(struct sph_system *s) {
 }
 
 size_t sph_system_bytes(const struct sph_system *s) {
-  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * (5 * sizeof(double) + 2 * sizeof(uint32_t)) +
+  size_t bytes = sizeof *s + s->arena_doubles * sizeof(double) + s->n * 2 * sizeof(uint32_t) +
                  s->body_count * sizeof *s->solid + s->block_count * sizeof *s->block + sph_pairs_bytes(s->pairs);
   if (s->held) bytes += s->n * sizeof *s->held;
   for (size_t b = 0; b < s->body_count; b++)

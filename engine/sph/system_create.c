@@ -138,16 +138,13 @@ static status take_columns(struct sph_system *s, const struct sph_particles *p, 
   s->stride = (s->n + 7) / 8 * 8 + 8; /* an odd number of cache lines would be better still: columns must not share sets */
   s->arena_doubles = count * s->stride;
   s->arena = huge_pages(s->arena_doubles * sizeof(double));
-  s->listed[0] = calloc(5 * s->n, sizeof(double));
   s->id = malloc(s->n * sizeof *s->id);
   s->order = malloc(s->n * sizeof *s->order);
   if (p->held) s->held = malloc(s->n * sizeof *s->held);
-  if (!s->arena || !s->listed[0] || !s->id || !s->order || (p->held && !s->held))
+  if (!s->arena || !s->id || !s->order || (p->held && !s->held))
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles of %zu columns (%.3g GB)", s->n, count,
                        (double)(s->arena_doubles * sizeof(double)) / 1e9);
   memset(s->arena, 0, s->arena_doubles * sizeof(double));
-  for (int k = 1; k < 5; k++)
-    s->listed[k] = s->listed[0] + (size_t)k * s->n;
   double *next = s->arena;
   for (size_t r = 0; r < SPH_COLUMNS; r++)
     if (is_there(rows[r].need, p, s)) {

@@ -53,6 +53,7 @@ struct sph_block {
   double clamped;           /* J */
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
+  bool worn;                /* some particle has used up its slack */
   size_t lost;              /* place of a particle that is no longer finite, or n */
 };
 
@@ -92,7 +93,6 @@ struct sph_system {
   uint32_t *id;     /* id of the particle that stands at a place */
   uint8_t *held;    /* enum sph_freedom bits; NULL when none is */
   double dt;        /* s, of the step under way */
-  double *listed[5]; /* x y z h slack at the last listing: a restart makes the same lists */
   uint32_t *order;
   size_t body_count, block_count;
   struct sph_solid *solid; /* its bodies */

@@ -21,7 +21,7 @@ static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   for (size_t k = 0; k < kept; k++)
     out[count++] = (struct section){*slot[k], s->n * sizeof(double)};
   for (int k = 0; k < 5; k++)
-    out[count++] = (struct section){s->listed[k], s->n * sizeof(double)};
+    out[count++] = (struct section){sph_pairs_listed(s->pairs)[k], s->n * sizeof(double)};
   out[count++] = (struct section){s->id, s->n * sizeof *s->id};
   if (s->held) out[count++] = (struct section){s->held, s->n};
   return count;

@@ -27,6 +27,7 @@ static void run_blocks(struct sph_system *s, bool after) {
     const size_t count = after ? body->after_count : body->before_count;
     for (size_t m = 0; m < count; m++)
       hook[m](s, body, block);
+    if (!after) block->worn = sph_pairs_worn(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
   }
 }
 
@@ -77,14 +78,14 @@ static void wrap(double *x, size_t n, double length) {
 
 bool sph_system_step_relist(struct sph_system *s) {
   struct error error = {0};
-  if (sph_pairs_list(s->pairs, s->n, s->listed[0], s->listed[1], s->listed[2], s->listed[3], s->listed[4], &error) == STATUS_OK) return true;
+  if (sph_pairs_relist(s->pairs, &error) == STATUS_OK) return true;
   snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
   return false;
 }
 
-/* How far each particle may go before lists are stale: fast ones have more room, so that a spray of debris does not make new
+/* How far each particle may go before lists are worn: fast ones have more room, so that a spray of debris does not make new
  * lists all the time, and slow ones have little, so that their lists are short. A thin periodic box bounds the reach. */
-static void set_slack(struct sph_system *s) {
+static void set_slack(struct sph_system *s, double *slack) {
   const struct sph_columns *c = &s->c;
   double thinnest = INFINITY;
   for (int d = 0; d < 3; d++)
@@ -93,21 +94,25 @@ static void set_slack(struct sph_system *s) {
   for (size_t i = 0; i < s->n; i++) {
     const double h = c->h[i], most = fmin(ROOM * h, fmax(s->p.skin * h, reach - h));
     const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
-    s->listed[4][i] = fmin(most, fmax(s->p.skin * h, way));
+    slack[i] = fmin(most, fmax(s->p.skin * h, way));
   }
 }
 
 /* New lists when the old ones may miss a pair; now and then sorted anew, by the count of listings alone. */
 static bool list(struct sph_system *s) {
-  if (s->now.listings > 0 && !sph_pairs_stale(s->pairs, s->n, s->c.x, s->c.y, s->c.z, s->c.h)) return true;
+  bool worn = s->now.listings == 0;
+  for (size_t k = 0; k < s->block_count; k++)
+    worn |= s->block[k].worn;
+  if (!worn) return true;
   wrap(s->c.x, s->n, s->p.periodic[0]);
   wrap(s->c.y, s->n, s->p.periodic[1]);
   wrap(s->c.z, s->n, s->p.periodic[2]);
   if (s->now.listings++ % LISTINGS_PER_SORT == 0 && !sort(s)) return false;
   const double *const from[4] = {s->c.x, s->c.y, s->c.z, s->c.h};
+  double *const *listed = sph_pairs_listed(s->pairs);
   for (int k = 0; k < 4; k++)
-    memcpy(s->listed[k], from[k], s->n * sizeof(double));
-  set_slack(s);
+    memcpy(listed[k], from[k], s->n * sizeof(double));
+  set_slack(s, listed[4]);
   return sph_system_step_relist(s);
 }
 

@@ -11,7 +11,6 @@
 #include <time.h>
 
 #include "engine/sph/bodies.h"
-#include "engine/sph/neighbours.h"
 #include "engine/sph/order.h"
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
@@ -50,7 +49,7 @@ static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
 }
 
 static double *column(size_t n) {
-  double *a = calloc(n, sizeof *a);
+  double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads that far */
   if (!a) fail("memory", NULL);
   return a;
 }
@@ -133,12 +132,12 @@ static double pass(const struct cloud *c, const struct sph_pair_options *options
 }
 
 static double reference(const struct cloud *c) {
-  struct sph_neighbours lists = {0};
+  struct reference_sph_lists lists;
   struct error error = {0};
   double *const *a = c->column, *reach = column(c->n), best = INFINITY;
   for (size_t i = 0; i < c->n; i++)
     reach[i] = a[3][i] + c->slack[i];
-  if (sph_neighbours_find(c->n, a[0], a[1], a[2], reach, usual.periodic, sph_pairs_kernels_choose(), &lists, &error) != STATUS_OK)
+  if (reference_sph_lists_make(c->n, 4096, (const double *const *)a, reach, usual.periodic, 1, &lists, &error) != STATUS_OK)
     fail("reference lists:", &error);
   struct sph_pair_sums sums = c->sums;
   sums.ax = c->other[0], sums.ay = c->other[1], sums.az = c->other[2], sums.heating = c->other[12], sums.signal = c->other[13];
@@ -149,7 +148,7 @@ static double reference(const struct cloud *c) {
     reference_sph_sum(c->n, lists.start, lists.count, lists.j, &usual, &c->fields, NULL, &sums);
     best = fmin(best, now() - start);
   }
-  sph_neighbours_clear(&lists);
+  reference_sph_lists_free(&lists);
   free(reach);
   return best;
 }

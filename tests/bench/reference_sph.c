@@ -1,6 +1,7 @@
 #include "tests/bench/reference_sph.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "engine/sph/spline.h"
@@ -54,4 +55,50 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
           sums->gradient[3 * a + b][j] -= wj * v[a] * w[b];
         }
     }
+}
+
+/* Appends one chunk's lists; false when they are not as they should be. */
+static bool append(const struct sph_neighbour_lists *lists, size_t first, size_t own, size_t *used, struct reference_sph_lists *out) {
+  bool good = lists->start[0] == 0;
+  out->j = realloc(out->j, (*used + lists->start[own] + 1) * sizeof *out->j);
+  if (!out->j) return false;
+  for (size_t k = 0; k < own; k++) {
+    const uint32_t *j = lists->j + lists->start[k], count = lists->count[k], room = lists->start[k + 1] - lists->start[k];
+    good &= count <= room && room < count + SPH_LIST_ALIGN && room % SPH_LIST_ALIGN == 0;
+    out->start[first + k] = *used;
+    out->count[first + k] = count;
+    for (uint32_t m = 0; m < room && good; m++) {
+      good &= m >= count ? j[m] == k : j[m] > k && (m == 0 || j[m] > j[m - 1]);
+      if (m < count) out->j[(*used)++] = j[m] + (uint32_t)first;
+    }
+  }
+  return good;
+}
+
+status reference_sph_lists_make(size_t n, size_t chunk, const double *const at[3], const double *reach, const double periodic[3],
+                                int threads, struct reference_sph_lists *out, struct error *error) {
+  struct sph_neighbours *neighbours = sph_neighbours_create(n, chunk, 1, sph_pairs_kernels_choose());
+  struct sph_neighbour_lists lists = {.start = malloc((chunk + 1) * sizeof(uint32_t)), .count = malloc(chunk * sizeof(uint32_t))};
+  size_t used = 0;
+  *out = (struct reference_sph_lists){.start = malloc(n * sizeof(size_t)), .count = malloc(n * sizeof(uint32_t))};
+  status code = STATUS_MEMORY;
+  if (neighbours && lists.start && lists.count && out->start && out->count)
+    code = sph_neighbours_find(neighbours, n, at[0], at[1], at[2], reach, periodic, threads, error);
+  for (size_t first = 0; first < n && !code; first += chunk)
+    if (!sph_neighbours_list(neighbours, first / chunk, &lists) ||
+        !append(&lists, first, n - first < chunk ? n - first : chunk, &used, out))
+      code = status_fail(error, STATUS_INTERNAL, "bad lists of the chunk from particle %zu on", first);
+  if (code) reference_sph_lists_free(out);
+  free(lists.start);
+  free(lists.count);
+  free(lists.j);
+  sph_neighbours_free(neighbours);
+  return code;
+}
+
+void reference_sph_lists_free(struct reference_sph_lists *lists) {
+  free(lists->start);
+  free(lists->count);
+  free(lists->j);
+  *lists = (struct reference_sph_lists){0};
 }

@@ -3,9 +3,22 @@
 #ifndef CLAST_TESTS_BENCH_REFERENCE_SPH_H
 #define CLAST_TESTS_BENCH_REFERENCE_SPH_H
 
+#include "engine/sph/neighbours.h"
 #include "engine/sph/pairs.h"
 
-/* Neighbours j > i of i: j[start[i]] .. j[start[i] + count[i] - 1]. No correction of the gradient. `artificial` (six columns of
+/* Neighbours j > i of i: j[start[i]] .. j[start[i] + count[i] - 1], ascending. */
+struct reference_sph_lists {
+  size_t *start;
+  uint32_t *count, *j;
+};
+
+/* Those lists from what sph_neighbours_list gives for chunks of `chunk` particles; arguments as for sph_neighbours_find. Lists
+ * that are no lists as neighbours.h says are an error. */
+status reference_sph_lists_make(size_t n, size_t chunk, const double *const at[3], const double *reach, const double periodic[3],
+                                int threads, struct reference_sph_lists *out, struct error *error);
+void reference_sph_lists_free(struct reference_sph_lists *lists);
+
+/* No correction of the gradient. `artificial` (six columns of
  * n) may be NULL. */
 void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, const uint32_t *j,
                        const struct sph_pair_options *options, const struct sph_pair_fields *fields,

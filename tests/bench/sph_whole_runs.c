@@ -56,7 +56,7 @@ static struct phases measure(struct sph_system *s) {
   const double start = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   sph_pairs_sum(s->pairs, s->n, &f, &sums);
   const double summed = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  volatile bool stale = sph_pairs_stale(s->pairs, s->n, c->x, c->y, c->z, c->h);
+  volatile bool stale = sph_pairs_worn(s->pairs, 0, s->n, c->x, c->y, c->z, c->h);
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   if (!sph_system_step_relist(s)) fail(s->failure, NULL);

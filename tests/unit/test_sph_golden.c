@@ -2,9 +2,9 @@
 #include "tests/golden.h"
 
 enum { RESULTS_VERSION = 2 };
-#define GOLDEN_SPHERE "148fc873da543a94e23cadf66939278b"
-#define GOLDEN_ROD "a05b12616952ccc398936f33020e2726"
-#define GOLDEN_RINGS "902c29367ddad135e72f9e5f57ef71bb"
+#define GOLDEN_SPHERE "ac9f9cde572852afd2c615a5b073f2bc"
+#define GOLDEN_ROD "17ffa36ba1d7d9ebd76955e2ac522b04"
+#define GOLDEN_RINGS "e25f0ed290d5c614042437d2d0051300"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {
   struct ran ran = run_case_run(&sph_engine, inputs, 11);

@@ -10,7 +10,6 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/neighbours.h"
 #include "engine/sph/order.h"
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
@@ -82,9 +81,9 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
   struct error error = {0};
   struct summed *s = calloc(1, sizeof *s);
   assert_int_equal(sph_pairs_create(c->n, options, &pairs, &error), STATUS_OK);
-  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
-  assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_false(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   for (int k = 0; k < 6; k++) {
@@ -122,8 +121,9 @@ static void compare(const struct cloud *c, const struct summed *s, const struct 
 
 static struct summed *reference(const struct cloud *c, const struct sph_pair_options *options) {
   struct summed *s = calloc(1, sizeof *s);
-  struct sph_neighbours lists = {0};
+  struct reference_sph_lists lists;
   struct error error = {0};
+  const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
   double *artificial[6];
   for (int k = 0; k < 6; k++)
     artificial[k] = calloc(MOST, sizeof(double));
@@ -135,14 +135,12 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
     for (int k = 0; k < 6; k++)
       artificial[k][i] = r[k];
   }
-  assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->a[3], options->periodic,
-                                       &sph_pairs_kernels_baseline, &lists, &error),
-                   STATUS_OK);
+  assert_int_equal(reference_sph_lists_make(c->n, c->n, place, c->a[3], options->periodic, 1, &lists, &error), STATUS_OK);
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f,
                     options->artificial_stress > 0 ? (const double *const *)artificial : NULL, &sums);
-  sph_neighbours_clear(&lists);
+  reference_sph_lists_free(&lists);
   for (int k = 0; k < 6; k++)
     free(artificial[k]);
   return s;
@@ -409,7 +407,7 @@ static void not_finite_does_no_harm(void **state) {
     for (int k = 0; k < 4; k++) {
       const double x = c->a[k][5 + k];
       c->a[k][5 + k] = bad[k];
-      assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+      assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
       assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
       sph_pairs_sum(pairs, c->n, &f, &sums);
       c->a[k][5 + k] = x;
@@ -478,33 +476,46 @@ static void bits_do_not_depend_on_threads(void **state) {
   free(one), free(c);
 }
 
-static int ascending(const void *a, const void *b) {
-  const uint32_t left = *(const uint32_t *)a, right = *(const uint32_t *)b;
-  return left < right ? -1 : left > right;
+static void swap_particles(struct cloud *c, size_t i, size_t j) {
+  for (int k = 0; k < 4; k++) {
+    const double kept = c->a[k][i];
+    c->a[k][i] = c->a[k][j];
+    c->a[k][j] = kept;
+  }
 }
 
+/* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into chunks of any
+ * size, sorted in space or not at all, reaches 10:1, and with particles far off, nowhere, without reach and upon each other. */
 static void lists_equal_brute_force(void **state) {
   (void)state;
-  for (int variant = 0; variant < 4; variant++) {
-    const bool periodic = variant & 1;
+  static const char *const classes[] = {"baseline", "v3", "v4"};
+  static const size_t chunks[] = {4096, 256, 100};
+  for (int variant = 0; variant < 24; variant++) {
+    const bool periodic = variant & 1, shuffled = variant & 2, odd = variant & 4;
     struct cloud *c = cloud_make(12, 1, true, 4);
     double length[3] = {periodic ? 12 : (double)NAN, NAN, periodic ? 15 : (double)NAN};
     for (size_t i = 0; i < c->n; i++)
-      c->slack[i] = c->a[3][i] = periodic ? fmin(c->a[3][i], 3) : c->a[3][i];
-    c->a[1][17] = 1e9, c->a[1][20] = -1e15, c->a[1][25] = variant & 2 ? NAN : 5; /* fragments far off cost nothing */
-    struct sph_neighbours lists = {0};
+      c->a[3][i] = periodic ? fmin(c->a[3][i], 3) : c->a[3][i];
+    uint64_t seed = 5;
+    for (size_t i = c->n; shuffled && i-- > 1;)
+      swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
+    c->a[1][17] = 1e9, c->a[1][20] = -1e15;
+    if (odd) {
+      c->a[1][25] = NAN, c->a[0][300] = INFINITY, c->a[2][301] = -INFINITY, c->a[1][1000] = 1e200, c->a[3][700] = 0;
+      for (int k = 0; k < 3; k++)
+        c->a[k][40] = c->a[k][41], c->a[k][1200] = c->a[k][3];
+    }
+    struct reference_sph_lists lists;
     struct error error = {0};
-    setenv("CLAST_CPU", variant & 2 ? "v4" : "baseline", 1);
-    assert_int_equal(sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->slack, length, sph_pairs_kernels_choose(),
-                                         &lists, &error),
+    const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
+    setenv("CLAST_CPU", classes[variant % 3], 1);
+    assert_int_equal(reference_sph_lists_make(c->n, chunks[variant / 2 % 3], place, c->a[3], length, 1 + variant / 12, &lists, &error),
                      STATUS_OK);
-    size_t total = 0;
     for (size_t i = 0; i < c->n; i++) {
-      uint32_t *j = lists.j + lists.start[i];
-      qsort(j, lists.count[i], sizeof *j, ascending);
+      const uint32_t *j = lists.j + lists.start[i];
       size_t at = 0;
       for (size_t k = i + 1; k < c->n; k++) {
-        double square = 0, reach = c->slack[i] + c->slack[k];
+        double square = 0, reach = c->a[3][i] + c->a[3][k];
         for (int d = 0; d < 3; d++) {
           double along = c->a[d][i] - c->a[d][k];
           if (!isnan(length[d])) along -= length[d] * nearbyint(along / length[d]);
@@ -515,26 +526,69 @@ static void lists_equal_brute_force(void **state) {
         assert_int_equal(j[at++], k);
       }
       assert_int_equal(lists.count[i], at);
-      total += at;
     }
-    assert_true(lists.capacity < 2 * total + 10000);
-    sph_neighbours_clear(&lists);
+    reference_sph_lists_free(&lists);
     free(c);
   }
   unsetenv("CLAST_CPU");
 }
 
+/* A list for several particles is theirs together: sorted in space or not, with members far apart. */
+static void shared_lists_join_those_of_their_members(void **state) {
+  (void)state;
+  enum { CHUNK = 240 };
+  for (int variant = 0; variant < 8; variant++) {
+    const size_t share = variant & 1 ? 4 : 2;
+    struct cloud *c = cloud_make(10, 1, variant & 4, 4);
+    uint64_t seed = 5;
+    for (size_t i = c->n; variant & 2 && i-- > 1;)
+      swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
+    c->a[1][11] = 1e9, c->a[1][26] = -1e9, c->a[0][27] = 1e15, c->a[0][500] = NAN, c->n -= 1;
+    struct reference_sph_lists single;
+    struct error error = {0};
+    const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
+    assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error), STATUS_OK);
+    struct sph_neighbours *neighbours = sph_neighbours_create(c->n, CHUNK, share, sph_pairs_kernels_choose());
+    uint32_t start[CHUNK + 1], count[CHUNK];
+    struct sph_neighbour_lists lists = {.start = start, .count = count};
+    assert_int_equal(sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1, &error), STATUS_OK);
+    for (size_t chunk = 0; chunk * CHUNK < c->n; chunk++) {
+      const size_t base = chunk * CHUNK, own = c->n - base < CHUNK ? c->n - base : CHUNK;
+      assert_true(sph_neighbours_list(neighbours, chunk, &lists));
+      for (size_t g = 0; g * share < own; g++) {
+        const size_t first = g * share, last = first + share < own ? first + share : own;
+        char met[MOST] = {0}, is_there[MOST] = {0};
+        for (size_t i = first; i < last; i++)
+          for (size_t k = 0; k < single.count[base + i]; k++)
+            met[single.j[single.start[base + i] + k]] = 1;
+        assert_true(start[g] % SPH_LIST_ALIGN == 0 && start[g + 1] >= start[g] + count[g]);
+        for (size_t k = 0; k < count[g]; k++) {
+          const uint32_t j = lists.j[start[g] + k];
+          assert_true(j > first && (k == 0 || j > lists.j[start[g] + k - 1]));
+          assert_true(met[base + j] || j < last);
+          is_there[base + j] = 1;
+        }
+        for (size_t k = count[g]; k < start[g + 1] - start[g]; k++)
+          assert_int_equal(lists.j[start[g] + k], first);
+        for (size_t j = 0; j < c->n; j++)
+          assert_true(is_there[j] || !met[j]);
+      }
+    }
+    free(lists.j);
+    sph_neighbours_free(neighbours);
+    reference_sph_lists_free(&single);
+    free(c);
+  }
+}
+
 static void thin_periodic_boxes_are_refused(void **state) {
   (void)state;
   struct cloud *c = cloud_make(4, 1, false, 4);
-  struct sph_neighbours lists = {0};
+  struct reference_sph_lists lists;
   struct error error = {0};
-  const double length[3] = {NAN, 4, NAN};
-  assert_int_equal(
-      sph_neighbours_find(c->n, c->a[0], c->a[1], c->a[2], c->a[3], length, sph_pairs_kernels_choose(), &lists, &error),
-      STATUS_CONTENT);
+  const double length[3] = {NAN, 4, NAN}, *const place[3] = {c->a[0], c->a[1], c->a[2]};
+  assert_int_equal(reference_sph_lists_make(c->n, 64, place, c->a[3], length, 1, &lists, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "too thin"));
-  sph_neighbours_clear(&lists);
   free(c);
 }
 
@@ -548,13 +602,13 @@ static void lists_wear_out_with_the_slack(void **state) {
   assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
   const double x = c->a[0][7], h = c->a[3][7];
   c->a[0][7] = x + 0.9 * c->slack[7];
-  assert_false(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_false(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   c->a[0][7] = x - 1.1 * c->slack[7];
-  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   c->a[0][7] = x, c->a[3][7] = h + 1.1 * c->slack[7];
-  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   c->a[0][7] = x + 0.6 * c->slack[7], c->a[3][7] = h + 0.6 * c->slack[7];
-  assert_true(sph_pairs_stale(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
+  assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
   sph_pairs_free(pairs);
   free(c);
 }
@@ -614,6 +668,7 @@ int main(void) {
       cmocka_unit_test(float_is_as_good_far_away),
       cmocka_unit_test(bits_do_not_depend_on_threads),
       cmocka_unit_test(lists_equal_brute_force),
+      cmocka_unit_test(shared_lists_join_those_of_their_members),
       cmocka_unit_test(thin_periodic_boxes_are_refused),
       cmocka_unit_test(lists_wear_out_with_the_slack),
       cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near),

@@ -1,0 +1,107 @@
+#include "engine/sph/chunks.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BITS = 64 };
+
+status sph_chunks_create(size_t n, size_t share, const struct sph_pair_kernels *kernels, struct sph_chunks *out,
+                         struct error *error) {
+  struct sph_chunks c = {.count = (n + SPH_CHUNK - 1) / SPH_CHUNK, .share = share};
+  c.chunk = calloc(c.count + 1, sizeof *c.chunk);
+  c.start = malloc((2 * n + c.count + 1) * sizeof *c.start);
+  c.neighbours = sph_neighbours_create(n, SPH_CHUNK, share, kernels);
+  *out = c;
+  if (c.chunk && c.start && c.neighbours) return STATUS_OK;
+  sph_chunks_clear(out);
+  return status_fail(error, STATUS_MEMORY, "no memory for lists of neighbours of %zu particles", n);
+}
+
+void sph_chunks_clear(struct sph_chunks *c) {
+  for (size_t k = 0; c->chunk && k < c->count; k++) {
+    free(c->chunk[k].lists.j);
+    free(c->chunk[k].other);
+  }
+  sph_neighbours_free(c->neighbours);
+  free(c->chunk);
+  free(c->start);
+  *c = (struct sph_chunks){0};
+}
+
+size_t sph_chunks_bytes(const struct sph_chunks *c) {
+  size_t bytes = sph_neighbours_bytes(c->neighbours);
+  for (size_t k = 0; k < c->count; k++)
+    bytes += sizeof *c->chunk + (c->chunk[k].lists.capacity + c->chunk[k].other_capacity + 2 * c->chunk[k].own + 1) * sizeof(uint32_t);
+  return bytes;
+}
+
+static size_t bits_below(uint64_t word, uint32_t bit) {
+  return (size_t)__builtin_popcountll(word & (((uint64_t)1 << bit) - 1));
+}
+
+/* From numbers, counted from the chunk's first one, to slots. Foreign ones stand at the end of each list, lists being ascending:
+ * a bit for each of them, and how many bits are set before a word of them. */
+static bool find_others(struct sph_chunk *c, size_t lists, size_t n) {
+  const size_t words = (n - c->first) / BITS + 1;
+  uint64_t *met = calloc(words, sizeof *met);
+  uint32_t *before = malloc(words * sizeof *before), total = 0, last = 0;
+  const struct sph_neighbour_lists *l = &c->lists;
+  bool enough = met && before;
+  for (size_t k = 0; enough && k < lists; k++)
+    for (const uint32_t *list = l->j + l->start[k], *j = list + l->count[k]; j > list && j[-1] >= c->own; j--) {
+      met[j[-1] / BITS] |= (uint64_t)1 << j[-1] % BITS;
+      last = j[-1] > last ? j[-1] : last;
+    }
+  for (size_t w = 0; enough && w <= last / BITS; w++) {
+    before[w] = total;
+    total += (uint32_t)__builtin_popcountll(met[w]);
+  }
+  c->others = total;
+  if (enough && total > c->other_capacity) {
+    free(c->other);
+    c->other_capacity = total + total / 8;
+    c->other = malloc(c->other_capacity * sizeof *c->other);
+    if (!c->other) c->other_capacity = 0;
+    enough = c->other;
+  }
+  if (!enough) goto cleanup;
+  for (size_t w = 0, at = 0; w <= last / BITS; w++)
+    for (uint64_t word = met[w]; word; word &= word - 1)
+      c->other[at++] = (uint32_t)(c->first + w * BITS) + (uint32_t)__builtin_ctzll(word);
+  for (size_t k = 0; k < lists; k++)
+    for (uint32_t *list = l->j + l->start[k], *j = list + l->count[k]; j > list && j[-1] >= c->own; j--) {
+      const uint32_t word = j[-1] / BITS;
+      j[-1] = (uint32_t)(c->own + before[word] + bits_below(met[word], j[-1] % BITS));
+    }
+cleanup:
+  free(met);
+  free(before);
+  return enough;
+}
+
+status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const double *y, const double *z, const double *reach,
+                       const double periodic[3], int threads, struct error *error) {
+  const status code = sph_neighbours_find(s->neighbours, n, x, y, z, reach, periodic, threads, error);
+  bool enough = true;
+  if (code) return code;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1) reduction(&& : enough)
+#endif
+  for (size_t k = 0; k < s->count; k++) {
+    struct sph_chunk *c = &s->chunk[k];
+    c->first = k * SPH_CHUNK;
+    c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
+    c->lists.start = s->start + 2 * c->first + k;
+    c->lists.count = c->lists.start + c->own + 1;
+    enough = sph_neighbours_list(s->neighbours, k, &c->lists) && find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
+  }
+  if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
+  s->slots = s->most_slots = 0;
+  for (size_t k = 0; k < s->count; k++) {
+    struct sph_chunk *c = &s->chunk[k];
+    c->record_at = s->slots;
+    s->slots += c->own + c->others;
+    if (c->own + c->others > s->most_slots) s->most_slots = c->own + c->others;
+  }
+  return STATUS_OK;
+}
