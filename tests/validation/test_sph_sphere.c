@@ -92,7 +92,7 @@ static void pinned(const char *what, double value, double expected, double toler
 
 /* How far damage has come, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of impact and
  * waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the paper's numbers but this
- * engine's of results_version 1, to be pinned anew when physics changes on purpose.
+ * engine's of results_version 2, to be pinned anew when physics changes on purpose.
  * What means the same physics moved them by (cfl 0.2, cfl 0.4, precision float, flaws compact):
  *                      3 us: 0 %, +5 %, 0, +1 %      16 us: +0.7, -0.8, 0, +0.4 %      share reached: +0.4, -0.6, +0.1, 0 %
  * What means another one (cracks twice as fast, half as fast, k halved, damage not applied to shear, not to tension):
