@@ -16,7 +16,6 @@
 #include "engine/sph/chunks.h"
 #include "engine/sph/pairs_kernels.h"
 #include "engine/sph/spline.h"
-#include "engine/sph/tension.h"
 
 enum { LINE = 64, PAD = 7 }; /* PAD: how far neighbours.h reads beyond the end */
 
@@ -31,6 +30,7 @@ struct sph_pairs {
   const struct sph_pair_kernels *kernels;
   size_t n, in_columns, out_columns, real; /* real: bytes of a number in records */
   bool artificial;                                 /* there is artificial stress */
+  double *opposed[6]; /* the artificial stress R of each particle, m^5/(kg s^2); NULL without */
   double *listed[5]; /* x y z h slack when the lists were made */
   double *reach;
   struct sph_chunks lists;
@@ -69,13 +69,17 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->in_columns = p->artificial || options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
+    if (p->artificial) p->opposed[0] = malloc(6 * (n + 1) * sizeof(double));
   }
-  if (!p || !p->listed[0] || sph_chunks_create(n, p->real == sizeof(float) ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error) != STATUS_OK) {
+  if (!p || !p->listed[0] || (p->artificial && !p->opposed[0]) ||
+      sph_chunks_create(n, p->real == sizeof(float) ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error) != STATUS_OK) {
     sph_pairs_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
   }
   for (size_t k = 1; k < 5; k++)
     p->listed[k] = p->listed[0] + k * (n + PAD);
+  for (size_t k = 1; k < 6 && p->artificial; k++)
+    p->opposed[k] = p->opposed[0] + k * (n + 1);
   p->reach = p->listed[0] + 5 * (n + PAD);
   *out = p;
   return STATUS_OK;
@@ -85,14 +89,15 @@ void sph_pairs_free(struct sph_pairs *p) {
   if (!p) return;
   sph_chunks_clear(&p->lists);
   free(p->listed[0]);
+  free(p->opposed[0]);
   free(p->in);
   free(p->out);
   free(p);
 }
 
 size_t sph_pairs_bytes(const struct sph_pairs *p) {
-  return sizeof *p + 6 * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) + p->record_capacity * p->out_columns * p->real +
-         p->in_capacity * p->in_columns * p->real;
+  return sizeof *p + (p->artificial ? 12 : 6) * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) +
+         p->record_capacity * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real;
 }
 
 static double image(double along, double length) {
@@ -171,21 +176,6 @@ static void choose_units(struct sph_pairs *p, size_t n, const struct sph_pair_fi
   p->units_chosen = true;
 }
 
-/* The record of particle i but for its position. */
-static inline __attribute__((always_inline)) void record(const struct sph_pair_fields *f, const struct units *u, bool strength,
-                                                         size_t i, double out[PAIR_NARROW]) {
-  const double pressure = f->pressure_term[i] * u->per_specific;
-  out[PAIR_X] = f->x[i], out[PAIR_Y] = f->y[i], out[PAIR_Z] = f->z[i];
-  out[PAIR_H] = f->h[i] * u->per_length;
-  out[PAIR_VX] = f->vx[i] * u->per_velocity, out[PAIR_VY] = f->vy[i] * u->per_velocity, out[PAIR_VZ] = f->vz[i] * u->per_velocity;
-  out[PAIR_MASS] = f->mass[i] * u->per_mass;
-  for (int k = 0; k < 6; k++)
-    out[PAIR_XX + k] = strength ? f->stress[k][i] * u->per_specific : 0;
-  out[PAIR_XX] += pressure, out[PAIR_YY] += pressure, out[PAIR_ZZ] += pressure;
-  out[PAIR_SOUND] = f->sound_speed[i] * u->per_velocity;
-  out[PAIR_DENSITY] = f->density[i] * u->per_density;
-}
-
 /* v = M w for a symmetric M (xx xy xz yy yz zz). */
 static void apply(const double *m, const double w[3], double v[3]) {
   v[0] = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
@@ -193,52 +183,23 @@ static void apply(const double *m, const double w[3], double v[3]) {
   v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
 }
 
-/* T = sigma B / rho^2, which is not symmetric. */
-static void turn(const struct sph_pair_fields *f, size_t i, double *record) {
-  double b[6], row[3][3];
-  for (int k = 0; k < 6; k++)
-    b[k] = f->correction[k][i];
-  const double *t = record + PAIR_XX;
-  const double s[3][3] = {{t[0], t[1], t[2]}, {t[1], t[3], t[4]}, {t[2], t[4], t[5]}};
-  for (int k = 0; k < 3; k++)
-    apply(b, s[k], row[k]);
-  record[PAIR_XX] = row[0][0], record[PAIR_XY] = row[0][1], record[PAIR_XZ] = row[0][2];
-  record[PAIR_YX] = row[1][0], record[PAIR_YY] = row[1][1], record[PAIR_YZ] = row[1][2];
-  record[PAIR_ZX] = row[2][0], record[PAIR_ZY] = row[2][1], record[PAIR_ZZ] = row[2][2];
-}
-
-/* Towards zero, and round the 2^32 quanta that a record can tell apart. */
-static inline int32_t quanta(double x, double per_quantum) {
-  const double t = x * per_quantum;
-  const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
-  return (int32_t)(uint32_t)(uint64_t)whole;
-}
-
-static void pack(const struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct units *u,
-                 void *in) {
-  const uint32_t *foreign = c->other;
-  const bool corrected = p->options.gradient_correction, volumes = p->options.volume_weights;
-  const double per[3] = {1 / p->quantum[0], 1 / p->quantum[1], 1 / p->quantum[2]};
-  for (size_t k = 0; k < c->own + c->others; k++) {
-    const size_t i = k < c->own ? c->first + k : foreign[k - c->own];
-    double room[PAIR_WIDE], *real = p->real == sizeof(double) ? (double *)in + k * p->in_columns : room;
-    record(f, u, p->options.strength, i, real);
-    if (volumes) /* sigma */
-      for (int column = PAIR_XX; column <= PAIR_ZZ; column++)
-        real[column] *= real[PAIR_DENSITY] * real[PAIR_DENSITY];
-    if (p->artificial) sph_tension_opposed(p->options.artificial_stress, real + PAIR_XX, real + PAIR_ARTIFICIAL);
-    if (corrected) turn(f, i, real);
-    if (p->real == sizeof(double)) continue;
-    float *to = (float *)in + k * p->in_columns;
-    for (size_t column = PAIR_H; column < PAIR_NARROW; column++)
-      to[column] = (float)real[column];
-    for (size_t column = PAIR_ARTIFICIAL; p->artificial && column < PAIR_ARTIFICIAL + 6; column++)
-      to[column] = (float)real[column];
-    for (size_t column = PAIR_YX; corrected && column <= PAIR_ZY; column++)
-      to[column] = (float)real[column];
-    const int32_t at[3] = {quanta(real[PAIR_X], per[0]), quanta(real[PAIR_Y], per[1]), quanta(real[PAIR_Z], per[2])};
-    memcpy(to, at, sizeof at);
+static struct sph_pair_source source_of(const struct sph_pairs *p, const struct sph_pair_fields *f) {
+  const struct units *u = &p->units;
+  struct sph_pair_source s = {.column = {f->x, f->y, f->z, f->h, f->vx, f->vy, f->vz, f->mass},
+                              .scale = {1, 1, 1, u->per_length, u->per_velocity, u->per_velocity, u->per_velocity, u->per_mass},
+                              .pressure = f->pressure_term,
+                              .volume_weights = p->options.volume_weights};
+  s.column[PAIR_SOUND] = f->sound_speed, s.scale[PAIR_SOUND] = u->per_velocity;
+  s.column[PAIR_DENSITY] = f->density, s.scale[PAIR_DENSITY] = u->per_density;
+  for (int k = 0; k < 6; k++) {
+    s.column[PAIR_XX + k] = p->options.strength ? f->stress[k] : NULL;
+    s.column[PAIR_ARTIFICIAL + k] = p->opposed[k];
+    s.scale[PAIR_XX + k] = s.scale[PAIR_ARTIFICIAL + k] = u->per_specific;
+    s.correction[k] = p->options.gradient_correction ? f->correction[k] : NULL;
   }
+  for (int d = 0; d < 3; d++)
+    s.per_quantum[d] = 1 / p->quantum[d];
+  return s;
 }
 
 /* Numbers below the normal ones count as zero while a chunk is summed: ahead of a wave all quantities fall off by orders of
@@ -260,22 +221,27 @@ static void restore_tiny(unsigned before) {
 #endif
 }
 
-static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct units *u,
+static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_source *source,
                       const struct sph_pair_constants *constants, void *in) {
+  const struct sph_pair_kernels *kernels = p->kernels;
   const struct sph_pair_chunk view = {.own = c->own,
                                       .slots = c->own + c->others,
                                       .start = c->lists.start,
                                       .count = c->lists.count,
                                       .neighbour = c->lists.j};
   char *out = (char *)p->out + c->record_at * p->out_columns * p->real;
-  const bool corrected = p->out_columns == PAIR_WIDE, artificial = p->artificial;
+  const bool corrected = p->options.gradient_correction;
   const unsigned mode = flush_tiny();
-  pack(p, c, f, u, in);
   memset(out, 0, view.slots * p->out_columns * p->real);
-  if (p->real == sizeof(double))
-    p->kernels->sum_double[corrected][artificial](&view, constants, in, (double *)(void *)out);
-  else
-    p->kernels->sum_float[corrected][artificial](&view, constants, in, (float *)(void *)out);
+  if (p->real == sizeof(double)) {
+    kernels->pack_double(source, c->first, NULL, c->own, p->in_columns, in);
+    kernels->pack_double(source, 0, c->other, c->others, p->in_columns, (double *)in + c->own * p->in_columns);
+    kernels->sum_double[corrected][p->artificial](&view, constants, in, (double *)(void *)out);
+  } else {
+    kernels->pack_float(source, c->first, NULL, c->own, p->in_columns, in);
+    kernels->pack_float(source, 0, c->other, c->others, p->in_columns, (float *)in + c->own * p->in_columns);
+    kernels->sum_float[corrected][p->artificial](&view, constants, in, (float *)(void *)out);
+  }
   restore_tiny(mode);
 }
 
@@ -415,13 +381,21 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
 #endif
+  for (size_t k = 0; k < (p->artificial ? p->lists.count : 0); k++) {
+    const struct sph_chunk *c = &p->lists.chunk[k];
+    p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
+  }
+  const struct sph_pair_source source = source_of(p, f);
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
+#endif
   for (size_t k = 0; k < p->lists.count; k++) {
 #ifdef _OPENMP
     const size_t thread = (size_t)omp_get_thread_num();
 #else
     const size_t thread = 0;
 #endif
-    sum_chunk(p, &p->lists.chunk[k], f, &u, &constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
+    sum_chunk(p, &p->lists.chunk[k], &source, &constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
   }
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : within) num_threads(o->threads) if (o->threads > 1)

@@ -38,6 +38,16 @@ struct sph_pair_chunk {
   const uint32_t *neighbour; /* slots; among them members of the group but the first, and never one before its first */
 };
 
+/* What records are made of: arrays of all particles. */
+struct sph_pair_source {
+  const double *column[PAIR_WIDE]; /* by column; NULL: zero. The pressure term is added to XX, YY, ZZ, scaled as they are */
+  double scale[PAIR_WIDE];         /* to the records' units; powers of two */
+  const double *pressure;
+  const double *correction[6];     /* B by which the stress is multiplied; NULL without */
+  double per_quantum[3];           /* of float records' positions */
+  bool volume_weights;             /* stresses are wanted as sigma, not as sigma/rho^2 */
+};
+
 struct sph_pair_constants {
   double alpha, twice_beta;
   double periodic[3], per_period[3]; /* length and its inverse; NaN = open (double records only) */
@@ -75,6 +85,13 @@ struct sph_pair_kernels {
    * may be read, and `found` written, up to 7 beyond the end. */
   size_t (*near_pairs)(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
                        const double period[3], uint32_t *found);
+  /* The records of `count` particles, those from `first` on or (not NULL) those that `which` names, `stride` columns each. */
+  void (*pack_double)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, double *in);
+  void (*pack_float)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, float *in);
+  /* The artificial stress R of the particles first..last-1, opposed to the tension in stress[] + pressure_term I (xx xy xz yy
+   * yz zz): pairs_kernels_tension.h. */
+  void (*oppose)(double epsilon, const double *const stress[6], const double *pressure_term, size_t first, size_t last,
+                 double *const out[6]);
 };
 
 extern const struct sph_pair_kernels sph_pairs_kernels_baseline;

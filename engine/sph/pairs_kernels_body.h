@@ -1,5 +1,6 @@
 /* The pair loop of one CPU class: the including file sets WIDTH (bytes of a register), KERNELS_TABLE, KERNELS_NAME. */
 #include <math.h>
+#include <string.h>
 #ifdef __AVX512F__
 #include <immintrin.h>
 #endif
@@ -66,6 +67,19 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define AVX512_MASK           __mmask8
 #endif
 #include "engine/sph/pairs_kernels_sum.h"
+#include "engine/sph/pairs_kernels_pack.h"
+#include "engine/sph/pairs_kernels_tension.h"
+#undef VECTOR
+#undef MASK
+#undef UNROLL
+#undef EACH
+#undef GAIN
+#undef LOW
+#undef HIGH
+#undef FIRST
+#undef SECOND
+#undef EVEN
+#undef ODD
 #undef REAL
 #undef INT
 #undef LANES
@@ -91,6 +105,18 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define AVX512_MASK           __mmask16
 #endif
 #include "engine/sph/pairs_kernels_sum.h"
+#include "engine/sph/pairs_kernels_pack.h"
+#undef VECTOR
+#undef MASK
+#undef UNROLL
+#undef EACH
+#undef GAIN
+#undef LOW
+#undef HIGH
+#undef FIRST
+#undef SECOND
+#undef EVEN
+#undef ODD
 
 #include "engine/sph/pairs_kernels_near.h"
 
@@ -101,4 +127,7 @@ const struct sph_pair_kernels KERNELS_TABLE = {
     .near_boxes = near_boxes,
     .near_particles = near_particles,
     .near_pairs = near_pairs,
+    .pack_double = double_pack,
+    .pack_float = float_pack,
+    .oppose = double_oppose,
 };

@@ -367,15 +367,3 @@ static void NAME(sum_corrected)(const struct sph_pair_chunk *c, const struct sph
 static void NAME(sum_both)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
   NAME(sum)(c, k, in, out, true, true);
 }
-
-#undef VECTOR
-#undef MASK
-#undef UNROLL
-#undef EACH
-#undef GAIN
-#undef LOW
-#undef HIGH
-#undef FIRST
-#undef SECOND
-#undef EVEN
-#undef ODD

@@ -24,4 +24,7 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
                        const struct sph_pair_options *options, const struct sph_pair_fields *fields,
                        const double *const *artificial, const struct sph_pair_sums *sums);
 
+/* Monaghan's artificial stress of one particle: -epsilon times the tensile part of a stress (xx xy xz yy yz zz). */
+void reference_sph_opposed(double epsilon, const double stress[6], double artificial[6]);
+
 #endif
