@@ -116,6 +116,7 @@ enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
+ *             and h / (2 |v|): nobody leaps into another body
  *   force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
@@ -143,7 +144,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   double *density = s->c.density, *density_rate = s->c.density_rate, *h = s->c.h;
   const double h_low = s->p.h_lowest, h_high = s->p.h_highest;
   const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
-  const double alpha = 0.6 * s->p.viscosity_alpha, beta = 0.6 * s->p.viscosity_beta;
+  const double alpha = 0.6 * s->p.viscosity_alpha, beta = 0.6 * s->p.viscosity_beta, step = 2 * s->p.cfl;
   double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK];
   int64_t lost = 0;
   RANGE_LOOP
@@ -160,9 +161,10 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
     /* Debris without neighbours (signal < 0) has nobody to send a wave to: hot, it would halve the step of all. It must only
-     * not fly past where it would find some. */
+     * not fly past where it would find some. Nor must a body much faster than sound leap into another, which it sees only when
+     * they touch: nobody flies farther than h/2 a step. (That binds above some three times the speed of sound.) */
     const double flight = sqrt(vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
-    courant[k] = (signal[i] < 0 ? flight : fast + alpha * c[i] + beta * signal[i]) * inverse;
+    courant[k] = (signal[i] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[i], step * flight)) * inverse;
     const double pull2 = ax[i] * ax[i] + ay[i] * ay[i] + az[i] * az[i];
     force[k] = pull2 * inverse * inverse;
     heat[k] = fabs(energy_rate[i]) / (energy[i] + 0.01 * c2);
