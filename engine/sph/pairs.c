@@ -245,16 +245,23 @@ static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const stru
   restore_tiny(mode);
 }
 
-/* B, the inverse of the moment sum V (x_i - x_j) grad W; 1 where there are too few neighbours, or all in a plane. */
+static double between(double x, double low, double high) {
+  const double t = x < low ? 0 : x > high ? 1 : (x - low) / (high - low);
+  return t * t * (3 - 2 * t);
+}
+
+/* B, the inverse of the moment, as far as there are enough neighbours all round; else 1, and what lies between for what is between.
+ * In a body the mean eigenvalue is 1, 0.3 in a corner, and the determinant over its cube at least 0.8, in a sharp point 0.6;
+ * among debris, a few neighbours anywhere, it is anything below: a strain made of those would be noise, and its forces stiff. */
 static void invert(const double m[6], double inverse[6]) {
-  double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
-  double determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3; /* 1 inside, 1/8 in a corner */
-  const bool regular = mean > 0.02 && determinant > 0.02 * mean * mean * mean;
-  const double s = 1 / determinant;
-  inverse[0] = regular ? s * a : 1, inverse[1] = regular ? s * b : 0, inverse[2] = regular ? s * c : 0;
-  inverse[3] = regular ? s * (m[0] * m[5] - m[2] * m[2]) : 1;
-  inverse[4] = regular ? s * (m[1] * m[2] - m[0] * m[4]) : 0;
-  inverse[5] = regular ? s * (m[0] * m[3] - m[1] * m[1]) : 1;
+  const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
+  const double determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3, cube = mean * mean * mean;
+  const double share = mean > 0 ? between(mean, 0.1, 0.2) * between(determinant / cube, 0.3, 0.6) : 0;
+  const double s = share > 0 ? share / determinant : 0;
+  inverse[0] = 1 - share + s * a, inverse[1] = s * b, inverse[2] = s * c;
+  inverse[3] = 1 - share + s * (m[0] * m[5] - m[2] * m[2]);
+  inverse[4] = s * (m[1] * m[2] - m[0] * m[4]);
+  inverse[5] = 1 - share + s * (m[0] * m[3] - m[1] * m[1]);
 }
 
 static void times(const double symmetric[6], const double gradient[9], double out[9]) {

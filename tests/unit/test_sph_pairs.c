@@ -58,8 +58,8 @@ struct summed {
 };
 
 static struct sph_pair_fields fields_of(const struct cloud *c) {
-  struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3], c->a[4],  c->a[5],
-                              c->a[6], c->a[7], c->a[8], c->a[9], c->a[10], {0}, {0}};
+  struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3],  c->a[4], c->a[5], c->a[6],
+                              c->a[7], c->a[8], c->a[9], c->a[10], {0},     {0}};
   for (int k = 0; k < 6; k++)
     f.stress[k] = c->stress[k];
   return f;
@@ -134,7 +134,8 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
     for (int k = 0; k < 6; k++)
       artificial[k][i] = r[k];
   }
-  assert_int_equal(reference_sph_lists_make(c->n, c->n, place, c->a[3], options->periodic, 1, &lists, &error), STATUS_OK);
+  assert_int_equal(reference_sph_lists_make(c->n, c->n, place, c->a[3], options->periodic, 1, &lists, &error),
+                   STATUS_OK);
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f,
@@ -297,6 +298,35 @@ static void angular_momentum_is_conserved(void **state) {
       assert_true(fabs(total[k]) < 1e-12 * scale); /* 1e4 roundings of either sign */
     free(s), free(c);
   }
+}
+
+/* Where there is no body around a particle there is no correction, whose inverse would be noise: in a layer, and in
+ * debris of five. A corner of a body is corrected in full. */
+static void debris_is_not_corrected(void **state) {
+  (void)state;
+  struct sph_pair_options options = usual;
+  options.gradient_correction = true;
+  for (int layer = 0; layer < 2; layer++) {
+    struct cloud *c = cloud_make(8, 1, false, 31);
+    c->n = layer ? 64 : 5;
+    for (size_t i = 0; i < c->n; i++) {
+      c->a[0][i] = (double)(i % 8), c->a[1][i] = layer ? (double)(i / 8) : 0.3 * (double)(i % 2),
+      c->a[2][i] = layer ? 0 : 0.1 * (double)(i % 3);
+    }
+    struct summed *s = sum(c, &options);
+    for (size_t i = 0; i < c->n; i++)
+      for (int k = 0; k < 6; k++)
+        assert_true(s->correction[k][i] == (k == 0 || k == 3 || k == 5));
+    free(s), free(c);
+  }
+  struct cloud *c = cloud_make(8, 1, false, 31);
+  for (size_t i = 0; i < c->n; i++) {
+    c->a[4][i] = c->a[1][i], c->a[5][i] = -c->a[0][i], c->a[6][i] = 0;
+  }
+  struct summed *s = sum(c, &options);
+  for (size_t i = 0; i < c->n; i++)
+    assert_true(fabs(s->a[4][i] - 1) < 1e-11 && fabs(s->a[6][i] + 1) < 1e-11);
+  free(s), free(c);
 }
 
 /* A body under one stress throughout feels forces at its surface only, and over a cut through it they add up to that
@@ -483,8 +513,9 @@ static void swap_particles(struct cloud *c, size_t i, size_t j) {
   }
 }
 
-/* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into chunks of any
- * size, sorted in space or not at all, reaches 10:1, and with particles far off, nowhere, without reach and upon each other. */
+/* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into
+ * chunks of any size, sorted in space or not at all, reaches 10:1, and with particles far off, nowhere, without reach
+ * and upon each other. */
 static void lists_equal_brute_force(void **state) {
   (void)state;
   static const char *const classes[] = {"baseline", "v3", "v4"};
@@ -508,7 +539,8 @@ static void lists_equal_brute_force(void **state) {
     struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
     setenv("CLAST_CPU", classes[variant % 3], 1);
-    assert_int_equal(reference_sph_lists_make(c->n, chunks[variant / 2 % 3], place, c->a[3], length, 1 + variant / 12, &lists, &error),
+    assert_int_equal(reference_sph_lists_make(c->n, chunks[variant / 2 % 3], place, c->a[3], length, 1 + variant / 12,
+                                              &lists, &error),
                      STATUS_OK);
     for (size_t i = 0; i < c->n; i++) {
       const uint32_t *j = lists.j + lists.start[i];
@@ -546,11 +578,14 @@ static void shared_lists_join_those_of_their_members(void **state) {
     struct reference_sph_lists single;
     struct error error = {0};
     const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
-    assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error), STATUS_OK);
+    assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error),
+                     STATUS_OK);
     struct sph_neighbours *neighbours = sph_neighbours_create(c->n, CHUNK, share, sph_pairs_kernels_choose());
     uint32_t start[CHUNK + 1], count[CHUNK];
     struct sph_neighbour_lists lists = {.start = start, .count = count};
-    assert_int_equal(sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1, &error), STATUS_OK);
+    assert_int_equal(
+        sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1, &error),
+        STATUS_OK);
     for (size_t chunk = 0; chunk * CHUNK < c->n; chunk++) {
       const size_t base = chunk * CHUNK, own = c->n - base < CHUNK ? c->n - base : CHUNK;
       assert_true(sph_neighbours_list(neighbours, chunk, &lists));
@@ -701,6 +736,7 @@ int main(void) {
       cmocka_unit_test(each_pair_is_summed_once),
       cmocka_unit_test(angular_momentum_is_conserved),
       cmocka_unit_test(one_stress_over_a_cut),
+      cmocka_unit_test(debris_is_not_corrected),
       cmocka_unit_test(viscosity_of_two_by_hand),
       cmocka_unit_test(memory_does_not_grow_with_the_extent),
       cmocka_unit_test(not_finite_does_no_harm),
