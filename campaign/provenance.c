@@ -6,24 +6,9 @@
 #include <sys/utsname.h>
 
 #include "campaign/build_facts.h"
+#include "engine/cpu_class.h"
 #include "engine/engine.h"
 #include "schemas/field.h"
-
-/* The levels of the x86-64 psABI; a level is named only when all of its instructions are there. */
-const char *provenance_cpu_class(void) {
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  bool v2 = __builtin_cpu_supports("sse3") && __builtin_cpu_supports("ssse3") && __builtin_cpu_supports("sse4.1") &&
-            __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
-  bool v3 = v2 && __builtin_cpu_supports("avx") && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-            __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
-  bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-            __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  return v4 ? "x86-64-v4" : v3 ? "x86-64-v3" : v2 ? "x86-64-v2" : "x86-64";
-#else
-  return "unknown";
-#endif
-}
 
 static void cpu_model(char *model, size_t size) {
   char line[512];
@@ -75,7 +60,7 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
     fprintf(out, "%s\"%s\": %d", i ? ", " : "", engine_at(i)->name, engine_at(i)->results_version);
   fputc('}', out);
   member(out, "cpu_model", model);
-  member(out, "cpu_class", provenance_cpu_class());
+  member(out, "cpu_class", cpu_class_name(cpu_class_choose()));
   if (uname(&host) == 0) {
     member(out, "host", host.nodename);
     member(out, "system", host.release);

@@ -1,12 +1,9 @@
 /* Facts about this program and machine, kept with every session of a store: version, commit (with its dirty flag), compiler,
- * flags, libraries, cpu model and class, host, ranks, slots, command line. Provenance, not identity. */
+ * flags, libraries, cpu model and class (bits are promised for one binary on one class), host, ranks, slots, command line. Provenance, not identity. */
 #ifndef CLAST_CAMPAIGN_PROVENANCE_H
 #define CLAST_CAMPAIGN_PROVENANCE_H
 
 /* A JSON object, malloc'd; NULL when memory is out. argv may be NULL. */
 char *provenance_json(int ranks, int slots, int argc, char *const *argv);
-
-/* "x86-64-v3" and so on: bits are promised for one binary on one class. "unknown" elsewhere. */
-const char *provenance_cpu_class(void);
 
 #endif

@@ -19,3 +19,7 @@ enum cpu_class cpu_class_choose(void) {
 #endif
   return CPU_BASELINE;
 }
+
+const char *cpu_class_name(enum cpu_class class) {
+  return class == CPU_V4 ? "v4" : class == CPU_V3 ? "v3" : "baseline";
+}

@@ -8,5 +8,6 @@
 enum cpu_class { CPU_BASELINE = 1, CPU_V3 = 3 /* AVX2, FMA */, CPU_V4 = 4 /* AVX-512 */ };
 
 enum cpu_class cpu_class_choose(void);
+const char *cpu_class_name(enum cpu_class class); /* "baseline", "v3", "v4" */
 
 #endif

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/cpu_class.h"
 #include "engine/whole_file.h"
 
 static const char magic[8] = "CLASTRUN";
-enum { VERSION = 1, PARTS = 8 };
+enum { VERSION = 2, PARTS = 8 };
 
 struct restart {
   unsigned char *bytes;
@@ -59,7 +60,7 @@ static bool get_exactly(struct bytes *b, uint64_t number) {
 status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t seed, size_t count,
                     const struct restart_part *parts, const char *path, struct error *error) {
   char *text = identity(kind, inputs);
-  struct bytes b = {.size = text ? sizeof magic + 8 * 5 + strlen(text) : 0};
+  struct bytes b = {.size = text ? sizeof magic + 8 * 6 + strlen(text) : 0};
   for (size_t k = 0; k < count; k++)
     b.size += 8 + parts[k].size;
   b.at = text ? malloc(b.size) : NULL;
@@ -70,6 +71,7 @@ status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t
   put(&b, magic, sizeof magic);
   put_number(&b, VERSION);
   put_number(&b, seed);
+  put_number(&b, cpu_class_choose());
   put_number(&b, strlen(text));
   put(&b, text, strlen(text));
   put_number(&b, count);
@@ -122,7 +124,7 @@ status restart_open(const struct engine_kind *kind, const void *inputs, size_t c
   struct bytes b = {0};
   char *text = identity(kind, inputs), head[sizeof magic];
   struct restart *restart = calloc(1, sizeof *restart);
-  uint64_t length, sum;
+  uint64_t length, sum, class;
   status code = text && restart ? whole_file_read(path, "restart file", &b.at, &b.size, error)
                                 : status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
   if (code)
@@ -136,7 +138,16 @@ status restart_open(const struct engine_kind *kind, const void *inputs, size_t c
     code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh", path);
     goto cleanup;
   }
-  if (!get_exactly(&b, VERSION) || !get(&b, &restart->seed, 8) || !get(&b, &length, 8) || length != strlen(text) ||
+  const bool known = get_exactly(&b, VERSION) && get(&b, &restart->seed, 8) && get(&b, &class, 8);
+  if (known && class != (uint64_t)cpu_class_choose()) {
+    const char *name = cpu_class_name((enum cpu_class)class);
+    code = status_fail(error, STATUS_CONTENT,
+                       "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
+                       "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
+                       path, name, cpu_class_name(cpu_class_choose()), name);
+    goto cleanup;
+  }
+  if (!known || !get(&b, &length, 8) || length != strlen(text) ||
       b.size - b.used < length || memcmp(b.at + b.used, text, length) != 0) {
     code = status_fail(error, STATUS_CONTENT,
                        "the restart file '%s' belongs to another scene or another version of clast: start the run afresh",
@@ -167,6 +178,14 @@ status restart_refuse(const char *path, struct error *error) {
 uint64_t restart_seed(const struct restart *restart) { return restart->seed; }
 
 struct restart_part restart_part(const struct restart *restart, size_t index) { return restart->part[index]; }
+
+bool restart_copy(const struct restart *restart, size_t index, void *to, size_t size) {
+  if (restart->part[index].size != size)
+    return false;
+  if (size)
+    memcpy(to, restart->part[index].at, size);
+  return true;
+}
 
 void restart_close(struct restart *restart) {
   if (!restart)

@@ -1,8 +1,6 @@
 /* The loops over whole ranges, compiled once per CPU class and chosen at run time.
  *
- * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run:
- * dem_system_cpu_class. The environment variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine
- * does not have is not used, the best one is. */
+ * Which class, and what that means for bits, is said in engine/cpu_class.h. */
 #ifndef CLAST_ENGINE_DEM_KERNELS_H
 #define CLAST_ENGINE_DEM_KERNELS_H
 

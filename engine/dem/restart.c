@@ -2,7 +2,6 @@
 #include "engine/restart.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "engine/dem/dem.h"
 #include "engine/dem/run.h"
@@ -26,16 +25,10 @@ status dem_restart_save(struct dem_run *run, const char *path, struct error *err
 }
 
 static bool take(struct dem_run *run, const struct restart *restart) {
-  struct restart_part state = restart_part(restart, STATE), samples = restart_part(restart, SAMPLES);
-  struct restart_part system = restart_part(restart, SYSTEM);
-  if (state.size != sizeof run->state)
-    return false;
-  memcpy(&run->state, state.at, state.size);
-  if (run->state.samples > run->sample_capacity || samples.size != run->state.samples * sizeof *run->sample)
-    return false;
-  if (samples.size)
-    memcpy(run->sample, samples.at, samples.size);
-  return dem_system_state_load(run->system, system.at, system.size);
+  const struct restart_part system = restart_part(restart, SYSTEM);
+  return restart_copy(restart, STATE, &run->state, sizeof run->state) && run->state.samples <= run->sample_capacity &&
+         restart_copy(restart, SAMPLES, run->sample, run->state.samples * sizeof *run->sample) &&
+         dem_system_state_load(run->system, system.at, system.size);
 }
 
 status dem_restart_load(const struct dem_inputs *inputs, const char *path, struct dem_run **out, struct error *error) {

@@ -108,10 +108,6 @@ size_t dem_system_bytes(const struct dem_system *s) {
          s->cell_buckets * sizeof(uint32_t) + s->cell_capacity * (2 * sizeof(uint32_t) + sizeof *s->cell_key);
 }
 
-const char *dem_system_cpu_class(const struct dem_system *s) {
-  return s->kernels->name;
-}
-
 void dem_system_set_velocity(struct dem_system *s, uint32_t grain, double vx, double vy, double spin) {
   s->c.vx[grain] = vx;
   s->c.vy[grain] = vy;

@@ -78,9 +78,6 @@ double dem_system_last_break(const struct dem_system *system); /* s; 0 before an
 double dem_system_stable_time_step(const struct dem_system *system);
 /* Pairs that overlap now over the tessellation's neighbour pairs. */
 double dem_system_overlap_share(struct dem_system *system);
-/* CPU class whose loops run: "baseline", "v3" (AVX2 + FMA) or "v4" (AVX-512); CLAST_CPU in the environment asks for one.
- * The same bits are promised within one class. */
-const char *dem_system_cpu_class(const struct dem_system *system);
 /* Current outline of a grain, counter-clockwise; returns the number of vertices (up to capacity are written). */
 size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_t capacity, struct dem_point *vertices);
 

@@ -8,7 +8,6 @@
 #include "engine/sph/system_layout.h"
 
 struct sph_ranges {
-  const char *name; /* "baseline", "v3" (AVX2, FMA), "v4" (AVX-512): x86-64 microarchitecture levels */
   /* predict */
   sph_hook motion_predict;  /* x v rho u h */
   sph_hook elastic_predict; /* S */

@@ -1,4 +1,3 @@
 /* The range loops for CPU class baseline. */
 #define RANGES_TABLE sph_ranges_baseline
-#define RANGES_NAME  "baseline"
 #include "engine/sph/ranges_body.h"

@@ -1,4 +1,4 @@
-/* Instantiates the range loops for one CPU class: the including file sets RANGES_TABLE and RANGES_NAME. */
+/* Instantiates the range loops for one CPU class: the including file sets RANGES_TABLE. */
 #include "engine/sph/ranges.h"
 
 #include "engine/sph/crack_range.h"
@@ -9,7 +9,6 @@
 #include "engine/sph/yield_range.h"
 
 const struct sph_ranges RANGES_TABLE = {
-    .name = RANGES_NAME,
     .motion_predict = motion_predict,
     .elastic_predict = elastic_predict,
     .damage_predict = crack_damage_predict,

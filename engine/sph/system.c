@@ -30,9 +30,6 @@ size_t sph_system_bytes(const struct sph_system *s) {
   return bytes;
 }
 
-const char *sph_system_cpu_class(const struct sph_system *s) {
-  return s->ranges->name;
-}
 const char *sph_system_failure(const struct sph_system *s) {
   return s->failure;
 }

@@ -57,10 +57,6 @@ struct sph_ledger {
 
 struct sph_system; /* opaque */
 
-/* CPU class whose loops run: "baseline", "v3" (AVX2 + FMA) or "v4" (AVX-512); CLAST_CPU in the environment asks for one.
- * The same bits are promised within one class. */
-const char *sph_system_cpu_class(const struct sph_system *system);
-
 /* `particles` is copied. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated when
  * it would not fit; STATUS_CONTENT when a body lacks a material value that its physics needs (named). */
 status sph_system_create(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,

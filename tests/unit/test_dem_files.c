@@ -1,10 +1,7 @@
-/* Restart files give the same bits; fields files say what they hold; both are whole or not there. */
+/* Fields files of engine dem say what they hold. */
 #include "tests/run_case.h"
 
 #include <hdf5.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/dem/run.h"
@@ -31,72 +28,6 @@ static struct dem_inputs small(bool gear) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",
                   "contact.normal_damping=1e3 1/s", "contact.tangential_damping=1e3 1/s", "contact.friction=0.5",
                   gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet", "threshold.modulus=10");
-}
-
-static void restart_continues_with_the_same_bits(void **state) {
-  (void)state;
-  struct dem_inputs cases[3] = {small(false), small(true),
-                                DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s", "loading.ramp=0.5 ms",
-                                         "loading.strain_end=3 %")};
-  for (int c = 0; c < 3; c++) {
-    struct ran straight = run_case_run(&dem_engine, &cases[c], 11);
-    void *run, *again;
-    bool finished = false;
-    struct error error = {0};
-    assert_int_equal(dem_engine.prepare(&cases[c], 11, &run, &error), STATUS_OK);
-    uint64_t half = (uint64_t)straight.outcome.steps / 2 + 1;
-    assert_int_equal(dem_engine.step(run, half, &finished, &error), STATUS_OK);
-    assert_false(finished);
-    if (dem_engine.save(run, in_folder("run.restart"), &error))
-      fail_msg("%s", error.message);
-    dem_engine.free(run);
-    if (dem_engine.restore(&cases[c], in_folder("run.restart"), &again, &error))
-      fail_msg("%s", error.message);
-    run_case_same(&dem_engine, &straight, run_case_end(&dem_engine, again, 100));
-    dem_engine.free(again);
-    free(straight.fragments);
-    unlink(in_folder("run.restart"));
-  }
-}
-
-static void damaged_or_foreign_restart_is_refused(void **state) {
-  (void)state;
-  struct dem_inputs inputs = small(false), other = inputs;
-  void *run;
-  struct error error = {0};
-  char path[200];
-  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
-  assert_int_equal(dem_engine.prepare(&inputs, 1, &run, NULL), STATUS_OK);
-  assert_int_equal(dem_engine.save(run, path, NULL), STATUS_OK);
-  dem_engine.free(run);
-  other.threshold.strain *= 1 + 1e-15;
-  assert_int_equal(dem_engine.restore(&other, path, &run, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "another scene"));
-  assert_null(run);
-  struct stat info;
-  assert_int_equal(stat(path, &info), 0);
-  for (int k = 0; k < 40; k++) { /* one byte changed anywhere; cut anywhere */
-    off_t at = info.st_size * k / 40;
-    FILE *file = fopen(path, "r+b");
-    fseek(file, at, SEEK_SET);
-    int byte = fgetc(file);
-    fseek(file, at, SEEK_SET);
-    fputc(byte ^ 0x40, file);
-    fclose(file);
-    assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-    file = fopen(path, "r+b");
-    fseek(file, at, SEEK_SET);
-    fputc(byte, file);
-    fclose(file);
-  }
-  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_OK);
-  dem_engine.free(run);
-  assert_int_equal(truncate(path, info.st_size / 2), 0);
-  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-  assert_int_equal(truncate(path, 0), 0);
-  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-  unlink(path);
-  assert_int_equal(dem_engine.restore(&inputs, path, &run, &error), STATUS_MISSING);
 }
 
 static double scalar(hid_t file, const char *name) {
@@ -193,36 +124,7 @@ static void fields_describe_themselves(void **state) {
   }
 }
 
-static void failed_writes_are_one_error_and_leave_nothing(void **state) {
-  (void)state;
-  struct dem_inputs inputs = small(false);
-  void *run;
-  struct error error = {0};
-  assert_int_equal(dem_engine.prepare(&inputs, 5, &run, NULL), STATUS_OK);
-  assert_int_equal(dem_engine.write_fields(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
-  assert_non_null(strstr(error.message, "No such file"));
-  assert_int_equal(dem_engine.save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
-  assert_int_equal(dem_engine.write_fields(run, "/dev/full/fields.hdf", &error), STATUS_IO);
-
-  /* A disk that fills up in the middle: a limit on file size gives the same error at the same place. */
-  signal(SIGXFSZ, SIG_IGN);
-  struct rlimit before, limit;
-  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
-  limit = before;
-  limit.rlim_cur = 10000;
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  status fields = dem_engine.write_fields(run, in_folder("full.hdf"), &error);
-  status restart = dem_engine.save(run, in_folder("full.restart"), &error);
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
-  assert_int_equal(fields, STATUS_IO);
-  assert_int_equal(restart, STATUS_IO);
-  assert_non_null(strstr(error.message, "too large"));
-  dem_engine.free(run); /* that nothing is left in the folder, remove_folder sees */
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(restart_continues_with_the_same_bits), cmocka_unit_test(damaged_or_foreign_restart_is_refused),
-      cmocka_unit_test(fields_describe_themselves), cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(fields_describe_themselves)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,11 +1,7 @@
-/* Files of a run of engine sph: restart files give the same bits and refuse what is not theirs; fields files explain
- * themselves and hold what the run reports; both are whole or not there. */
+/* Fields files of engine sph explain themselves and hold what the run reports. */
 #include "tests/run_case.h"
 
 #include <hdf5.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/cloud.h"
@@ -31,78 +27,6 @@ static int remove_folder(void **state) {
 
 static struct sph_inputs impact(void) {
   return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
-}
-
-static void restart_continues_with_the_same_bits(void **state) {
-  (void)state;
-  const struct sph_inputs cases[] = {
-      impact(),
-      SPH_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float", "fidelity.threads=2"),
-      SPH_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
-      SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
-  };
-  for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
-    void *run, *again;
-    bool finished = false;
-    struct error error = {0};
-    if (sph_engine.prepare(&cases[c], 11, &run, &error)) fail_msg("%s", error.message);
-    struct ran straight = run_case_end(&sph_engine, run, 37);
-    sph_engine.free(run);
-    assert_int_equal(sph_engine.prepare(&cases[c], 11, &run, &error), STATUS_OK);
-    uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* amid lists that are reused */
-    assert_int_equal(sph_engine.step(run, half, &finished, &error), STATUS_OK);
-    if (finished || straight.outcome.steps < 40) fail_msg("case %zu has %lld steps only", c, (long long)straight.outcome.steps);
-    if (sph_engine.save(run, in_folder("run.restart"), &error)) fail_msg("%s", error.message);
-    sph_engine.free(run);
-    if (sph_engine.restore(&cases[c], in_folder("run.restart"), &again, &error)) fail_msg("%s", error.message);
-    assert_int_equal(sph_system_steps(((struct sph_run *)again)->system), half);
-    run_case_same(&sph_engine, &straight, run_case_end(&sph_engine, again, 37));
-    sph_engine.free(again);
-    free(straight.fragments);
-    unlink(in_folder("run.restart"));
-  }
-}
-
-static void damaged_or_foreign_restart_is_refused(void **state) {
-  (void)state;
-  struct sph_inputs inputs = impact(), other = inputs;
-  void *run;
-  bool finished;
-  struct error error = {0};
-  char path[200];
-  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
-  assert_int_equal(sph_engine.prepare(&inputs, 1, &run, NULL), STATUS_OK);
-  sph_engine.step(run, 5, &finished, NULL);
-  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
-  sph_engine.free(run);
-  other.impact.speed *= 1 + 1e-15;
-  assert_int_equal(sph_engine.restore(&other, path, &run, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "another scene"));
-  assert_null(run);
-  struct stat info;
-  assert_int_equal(stat(path, &info), 0);
-  for (int k = 0; k < 40; k++) { /* one byte changed anywhere */
-    off_t at = info.st_size * k / 40;
-    FILE *file = fopen(path, "r+b");
-    fseek(file, at, SEEK_SET);
-    int byte = fgetc(file);
-    fseek(file, at, SEEK_SET);
-    fputc(byte ^ 0x40, file);
-    fclose(file);
-    assert_int_equal(sph_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-    file = fopen(path, "r+b");
-    fseek(file, at, SEEK_SET);
-    fputc(byte, file);
-    fclose(file);
-  }
-  assert_int_equal(sph_engine.restore(&inputs, path, &run, &error), STATUS_OK);
-  sph_engine.free(run);
-  assert_int_equal(truncate(path, info.st_size / 2), 0);
-  assert_int_equal(sph_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-  assert_int_equal(truncate(path, 0), 0);
-  assert_int_equal(sph_engine.restore(&inputs, path, &run, &error), STATUS_CONTENT);
-  unlink(path);
-  assert_int_equal(sph_engine.restore(&inputs, path, &run, &error), STATUS_MISSING);
 }
 
 static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void *count) {
@@ -179,32 +103,7 @@ static void fields_hold_what_the_run_reports(void **state) {
   sph_engine.free(run);
 }
 
-static void failed_writes_are_one_error_and_leave_nothing(void **state) {
-  (void)state;
-  struct sph_inputs inputs = impact();
-  void *run;
-  struct error error = {0};
-  assert_int_equal(sph_engine.prepare(&inputs, 5, &run, NULL), STATUS_OK);
-  assert_int_equal(sph_engine.write_fields(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
-  assert_int_equal(sph_engine.save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
-  signal(SIGXFSZ, SIG_IGN); /* a disk that fills up: a limit on file size gives the same error at the same place */
-  struct rlimit before, limit;
-  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
-  limit = before;
-  limit.rlim_cur = 30000;
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  status fields = sph_engine.write_fields(run, in_folder("full.hdf"), &error);
-  status restart = sph_engine.save(run, in_folder("full.restart"), &error);
-  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
-  assert_int_equal(fields, STATUS_IO);
-  assert_int_equal(restart, STATUS_IO);
-  assert_non_null(strstr(error.message, "too large"));
-  sph_engine.free(run); /* that nothing is left in the folder, remove_folder sees */
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(restart_continues_with_the_same_bits), cmocka_unit_test(damaged_or_foreign_restart_is_refused),
-      cmocka_unit_test(fields_hold_what_the_run_reports), cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(fields_hold_what_the_run_reports)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -1,0 +1,249 @@
+/* Files of a run of either engine: a restart file gives the same bits, and one that is damaged, of another scene or of another
+ * CPU class is refused; files are whole or not there, on a full disk and after a kill. */
+#include "tests/run_case.h"
+
+#include <dirent.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "engine/cpu_class.h"
+
+static char folder[] = "/tmp/clast_run_files_XXXXXX";
+
+static const char *in_folder(const char *name) {
+  static char path[200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return path;
+}
+
+static int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state) {
+  (void)state;
+  return rmdir(folder); /* fails when a test or a failed write left anything behind */
+}
+
+static struct dem_inputs disc(bool gear) {
+  return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",
+                  "contact.normal_damping=1e3 1/s", "contact.tangential_damping=1e3 1/s", "contact.friction=0.5",
+                  gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet", "threshold.modulus=10");
+}
+
+static struct sph_inputs sphere(void) {
+  return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");
+}
+
+static void *stepped(const struct engine_kind *kind, const void *inputs, uint64_t seed, uint64_t steps) {
+  void *run;
+  struct error error = {0};
+  bool finished = false;
+  if (kind->prepare(inputs, seed, &run, &error) || kind->step(run, steps, &finished, &error))
+    fail_msg("%s: %s", kind->name, error.message);
+  assert_false(finished);
+  return run;
+}
+
+static void continues(const struct engine_kind *kind, const void *inputs) {
+  struct ran straight = run_case_run(kind, inputs, 11);
+  const uint64_t half = (uint64_t)straight.outcome.steps / 2 + 3; /* amid lists that are reused */
+  assert_true(straight.outcome.steps >= 40);
+  void *run = stepped(kind, inputs, 11, half), *again;
+  struct error error = {0};
+  const double time = kind->time(run);
+  if (kind->save(run, in_folder("run.restart"), &error))
+    fail_msg("%s", error.message);
+  kind->free(run);
+  if (kind->restore(inputs, in_folder("run.restart"), &again, &error))
+    fail_msg("%s", error.message);
+  assert_true(kind->time(again) == time && time > 0);
+  run_case_same(kind, &straight, run_case_end(kind, again, 37));
+  kind->free(again);
+  free(straight.fragments);
+  unlink(in_folder("run.restart"));
+}
+
+static void restart_continues_with_the_same_bits(void **state) {
+  (void)state;
+  const struct dem_inputs dem[] = {disc(false), disc(true),
+                                   DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
+                                            "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
+  const struct sph_inputs sph[] = {
+      sphere(),
+      SPH_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float", "fidelity.threads=2"),
+      SPH_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
+      SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
+      SPH_CASE("porous-ice", "fidelity.particles=800", "stop.end_time=15 us"),
+  };
+  for (size_t c = 0; c < sizeof dem / sizeof *dem; c++)
+    continues(&dem_engine, &dem[c]);
+  for (size_t c = 0; c < sizeof sph / sizeof *sph; c++)
+    continues(&sph_engine, &sph[c]);
+}
+
+/* Fails unless `path` is refused as bad content, with a message that has `why` in it. */
+static void refused(const struct engine_kind *kind, const void *inputs, const char *path, const char *why) {
+  struct error error = {0};
+  void *run;
+  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_CONTENT);
+  assert_null(run);
+  if (!strstr(error.message, why) || !strstr(error.message, path))
+    fail_msg("no \"%s\" in: %s", why, error.message);
+}
+
+static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other, const struct engine_kind *foreign,
+                               const void *foreign_inputs) {
+  struct error error = {0};
+  char path[200];
+  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
+  void *run = stepped(kind, inputs, 1, 5);
+  assert_int_equal(kind->save(run, path, NULL), STATUS_OK);
+  kind->free(run);
+  refused(kind, other, path, "another scene");
+  refused(foreign, foreign_inputs, path, "another scene");
+  struct stat info;
+  assert_int_equal(stat(path, &info), 0);
+  for (int k = 0; k < 40; k++) { /* one byte changed anywhere */
+    off_t at = info.st_size * k / 40;
+    FILE *file = fopen(path, "r+b");
+    fseek(file, at, SEEK_SET);
+    int byte = fgetc(file);
+    fseek(file, at, SEEK_SET);
+    fputc(byte ^ 0x40, file);
+    fclose(file);
+    refused(kind, inputs, path, k ? "damaged" : "no restart file");
+    file = fopen(path, "r+b");
+    fseek(file, at, SEEK_SET);
+    fputc(byte, file);
+    fclose(file);
+  }
+  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_OK);
+  kind->free(run);
+  assert_int_equal(truncate(path, info.st_size / 2), 0);
+  refused(kind, inputs, path, "cut short");
+  assert_int_equal(truncate(path, 0), 0);
+  refused(kind, inputs, path, "no restart file");
+  unlink(path);
+  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_MISSING);
+}
+
+static void damaged_or_foreign_restart_is_refused(void **state) {
+  (void)state;
+  struct dem_inputs dem = disc(false), other_dem = dem;
+  struct sph_inputs sph = sphere(), other_sph = sph;
+  other_dem.threshold.strain *= 1 + 1e-15;
+  other_sph.impact.speed *= 1 + 1e-15;
+  damaged_is_refused(&dem_engine, &dem, &other_dem, &sph_engine, &sph);
+  damaged_is_refused(&sph_engine, &sph, &other_sph, &dem_engine, &dem);
+}
+
+/* Bits differ from class to class (FMA): a run that goes on elsewhere would be neither's. */
+static void restart_of_another_cpu_class_is_refused(void **state) {
+  (void)state;
+  if (cpu_class_choose() == CPU_BASELINE) {
+    print_message("this machine has the baseline class only: nothing to compare\n");
+    skip();
+  }
+  const struct dem_inputs dem = disc(false);
+  const struct sph_inputs sph = sphere();
+  const struct engine_kind *const kind[] = {&dem_engine, &sph_engine};
+  const void *const inputs[] = {&dem, &sph};
+  char path[200];
+  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
+  const char *asked = getenv("CLAST_CPU");
+  char before[20];
+  snprintf(before, sizeof before, "%s", asked ? asked : "");
+  for (int k = 0; k < 2; k++) {
+    setenv("CLAST_CPU", "baseline", 1);
+    void *run = stepped(kind[k], inputs[k], 1, 5);
+    assert_int_equal(kind[k]->save(run, path, NULL), STATUS_OK);
+    kind[k]->free(run);
+    if (asked)
+      setenv("CLAST_CPU", before, 1);
+    else
+      unsetenv("CLAST_CPU");
+    refused(kind[k], inputs[k], path, "CLAST_CPU=baseline");
+  }
+  unlink(path);
+}
+
+static void failed_writes_leave_nothing(const struct engine_kind *kind, const void *inputs) {
+  struct error error = {0};
+  void *run;
+  assert_int_equal(kind->prepare(inputs, 5, &run, &error), STATUS_OK);
+  assert_int_equal(kind->write_fields(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
+  assert_non_null(strstr(error.message, "No such file"));
+  assert_int_equal(kind->write_fields(run, "/dev/full/fields.hdf", &error), STATUS_IO);
+  assert_int_equal(kind->save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
+  signal(SIGXFSZ, SIG_IGN); /* a disk that fills up: a limit on file size gives the same error at the same place */
+  struct rlimit before, limit;
+  assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+  limit = before;
+  limit.rlim_cur = 10000;
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  status fields = kind->write_fields(run, in_folder("full.hdf"), &error);
+  status restart = kind->save(run, in_folder("full.restart"), &error);
+  assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+  assert_int_equal(fields, STATUS_IO);
+  assert_int_equal(restart, STATUS_IO);
+  assert_non_null(strstr(error.message, "too large"));
+  kind->free(run); /* that nothing is left in the folder, remove_folder sees */
+}
+
+static void failed_writes_are_one_error_and_leave_nothing(void **state) {
+  (void)state;
+  const struct dem_inputs dem = disc(false);
+  const struct sph_inputs sph = sphere();
+  failed_writes_leave_nothing(&dem_engine, &dem);
+  failed_writes_leave_nothing(&sph_engine, &sph);
+}
+
+/* A process that does nothing but write is killed at twenty moments: the file is always whole, and of the run. What a kill may
+ * leave behind is a temporary file beside it, named as such. */
+static void killed_amid_a_write_the_file_is_whole(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = sphere();
+  char path[200];
+  snprintf(path, sizeof path, "%s", in_folder("a.restart"));
+  void *run = stepped(&sph_engine, &inputs, 1, 5), *again;
+  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  for (int k = 0; k < 20; k++) {
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0)
+      for (;;)
+        if (sph_engine.save(run, path, NULL))
+          _exit(1);
+    nanosleep(&(struct timespec){.tv_nsec = 1000000 + k * 173000}, NULL);
+    kill(child, SIGKILL);
+    int ended;
+    assert_int_equal(waitpid(child, &ended, 0), child);
+    assert_true(WIFSIGNALED(ended));
+    struct error error = {0};
+    if (sph_engine.restore(&inputs, path, &again, &error))
+      fail_msg("%s", error.message);
+    assert_true(sph_engine.time(again) == sph_engine.time(run));
+    sph_engine.free(again);
+  }
+  sph_engine.free(run);
+  unlink(path);
+  DIR *left = opendir(folder);
+  for (const struct dirent *entry; (entry = readdir(left));)
+    if (strstr(entry->d_name, ".tmp"))
+      unlink(in_folder(entry->d_name));
+  closedir(left);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(restart_continues_with_the_same_bits),          cmocka_unit_test(damaged_or_foreign_restart_is_refused),
+      cmocka_unit_test(restart_of_another_cpu_class_is_refused),       cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing),
+      cmocka_unit_test(killed_amid_a_write_the_file_is_whole)};
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
