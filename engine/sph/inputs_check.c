@@ -130,7 +130,7 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
              in->impact.gap);
   }
   double pieces = sph_scale_particles(in) - (double)in->fidelity.particles;
-  if (pieces < 1)
+  if (pieces < 1 - 1e-9) /* one is enough, within rounding of its volume */
     REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise fidelity.particles, or "
            "take a larger projectile", pieces, in->fidelity.projectile_spacing);
   if (in->fidelity.graded && in->fidelity.fine_spacing > sph_scale_spacing(in))

@@ -123,16 +123,19 @@ double *const *sph_pairs_listed(struct sph_pairs *p) {
 }
 
 status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
-  double *const *at = p->listed, least = INFINITY;
+  double *const *at = p->listed, least = INFINITY, widest = 0;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) reduction(min : least) num_threads(p->options.threads) if (p->options.threads > 1)
+#pragma omp parallel for schedule(static) reduction(min : least) reduction(max : widest) num_threads(p->options.threads) if (p->options.threads > 1)
 #endif
   for (size_t i = 0; i < p->n; i++) {
     p->reach[i] = at[3][i] + at[4][i];
     if (at[3][i] > 0 && at[3][i] < least) least = at[3][i];
+    if (p->reach[i] > widest) widest = p->reach[i];
   }
+  /* listed pairs, at most four reaches apart until the lists are stale, must lie within 2^31 quanta */
+  const double quantum = fmax(least * 0x1p-20, widest * 0x1p-29);
   for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
-    p->quantum[d] = isnan(p->options.periodic[d]) ? least * 0x1p-20 : p->options.periodic[d] * 0x1p-32;
+    p->quantum[d] = isnan(p->options.periodic[d]) ? quantum : p->options.periodic[d] * 0x1p-32;
   const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
   const status code =
       sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, p->options.threads, error);

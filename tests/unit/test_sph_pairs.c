@@ -491,6 +491,26 @@ static void float_is_as_good_far_away(void **state) {
   free(s), free(exact), free(c);
 }
 
+/* Particles some thousand times larger than the smallest: a pair's distance still fits the integers of float records. */
+static void float_holds_sizes_far_apart(void **state) {
+  (void)state;
+  for (double ratio = 10; ratio < 1e5; ratio *= 5) {
+    struct cloud *c = cloud_make(8, 1, false, 9);
+    struct sph_pair_options options = usual;
+    const size_t tiny = c->n / 2 + 4; /* one, inside */
+    c->a[3][tiny] /= ratio;
+    c->slack[tiny] /= ratio;
+    struct summed *exact = reference(c, &options);
+    double worst[4];
+    options.precision = SPH_FLOAT;
+    struct summed *s = sum(c, &options);
+    compare(c, s, exact, worst);
+    for (int q = 0; q < 4; q++)
+      assert_true(worst[q] < 3e-5);
+    free(s), free(exact), free(c);
+  }
+}
+
 static void bits_do_not_depend_on_threads(void **state) {
   (void)state;
   struct cloud *c = cloud_make(SIDE, 1, true, 8);
@@ -743,6 +763,7 @@ int main(void) {
       cmocka_unit_test(tiny_numbers_stay_the_callers),
       cmocka_unit_test(coincident_particles_do_no_harm),
       cmocka_unit_test(float_is_as_good_far_away),
+      cmocka_unit_test(float_holds_sizes_far_apart),
       cmocka_unit_test(bits_do_not_depend_on_threads),
       cmocka_unit_test(lists_equal_brute_force),
       cmocka_unit_test(shared_lists_join_those_of_their_members),
