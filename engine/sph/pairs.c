@@ -38,7 +38,8 @@ struct sph_pairs {
   void *in;          /* records, per thread */
   size_t in_capacity;
   void *out;         /* records of sums, of all chunks */
-  double quantum[3];
+  double quantum[3]; /* m, of float records' positions, */
+  double grain;      /* and the same but for periodic axes: the unit of h there */
   struct units units;
   bool units_chosen; /* since the last listing; in double they stay 1 */
   size_t within;     /* pairs inside the support at the last pass, twice */
@@ -133,9 +134,9 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
     if (p->reach[i] > widest) widest = p->reach[i];
   }
   /* listed pairs, at most four reaches apart until the lists are stale, must lie within 2^31 quanta */
-  const double quantum = fmax(least * 0x1p-20, widest * 0x1p-29);
+  p->grain = fmax(least * 0x1p-20, widest * 0x1p-29);
   for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
-    p->quantum[d] = isnan(p->options.periodic[d]) ? quantum : p->options.periodic[d] * 0x1p-32;
+    p->quantum[d] = isnan(p->options.periodic[d]) ? p->grain : p->options.periodic[d] * 0x1p-32;
   const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
   const status code =
       sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, p->options.threads, error);
@@ -188,8 +189,9 @@ static void apply(const double *m, const double w[3], double v[3]) {
 
 static struct sph_pair_source source_of(const struct sph_pairs *p, const struct sph_pair_fields *f) {
   const struct units *u = &p->units;
+  const double length = p->real == sizeof(double) ? 1 : p->grain;
   struct sph_pair_source s = {.column = {f->x, f->y, f->z, f->h, f->vx, f->vy, f->vz, f->mass},
-                              .scale = {1, 1, 1, u->per_length, u->per_velocity, u->per_velocity, u->per_velocity, u->per_mass},
+                              .scale = {1, 1, 1, 0.5 / length, u->per_velocity, u->per_velocity, u->per_velocity, u->per_mass},
                               .pressure = f->pressure_term,
                               .volume_weights = p->options.volume_weights};
   s.column[PAIR_SOUND] = f->sound_speed, s.scale[PAIR_SOUND] = u->per_velocity;
@@ -339,14 +341,14 @@ INLINE size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u,
     sums->ax[i] = at(whole, own, 0) * acceleration;
     sums->ay[i] = at(whole, own, 1) * acceleration;
     sums->az[i] = at(whole, own, 2) * acceleration;
-    sums->heating[i] = at(whole, own, SUM_HEATING) * acceleration * u->velocity;
+    sums->heating[i] = at(whole, own, SUM_HEATING) * (0.5 * acceleration * u->velocity);
     sums->signal[i] = at(whole, own, SUM_COUNT) > 0 ? at(whole, own, SUM_SIGNAL) * u->velocity : -1;
     within += at(whole, own, SUM_COUNT);
     for (size_t m = 0; m < 9; m++)
       gradient[m] = at(whole, own, SUM_GRADIENT + m) * weight * rate;
     if (corrected) {
       for (size_t m = 0; m < 6; m++)
-        moment[m] = at(whole, own, SUM_MOMENT + m) * weight;
+        moment[m] = at(whole, own, SUM_MOMENT + m) * weight * (whole ? 1 : p->grain / u->length);
       double correction[6], conjugate[9];
       for (int m = 0; m < 6; m++)
         correction[m] = f->correction[m][i];
@@ -379,12 +381,13 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
   struct sph_pair_constants constants = {.alpha = o->viscosity_alpha,
                                          .twice_beta = 2 * o->viscosity_beta,
                                          .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
+                                         .norm = SPH_SPLINE_NORM * (p->real == sizeof(double) ? 1 : pow(u.length / p->grain, 4)),
                                          .strength = o->strength,
                                          .volume_weights = o->volume_weights};
   for (int d = 0; d < 3; d++) {
     constants.periodic[d] = o->periodic[d];
     constants.per_period[d] = 1 / o->periodic[d];
-    constants.quantum[d] = p->quantum[d] / u.length;
+    constants.quantum[d] = p->quantum[d] / p->grain;
     constants.wrapped |= !isnan(o->periodic[d]);
   }
   size_t within = 0;

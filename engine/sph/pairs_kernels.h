@@ -14,7 +14,7 @@
 /* Columns of a record. Float records hold x, y, z as 32-bit integers in units of a quantum: differences are exact and wrap
  * round harmlessly, so that precision does not depend on where in a scene of kilometres a particle is. */
 enum sph_pair_column {
-  PAIR_X, PAIR_Y, PAIR_Z, PAIR_H, PAIR_VX, PAIR_VY, PAIR_VZ, PAIR_MASS,
+  PAIR_X, PAIR_Y, PAIR_Z, PAIR_H /* half of it */, PAIR_VX, PAIR_VY, PAIR_VZ, PAIR_MASS,
   PAIR_XX, PAIR_XY, PAIR_XZ, PAIR_YY, PAIR_YZ, PAIR_ZZ, /* T: sigma/rho^2, the pressure term in it; times B where corrected */
   PAIR_SOUND, PAIR_DENSITY,
   PAIR_ARTIFICIAL,      /* six more where there is artificial stress: R */
@@ -22,7 +22,7 @@ enum sph_pair_column {
 };
 /* Columns of a record of sums. */
 enum sph_pair_sum {
-  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12, SUM_SIGNAL, SUM_COUNT,
+  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12 /* twice */, SUM_SIGNAL, SUM_COUNT,
   SUM_MOMENT = 16, /* six more where the gradient is corrected */
 };
 enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with more; whole cache lines */
@@ -51,7 +51,8 @@ struct sph_pair_source {
 struct sph_pair_constants {
   double alpha, twice_beta;
   double periodic[3], per_period[3]; /* length and its inverse; NaN = open (double records only) */
-  double quantum[3];                 /* of float records' positions */
+  double quantum[3];                 /* of float records' positions, over the length that is 1 in their h; used where wrapped */
+  double norm;                       /* of the spline's slope over r, which makes a length of W' */
   double spline_at_spacing;          /* W(spacing)/norm, for the artificial stress */
   bool strength, volume_weights, wrapped;
 };

@@ -72,8 +72,11 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef VECTOR
 #undef MASK
 #undef UNROLL
+#undef PART
+#undef PARTS
 #undef EACH
 #undef GAIN
+#undef LOSE
 #undef LOW
 #undef HIGH
 #undef FIRST
@@ -109,8 +112,11 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef VECTOR
 #undef MASK
 #undef UNROLL
+#undef PART
+#undef PARTS
 #undef EACH
 #undef GAIN
+#undef LOSE
 #undef LOW
 #undef HIGH
 #undef FIRST

@@ -41,20 +41,25 @@ typedef INT NAME(mask) __attribute__((vector_size(LANES * sizeof(REAL))));
 #define ODD(a, b)    __builtin_shufflevector(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31)
 #endif
 
-/* Rows become columns: first within the 16-byte quarters of the registers (PART numbers each), then the quarters among
- * registers. All shuffles have two sources and another destination. */
-INLINE void NAME(transpose)(VECTOR r[LANES]) {
-  enum { PART = 16 / sizeof(REAL), PARTS = LANES / PART };
-  VECTOR u[LANES];
+enum { NAME(PART) = 16 / sizeof(REAL), NAME(PARTS) = LANES / NAME(PART) }; /* numbers in a quarter of 16 bytes, quarters */
+#define PART  NAME(PART)
+#define PARTS NAME(PARTS)
+
+/* Rows become columns within the quarters of PART registers. All shuffles have two sources and another destination. */
+INLINE void NAME(turn_quarters)(const VECTOR r[PART], VECTOR u[PART]) {
 #if FIXED
-  UNROLL for (int g = 0; g < LANES; g += 4) {
-    const VECTOR a = LOW(r[g], r[g + 1]), b = HIGH(r[g], r[g + 1]), c = LOW(r[g + 2], r[g + 3]), d = HIGH(r[g + 2], r[g + 3]);
-    u[g] = FIRST(a, c), u[g + 1] = SECOND(a, c), u[g + 2] = FIRST(b, d), u[g + 3] = SECOND(b, d);
-  }
+  const VECTOR a = LOW(r[0], r[1]), b = HIGH(r[0], r[1]), c = LOW(r[2], r[3]), d = HIGH(r[2], r[3]);
+  u[0] = FIRST(a, c), u[1] = SECOND(a, c), u[2] = FIRST(b, d), u[3] = SECOND(b, d);
 #else
-  UNROLL for (int g = 0; g < LANES; g += 2)
-    u[g] = FIRST(r[g], r[g + 1]), u[g + 1] = SECOND(r[g], r[g + 1]);
+  u[0] = FIRST(r[0], r[1]), u[1] = SECOND(r[0], r[1]);
 #endif
+}
+
+/* Rows become columns: first within the quarters, then the quarters among registers. */
+INLINE void NAME(transpose)(VECTOR r[LANES]) {
+  VECTOR u[LANES];
+  UNROLL for (int g = 0; g < LANES; g += PART)
+    NAME(turn_quarters)(r + g, u + g);
 #ifdef EVEN
   UNROLL for (int c = 0; c < PART; c++) {
     if (PARTS == 2) {
@@ -122,9 +127,25 @@ INLINE VECTOR NAME(larger_at)(unsigned lanes, VECTOR a, VECTOR b, VECTOR elsewhe
 
 /* The block of LANES columns from `column` on, of LANES records: r[k] is column + k. */
 INLINE void NAME(fetch)(const REAL *in, size_t stride, size_t column, const uint32_t *slot, VECTOR r[LANES]) {
+#ifdef AVX512
+  /* halves of two records are loaded into a register, which leaves less to the one unit that shuffles */
+  UNROLL for (int first = 0; first < LANES; first += LANES / 2) {
+    VECTOR rows[LANES / 2], u[LANES / 2];
+    UNROLL for (int m = 0; m < LANES / 2; m++) {
+      const uint32_t *pair = slot + m % PART + m / PART * 2 * PART;
+      const __m256d low = _mm256_load_pd((const void *)(in + pair[0] * stride + column + first));
+      rows[m] = (VECTOR)_mm512_insertf64x4(_mm512_castpd256_pd512(low), _mm256_load_pd((const void *)(in + pair[PART] * stride + column + first)), 1);
+    }
+    NAME(turn_quarters)(rows, u);
+    NAME(turn_quarters)(rows + PART, u + PART);
+    UNROLL for (int c = 0; c < PART; c++)
+      r[first + c] = EVEN(u[c], u[PART + c]), r[first + PART + c] = ODD(u[c], u[PART + c]);
+  }
+#else
   UNROLL for (int lane = 0; lane < LANES; lane++)
     r[lane] = *(const VECTOR *)(const void *)(in + slot[lane] * stride + column);
   NAME(transpose)(r);
+#endif
 }
 
 /* a + b, but the larger of both in the given lanes. */
@@ -147,10 +168,10 @@ INLINE void NAME(spread)(REAL *out, size_t stride, size_t column, const uint32_t
 }
 
 /* r[k] is column + k of what one record gets, lane by lane: the transposition's tree, but two registers become one at each of
- * its nodes. The signal is the
- * odd one of a pair. */
+ * its nodes. The signal is
+ * the odd one of a pair. */
 INLINE void NAME(collect)(REAL *out, size_t column, VECTOR r[LANES]) {
-  enum { PART = 16 / sizeof(REAL), PARTS = LANES / PART, SIGNAL_PART = SUM_SIGNAL % LANES / PART, PLACE = SUM_SIGNAL % PART };
+  enum { SIGNAL_PART = SUM_SIGNAL % LANES / PART, PLACE = SUM_SIGNAL % PART };
   const bool has = NAME(largest)(column) != 0;
   VECTOR *to = (VECTOR *)(void *)(out + column), u[PARTS];
   UNROLL for (int g = 0; g < PARTS; g++) {
@@ -179,7 +200,8 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
   union { REAL real; INT integer; } at = {.real = mine};
   typedef uint32_t whole __attribute__((vector_size(LANES * sizeof(REAL))));
   whole difference = (uint32_t)at.integer - (whole)its;
-  return __builtin_convertvector((MASK)difference, VECTOR) * (REAL)k->quantum[axis];
+  const VECTOR d = __builtin_convertvector((MASK)difference, VECTOR);
+  return k->wrapped ? d * (REAL)k->quantum[axis] : d;
 #else
   VECTOR d = mine - its;
   if (k->wrapped && k->per_period[axis] > 0) { /* the nearest image */
@@ -192,12 +214,13 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
 
 #define EACH UNROLL for (int m = 0; m < GROUP; m++)
 #define GAIN(column, value) (g[column] = m ? g[column] + (value) : (value)) /* of a neighbour, from member m */
+#define LOSE(column, value) (g[column] = m ? g[column] - (value) : -(value))
 
 INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
                       const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
   const size_t in_stride = artificial || corrected ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
-  const REAL norm = (REAL)SPH_SPLINE_NORM, quarter = (REAL)0.25, half = (REAL)0.5;
+  const REAL norm = (REAL)k.norm, quarter = (REAL)0.25;
   const VECTOR zero = {0};
   for (size_t i = 0; i < chunk->own; i += GROUP) {
     const REAL *mine[GROUP];
@@ -218,7 +241,7 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         NAME(fetch)(in, in_stride, column, slot, c + column);
       VECTOR dx[GROUP], dy[GROUP], dz[GROUP], h[GROUP], hh[GROUP], square[GROUP], inverse_r[GROUP], inverse_h[GROUP], q[GROUP],
           t[GROUP], slope[GROUP], wx[GROUP], wy[GROUP], wz[GROUP], ux[GROUP], uy[GROUP], uz[GROUP], closing[GROUP], mu[GROUP],
-          viscous[GROUP], fx[GROUP], fy[GROUP], fz[GROUP];
+          densities[GROUP], softened[GROUP], per[GROUP], viscous[GROUP], fx[GROUP], fy[GROUP], fz[GROUP];
       NAME(choice) near[GROUP], within_h[GROUP];
       EACH {
         dx[m] = NAME(along)(mine[m][PAIR_X], c[PAIR_X], 0, &k);
@@ -226,32 +249,41 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         dz[m] = NAME(along)(mine[m][PAIR_Z], c[PAIR_Z], 2, &k);
       }
       EACH {
-        h[m] = half * (mine[m][PAIR_H] + c[PAIR_H]), hh[m] = h[m] * h[m];
+        h[m] = mine[m][PAIR_H] + c[PAIR_H], hh[m] = h[m] * h[m];
         square[m] = dx[m] * dx[m] + dy[m] * dy[m] + dz[m] * dz[m];
-        near[m] = NAME(less)(square[m], 4 * hh[m]) & NAME(first_lanes)(total - done);
+        densities[m] = mine[m][PAIR_DENSITY] + c[PAIR_DENSITY];
+        softened[m] = densities[m] * (square[m] + (REAL)0.01 * hh[m]);
+        near[m] = NAME(first_lanes)(total - done);
         if (m > 0) near[m] &= NAME(less)(zero, square[m]); /* I stand in the list of the one before me */
         if (m > 0 && !whole) near[m] &= NAME(less)(zero, zero);
       }
-      EACH {
-        const VECTOR floor_square = (REAL)1e-12 * hh[m]; /* coincident particles: no force, no division by zero */
-        inverse_r[m] = ROOT(NAME(select)(NAME(less)(floor_square, square[m]), square[m], floor_square));
-        inverse_h[m] = INVERSE(h[m]), q[m] = square[m] * inverse_r[m] * inverse_h[m], t[m] = 2 - q[m];
+      EACH { /* coincident particles: no force, no division by zero */
+        if (FIXED) { /* they are a quantum apart; one inverse for two */
+          const VECTOR both = INVERSE(h[m] * softened[m]);
+          inverse_r[m] = ROOT(NAME(larger)(square[m], zero + 1));
+          inverse_h[m] = both * softened[m], per[m] = both * h[m];
+        } else {
+          const VECTOR least = (REAL)1e-12 * hh[m];
+          inverse_r[m] = ROOT(NAME(larger)(square[m], least));
+          inverse_h[m] = INVERSE(h[m]), per[m] = INVERSE(softened[m]);
+        }
+        q[m] = square[m] * inverse_r[m] * inverse_h[m], t[m] = 2 - q[m];
+        near[m] &= FIXED ? NAME(less)(zero, t[m]) : NAME(less)(square[m], 4 * hh[m]);
       }
       EACH {
         const VECTOR inner = (REAL)2.25 * q[m] - 3, outer = (REAL)-0.75 * t[m] * t[m] * (h[m] * inverse_r[m]);
-        const VECTOR inverse_hh = inverse_h[m] * inverse_h[m];
+        const VECTOR inverse_hh = inverse_h[m] * inverse_h[m]; /* in float h^-4 alone may be too small a number */
+        const VECTOR scale = FIXED ? norm * inverse_hh * inverse_hh * inverse_h[m] : inverse_hh * inverse_hh * inverse_h[m] * norm;
         within_h[m] = NAME(less)(q[m], zero + 1);
-        slope[m] = NAME(keep)(near[m], NAME(select)(within_h[m], inner, outer) * (inverse_hh * inverse_hh * inverse_h[m] * norm)); /* W'/r */
+        slope[m] = NAME(keep)(near[m], NAME(select)(within_h[m], inner, outer) * scale); /* W'/r */
         wx[m] = slope[m] * dx[m], wy[m] = slope[m] * dy[m], wz[m] = slope[m] * dz[m];
       }
       EACH {
-        ux[m] = mine[m][PAIR_VX] - c[PAIR_VX], uy[m] = mine[m][PAIR_VY] - c[PAIR_VY], uz[m] = mine[m][PAIR_VZ] - c[PAIR_VZ];
-        closing[m] = ux[m] * dx[m] + uy[m] * dy[m] + uz[m] * dz[m];
-        const VECTOR densities = mine[m][PAIR_DENSITY] + c[PAIR_DENSITY];
-        const VECTOR per = INVERSE(densities * (square[m] + (REAL)0.01 * hh[m]));
-        const VECTOR mu_per = h[m] * NAME(select)(NAME(less)(closing[m], zero), closing[m], zero) * per;
-        mu[m] = mu_per * densities;
-        viscous[m] = mu_per * ((REAL)k.twice_beta * mu[m] - (REAL)k.alpha * (mine[m][PAIR_SOUND] + c[PAIR_SOUND]));
+        ux[m] = c[PAIR_VX] - mine[m][PAIR_VX], uy[m] = c[PAIR_VY] - mine[m][PAIR_VY], uz[m] = c[PAIR_VZ] - mine[m][PAIR_VZ];
+        closing[m] = ux[m] * dx[m] + uy[m] * dy[m] + uz[m] * dz[m]; /* positive when they approach */
+        const VECTOR mu_per = h[m] * NAME(larger)(closing[m], zero) * per[m];
+        mu[m] = mu_per * densities[m];
+        viscous[m] = mu_per * ((REAL)k.twice_beta * mu[m] + (REAL)k.alpha * (mine[m][PAIR_SOUND] + c[PAIR_SOUND]));
       }
       VECTOR per_its = zero, per_densities[GROUP]; /* the inverse of its density and of both */
       if (k.volume_weights) {
@@ -283,9 +315,9 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
             if (corrected) yx += f * (own[1] + more[1]), zx += f * (own[2] + more[2]), zy += f * (own[4] + more[4]);
           }
           if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
-            const VECTOR per = per_densities[m];
-            xx *= per, xy *= per, xz *= per, yy *= per, yz *= per, zz *= per;
-            if (corrected) yx *= per, zx *= per, zy *= per;
+            const VECTOR both = per_densities[m];
+            xx *= both, xy *= both, xz *= both, yy *= both, yz *= both, zz *= both;
+            if (corrected) yx *= both, zx *= both, zy *= both;
           }
           if (!corrected) yx = xy, zx = xz, zy = yz;
           xx -= viscous[m], yy -= viscous[m], zz -= viscous[m];
@@ -304,33 +336,33 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       VECTOR volume = c[PAIR_MASS]; /* with volume weights; else the sum is divided by rho_i afterwards */
       if (k.volume_weights) volume *= per_its;
       EACH {
-        const VECTOR heat = half * viscous[m] * slope[m] * closing[m], signal = NAME(keep)(near[m], -mu[m]);
-        const VECTOR one = NAME(keep)(near[m], zero + 1), mj = c[PAIR_MASS], mi = zero + mine[m][PAIR_MASS];
-        VECTOR opposite = zero - mine[m][PAIR_MASS];
+        const VECTOR cooling = viscous[m] * slope[m] * closing[m], signal = NAME(keep)(near[m], mu[m]); /* twice */
+        const VECTOR one = NAME(keep)(near[m], zero + 1), mj = c[PAIR_MASS];
+        VECTOR mi = zero + mine[m][PAIR_MASS], opposite = zero - mine[m][PAIR_MASS];
         s[m][0] += mj * fx[m], s[m][1] += mj * fy[m], s[m][2] += mj * fz[m];
-        s[m][SUM_HEATING] += mj * heat;
+        s[m][SUM_HEATING] -= mj * cooling;
         s[m][SUM_SIGNAL] = NAME(larger)(s[m][SUM_SIGNAL], signal);
         s[m][SUM_COUNT] += one;
         GAIN(0, opposite * fx[m]), GAIN(1, opposite * fy[m]), GAIN(2, opposite * fz[m]);
-        GAIN(SUM_HEATING, mi * heat);
+        GAIN(SUM_HEATING, opposite * cooling);
         g[SUM_SIGNAL] = m ? NAME(larger)(g[SUM_SIGNAL], signal) : signal;
         GAIN(SUM_COUNT, one);
         VECTOR ax = volume * wx[m], ay = volume * wy[m], az = volume * wz[m];
-        s[m][3] -= ux[m] * ax, s[m][4] -= ux[m] * ay, s[m][5] -= ux[m] * az;
-        s[m][6] -= uy[m] * ax, s[m][7] -= uy[m] * ay, s[m][8] -= uy[m] * az;
-        s[m][9] -= uz[m] * ax, s[m][10] -= uz[m] * ay, s[m][11] -= uz[m] * az;
+        s[m][3] += ux[m] * ax, s[m][4] += ux[m] * ay, s[m][5] += ux[m] * az;
+        s[m][6] += uy[m] * ax, s[m][7] += uy[m] * ay, s[m][8] += uy[m] * az;
+        s[m][9] += uz[m] * ax, s[m][10] += uz[m] * ay, s[m][11] += uz[m] * az;
         if (corrected) {
           s[m][16] -= dx[m] * ax, s[m][17] -= dx[m] * ay, s[m][18] -= dx[m] * az;
           s[m][19] -= dy[m] * ay, s[m][20] -= dy[m] * az, s[m][21] -= dz[m] * az;
         }
-        if (k.volume_weights) opposite *= per_mine[m];
-        ax = opposite * wx[m], ay = opposite * wy[m], az = opposite * wz[m];
+        if (k.volume_weights) mi *= per_mine[m];
+        ax = mi * wx[m], ay = mi * wy[m], az = mi * wz[m];
         GAIN(3, ux[m] * ax), GAIN(4, ux[m] * ay), GAIN(5, ux[m] * az);
         GAIN(6, uy[m] * ax), GAIN(7, uy[m] * ay), GAIN(8, uy[m] * az);
         GAIN(9, uz[m] * ax), GAIN(10, uz[m] * ay), GAIN(11, uz[m] * az);
         if (corrected) {
-          GAIN(16, dx[m] * ax), GAIN(17, dx[m] * ay), GAIN(18, dx[m] * az);
-          GAIN(19, dy[m] * ay), GAIN(20, dy[m] * az), GAIN(21, dz[m] * az);
+          LOSE(16, dx[m] * ax), LOSE(17, dx[m] * ay), LOSE(18, dx[m] * az);
+          LOSE(19, dy[m] * ay), LOSE(20, dy[m] * az), LOSE(21, dz[m] * az);
         }
       }
       g[SUM_COUNT + 1] = zero;
