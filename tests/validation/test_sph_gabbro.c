@@ -1,0 +1,106 @@
+/* The gabbro cube of Benz & Asphaug 1995 [BA95] section 5.3: speed of longitudinal waves after the impact, against distance.
+ *
+ * c_p(r) = sqrt((K + 4 mu (1-D)/3)/rho), the mean over what stood in a shell of 1 cm round the point of impact. The experiment
+ * (Ahrens & Rubin 1993): damage falls as about r^-1.5 from the crater on. The paper: m = 3 falls within the measurements, m = 6
+ * and 9 cannot be made to, whatever k. Here k of m = 6 and 9 is such that half of the matter at 7.5 cm is damaged, as with m = 3,
+ * and what is compared is how damage falls round that place; the points of the paper's figure 6 are not printed in it.
+ *
+ * Far sides are damped, but in one run with the cube's own, from which waves return: within 7 cm that must change nothing, and
+ * beyond it the cube has spalls near its edges, as in the paper's figure 5. To 50 us; a wave crosses the cube in 31 us, and
+ * the damped box takes no more damage after 40 us.
+ *
+ * Quick: a coarse cube, m = 3 and 9. CLAST_FULL=1: 45 000 particles, and m = 6. CLAST_PARTICLES=n changes that. */
+#include "tests/run_case.h"
+
+#include "engine/sph/run.h"
+#include "engine/sph/scale.h"
+
+enum { SHELLS = 14, FIRST = 5, LAST = 9 };
+static const double shell = 0.01;
+
+struct cratered {
+  double damage[SHELLS], speed[SHELLS], mean; /* speed over that of sound rock */
+  double exponent;                            /* of D ~ r^-exponent from 5 to 10 cm */
+  double exponent_3_8;                        /* from 3 to 8 cm, where D is 1 to begin with */
+};
+
+static double falls_as(const double *damage, int first, int last) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (int k = first; k <= last; k++) {
+    const double u = log((k + 0.5) * shell), v = log(damage[k]);
+    n++, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return -(n * xy - x * y) / (n * xx - x * x);
+}
+
+static struct cratered crater(const char *m, const char *k, const char *far) {
+  char options[6][64];
+  const char *asked = getenv("CLAST_PARTICLES");
+  snprintf(options[0], sizeof options[0], "target.material.weibull.m=%s", m);
+  snprintf(options[1], sizeof options[1], "target.material.weibull.k=%s 1/m^3", k);
+  snprintf(options[2], sizeof options[2], "sides.far=%s", far);
+  snprintf(options[3], sizeof options[3], "fidelity.particles=%s", asked ? asked : run_case_full() ? "45000" : "8000");
+  snprintf(options[4], sizeof options[4], "fidelity.fine_spacing=%s", run_case_full() ? "1 mm" : "2 mm");
+  struct sph_inputs inputs = SPH_CASE("gabbro-crater", options[0], options[1], options[2], options[3], options[4],
+                                      "stop.end_time=50 us");
+  struct sph_run *run;
+  struct error error = {0};
+  if (sph_run_create(&inputs, 1, &run, &error)) fail_msg("%s", error.message);
+  while (!run->state.finished)
+    sph_run_advance(run, 1000);
+  assert_int_equal(run->state.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */
+
+  const struct sph_particles *now = sph_run_read(run), *start = run->start;
+  const double K = sph_scale_bulk_modulus(&inputs.target.material), mu = inputs.target.material.shear_modulus;
+  struct cratered c = {.mean = sph_system_damage(run->system, NULL)};
+  double mass[SHELLS] = {0};
+  for (size_t i = 0; i < run->targets; i++) {
+    const double up = inputs.target.height / 2 - start->z[i];
+    const double r = sqrt(start->x[i] * start->x[i] + start->y[i] * start->y[i] + up * up), d = pow(now->damage_cbrt[i], 3);
+    if (r >= SHELLS * shell) continue;
+    const int s = (int)(r / shell);
+    mass[s] += now->mass[i];
+    c.damage[s] += now->mass[i] * d;
+    c.speed[s] += now->mass[i] * sqrt((K + 4 * mu * (1 - d) / 3) / (K + 4 * mu / 3));
+  }
+  print_message("m %s, k %s /m^3, sides %s, %zu particles: mean damage %.3f\n  r, cm   ", m, k, far, run->targets, c.mean);
+  for (int s = 0; s < SHELLS; s++)
+    c.damage[s] /= mass[s], c.speed[s] /= mass[s], print_message(" %5.1f", 100 * (s + 0.5) * shell);
+  print_message("\n  damage  ");
+  for (int s = 0; s < SHELLS; s++)
+    print_message(" %5.3f", c.damage[s]);
+  print_message("\n  c_p/c_p0");
+  for (int s = 0; s < SHELLS; s++)
+    print_message(" %5.3f", c.speed[s]);
+  c.exponent = falls_as(c.damage, FIRST, LAST);
+  c.exponent_3_8 = falls_as(c.damage, 3, 7);
+  print_message("\n  damage falls as r^-%.2f from 5 to 10 cm, r^-%.2f from 3 to 8 cm\n", c.exponent, c.exponent_3_8);
+  sph_run_free(run);
+  return c;
+}
+
+static void speed_of_waves(void **state) {
+  (void)state;
+  const struct cratered three = crater("3", "1.39e18", "damped"), nine = crater("9", "2e41", "damped");
+  const double floor_speed = sqrt(7.1e10 / (7.1e10 + 4 * 4.0e10 / 3)); /* 0.756: no shear modulus is left */
+  for (int s = 0; s < 3; s++)
+    assert_true(fabs(three.speed[s] / floor_speed - 1) < 0.01); /* "severely damaged" */
+  for (int s = FIRST; s < LAST; s++)
+    assert_true(three.speed[s] < three.speed[s + 1]);
+  assert_true(three.speed[12] > 0.93);
+  /* The experiment's 1.5; steeper by up to 1 as D of this model begins at 1 there. It is 1.4 to 2.3 at 6000 to 45 000 particles,
+   * and 4 and more for m = 9: the same blow on a rock whose flaws are more alike breaks up to a sharper edge. */
+  assert_true(three.exponent > 1 && three.exponent < 2.5);
+  assert_true(nine.exponent > three.exponent + 1);
+  if (run_case_full()) assert_true(crater("6", "6e29", "damped").exponent > three.exponent + 0.5);
+
+  const struct cratered cube = crater("3", "1.39e18", "free");
+  for (int s = 0; s < 7; s++) /* a wave to the nearest side and back to there goes 23 cm; its tension is weak by then */
+    assert_true(fabs(three.damage[s] - cube.damage[s]) < 0.05);
+  assert_true(cube.mean > three.mean + 0.08); /* spalls near the edges: 0.16 of the cube at either number of particles */
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(speed_of_waves)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
