@@ -215,7 +215,7 @@ static void examples_are_ready_to_run(void **state) {
     seen++;
   }
   closedir(folder);
-  assert_int_equal(seen, 7);
+  assert_int_equal(seen, 9);
 }
 
 int main(void) {

@@ -2,8 +2,9 @@
  *
  * c_p(r) = sqrt((K + 4 mu (1-D)/3)/rho), the mean over what stood in a shell of 1 cm round the point of impact. The experiment
  * (Ahrens & Rubin 1993): damage falls as about r^-1.5 from the crater on. The paper: m = 3 falls within the measurements, m = 6
- * and 9 cannot be made to, whatever k. Here k of m = 6 and 9 is such that half of the matter at 7.5 cm is damaged, as with m = 3,
- * and what is compared is how damage falls round that place; the points of the paper's figure 6 are not printed in it.
+ * and 9 cannot be made to, whatever k. Here k of m = 6 and 9 is such that about half of the matter at 7.5 cm is damaged, as with
+ * m = 3 (at each number of particles: the smaller a particle, the stronger, by an amount that depends on m), and what is compared
+ * is how damage falls round that place; the points of the paper's figure 6 are not printed in it.
  *
  * Far sides are damped, but in one run with the cube's own, from which waves return: within 7 cm that must change nothing, and
  * beyond it the cube has spalls near its edges, as in the paper's figure 5. To 50 us; a wave crosses the cube in 31 us, and
@@ -81,7 +82,7 @@ static struct cratered crater(const char *m, const char *k, const char *far) {
 
 static void speed_of_waves(void **state) {
   (void)state;
-  const struct cratered three = crater("3", "1.39e18", "damped"), nine = crater("9", "2e41", "damped");
+  const struct cratered three = crater("3", "1.39e18", "damped"), nine = crater("9", run_case_full() ? "7e40" : "2e41", "damped");
   const double floor_speed = sqrt(7.1e10 / (7.1e10 + 4 * 4.0e10 / 3)); /* 0.756: no shear modulus is left */
   for (int s = 0; s < 3; s++)
     assert_true(fabs(three.speed[s] / floor_speed - 1) < 0.01); /* "severely damaged" */
@@ -92,7 +93,7 @@ static void speed_of_waves(void **state) {
    * and 4 and more for m = 9: the same blow on a rock whose flaws are more alike breaks up to a sharper edge. */
   assert_true(three.exponent > 1 && three.exponent < 2.5);
   assert_true(nine.exponent > three.exponent + 1);
-  if (run_case_full()) assert_true(crater("6", "6e29", "damped").exponent > three.exponent + 0.5);
+  if (run_case_full()) assert_true(crater("6", "3e29", "damped").exponent > three.exponent + 0.5);
 
   const struct cratered cube = crater("3", "1.39e18", "free");
   for (int s = 0; s < 7; s++) /* a wave to the nearest side and back to there goes 23 cm; its tension is weak by then */
