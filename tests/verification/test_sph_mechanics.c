@@ -418,6 +418,39 @@ static void pressures(void **state) {
   sph_particles_free(p);
 }
 
+/* Where tension_limit stands for flaws, torn matter bears no shear: Y falls from the density at rest to nothing at 0.9 of it. Matter
+ * with flaws keeps its Y (D takes its strength), and so does matter without a limit. */
+static void torn_matter_bears_no_shear(void **state) {
+  (void)state;
+  const struct case_block block = {{12, 12, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
+  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
+  struct sph_flaws *flaws = case_flaws(p->n, 1e-30, 1, 0);
+  for (int kind = 0; kind < 3; kind++) {
+    struct sph_material m = case_basalt;
+    if (kind < 2) m.tension_limit = 1e9;
+    const struct sph_body_physics body = {.material = m, .strength = true, .flaws = kind == 1 ? flaws : NULL};
+    const struct sph_parameters parameters = sph_parameters_default();
+    struct sph_system *s = case_system(p, 1, &body, &parameters);
+    for (size_t i = 0; i < s->n; i++) {
+      s->c.density[i] = 2700 * (0.8 + 0.4 * (double)i / (double)s->n);
+      s->c.energy[i] = 0.25 * m.melt_energy;
+      for (int k = 0; k < 5; k++)
+        s->c.stress[k][i] = 1e11 * (k - 1.5);
+    }
+    for (size_t k = 0; k < s->block_count; k++)
+      s->ranges->yield(s, &s->solid[0], &s->block[k]);
+    for (size_t i = 0; i < s->n; i++) {
+      const double eta = s->c.density[i] / 2700, whole = kind ? 1 : fmin(fmax((eta - 0.9) / 0.1, 0), 1);
+      const double xx = s->c.stress[0][i], xy = s->c.stress[1][i], xz = s->c.stress[2][i], yy = s->c.stress[3][i], yz = s->c.stress[4][i];
+      const double J2 = xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz;
+      assert_true(fabs(sqrt(3 * J2) - whole * 0.75 * m.yield_stress) < 1e-12 * m.yield_stress);
+    }
+    sph_system_free(s);
+  }
+  sph_flaws_free(flaws);
+  sph_particles_free(p);
+}
+
 /* ---- collisions ---- */
 
 static void elastic_pair(void **state) {
@@ -456,6 +489,7 @@ int main(void) {
       cmocka_unit_test(second_order), cmocka_unit_test(rotation),         cmocka_unit_test(yield_ramp),
       cmocka_unit_test(shear),        cmocka_unit_test(damage),           cmocka_unit_test(damaged_stress),
       cmocka_unit_test(pressures),    cmocka_unit_test(principal_values), cmocka_unit_test(elastic_pair),
+      cmocka_unit_test(torn_matter_bears_no_shear),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
