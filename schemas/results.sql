@@ -247,7 +247,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
   stop_reason TEXT, -- Why the run ended. One of: running, quiet, end-time, fault
   particles INTEGER, -- [1] Particles of the target (of a collision: of both bodies).
-  projectile_particles INTEGER, -- [1] Particles of the projectile.
+  projectile_particles INTEGER, -- [1] Particles of the projectile, or of the piston.
   flaws INTEGER, -- [1] Explicit flaws in all bodies.
   target_mass REAL, -- [kg] Mass of the target: M of all mass fractions, which leave the projectile out.
   projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
@@ -297,7 +297,21 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   peak_time REAL, -- [s] Stretch: that time.
   cracks REAL, -- [1] Stretch: pieces of more than 1 % of the rod, less one (without the veneer).
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
-  rebound REAL -- [1] Collision: speed at which the bodies part over the speed of approach.
+  rebound REAL, -- [1] Collision: speed at which the bodies part over the speed of approach.
+  shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.
+  shock_speed_exact REAL, -- [m/s] Piston: what the jump conditions give for it.
+  shock_density REAL, -- [kg/m^3] Piston: mean density of the middle half from the piston to the shock.
+  shock_density_exact REAL, -- [kg/m^3] Piston: what the jump conditions give for it.
+  shock_pressure REAL, -- [Pa] Piston: mean pressure there.
+  shock_pressure_exact REAL, -- [Pa] Piston: what the jump conditions give for it.
+  shock_distention REAL, -- [1] Piston: mean distention there; off without pores.
+  shock_distention_exact REAL, -- [1] Piston: what the jump conditions and the crush curve give for it.
+  precursor_speed REAL, -- [m/s] Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.
+  precursor_speed_exact REAL, -- [m/s] Piston: what the jump conditions give for it.
+  precursor_pressure REAL, -- [Pa] Piston: mean pressure between the two fronts.
+  precursor_pressure_exact REAL, -- [Pa] Piston: what it should be: P_e, or less with a slow piston.
+  precursor_distention REAL, -- [1] Piston: mean distention there.
+  precursor_distention_exact REAL -- [1] Piston: what the elastic branch gives for it.
 ) STRICT;
 
 CREATE VIEW runs AS -- every run with its varied inputs and all its results
@@ -412,6 +426,20 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_sph."cracks",
   result_sph."frequency",
   result_sph."rebound",
+  result_sph."shock_speed",
+  result_sph."shock_speed_exact",
+  result_sph."shock_density",
+  result_sph."shock_density_exact",
+  result_sph."shock_pressure",
+  result_sph."shock_pressure_exact",
+  result_sph."shock_distention",
+  result_sph."shock_distention_exact",
+  result_sph."precursor_speed",
+  result_sph."precursor_speed_exact",
+  result_sph."precursor_pressure",
+  result_sph."precursor_pressure_exact",
+  result_sph."precursor_distention",
+  result_sph."precursor_distention_exact",
   lower(hex(r.identity)) AS identity
 FROM run r JOIN point p ON p.point_id = r.point_id
   LEFT JOIN result_dem ON result_dem.run_id = r.run_id
@@ -908,9 +936,21 @@ INSERT INTO column_doc VALUES ('result_sph', 'peak_stress', 'Pa', 'Stretch: larg
 
 INSERT INTO column_doc VALUES ('result_sph', 'peak_time', 's', 'Stretch: that time.', 1);
 
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention', '1', 'Piston: mean distention there.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention_exact', '1', 'Piston: what the elastic branch gives for it.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston: mean pressure between the two fronts.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: what it should be: P_e, or less with a slow piston.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 1);
+
 INSERT INTO column_doc VALUES ('result_sph', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'projectile_particles', '1', 'Particles of the projectile.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'projectile_particles', '1', 'Particles of the projectile, or of the piston.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed at which the bodies part over the speed of approach.', 1);
 
@@ -919,6 +959,22 @@ INSERT INTO column_doc VALUES ('result_sph', 'run_id', NULL, 'the run', 0);
 INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Angle at the target''s centre between the point of impact and the second largest fragment: pi is opposite.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is none.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_density', 'kg/m^3', 'Piston: mean density of the middle half from the piston to the shock.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_density_exact', 'kg/m^3', 'Piston: what the jump conditions give for it.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_distention', '1', 'Piston: mean distention there; off without pores.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_distention_exact', '1', 'Piston: what the jump conditions and the crush curve give for it.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure', 'Pa', 'Piston: mean pressure there.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure_exact', 'Pa', 'Piston: what the jump conditions give for it.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.', 1);
+
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the target''s mass; off without one.', 1);
 
@@ -1154,9 +1210,21 @@ INSERT INTO column_doc VALUES ('runs', 'point_id', NULL, 'number of the point: o
 
 INSERT INTO column_doc VALUES ('runs', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'precursor_distention', '1', 'Piston: mean distention there.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'precursor_distention_exact', '1', 'Piston: what the elastic branch gives for it.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean pressure between the two fronts.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: what it should be: P_e, or less with a slow piston.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'projectile_particles', '1', 'Particles of the projectile.', 0);
+INSERT INTO column_doc VALUES ('runs', 'projectile_particles', '1', 'Particles of the projectile, or of the piston.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'rank', NULL, 'MPI rank that computed it', 0);
 
@@ -1191,6 +1259,22 @@ INSERT INTO column_doc VALUES ('runs', 'second_mass', 'kg', 'Mass of the second 
 INSERT INTO column_doc VALUES ('runs', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'session_id', NULL, 'the session that computed it', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_density', 'kg/m^3', 'Piston: mean density of the middle half from the piston to the shock.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_density_exact', 'kg/m^3', 'Piston: what the jump conditions give for it.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_distention', '1', 'Piston: mean distention there; off without pores.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_distention_exact', '1', 'Piston: what the jump conditions and the crush curve give for it.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_pressure', 'Pa', 'Piston: mean pressure there.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_pressure_exact', 'Pa', 'Piston: what the jump conditions give for it.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'shock_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'single_count', '1', 'Fragments of one grain or particle: below the model''s resolution.', 0);
 

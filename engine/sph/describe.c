@@ -6,6 +6,7 @@
 
 #include "engine/builtin.h"
 #include "engine/sph/modules.h"
+#include "engine/sph/plane_shock.h"
 #include "engine/sph/run.h"
 #include "engine/sph/scale.h"
 
@@ -88,6 +89,10 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
     fprintf(out, "collision: two equal bodies approach at %.4g m/s, slabs that repeat along their axes (Gray et al. 2001)\n",
             in->collision.speed);
     break;
+  case SPH_PISTON:
+    fprintf(out, "piston: a plate, a bar that repeats sideways, is driven at %.4g m/s along x (Jutzi, Benz & Michel 2008)\n",
+            in->piston.speed);
+    break;
   }
   shape("target", &target, &in->target, spacing, out);
   if (sph_scale_has_projectile(in)) {
@@ -156,6 +161,21 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sqrt(sph_scale_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
+static void front(const char *name, const struct sph_front *f, FILE *out) {
+  fprintf(out, "  exact %s: %.6g m/s; behind it %.4g Pa, %.6g kg/m^3, distention %.6g, matter at %.4g m/s\n", name, f->speed, f->pressure,
+          f->density, f->distention, f->velocity);
+}
+
+static void plate(const struct sph_inputs *in, FILE *out) {
+  struct sph_plane_shock exact;
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, sph_scale_porous(&in->target), in->piston.speed, &exact, NULL))
+    return;
+  if (exact.has_precursor)
+    front("elastic precursor", &exact.precursor, out);
+  if (exact.has_shock)
+    front("shock", &exact.shock, out);
+}
+
 char *sph_describe_scene(const struct sph_inputs *in) {
   char *text = NULL;
   size_t size = 0;
@@ -166,12 +186,14 @@ char *sph_describe_scene(const struct sph_inputs *in) {
   protocol(in, out);
   modules(in, out);
   numbers(in, out);
+  plate(in, out);
   if (sph_inputs_check(in, &error))
     fprintf(out, "  cannot be run: %s\n", error.message);
   double particles = sph_scale_particles(in);
   fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
           (double)sph_describe_memory(in) / 1e6);
-  fprintf(out, "  at most about %.3g steps of %.4g particles; ends when fracture has ceased\n", steps_expected(in), particles);
+  fprintf(out, "  at most about %.3g steps of %.4g particles; ends %s\n", steps_expected(in), particles,
+          sph_scale_cracks(&in->target) ? "when fracture has ceased" : "at stop.end_time");
   if (fclose(out)) {
     free(text);
     return NULL;

@@ -12,6 +12,8 @@ static const struct fields_file_column curve_columns[] = {
     {"stress", "Pa", "stretch: mean axial stress between the grips", 0},
     {"mode", "1", "vibration: velocities projected on the first mode, over their first size", 0},
     {"damage", "1", "mean damage of bodies with flaws", 0},
+    {"front", "m", "piston: where the shock is", 0},
+    {"precursor", "m", "piston: where the elastic precursor is", 0},
 };
 /* Along the axis of an impact, from the surface down: how pores and damage change with depth. */
 static const struct fields_file_column axis_columns[] = {
@@ -31,7 +33,7 @@ static double axis_value(const void *context, size_t row, size_t column, size_t 
 static double curve_value(const void *context, size_t row, size_t column, size_t k) {
   (void)k;
   const struct sph_sample *s = (const struct sph_sample *)context + row;
-  const double values[] = {s->time, s->strain, s->stress, s->mode, s->damage};
+  const double values[] = {s->time, s->strain, s->stress, s->mode, s->damage, s->front, s->precursor};
   return values[column];
 }
 

@@ -9,7 +9,7 @@
 #include "engine/sph/material_rows.h"
 #include "engine/sph/pairs.h"
 
-static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", NULL};
+static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};
 static const char *const shapes[] = {"sphere", "cylinder", "box", NULL};
 static const char *const lattices[] = {"hexagonal", "cubic", "irregular", NULL};
 static const char *const fractures[] = {"auto", "on", "off", NULL};
@@ -70,9 +70,11 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
            .doc = "Length of the cylinder along its axis: z for a target, the flight for a projectile. In a collision, " \
                   "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),   \
       REAL(B.width, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box", .doc = "Side of the box along x."), \
-      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box", .doc = "Side of the box along y."), \
+      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box", \
+           .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: whole periods " \
+                  "of the lattice are made of it."), \
       REAL(B.height, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                 \
-           .doc = "Side of the box along z. A projectile comes down on the upper side.")
+           .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the least one.")
 
 #define BODY_MATTER(B, exists, material_)                                                                              \
   CHOICE(B.lattice, lattices, .when = exists,                                                                          \
@@ -96,10 +98,11 @@ static const struct field rows[] = {
            .choice_docs = "a projectile flies into a target\n"
                           "a cylinder is pulled apart by its ends at a constant rate\n"
                           "a free cylinder rings along its axis in its first mode\n"
-                          "two equal cylinders or rings collide, as slabs that repeat along their axes",
+                          "two equal cylinders or rings collide, as slabs that repeat along their axes\n"
+                          "a piston runs into a plate without strength, a bar that repeats sideways; its shock is compared with the exact one",
            .doc = "The protocol: what is done to the body."),
 
-    CHOICE(target.shape, shapes, .doc = "The target's outline, its centre at the origin. Only an impact takes all of them; "
+    CHOICE(target.shape, shapes, .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
                                         "the others are done to cylinders."),
     BODY_SIZES(target, 0.03),
     REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact", .doc = "The target turns about z before it is hit."),
@@ -152,6 +155,9 @@ static const struct field rows[] = {
          .doc = "Speed of approach; each body has half of it.", .source = "Gray, Monaghan & Swift 2001"),
     REAL(collision.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=collision",
          .doc = "Distance of the surfaces at the start; two particle spacings unless given."),
+    REAL(piston.speed, "m/s", 458, 0, 1e5, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=piston",
+         .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
+         .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
 
     CHOICE(fracture.draw, draws, .when = "target.fracture=auto|on",
            .choice_docs = "eps_j = (j/kV)^(1/m): a seed only moves the flaws about\n"
@@ -208,15 +214,17 @@ static const struct field rows[] = {
          .source = "Jutzi & Benz, section 3.2, for 0"),
     REAL(stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
          .doc = "Hard end of the run; unless given, ten times what a longitudinal wave needs through the target, and the time "
-                "until bodies meet."),
+                "until bodies meet. Of a plate: when its first front, by the jump conditions, has gone 0.94 of its width."),
     REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
          .doc = "Fracture has ceased, and the run is complete, when the mean damage of the body has grown by less than "
                 "stop.quiet_growth for this long, counted from the first damage; unless given, the time of two such waves."),
     REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
          .doc = "See stop.quiet_time: a share of the body's volume."),
 
-    COUNT(fidelity.particles, 10000, 1, 2e9, .flags = FIELD_LOG,
+    COUNT(fidelity.particles, 10000, 1, 2e9, .flags = FIELD_LOG, .when = "kind=impact|stretch|vibration|collision",
           .doc = "Particles of the target (of a collision: of each body), within what its lattice allows."),
+    COUNT(fidelity.points, 400, 1, 1e6, .flags = FIELD_LOG, .when = "kind=piston",
+          .doc = "Width of the plate over the particle spacing. Sideways it is as thick as its lattice needs."),
     REAL(fidelity.projectile_spacing, "1", 0.5, 1e-3, 1e3, .when = "kind=impact",
          .doc = "Particle spacing of the projectile over the target's where it hits."),
     SWITCH(fidelity.graded, 0, .when = "kind=impact", .doc = "Particles are finer near the point of impact."),

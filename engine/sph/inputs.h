@@ -10,6 +10,7 @@ enum sph_kind {
   SPH_STRETCH,   /* a cylinder pulled by its ends at a constant rate */
   SPH_VIBRATION, /* a free cylinder ringing along its axis in its first mode */
   SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
+  SPH_PISTON,    /* a plate, a bar along x that repeats sideways, with a piston running into its end */
 };
 enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
 enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
@@ -49,6 +50,9 @@ struct sph_inputs {
     double speed, gap;
   } collision;
   struct {
+    double speed;
+  } piston;
+  struct {
     int draw, growth, cap, crack_radius;
   } fracture;
   struct {
@@ -70,7 +74,7 @@ struct sph_inputs {
     double end_time, quiet_time, quiet_growth;
   } stop;
   struct {
-    int64_t particles;
+    int64_t particles, points;
     double projectile_spacing;
     bool graded;
     double fine_spacing, fine_radius;

@@ -8,6 +8,7 @@
 #include "engine/sph/inputs.h"
 #include "engine/sph/material_rows.h"
 #include "engine/sph/palpha.h"
+#include "engine/sph/plane_shock.h"
 #include "engine/sph/scale.h"
 
 #define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
@@ -139,6 +140,21 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
   return STATUS_OK;
 }
 
+static status check_piston(const struct sph_inputs *in, struct error *error) {
+  struct sph_plane_shock exact;
+  if (in->target.shape != SPH_SHAPE_BOX)
+    REFUSE("a piston runs into a plate: set target.shape: box");
+  if (in->target.strength)
+    REFUSE("a piston's shock is compared with that of matter without strength: set target.strength: false");
+  if (in->sides.far == 1)
+    REFUSE("a plate repeats sideways, and its far side is never reached: set sides.far: free");
+  if (in->target.turned)
+    REFUSE("a turned lattice cannot repeat sideways: set target.turned: false");
+  if (in->fidelity.points < 20)
+    REFUSE("fidelity.points is %lld: a shock is spread over about ten particles, so give 20 or more", (long long)in->fidelity.points);
+  return sph_plane_shock(&in->target.material, sph_scale_porous(&in->target), in->piston.speed, &exact, error);
+}
+
 static status check_protocol(const struct sph_inputs *in, struct error *error) {
   status code;
   double spacing = sph_scale_spacing(in);
@@ -166,6 +182,8 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
     if (in->collision.gap < spacing / 2)
       REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap", in->collision.gap, spacing);
     return STATUS_OK;
+  case SPH_PISTON:
+    return check_piston(in, error);
   }
   return STATUS_OK;
 }

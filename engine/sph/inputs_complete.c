@@ -5,6 +5,7 @@
 #include "engine/builtin.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/materials.h"
+#include "engine/sph/plane_shock.h"
 #include "engine/sph/scale.h"
 
 #define FREE(member) (!given[row_at(offsetof(struct sph_inputs, member))])
@@ -52,6 +53,14 @@ static double static_strength(const struct sph_inputs *in) {
   return strength > 0 && strength <= 1e15 ? strength : (double)NAN;
 }
 
+/* Until the first front of a plate has gone 0.94 of the way, so that nothing has come back; NaN where values are missing. */
+static double plate_time(const struct sph_inputs *in) {
+  struct sph_plane_shock exact;
+  if (sph_plane_shock(&in->target.material, sph_scale_porous(&in->target), in->piston.speed, &exact, NULL))
+    return NAN;
+  return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
+}
+
 void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   complete_material(in, &in->target, "basalt", given);
   complete_material(in, &in->projectile, "nylon", given);
@@ -80,5 +89,7 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
       in->stop.end_time += in->impact.gap / (in->impact.speed * cos(in->impact.angle));
     else if (in->kind == SPH_COLLISION)
       in->stop.end_time += in->collision.gap / in->collision.speed;
+    else if (in->kind == SPH_PISTON)
+      in->stop.end_time = plate_time(in);
   }
 }

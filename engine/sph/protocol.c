@@ -32,11 +32,10 @@ static struct sph_body body_of(const struct sph_run *run, const struct sph_body_
   };
 }
 
-/* Two slabs that repeat along their axes: thick enough that no particle meets its own image. */
-static void place_slabs(struct sph_run *run, double spacing) {
+/* Two slabs that repeat along their axes. */
+static void place_slabs(struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
-  double support = 2 * spacing * in->fidelity.smoothing * (1 + in->fidelity.skin);
-  double length = sph_lattice_period(in->target.lattice, spacing, Z, fmax(in->target.length, 2.1 * support));
+  double length = sph_scale_thickness(in, Z, in->target.length);
   for (int b = 0; b < 2; b++) {
     run->shape[b] = sph_scale_target(in);
     run->shape[b].length = length;
@@ -44,6 +43,18 @@ static void place_slabs(struct sph_run *run, double spacing) {
     run->shape[b].centre[Z] = length / 2;
   }
   run->periodic[Z] = length;
+}
+
+/* The plate from x = 0 on, the piston before it; what repeats begins at 0. */
+static void place_plate(struct sph_run *run) {
+  run->shape[0] = sph_scale_target(&run->inputs);
+  run->shape[1] = sph_scale_piston(&run->inputs);
+  run->shape[0].centre[0] = run->shape[0].side[0] / 2;
+  run->shape[1].centre[0] = -run->shape[1].side[0] / 2;
+  for (int k = 1; k < 3; k++) {
+    run->periodic[k] = run->shape[0].side[k];
+    run->shape[0].centre[k] = run->shape[1].centre[k] = run->periodic[k] / 2;
+  }
 }
 
 static int arrays_of(const struct sph_inputs *in) {
@@ -57,7 +68,7 @@ static int arrays_of(const struct sph_inputs *in) {
     if (sph_scale_porous(bodies[b]))
       arrays |= SPH_WITH_DISTENTION;
   }
-  if (in->kind == SPH_STRETCH)
+  if (in->kind == SPH_STRETCH || in->kind == SPH_PISTON)
     arrays |= SPH_WITH_HELD;
   if (in->target.shape == SPH_SHAPE_BOX && in->sides.far)
     arrays |= SPH_WITH_DAMPING;
@@ -69,10 +80,10 @@ static status make_bodies(struct sph_run *run, struct error *error) {
   double spacing = sph_scale_spacing(in);
   struct sph_body body[SPH_RUN_BODIES];
   body[0] = body_of(run, &in->target, &run->shape[0], 0, spacing);
-  if (in->kind == SPH_COLLISION) {
-    body[0].lattice.periodic[Z] = true;
+  if (in->kind == SPH_COLLISION || in->kind == SPH_PISTON) {
     body[1] = body_of(run, &in->target, &run->shape[1], 1, spacing);
-    body[1].lattice.periodic[Z] = true;
+    for (int k = 0; k < 3; k++)
+      body[0].lattice.periodic[k] = body[1].lattice.periodic[k] = !isnan(run->periodic[k]);
   } else {
     body[0].lattice.particles = (double)in->fidelity.particles;
     if (sph_scale_has_projectile(in)) {
@@ -130,6 +141,12 @@ static void set_in_motion(struct sph_run *run, const double flight[3]) {
       sph_bodies_move(run->start, run->range[b], v);
     }
     break;
+  case SPH_PISTON:
+    v[0] = in->piston.speed;
+    sph_bodies_move(run->start, run->range[1], v);
+    for (size_t i = run->range[1].first; i < run->start->n; i++)
+      run->start->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
+    break;
   }
 }
 
@@ -177,7 +194,9 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   if (in->kind == SPH_IMPACT)
     code = sph_scale_aim(in, run->shape, flight, error);
   else if (in->kind == SPH_COLLISION)
-    place_slabs(run, sph_scale_spacing(in));
+    place_slabs(run);
+  else if (in->kind == SPH_PISTON)
+    place_plate(run);
   else
     run->shape[0] = sph_scale_target(in);
   if (code || (code = make_bodies(run, error)))

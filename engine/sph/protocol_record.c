@@ -1,14 +1,17 @@
-/* What stretch and vibration record along the way, at equal times of the simulation. */
+/* What stretch, vibration and piston record along the way, at equal times of the simulation. */
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/run.h"
+#include "engine/sph/plate.h"
 
 enum { SAMPLES = 400 }; /* looks over the whole run: a look costs about a tenth of a step */
 
 status sph_protocol_record_start(struct sph_run *run, struct error *error) {
-  if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION)
+  if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
     return STATUS_OK;
+  status code = run->inputs.kind == SPH_PISTON ? sph_plate_start(run, error) : STATUS_OK;
+  if (code)
+    return code;
   run->sample_interval = run->inputs.stop.end_time / SAMPLES;
   run->sample_capacity = SAMPLES + 2;
   run->sample = calloc(run->sample_capacity, sizeof *run->sample);
@@ -67,6 +70,8 @@ void sph_protocol_record(struct sph_run *run) {
       state->peak_strain = sample->strain;
       state->peak_time = time;
     }
+  } else if (run->inputs.kind == SPH_PISTON) {
+    sph_plate_look(run, p, &sample->front, &sample->precursor);
   } else {
     sample->mode = mode(run, p);
     note_crossing(state, sample->mode, time);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/run.h"
+#include "engine/sph/plate.h"
 #include "engine/sph/scale.h"
 
 enum { INITIAL_H = 0, PIECE = 100 }; /* a piece of a rod is more than 1/PIECE of it */
@@ -14,7 +14,7 @@ status sph_report_pieces(const struct sph_run *run, double static_strength, bool
   const struct sph_inputs *in = &run->inputs;
   const struct sph_pieces_body bodies[SPH_RUN_BODIES] = {
       {.static_strength = static_strength},
-      {.left_out = sph_scale_has_projectile(in), .static_strength = static_strength},
+      {.left_out = sph_scale_has_intruder(in), .static_strength = static_strength},
   };
   struct sph_pieces_options options = sph_pieces_default();
   options.damage = in->fragments.damage;
@@ -219,6 +219,8 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
         (double)(run->state.crossings - 1) / (2 * (run->state.crossing_last - run->state.crossing_first));
   if (in->kind == SPH_COLLISION)
     results->rebound = rebound(run);
+  if (in->kind == SPH_PISTON)
+    sph_plate_report(run, results);
   return STATUS_OK;
 }
 

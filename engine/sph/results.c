@@ -20,7 +20,7 @@ static const struct field rows[] = {
                        "a numerical fault: the outcome's state says which",
         .doc = "Why the run ended."),
     COUNT(particles, "Particles of the target (of a collision: of both bodies)."),
-    COUNT(projectile_particles, "Particles of the projectile."),
+    COUNT(projectile_particles, "Particles of the projectile, or of the piston."),
     COUNT(flaws, "Explicit flaws in all bodies."),
     REAL(target_mass, "kg", 0, .doc = "Mass of the target: M of all mass fractions, which leave the projectile out."),
     REAL(projectile_mass, "kg", 0, .doc = "Mass of the projectile; off without one."),
@@ -84,6 +84,23 @@ static const struct field rows[] = {
     REAL(cracks, "1", 0, .doc = "Stretch: pieces of more than 1 % of the rod, less one (without the veneer)."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed at which the bodies part over the speed of approach."),
+    REAL(shock.speed, "m/s", 0,
+         .doc = "Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density "
+                "passes half way. Off when the piston is too slow for one.", .source = "Jutzi, Benz & Michel 2008"),
+    REAL(shock.speed_exact, "m/s", 0, .doc = "Piston: what the jump conditions give for it.", .source = "Rankine; Hugoniot"),
+    REAL(shock.density, "kg/m^3", 0, .doc = "Piston: mean density of the middle half from the piston to the shock."),
+    REAL(shock.density_exact, "kg/m^3", 0, .doc = "Piston: what the jump conditions give for it."),
+    REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure there."),
+    REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: what the jump conditions give for it."),
+    REAL(shock.distention, "1", 1, .doc = "Piston: mean distention there; off without pores."),
+    REAL(shock.distention_exact, "1", 1, .doc = "Piston: what the jump conditions and the crush curve give for it."),
+    REAL(precursor.speed, "m/s", 0,
+         .doc = "Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster."),
+    REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: what the jump conditions give for it."),
+    REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between the two fronts."),
+    REAL(precursor.pressure_exact, "Pa", 0, .doc = "Piston: what it should be: P_e, or less with a slow piston."),
+    REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention there."),
+    REAL(precursor.distention_exact, "1", 1, .doc = "Piston: what the elastic branch gives for it."),
 };
 
 const struct field_table sph_results =

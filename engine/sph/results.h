@@ -44,6 +44,12 @@ struct sph_results {
   double cracks;
   double frequency;
   double rebound;
+  struct {
+    double speed, speed_exact, density, density_exact, pressure, pressure_exact, distention, distention_exact;
+  } shock;
+  struct {
+    double speed, speed_exact, pressure, pressure_exact, distention, distention_exact;
+  } precursor;
 };
 
 extern const struct field_table sph_results;

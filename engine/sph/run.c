@@ -112,6 +112,7 @@ void sph_run_free(struct sph_run *run) {
   for (int b = 0; b < SPH_RUN_BODIES; b++)
     sph_flaws_free(run->flaws[b]);
   free(run->sample);
+  free(run->layer);
   free(run);
 }
 

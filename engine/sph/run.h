@@ -7,14 +7,16 @@
 #include "engine/sph/crater.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/pieces.h"
+#include "engine/sph/plane_shock.h"
 #include "engine/sph/results.h"
 #include "engine/sph/system.h"
 
 enum { SPH_RUN_BODIES = 2 };
 
-/* One point of the curve that a protocol records: stress against strain (stretch), or the mode's amplitude (vibration). */
+/* One point of the curve that a protocol records: stress against strain (stretch), the mode's amplitude (vibration), or where the
+ * fronts are (piston). */
 struct sph_sample {
-  double time, strain, stress, mode, damage;
+  double time, strain, stress, mode, damage, front, precursor;
 };
 
 /* What changes during a run beside the system itself: a plain value, saved as it stands in a restart file. */
@@ -52,6 +54,8 @@ struct sph_run {
   struct sph_sample *sample;    /* sample_capacity of them; NULL: the protocol records nothing */
   size_t sample_capacity;
   double sample_interval;       /* s */
+  struct sph_plane_shock exact; /* piston: what it should do */
+  struct sph_plate_layer *layer; /* piston: room for a look (plate.c) */
 };
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
@@ -69,7 +73,7 @@ void sph_run_end(struct sph_run *run, int stop, int outcome_state, const char *f
 /* protocol.c: bodies with their flaws, where they stand and how they move. Fills shape, range, start, flaws... of the run. */
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
-/* protocol_record.c: what stretch and vibration record along the way. */
+/* protocol_record.c: what stretch, vibration and piston record along the way. */
 status sph_protocol_record_start(struct sph_run *run, struct error *error);
 void sph_protocol_record(struct sph_run *run); /* after a step */
 

@@ -6,6 +6,7 @@
 #include "engine/sph/bodies.h"
 
 static const double pi = 3.14159265358979323846;
+enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
 
 double sph_scale_bulk_modulus(const struct sph_material *m) {
   return m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A;
@@ -50,7 +51,9 @@ double sph_scale_density(const struct sph_body_inputs *b) {
 
 bool sph_scale_has_projectile(const struct sph_inputs *in) { return in->kind == SPH_IMPACT; }
 
-int sph_scale_bodies(const struct sph_inputs *in) { return in->kind == SPH_IMPACT || in->kind == SPH_COLLISION ? 2 : 1; }
+bool sph_scale_has_intruder(const struct sph_inputs *in) { return in->kind == SPH_IMPACT || in->kind == SPH_PISTON; }
+
+int sph_scale_bodies(const struct sph_inputs *in) { return sph_scale_has_intruder(in) || in->kind == SPH_COLLISION ? 2 : 1; }
 
 static struct sph_shape shape_of(const struct sph_body_inputs *b) {
   struct sph_shape shape = {.kind = b->shape, .axis = {0, 0, 1}};
@@ -70,7 +73,19 @@ static struct sph_shape shape_of(const struct sph_body_inputs *b) {
   return shape;
 }
 
-struct sph_shape sph_scale_target(const struct sph_inputs *in) { return shape_of(&in->target); }
+double sph_scale_thickness(const struct sph_inputs *in, int direction, double at_least) {
+  double spacing = sph_scale_spacing(in), support = 2 * spacing * in->fidelity.smoothing * (1 + in->fidelity.skin);
+  return sph_lattice_period(in->target.lattice, spacing, direction, fmax(at_least, 2.1 * support));
+}
+
+struct sph_shape sph_scale_target(const struct sph_inputs *in) {
+  struct sph_shape shape = shape_of(&in->target);
+  if (in->kind == SPH_PISTON) {
+    shape.side[1] = sph_scale_thickness(in, 1, in->target.depth);
+    shape.side[2] = sph_scale_thickness(in, 2, in->target.height);
+  }
+  return shape;
+}
 
 double sph_scale_target_mass(const struct sph_inputs *in) {
   struct sph_shape shape = sph_scale_target(in);
@@ -85,6 +100,12 @@ struct sph_shape sph_scale_projectile(const struct sph_inputs *in) {
     mass = 2 * in->impact.specific_energy * sph_scale_target_mass(in) / (speed * speed);
   return (struct sph_shape){.kind = SPH_SHAPE_SPHERE, .axis = {0, 0, 1},
                             .radius = cbrt(3 * mass / (4 * pi * sph_scale_density(&in->projectile)))};
+}
+
+struct sph_shape sph_scale_piston(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_scale_target(in);
+  shape.side[0] = PISTON_LAYERS * sph_scale_spacing(in);
+  return shape;
 }
 
 double sph_scale_projectile_mass(const struct sph_inputs *in) {
@@ -111,7 +132,9 @@ status sph_scale_aim(const struct sph_inputs *in, struct sph_shape shape[2], dou
 }
 
 double sph_scale_spacing(const struct sph_inputs *in) {
-  struct sph_shape shape = sph_scale_target(in);
+  if (in->kind == SPH_PISTON)
+    return in->target.width / (double)in->fidelity.points;
+  struct sph_shape shape = shape_of(&in->target);
   return cbrt(sph_shape_volume(&shape) / (double)in->fidelity.particles);
 }
 
@@ -129,6 +152,10 @@ double sph_scale_particles(const struct sph_inputs *in) {
   double target = (double)in->fidelity.particles;
   if (in->kind == SPH_COLLISION)
     return 2 * target;
+  if (in->kind == SPH_PISTON) {
+    struct sph_shape plate = sph_scale_target(in), piston = sph_scale_piston(in);
+    return (sph_shape_volume(&plate) + sph_shape_volume(&piston)) / pow(sph_scale_spacing(in), 3);
+  }
   if (!sph_scale_has_projectile(in))
     return target;
   struct sph_shape shape = sph_scale_projectile(in);

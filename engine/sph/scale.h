@@ -7,6 +7,8 @@
 
 bool sph_scale_has_projectile(const struct sph_inputs *inputs);
 int sph_scale_bodies(const struct sph_inputs *inputs);
+/* Is there a second body that belongs to no fragment: a projectile or a piston (ids after the target's)? */
+bool sph_scale_has_intruder(const struct sph_inputs *inputs);
 /* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
 bool sph_scale_cracks(const struct sph_body_inputs *body);
 /* Has it pores? A crush curve and a distention above 1. */
@@ -20,6 +22,10 @@ double sph_scale_crack_speed(const struct sph_material *material);   /* m/s, c_g
 /* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
 struct sph_shape sph_scale_target(const struct sph_inputs *inputs);
 struct sph_shape sph_scale_projectile(const struct sph_inputs *inputs);
+struct sph_shape sph_scale_piston(const struct sph_inputs *inputs); /* at the origin, too */
+/* m: what repeats along y or z (direction 1 or 2) in whole periods of the target's lattice, at least so thick, and so thick that no
+ * particle meets its own image. */
+double sph_scale_thickness(const struct sph_inputs *inputs, int direction, double at_least);
 double sph_scale_target_mass(const struct sph_inputs *inputs);     /* kg */
 double sph_scale_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
 double sph_scale_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */

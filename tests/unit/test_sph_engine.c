@@ -8,7 +8,7 @@
 #include "engine/sph/scale.h"
 
 static const char *const scenes[] = {"basalt-sphere", "tensile-rod", "gabbro-crater", "elastic-bar", "colliding-cylinders",
-                                     "disruption"};
+                                     "disruption",    "porous-ice",  "porous-plate"};
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
 /* A small sphere that is over soon. */
@@ -39,6 +39,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
       fail_msg("%s: %s", scenes[k], text);
     free(text);
     inputs.fidelity.particles = 1500;
+    inputs.fidelity.points = 60;
     inputs.fidelity.graded = false;
     inputs.fidelity.projectile_spacing = fmin(inputs.fidelity.projectile_spacing, 0.1);
     inputs.impact.gap = sph_scale_spacing(&inputs);
@@ -124,6 +125,7 @@ static void chunks_and_restarts_do_not_matter(void **state) {
       SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
       SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=20 us"),
       SPH_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms"),
+      SPH_CASE("porous-plate", "fidelity.points=40"),
   };
   for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
     struct ran whole = run_case_run(&sph_engine, &cases[c], 3);

@@ -182,6 +182,12 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("kind: stretch", "target.shape: cylinder");
   refused("target: {shape: cylinder, radius: 1 cm, inner_radius: 2 cm}", "smaller hole");
   refused("target: {shape: cylinder, radius: 2 cm, inner_radius: 1 cm}", "misses");
+  refused("kind: piston", "target.shape: box");
+  refused("{kind: piston, target: {shape: box}}", "target.strength: false");
+  refused("{kind: piston, target: {shape: box, strength: false}, fidelity: {points: 10}}", "20 or more");
+  refused("{kind: piston, target: {shape: box, strength: false}, sides: {far: damped}}", "sides.far: free");
+  refused("{kind: piston, target: {shape: box, strength: false, turned: true}}", "target.turned: false");
+  accepted("{kind: piston, target: {shape: box, strength: false}}");
   refused("impact: {projectile: mass, mass: 1e-12 kg}", "fidelity.projectile_spacing");
   refused("impact: {projectile: specific-energy, speed: 0}", "impact.speed 0");
   refused("impact: {speed: 1 km/s, gap: 1 m}\nstop: {end_time: 1 us}", "impact.gap");
