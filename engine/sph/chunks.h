@@ -3,6 +3,7 @@
 #ifndef CLAST_ENGINE_SPH_CHUNKS_H
 #define CLAST_ENGINE_SPH_CHUNKS_H
 
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -17,6 +18,7 @@ struct sph_chunk {
   struct sph_neighbour_lists lists; /* of slots */
   size_t record_at;                 /* slots of all chunks before it */
   size_t other_capacity;
+  atomic_bool summed;               /* in this pass of the pair loop */
 };
 
 struct sph_chunks {

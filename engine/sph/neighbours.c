@@ -317,7 +317,7 @@ static bool list_group(const struct sph_neighbours *s, size_t group, size_t firs
     next = k + s->share - before < size ? k + s->share - before : size;
     double *const others[4] = {at[0] + k + 1, at[1] + k + 1, at[2] + k + 1, at[3] + k + 1};
     size_t begin = *used, count = s->kernels->near_pairs(candidates - k - 1, others, w->number + k + 1,
-                                                         (const double(*)[4])own + k, next - k, s->period, lists->j + *used);
+                                                         (const double(*)[4])own + k, next - k, s->period, lists->j + *used, &lists->pairs);
     if (before) {
       begin = lists->start[list];
       if (!join(w, lists->j + begin, lists->count[list], lists->j + *used, count, &count)) return false;
@@ -339,6 +339,7 @@ bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sp
   size_t used = 0;
   bool enough = grow((void **)&lists->j, &lists->capacity, 1, 0, sizeof *lists->j);
   lists->start[0] = 0;
+  lists->pairs = 0;
   for (size_t eight = s->chunk_at[chunk]; enough && eight < s->chunk_at[chunk + 1]; eight++) {
     const uint32_t *eights;
     size_t count, candidates;
@@ -348,6 +349,14 @@ bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sp
       enough = find_candidates(s, chunk, EIGHT * eight + lane, eights, count, &w, at, &candidates) &&
                list_group(s, EIGHT * eight + lane, first, at, candidates, &w, lists, &used);
     }
+  }
+  const size_t fair = used + used / 2 + 16384; /* the widest lists ever made are not kept room for */
+  uint32_t *less = enough && lists->capacity > fair ? aligned_alloc(LINE, (used * sizeof *less + LINE - 1) / LINE * LINE) : NULL;
+  if (less) {
+    memcpy(less, lists->j, used * sizeof *less);
+    free(lists->j);
+    lists->j = less;
+    lists->capacity = used;
   }
   free(w.eight[0]);
   free(w.eight[1]);

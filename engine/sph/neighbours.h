@@ -23,6 +23,7 @@ struct sph_neighbour_lists {
   uint32_t *start, *count; /* the caller's: one for each list, one more of start */
   uint32_t *j;             /* grown (aligned to 64 bytes); the caller frees it */
   size_t capacity;
+  size_t pairs;            /* how many there are, whoever shares a list */
 };
 
 /* For n particles at most, looked up in chunks of `chunk` consecutive ones (a multiple of `share`). NULL without memory. */

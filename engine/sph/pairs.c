@@ -4,6 +4,8 @@
 #include "engine/sph/pairs.h"
 
 #include <math.h>
+#include <sched.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -374,50 +376,85 @@ static size_t unpack_chunk(const struct sph_pairs *p, size_t k, const struct uni
   return corrected ? unpack(p, k, u, f, sums, false, true) : unpack(p, k, u, f, sums, false, false);
 }
 
+/* A pass: every chunk is summed, and unpacked when it and all before it are summed. */
+struct pass {
+  struct sph_pairs *pairs;
+  const struct sph_pair_fields *fields;
+  const struct sph_pair_sums *sums;
+  struct sph_pair_source source;
+  struct sph_pair_constants constants;
+  atomic_size_t next; /* turn */
+  atomic_size_t within;
+};
+
+static void sum_in_turn(struct pass *w, size_t k, size_t thread) {
+  struct sph_pairs *p = w->pairs;
+  struct sph_chunk *c = &p->lists.chunk[k];
+  sum_chunk(p, c, &w->source, &w->constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
+  atomic_store_explicit(&c->summed, true, memory_order_release);
+}
+
+static void unpack_in_turn(struct pass *w, size_t k) {
+  struct sph_pairs *p = w->pairs;
+  for (size_t before = 0; before <= k; before++)
+    while (!atomic_load_explicit(&p->lists.chunk[before].summed, memory_order_acquire))
+      sched_yield(); /* its turn came long ago: it is being summed */
+  atomic_fetch_add(&w->within, unpack_chunk(p, k, &p->units, w->fields, w->sums));
+}
+
+/* Turns are taken in order: chunk 0, 1, ... is summed, and unpacked `lag` chunks later. One thread does it at once, while the sums
+ * are in its cache; several keep some for the end, for those that find no chunk to sum while the last ones are. */
+static void take_turns(struct pass *w, size_t thread) {
+  const size_t count = w->pairs->lists.count, threads = (size_t)w->pairs->options.threads, lag = threads > 1 ? 4 * threads : 0;
+  for (size_t turn; (turn = atomic_fetch_add(&w->next, 1)) < 2 * (count + lag);) {
+    const size_t k = turn / 2;
+    if (turn % 2 == 0 && k < count) sum_in_turn(w, k, thread);
+    if (turn % 2 == 1 && k >= lag && k - lag < count) unpack_in_turn(w, k - lag);
+  }
+}
+
 void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
   const struct sph_pair_options *o = &p->options;
   if (!p->units_chosen) choose_units(p, n, f);
-  const struct units u = p->units;
-  struct sph_pair_constants constants = {.alpha = o->viscosity_alpha,
-                                         .twice_beta = 2 * o->viscosity_beta,
-                                         .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
-                                         .norm = SPH_SPLINE_NORM * (p->real == sizeof(double) ? 1 : pow(u.length / p->grain, 4)),
-                                         .strength = o->strength,
-                                         .volume_weights = o->volume_weights};
+  struct pass w = {.pairs = p, .fields = f, .sums = sums};
+  struct sph_pair_constants *constants = &w.constants;
+  *constants = (struct sph_pair_constants){.alpha = o->viscosity_alpha,
+                                           .twice_beta = 2 * o->viscosity_beta,
+                                           .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
+                                           .norm = SPH_SPLINE_NORM * (p->real == sizeof(double) ? 1 : pow(p->units.length / p->grain, 4)),
+                                           .strength = o->strength,
+                                           .volume_weights = o->volume_weights};
   for (int d = 0; d < 3; d++) {
-    constants.periodic[d] = o->periodic[d];
-    constants.per_period[d] = 1 / o->periodic[d];
-    constants.quantum[d] = p->quantum[d] / p->grain;
-    constants.wrapped |= !isnan(o->periodic[d]);
+    constants->periodic[d] = o->periodic[d];
+    constants->per_period[d] = 1 / o->periodic[d];
+    constants->quantum[d] = p->quantum[d] / p->grain;
+    constants->wrapped |= !isnan(o->periodic[d]);
   }
-  size_t within = 0;
-#ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
-#endif
-  for (size_t k = 0; k < (p->artificial ? p->lists.count : 0); k++) {
-    const struct sph_chunk *c = &p->lists.chunk[k];
-    p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
-  }
-  const struct sph_pair_source source = source_of(p, f);
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
 #endif
   for (size_t k = 0; k < p->lists.count; k++) {
-#ifdef _OPENMP
-    const size_t thread = (size_t)omp_get_thread_num();
-#else
-    const size_t thread = 0;
-#endif
-    sum_chunk(p, &p->lists.chunk[k], &source, &constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
+    struct sph_chunk *c = &p->lists.chunk[k];
+    atomic_init(&c->summed, false);
+    if (p->artificial) p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
   }
+  w.source = source_of(p, f);
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : within) num_threads(o->threads) if (o->threads > 1)
+#pragma omp parallel num_threads(o->threads) if (o->threads > 1)
+  take_turns(&w, (size_t)omp_get_thread_num());
+#else
+  take_turns(&w, 0);
 #endif
-  for (size_t k = 0; k < p->lists.count; k++)
-    within += unpack_chunk(p, k, &u, f, sums);
-  p->within = within;
+  p->within = w.within;
 }
 
 double sph_pairs_neighbours(const struct sph_pairs *p) {
   return p->n ? (double)p->within / (double)p->n : 0;
+}
+
+double sph_pairs_reached(const struct sph_pairs *p) {
+  size_t pairs = 0;
+  for (size_t k = 0; k < p->lists.count; k++)
+    pairs += p->lists.chunk[k].lists.pairs;
+  return p->n ? 2 * (double)pairs / (double)p->n : 0;
 }

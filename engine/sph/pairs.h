@@ -81,6 +81,8 @@ double *const *sph_pairs_listed(struct sph_pairs *pairs);
 status sph_pairs_relist(struct sph_pairs *pairs, struct error *error);
 void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields,
                    const struct sph_pair_sums *sums);
+/* Mean number of neighbours in the lists (both sides counted): what a pass takes time for. */
+double sph_pairs_reached(const struct sph_pairs *pairs);
 /* Mean number of neighbours within 2h at the last pass (both sides counted, itself not). */
 double sph_pairs_neighbours(const struct sph_pairs *pairs);
 

@@ -114,9 +114,10 @@ INLINE size_t near_particles_of(const struct sph_near_particles *p, const uint32
 }
 
 INLINE size_t near_pairs_of(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], const size_t owns,
-                            const double period[3], uint32_t *found, const bool wrapped) {
-  size_t n = 0;
+                            const double period[3], uint32_t *found, size_t *pairs, const bool wrapped) {
+  size_t n = 0, total = 0;
   for (size_t k = 0; k < count; k += 8) {
+    const unsigned all = count - k < 8 ? (1U << (count - k)) - 1 : ~0U;
     unsigned mask = 0;
     for (size_t m = 0; m < owns; m++) {
       const near_vector reach = near_load(at[3] + k) + own[m][3];
@@ -126,12 +127,14 @@ INLINE size_t near_pairs_of(size_t count, double *const at[4], const uint32_t *n
         const near_vector to = near_image(near_load(at[d] + k) - own[m][d], period[d], wrapped);
         square += to * to;
       }
-      mask |= near_less(square, reach * reach);
+      const unsigned near = near_less(square, reach * reach) & all;
+      mask |= near;
+      if (owns > 1) total += (size_t)__builtin_popcount(near);
     }
-    if (count - k < 8) mask &= (1U << (count - k)) - 1;
     near_compress_numbers(found + n, mask, number + k);
     n += (size_t)__builtin_popcount(mask);
   }
+  *pairs += owns > 1 ? total : n;
   return n;
 }
 
@@ -152,9 +155,9 @@ static size_t near_particles(const struct sph_near_particles *particles, const u
 }
 
 static size_t near_pairs(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
-                         const double period[3], uint32_t *found) {
-  if (near_wraps(period)) return near_pairs_of(count, at, number, own, owns, period, found, true);
-  if (owns == 1) return near_pairs_of(count, at, number, own, 1, period, found, false);
-  if (owns == 2) return near_pairs_of(count, at, number, own, 2, period, found, false);
-  return near_pairs_of(count, at, number, own, owns, period, found, false);
+                         const double period[3], uint32_t *found, size_t *pairs) {
+  if (near_wraps(period)) return near_pairs_of(count, at, number, own, owns, period, found, pairs, true);
+  if (owns == 1) return near_pairs_of(count, at, number, own, 1, period, found, pairs, false);
+  if (owns == 2) return near_pairs_of(count, at, number, own, 2, period, found, pairs, false);
+  return near_pairs_of(count, at, number, own, owns, period, found, pairs, false);
 }

@@ -54,6 +54,7 @@ struct sph_block {
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
   bool worn;                /* some particle has used up its slack */
+  double swollen;           /* volume that lists reach, over that of the supports, beyond what the skin adds; summed */
   size_t lost;              /* place of a particle that is no longer finite, or n */
 };
 
@@ -78,6 +79,8 @@ struct sph_progress {
   double clamped, damped, work_of_held; /* J, booked so far */
   double damping_power, holding_power;  /* W, at the last evaluation */
   uint64_t steps, listings, density_held;
+  uint64_t horizon;                     /* steps that lists are made for */
+  double neighbours;                    /* within 2h, at the last pass of the pair loop */
   int64_t limiter;
 };
 

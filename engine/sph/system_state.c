@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/sph/system_step.h"
+#include "engine/sph/system_list.h"
 
 struct section {
   void *data;
@@ -63,5 +63,5 @@ bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size)
       return false;
     }
   s->failure[0] = '\0';
-  return sph_system_step_relist(s);
+  return sph_system_list_again(s);
 }

@@ -6,7 +6,5 @@
 
 /* Sorts, lists and evaluates at the initial state. False (see failure): as sph_system_step. */
 bool sph_system_step_begin(struct sph_system *system);
-/* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */
-bool sph_system_step_relist(struct sph_system *system);
 
 #endif

@@ -8,7 +8,7 @@
 #include "engine/scene.h"
 #include "engine/sph/run.h"
 #include "engine/sph/system_layout.h"
-#include "engine/sph/system_step.h"
+#include "engine/sph/system_list.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");
@@ -59,7 +59,7 @@ static struct phases measure(struct sph_system *s) {
   volatile bool stale = sph_pairs_worn(s->pairs, 0, s->n, c->x, c->y, c->z, c->h);
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  if (!sph_system_step_relist(s)) fail(s->failure, NULL);
+  if (!sph_system_list_again(s)) fail(s->failure, NULL);
   return (struct phases){summed - start, tested - summed, clock_of(CLOCK_PROCESS_CPUTIME_ID) - tested};
 }
 

@@ -1,0 +1,13 @@
+/* When and how a system sorts its particles and makes lists of neighbours; for engine/sph/ only. */
+#ifndef CLAST_ENGINE_SPH_SYSTEM_LIST_H
+#define CLAST_ENGINE_SPH_SYSTEM_LIST_H
+
+#include "engine/sph/system_layout.h"
+
+/* New lists when the old ones may miss a pair (blocks are worn); now and then the particles are sorted first, by the count of
+ * listings alone. False (see failure): as sph_system_step. */
+bool sph_system_list(struct sph_system *system);
+/* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */
+bool sph_system_list_again(struct sph_system *system);
+
+#endif
