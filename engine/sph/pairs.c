@@ -328,52 +328,62 @@ INLINE void add_foreign(const struct sph_pairs *p, const struct sph_chunk *c, si
   }
 }
 
-/* The sums of chunk k in SI units; returns how many neighbours its particles have. */
-INLINE size_t unpack(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
-                     const struct sph_pair_sums *sums, const bool whole, const bool corrected) {
-  const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t size = (corrected ? PAIR_WIDE : PAIR_NARROW) * (whole ? sizeof(double) : sizeof(float));
-  const char *own = (const char *)p->out + c->record_at * size;
-  const double acceleration = u->velocity * u->velocity / u->length, rate = u->velocity / u->length;
-  double within = 0;
-  add_foreign(p, c, k, whole);
-  for (size_t i = c->first; i < c->first + c->own; i++, own += size) {
-    const double weight = p->options.volume_weights ? 1 : u->density / f->density[i]; /* m_j/rho_i */
-    double gradient[9], moment[6];
-    sums->ax[i] = at(whole, own, 0) * acceleration;
-    sums->ay[i] = at(whole, own, 1) * acceleration;
-    sums->az[i] = at(whole, own, 2) * acceleration;
-    sums->heating[i] = at(whole, own, SUM_HEATING) * (0.5 * acceleration * u->velocity);
-    sums->signal[i] = at(whole, own, SUM_COUNT) > 0 ? at(whole, own, SUM_SIGNAL) * u->velocity : -1;
-    within += at(whole, own, SUM_COUNT);
-    for (size_t m = 0; m < 9; m++)
-      gradient[m] = at(whole, own, SUM_GRADIENT + m) * weight * rate;
-    if (corrected) {
-      for (size_t m = 0; m < 6; m++)
-        moment[m] = at(whole, own, SUM_MOMENT + m) * weight * (whole ? 1 : p->grain / u->length);
-      double correction[6], conjugate[9];
-      for (int m = 0; m < 6; m++)
-        correction[m] = f->correction[m][i];
-      times(correction, gradient, conjugate);
-      sums->power[i] = power(f, p->options.strength, i, conjugate);
-      invert(moment, correction);
-      for (int m = 0; m < 6; m++)
-        sums->correction[m][i] = correction[m];
-      times(correction, gradient, conjugate);
-      memcpy(gradient, conjugate, sizeof gradient);
-    }
-    for (int m = 0; m < 9; m++)
-      sums->gradient[m][i] = gradient[m];
-  }
-  return (size_t)within;
+static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+  const struct units *u = &p->units;
+  const double acceleration = u->velocity * u->velocity / u->length;
+  struct sph_pair_sink s = {.column = {sums->ax, sums->ay, sums->az},
+                            .scale = {acceleration, acceleration, acceleration},
+                            .density = p->options.volume_weights ? NULL : f->density, /* m_j/rho_i */
+                            .unit = u->density};
+  for (int k = 0; k < 9; k++)
+    s.column[SUM_GRADIENT + k] = sums->gradient[k], s.scale[SUM_GRADIENT + k] = u->velocity / u->length;
+  s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = 0.5 * acceleration * u->velocity;
+  s.column[SUM_SIGNAL] = sums->signal, s.scale[SUM_SIGNAL] = u->velocity;
+  return s;
 }
 
-static size_t unpack_chunk(const struct sph_pairs *p, size_t k, const struct units *u, const struct sph_pair_fields *f,
-                           const struct sph_pair_sums *sums) {
-  const bool corrected = p->out_columns == PAIR_WIDE;
-  if (p->real == sizeof(double))
-    return corrected ? unpack(p, k, u, f, sums, true, true) : unpack(p, k, u, f, sums, true, false);
-  return corrected ? unpack(p, k, u, f, sums, false, true) : unpack(p, k, u, f, sums, false, false);
+/* New corrections from the moments of a chunk's own particles, the gradients corrected by them, and the work of the forces. */
+static void correct(const struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+  const bool whole = p->real == sizeof(double);
+  const double length = whole ? 1 : p->grain / p->units.length;
+  const char *own = (const char *)p->out + c->record_at * PAIR_WIDE * p->real;
+  for (size_t i = c->first; i < c->first + c->own; i++, own += PAIR_WIDE * p->real) {
+    const double weight = p->options.volume_weights ? 1 : p->units.density / f->density[i]; /* m_j/rho_i */
+    double gradient[9], moment[6], correction[6], conjugate[9];
+    for (size_t m = 0; m < 6; m++)
+      moment[m] = at(whole, own, SUM_MOMENT + m) * weight * length;
+    for (int m = 0; m < 6; m++)
+      correction[m] = f->correction[m][i];
+    for (int m = 0; m < 9; m++)
+      gradient[m] = sums->gradient[m][i];
+    times(correction, gradient, conjugate);
+    sums->power[i] = power(f, p->options.strength, i, conjugate);
+    invert(moment, correction);
+    for (int m = 0; m < 6; m++)
+      sums->correction[m][i] = correction[m];
+    times(correction, gradient, conjugate);
+    for (int m = 0; m < 9; m++)
+      sums->gradient[m][i] = conjugate[m];
+  }
+}
+
+/* The sums of chunk k in SI units; returns how many neighbours its particles have. */
+static size_t unpack(const struct sph_pairs *p, size_t k, const struct sph_pair_sink *sink, const struct sph_pair_fields *f,
+                     const struct sph_pair_sums *sums) {
+  const struct sph_chunk *c = &p->lists.chunk[k];
+  const size_t columns = p->out_columns;
+  const unsigned mode = flush_tiny();
+  double within;
+  if (p->real == sizeof(double)) {
+    add_foreign(p, c, k, true);
+    within = p->kernels->unpack_double(sink, c->first, c->own, columns, (const double *)p->out + c->record_at * columns);
+  } else {
+    add_foreign(p, c, k, false);
+    within = p->kernels->unpack_float(sink, c->first, c->own, columns, (const float *)p->out + c->record_at * columns);
+  }
+  if (p->options.gradient_correction) correct(p, c, f, sums);
+  restore_tiny(mode);
+  return (size_t)within;
 }
 
 /* A pass: every chunk is summed, and unpacked when it and all before it are summed. */
@@ -382,6 +392,7 @@ struct pass {
   const struct sph_pair_fields *fields;
   const struct sph_pair_sums *sums;
   struct sph_pair_source source;
+  struct sph_pair_sink sink;
   struct sph_pair_constants constants;
   atomic_size_t next; /* turn */
   atomic_size_t within;
@@ -399,7 +410,7 @@ static void unpack_in_turn(struct pass *w, size_t k) {
   for (size_t before = 0; before <= k; before++)
     while (!atomic_load_explicit(&p->lists.chunk[before].summed, memory_order_acquire))
       sched_yield(); /* its turn came long ago: it is being summed */
-  atomic_fetch_add(&w->within, unpack_chunk(p, k, &p->units, w->fields, w->sums));
+  atomic_fetch_add(&w->within, unpack(p, k, &w->sink, w->fields, w->sums));
 }
 
 /* Turns are taken in order: chunk 0, 1, ... is summed, and unpacked `lag` chunks later. One thread does it at once, while the sums
@@ -439,6 +450,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     if (p->artificial) p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
   }
   w.source = source_of(p, f);
+  w.sink = sink_of(p, f, sums);
 #ifdef _OPENMP
 #pragma omp parallel num_threads(o->threads) if (o->threads > 1)
   take_turns(&w, (size_t)omp_get_thread_num());

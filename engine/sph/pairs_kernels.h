@@ -48,6 +48,14 @@ struct sph_pair_source {
   bool volume_weights;             /* stresses are wanted as sigma, not as sigma/rho^2 */
 };
 
+/* Where sums go: arrays of all particles. */
+struct sph_pair_sink {
+  double *column[PAIR_NARROW]; /* by enum sph_pair_sum; that of SUM_COUNT is not written */
+  double scale[PAIR_NARROW];   /* from the records' units */
+  const double *density;       /* NULL: the gradient's sum is it; else times unit/density */
+  double unit;
+};
+
 struct sph_pair_constants {
   double alpha, twice_beta;
   double periodic[3], per_period[3]; /* length and its inverse; NaN = open (double records only) */
@@ -89,6 +97,10 @@ struct sph_pair_kernels {
   /* The records of `count` particles, those from `first` on or (not NULL) those that `which` names, `stride` columns each. */
   void (*pack_double)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, double *in);
   void (*pack_float)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, float *in);
+  /* The sums of `count` particles from `first` on, whose records begin at `records`, but for moments; -1 for the signal of those
+   * without neighbours. Returns how many neighbours they have together. */
+  double (*unpack_double)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const double *records);
+  double (*unpack_float)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const float *records);
   /* The artificial stress R of the particles first..last-1, opposed to the tension in stress[] + pressure_term I (xx xy xz yy
    * yz zz): pairs_kernels_tension.h. */
   void (*oppose)(double epsilon, const double *const stress[6], const double *pressure_term, size_t first, size_t last,

@@ -135,5 +135,7 @@ const struct sph_pair_kernels KERNELS_TABLE = {
     .near_pairs = near_pairs,
     .pack_double = double_pack,
     .pack_float = float_pack,
+    .unpack_double = double_unpack,
+    .unpack_float = float_unpack,
     .oppose = double_oppose,
 };

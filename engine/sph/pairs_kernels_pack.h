@@ -1,4 +1,4 @@
-/* Records out of columns, LANES particles at a time, in one precision (pairs_kernels_sum.h, which comes first, has the
+/* Records out of columns and sums back into columns, LANES particles at a time, in one precision (pairs_kernels_sum.h, which comes first, has the
  * transposition). */
 
 INLINE void NAME(column)(const double *from, double scale, size_t first, const uint32_t *which, double to[LANES]) {
@@ -85,4 +85,44 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
         *(VECTOR *)(void *)(in + (k + lane) * stride + c) = r[lane];
     }
   }
+}
+
+/* What LANES particles got, from room[column][lane]; `lanes` of them count. Lines are written whole, so that few stores wait for
+ * memory. Returns how many neighbours they have. */
+INLINE double NAME(deliver)(const struct sph_pair_sink *sink, size_t first, size_t lanes, REAL room[PAIR_NARROW][LANES]) {
+  double weight[LANES], within = 0;
+  for (size_t lane = 0; lane < lanes; lane++)
+    weight[lane] = sink->density ? sink->unit / sink->density[first + lane] : 1;
+  for (int c = SUM_ACCELERATION; c < SUM_GRADIENT; c++)
+    for (size_t lane = 0; lane < lanes; lane++)
+      sink->column[c][first + lane] = (double)room[c][lane] * sink->scale[c];
+  for (int c = SUM_GRADIENT; c < SUM_HEATING; c++)
+    for (size_t lane = 0; lane < lanes; lane++)
+      sink->column[c][first + lane] = (double)room[c][lane] * weight[lane] * sink->scale[c];
+  for (size_t lane = 0; lane < lanes; lane++) {
+    const double count = (double)room[SUM_COUNT][lane];
+    sink->column[SUM_HEATING][first + lane] = (double)room[SUM_HEATING][lane] * sink->scale[SUM_HEATING];
+    sink->column[SUM_SIGNAL][first + lane] = count > 0 ? (double)room[SUM_SIGNAL][lane] * sink->scale[SUM_SIGNAL] : -1;
+    within += count;
+  }
+  return within;
+}
+
+/* The sums of `count` particles from `first` on, whose records begin at `records`. Returns how many neighbours they have. */
+static double NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride, const REAL *records) {
+  double within = 0;
+  for (size_t k = 0; k < count; k += LANES) {
+    const size_t left = count - k < LANES ? count - k : LANES;
+    REAL room[PAIR_NARROW][LANES] __attribute__((aligned(64)));
+    for (size_t c = 0; c < PAIR_NARROW; c += LANES) {
+      VECTOR r[LANES];
+      UNROLL for (size_t lane = 0; lane < LANES; lane++)
+        r[lane] = *(const VECTOR *)(const void *)(records + (k + (lane < left ? lane : 0)) * stride + c);
+      NAME(transpose)(r);
+      UNROLL for (size_t m = 0; m < LANES; m++)
+        *(VECTOR *)(void *)room[c + m] = r[m];
+    }
+    within += left == LANES ? NAME(deliver)(sink, first + k, LANES, room) : NAME(deliver)(sink, first + k, left, room);
+  }
+  return within;
 }
