@@ -55,6 +55,34 @@ static void conserved(void **state) {
   let_go(&c);
 }
 
+/* The sums themselves, written out: a ledger that is wrong by a sign or a factor keeps just as well. */
+static void ledger_by_hand(void **state) {
+  (void)state;
+  const struct case_block block = {{4, 3, 5}, {-1e-3, 2e-3, 5e-3}, {3, -7, 11}, spacing};
+  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
+  double kinetic = 0, internal = 0, px = 0, py = 0, pz = 0, lx = 0, ly = 0, lz = 0, scale = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    p->mass[i] *= 1 + 0.01 * (double)i, p->energy[i] = 10 + (double)i;
+    p->vx[i] += 40 * p->y[i] / spacing, p->vz[i] -= 9 * p->x[i] / spacing;
+    const double m = p->mass[i], x = p->x[i], y = p->y[i], z = p->z[i], u = p->vx[i], v = p->vy[i], w = p->vz[i];
+    kinetic += m * (u * u + v * v + w * w) / 2, internal += m * p->energy[i], scale += m * sqrt(u * u + v * v + w * w);
+    px += m * u, py += m * v, pz += m * w;
+    lx += m * (y * w - z * v), ly += m * (z * u - x * w), lz += m * (x * v - y * u);
+  }
+  const struct sph_body_physics fluid = {.material = case_basalt};
+  const struct sph_parameters parameters = sph_parameters_default();
+  struct sph_system *s = case_system(p, 1, &fluid, &parameters);
+  const struct sph_ledger l = sph_system_ledger(s);
+  const double got[] = {l.kinetic, l.internal, l.momentum_scale, l.momentum[0], l.momentum[1], l.momentum[2],
+                        l.angular_momentum[0], l.angular_momentum[1], l.angular_momentum[2]};
+  const double want[] = {kinetic, internal, scale, px, py, pz, lx, ly, lz};
+  for (int k = 0; k < 9; k++)
+    assert_true(want[k] != 0 && fabs(got[k] / want[k] - 1) < 1e-12); /* the order of sums */
+  assert_true(l.work_of_held == 0 && l.damped == 0 && l.clamped == 0 && l.density_held == 0);
+  sph_system_free(s);
+  sph_particles_free(p);
+}
+
 /* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition alone, which
  * sees only pairs that already touch, would let it (the energy then grows several times over). */
 static void fast(void **state) {
@@ -448,7 +476,7 @@ int main(void) {
       cmocka_unit_test(absent),    cmocka_unit_test(clamps),    cmocka_unit_test(thin),    cmocka_unit_test(lost),
       cmocka_unit_test(refused),   cmocka_unit_test(held),      cmocka_unit_test(fast),
       cmocka_unit_test(every_module),
-      cmocka_unit_test(not_thinner_than_alone),
+      cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
