@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
-static const char *const window_docs = "fragments of 2 grains and more (from 1.5 mean grain masses), the largest left out\n"
-                                       "of 5 grains and more (from 4.5 mean grain masses), the largest left out\n"
-                                       "of 10 grains and more (from 9.5 mean grain masses), the largest left out";
+static const char *const window_docs = "fragments of 2 elements (grains or particles) and more (from 1.5 mean element masses), the largest left out\n"
+                                       "of 5 elements and more (from 4.5 mean element masses), the largest left out\n"
+                                       "of 10 elements and more (from 9.5 mean element masses), the largest left out";
 static const char *const method_docs =
     "unweighted least squares of log density on non-empty log bins: the paper's way, biased low\n"
     "maximum likelihood on the stored bins\n"
@@ -25,8 +25,8 @@ static const struct field rows_of_table[] = {
     {.path = "method", .kind = FIELD_CHOICE, .offset = AT(fit.method), .choices = exponent_method_names,
      .choice_docs = method_docs, .minimum = 0, .maximum = EXPONENT_METHODS - 1, .doc = "How the exponent was estimated."},
     {.path = "headline", .kind = FIELD_BOOLEAN, .offset = AT(headline), .minimum = 0, .maximum = 1,
-     .doc = "The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment "
-            "left out."},
+     .doc = "The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the "
+            "largest fragment left out."},
     REAL("lower", "kg", fit.lower, 0, "Lower end of the window really used (2D: kg per metre of thickness).", NULL),
     REAL("upper", "kg", fit.upper, 0, "Upper end, itself outside: the mass of the largest fragment, or a bin edge.", NULL),
     {.path = "n", .kind = FIELD_INTEGER, .unit = "1", .offset = AT(fit.n), .minimum = 0, .maximum = 9007199254740992.0,
@@ -49,7 +49,7 @@ static const struct field rows_of_table[] = {
 const struct field_table estimates_table =
     FIELD_TABLE(rows_of_table, struct estimate, "estimate", "Exponents of fragment spectra, by method and window.");
 
-double estimates_window_grains(enum estimates_window window) {
+double estimates_window_elements(enum estimates_window window) {
   switch (window) {
   case ESTIMATES_FROM_2: return 1.5;
   case ESTIMATES_FROM_5: return 4.5;
@@ -73,21 +73,21 @@ static const struct {
 
 status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
                       struct error *error) {
-  double few[512], *masses = few, total = 0, grains = 0, largest = 0;
+  double few[512], *masses = few, total = 0, elements = 0, largest = 0;
   if (n > sizeof few / sizeof *few && !(masses = malloc(n * sizeof *masses)))
     return status_fail(error, STATUS_MEMORY, "estimates: no memory for %zu masses", n);
   size_t resolved = 0;
   for (size_t i = 0; i < n; i++) {
     total += fragments[i].mass;
-    grains += fragments[i].count;
+    elements += fragments[i].count;
     if (fragments[i].count > 1) masses[resolved++] = fragments[i].mass;
     largest = fmax(largest, fragments[i].mass);
   }
-  double grain = total / grains;
+  double element = total / elements;
   status code = STATUS_OK;
   for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
     struct estimate *row = &rows[i];
-    double lower = estimates_window_grains(wanted[i].window) * grain;
+    double lower = estimates_window_elements(wanted[i].window) * element;
     *row = (struct estimate){
         .window = (int)wanted[i].window,
         .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD && wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,

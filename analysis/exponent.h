@@ -4,7 +4,7 @@
  * those numbers.
  *
  * Near-equal grains make masses nearly discrete, and a continuous fit from one grain up is badly off (2.8 for a true 2.0):
- * windows start at several mean grain masses (estimates.h). */
+ * windows start at several mean element masses (estimates.h). */
 #ifndef CLAST_ANALYSIS_EXPONENT_H
 #define CLAST_ANALYSIS_EXPONENT_H
 

@@ -43,7 +43,7 @@ static status take_run(void *context, size_t count, const struct query_value *va
 
 status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
                   struct error *error) {
-  *out = (struct point_data){.point_id = point_id, .results_version = results_version, .grain_mass = NAN};
+  *out = (struct point_data){.point_id = point_id, .results_version = results_version, .element_mass = NAN};
   char id[32], version[32];
   snprintf(id, sizeof id, "%lld", (long long)point_id);
   struct query_parameter parameters[2] = {{"point", id}, {"version", version}};
@@ -64,13 +64,13 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
                    "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
                    "results_version = :version AND counts = 1 ORDER BY replicate, seed",
                    2, parameters, 0, &sink, error);
-  /* Every run's window from_2 begins at so many of its mean grain masses. */
+  /* Every run's window from_2 begins at so many of its mean element masses. */
   if (!code)
     code = query_number(store,
                         "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
                         "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
-                        2, parameters, &out->grain_mass, error);
-  out->grain_mass /= estimates_window_grains(ESTIMATES_FROM_2);
+                        2, parameters, &out->element_mass, error);
+  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_2);
   if (code) {
     point_release(out);
     return code;
@@ -89,7 +89,7 @@ void point_release(struct point_data *point) {
 }
 
 double point_window(const struct point_data *point, enum estimates_window window) {
-  return estimates_window_grains(window) * point->grain_mass;
+  return estimates_window_elements(window) * point->element_mass;
 }
 
 status point_estimates(const struct point_data *point, size_t resamples, double level,
@@ -103,7 +103,7 @@ status point_estimates(const struct point_data *point, size_t resamples, double 
     if (lower > 0) {
       code = pooled_exponent(&point->runs, methods[i / ESTIMATES_WINDOWS], lower, resamples, level, RESAMPLE_SEED, exponent,
                              error);
-    } else { /* no runs, or none with estimates: no grain mass */
+    } else { /* no runs, or none with estimates: no element mass */
       exponent->fit.method = (int)methods[i / ESTIMATES_WINDOWS];
       exponent->fit.lower = exponent->fit.upper = exponent->fit.beta = exponent->fit.standard_error = NAN;
       exponent->fit.cutoff_mass = exponent->fit.ks_distance = exponent->fit.log_likelihood = NAN;

@@ -8,8 +8,8 @@
 
 struct point_data {
   int64_t point_id, results_version;
-  struct pooled_runs runs; /* in order of replicate; all fragments, single grains included */
-  double grain_mass;       /* mean over the runs, kg; NaN when the store holds no estimates of them */
+  struct pooled_runs runs; /* in order of replicate; all fragments, single elements included */
+  double element_mass;     /* mean over the runs, kg; NaN when the store holds no estimates of them */
   size_t *first;           /* what `runs` borrows; owned */
   double *masses;
 };

@@ -33,7 +33,7 @@ struct pooled_exponent {
   struct sample_interval interval; /* from resampling runs: this is the error to quote */
   size_t runs;                     /* that had fragments in their window */
 };
-/* lower: kg, the same for all runs of the point (so many mean grain masses). resamples: 0 for no interval, 1000 for
+/* lower: kg, the same for all runs of the point (so many mean element masses). resamples: 0 for no interval, 1000 for
  * final numbers; KS and CUTOFF cost milliseconds per resample, the others microseconds. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
                        double level, uint64_t seed, struct pooled_exponent *out, struct error *error);

@@ -49,7 +49,7 @@ static const char keep[] =
     "    \"keep\": {\n"
     "      \"type\": \"object\", \"additionalProperties\": false, \"required\": [\"fields\"],\n"
     "      \"properties\": {\"fields\": {\n"
-    "        \"description\": \"Which runs keep their fields (grains, beams, breaks) as HDF5 files: none, all, the two runs of a "
+    "        \"description\": \"Which runs keep their fields (grains, beams, breaks; particles) as HDF5 files: none, all, the two runs of a "
     "point with the least and the greatest main quantity, or the first N replicates of a point.\",\n"
     "        \"anyOf\": [{\"enum\": [\"none\", \"all\", \"extremes\"]}, {\"type\": \"string\", \"pattern\": \"^first "
     "[1-9][0-9]{0,8}$(?!\\\\n)\"}]\n"

@@ -22,7 +22,7 @@ struct engine_kind {
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
   size_t (*memory)(const void *inputs);  /* bytes a run will need, before anything is allocated */
-  double (*work)(const void *inputs);    /* a-priori cost in arbitrary units (grain-steps), for scheduling */
+  double (*work)(const void *inputs);    /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
 
   /* Build the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
@@ -35,7 +35,7 @@ struct engine_kind {
    * owned by the caller from then on). May be called before the run is finished (a snapshot of results). */
   status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments, size_t *fragment_count,
                    struct error *error);
-  /* Big fields (grains, beams, break log, curves) as one self-describing HDF5 file, written to a temporary name and
+  /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary name and
    * renamed. Also what pictures are drawn from. */
   status (*write_fields)(void *run, const char *path, struct error *error);
   status (*save)(void *run, const char *path, struct error *error);                            /* restart file */

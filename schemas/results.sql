@@ -149,7 +149,7 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   ordinal INTEGER NOT NULL, -- number among the estimates of the run
   window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
-  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.
+  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.
   lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
@@ -167,7 +167,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
   window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
-  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.
+  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.
   lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
   upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
@@ -578,7 +578,7 @@ INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-b
 
 INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 
@@ -608,7 +608,7 @@ INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta
 
 INSERT INTO column_doc VALUES ('estimates', 'engine', NULL, 'name of the engine', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 0);
 
@@ -670,7 +670,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'beta', '1', 'Exponent of F(m) 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 grains and more, the largest fragment left out.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 

@@ -140,7 +140,7 @@ status estimates_points(struct store *store, const struct estimates_choice *choi
 const char *const estimates_legend =
     "beta: exponent of F(m) ~ m^-beta (differential), pooled over the runs of a point, each run's largest fragment left out.\n"
     "LSQ: least squares on log bins, the paper's way, biased; binned, ML: maximum likelihood on bins and on masses.\n"
-    "Windows hold fragments of 2, 5, 10 mean grain masses and more (from N - 1/2). Errors: one standard error, from resampling runs.\n";
+    "Windows hold fragments of 2, 5, 10 mean masses of a grain or particle and more (from N - 1/2). Errors: one standard error, from resampling runs.\n";
 
 status estimates_rows(struct store *store, const struct estimates_choice *choice, enum table_format format, FILE *out,
                       struct error *error) {
@@ -210,7 +210,7 @@ const struct command estimates_command = {
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
     .doc = "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
            "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
-           "likelihood on bins and on masses, in three windows (2, 5, 10 mean grain masses and more, each run's largest\n"
+           "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle and more, each run's largest\n"
            "fragment left out). Errors of the exponents come from resampling runs.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,

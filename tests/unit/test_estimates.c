@@ -30,7 +30,7 @@ static void rows_of_a_run(void **state) {
   for (int i = 0; i < ESTIMATES_COUNT; i++) {
     headlines += rows[i].headline;
     assert_true(isfinite(rows[i].fit.beta) && rows[i].fit.standard_error > 0);
-    assert_true(rows[i].fit.lower >= 2 * estimates_window_grains((enum estimates_window)rows[i].window));
+    assert_true(rows[i].fit.lower >= 2 * estimates_window_elements((enum estimates_window)rows[i].window));
     assert_true(rows[i].fit.upper <= fragments[0].mass);
     assert_true(!isinf(rows[i].fit.cutoff_mass));
   }

@@ -61,8 +61,8 @@ static void runs_that_count_in_order(void **state) {
       assert_true(point.runs.masses[point.runs.first[k] + (size_t)i] == f.fragments[i].mass);
   }
   /* counts above are floor(m/4e-4) + 1: the mean grain is lighter than 4e-4, heavier than half of it */
-  assert_true(point.grain_mass > 2e-4 && point.grain_mass < 4e-4);
-  assert_near(point_window(&point, ESTIMATES_FROM_5), 4.5 * point.grain_mass, 0);
+  assert_true(point.element_mass > 2e-4 && point.element_mass < 4e-4);
+  assert_near(point_window(&point, ESTIMATES_FROM_5), 4.5 * point.element_mass, 0);
 
   struct point_estimate rows[POINT_ESTIMATES], again[POINT_ESTIMATES];
   OK(point_estimates(&point, 100, 0.95, rows, &error));
