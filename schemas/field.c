@@ -59,6 +59,13 @@ const struct field *field_find(const struct field_table *table, const char *path
     status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
     return NULL;
   }
+  const size_t length = strlen(path);
+  for (size_t i = 0; i < table->count; i++)
+    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == '.') {
+      status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path, table->name,
+                  table->rows[i].path);
+      return NULL;
+    }
   const char *near = field_nearest(table, path);
   if (near)
     status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);

@@ -99,8 +99,14 @@ static status list_paths(const struct explain_options *options, struct error *er
   return table_end(table, error);
 }
 
-void explain_inputs(const struct scene *scene, FILE *out) {
+static void explain_inputs(const struct scene *scene, FILE *out) {
   const struct field_table *inputs = scene->kind->inputs;
+  int widest = 0;
+  for (size_t i = 0; i < inputs->count; i++) {
+    const int length = (int)strlen(inputs->rows[i].path);
+    if (length > widest && field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      widest = length;
+  }
   for (size_t i = 0; i < inputs->count; i++) {
     const struct field *row = &inputs->rows[i];
     if (!field_is_active(inputs, row, scene->inputs))
@@ -114,7 +120,7 @@ void explain_inputs(const struct scene *scene, FILE *out) {
     else
       field_print(row, &value, text, sizeof text);
     explain_sentence(row->doc, doc, sizeof doc);
-    fprintf(out, "  %-28s %-20s %s\n", row->path, text, doc);
+    fprintf(out, "  %-*s  %-20s %s\n", widest, row->path, text, doc);
   }
 }
 

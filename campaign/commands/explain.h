@@ -19,7 +19,5 @@ struct explain_options {
 status explain_override(struct scene *scene, const char *text, struct error *error);
 /* The first sentence of a meaning, without its full stop. */
 void explain_sentence(const char *doc, char *text, size_t size);
-/* Every active input: path, value, first sentence of its meaning. */
-void explain_inputs(const struct scene *scene, FILE *out);
 
 #endif

@@ -12,6 +12,7 @@
 
 /* Measured by tests/unit/test_sph_engine.c: bytes per particle of the moving system with its lists (sph_system_bytes), and of all
  * that stands beside it (particles as set up and as read back, fragments at the end). */
+enum { SPEED = 2000000 }; /* particle-steps/s of one core (bench_sph) */
 enum { BYTES_SYSTEM = 1100, BYTES_BESIDE = 600, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 static const double pi = 3.14159265358979323846;
 static const double euler = 0.57721566490153286;
@@ -48,7 +49,8 @@ size_t sph_describe_memory(const struct sph_inputs *in) {
 
 static double steps_expected(const struct sph_inputs *in) {
   double h = sph_scale_smallest_spacing(in) * in->fidelity.smoothing;
-  return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_scale_wave_speed(&in->target)));
+  double blow = in->kind == SPH_IMPACT ? 0.25 * in->impact.speed : 0; /* compressed matter is faster than sound at rest */
+  return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_scale_wave_speed(&in->target) + blow));
 }
 
 double sph_describe_work(const struct sph_inputs *in) { return sph_scale_particles(in) * steps_expected(in); }
@@ -74,7 +76,7 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
   double spacing = sph_scale_spacing(in);
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
-    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal (Benz & Asphaug 1995 section 5.2)\n", in->impact.speed,
+    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal (as in Benz & Asphaug 1995)\n", in->impact.speed,
             in->impact.angle * 180 / pi);
     break;
   case SPH_STRETCH:
@@ -192,8 +194,11 @@ char *sph_describe_scene(const struct sph_inputs *in) {
   double particles = sph_scale_particles(in);
   fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
           (double)sph_describe_memory(in) / 1e6);
-  fprintf(out, "  at most about %.3g steps of %.4g particles; ends %s\n", steps_expected(in), particles,
-          sph_scale_cracks(&in->target) ? "when fracture has ceased" : "at stop.end_time");
+  const double steps = steps_expected(in), seconds = steps * particles / SPEED;
+  fprintf(out, "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.0e particle-steps a second\n",
+          steps, particles, sph_scale_cracks(&in->target) ? ", fewer when fracture ceases before" : "",
+          seconds < 100 ? seconds : seconds < 6000 ? seconds / 60 : seconds / 3600,
+          seconds < 100 ? "s" : seconds < 6000 ? "minutes" : "hours", (double)SPEED);
   if (fclose(out)) {
     free(text);
     return NULL;
