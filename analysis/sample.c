@@ -11,7 +11,8 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-double sample_student(size_t n, double level) {
+/* Two-sided Student t: the half width of a mean's interval is this times its standard error. NaN for n < 2. */
+static double student(size_t n, double level) {
   if (n < 2 || !(level > 0 && level < 1)) return NAN;
   return gsl_cdf_tdist_Pinv(0.5 + level / 2, (double)(n - 1));
 }
@@ -49,7 +50,7 @@ struct sample_summary sample_summarise(size_t n, const double *values, double le
   if (summary.n < 2) return summary;
   summary.standard_deviation = sqrt(fmax(squares - rest * rest / number, 0) / (number - 1));
   summary.standard_error = summary.standard_deviation / sqrt(number);
-  summary.half_width = sample_student(summary.n, level) * summary.standard_error;
+  summary.half_width = student(summary.n, level) * summary.standard_error;
   return summary;
 }
 
@@ -92,7 +93,7 @@ cleanup:
 /* t^2 (s^2 + (20 d)^2/n) / n <= d^2 */
 static bool narrow(double n, double squares, double half_width, double level) {
   if (!(n >= 2) || !(half_width > 0)) return false;
-  double t = sample_student((size_t)n, level), guard = SAMPLE_GUARD * half_width;
+  double t = student((size_t)n, level), guard = SAMPLE_GUARD * half_width;
   double variance = squares / (n - 1) + guard * guard / n;
   return t * t * variance <= half_width * half_width * n;
 }

@@ -16,9 +16,6 @@ struct sample_summary {
  * n = 0, the scatter for n = 1. Two passes, no cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);
 
-/* Two-sided Student t: the half width of a mean's interval is this times its standard error. NaN for n < 2. */
-double sample_student(size_t n, double level);
-
 /* Bootstrap over runs (cluster bootstrap: fragments of one run are not independent, mass is conserved; runs are). Resamples
  * run indices, calls `statistic` on each resample, gives the standard deviation and the percentile interval. `estimate` is
  * the statistic of the sample itself. Resamples without a value (NaN) are left out; fewer than half with one gives NaN.

@@ -80,10 +80,6 @@ double tempered_log_normalisation(enum tempered_kind kind, double k, double s, d
   return peak + log(sum[0] * length / 2);
 }
 
-double tempered_log_density(enum tempered_kind kind, double k, double s, double log_normalisation, double u) {
-  return exponent_at(kind, k, s, u) - log_normalisation;
-}
-
 struct tempered_group tempered_group(enum tempered_kind kind, size_t n, const double *u, double span) {
   struct tempered_group group = {.weight = (double)n, .span = span};
   for (size_t i = 0; i < n; i++) {

@@ -40,7 +40,5 @@ double tempered_p_value(double ratio);
 /* ln Z and, where not NULL, mean (2) and covariance (uu, uh, hh) of (u, h). With an open window s > 0 or k > 0. */
 double tempered_log_normalisation(enum tempered_kind kind, double k, double s, double span, double mean[2],
                                   double covariance[3]);
-/* ln of the density of u. */
-double tempered_log_density(enum tempered_kind kind, double k, double s, double log_normalisation, double u);
 
 #endif

@@ -200,7 +200,7 @@ static void write_result(struct writer *writer, const struct engine_kind *kind, 
   put(writer, result->estimates, result->estimate_count * sizeof(struct estimate));
 }
 
-uint8_t *run_encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
+static uint8_t *encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
   struct writer writer = {0};
   write_result(&writer, kind, result);
   writer = (struct writer){.bytes = malloc(writer.size)};
@@ -278,7 +278,7 @@ status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t
     struct run_request request = {kind, inputs, seed, fields_path[0] ? fields_path : NULL, NULL};
     code = run_simulate(&request, NULL, NULL, 0, &values, error);
   }
-  if (code == STATUS_OK && !(*result = run_encode_result(kind, &values, result_size)))
+  if (code == STATUS_OK && !(*result = encode_result(kind, &values, result_size)))
     code = status_fail(error, STATUS_MEMORY, "no memory for the result");
   run_result_clear(&values);
   free(inputs);

@@ -36,7 +36,6 @@ void run_result_clear(struct run_result *result);
 
 /* malloc'd; NULL when memory is out. */
 uint8_t *run_encode_task(const struct run_request *request, size_t *size);
-uint8_t *run_encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size);
 /* STATUS_INTERNAL when the bytes are another version's or damaged. */
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
                          struct error *error);

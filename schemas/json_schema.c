@@ -249,7 +249,8 @@ static bool holds_by_default(const struct field_table *table, const struct field
   return holds;
 }
 
-int json_schema_conditions(const struct field_table *table, int indent, FILE *out) {
+/* if/then clauses for `when` conditions, as an allOf array's items (comma-separated); returns how many. */
+static int conditions(const struct field_table *table, int indent, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
     const char *when = table->rows[i].when;
@@ -295,6 +296,6 @@ void json_schema_write(const struct field_table *table, const char *title, const
   if (extra) fprintf(out, "\n    %s,", extra);
   json_schema_properties(table, 2, out);
   fputs("\n  },\n  \"allOf\": [", out);
-  if (json_schema_conditions(table, 2, out) == 0) fputs("\n    true", out);
+  if (conditions(table, 2, out) == 0) fputs("\n    true", out);
   fputs("\n  ]\n}\n", out);
 }

@@ -13,8 +13,6 @@
 void json_schema_properties(const struct field_table *table, int indent, FILE *out);
 /* The words of the top level that must be given, as a JSON array's items; returns how many. */
 int json_schema_required(const struct field_table *table, FILE *out);
-/* if/then clauses for `when` conditions, as an allOf array's items (comma-separated); returns how many. */
-int json_schema_conditions(const struct field_table *table, int indent, FILE *out);
 /* A whole schema document of one table. `extra` (may be NULL) is text with further members of `properties`, such as
  * "\"name\": {\"type\": \"string\"}"; `extra_required` (may be NULL) a word of them that must be given. */
 void json_schema_write(const struct field_table *table, const char *title, const char *extra, const char *extra_required,

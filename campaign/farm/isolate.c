@@ -19,7 +19,7 @@
 
 #define TERM_GRACE_NS (500 * FARM_CLOCK_MS) /* between SIGTERM at the deadline and SIGKILL */
 
-size_t farm_isolate_address_space(void) {
+static size_t address_space(void) {
   char text[64] = "";
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -32,7 +32,7 @@ void farm_isolate_limit_memory(size_t bytes) {
   struct rlimit limit;
   if (getrlimit(RLIMIT_AS, &limit) != 0) return;
   limit.rlim_cur = limit.rlim_max;
-  const size_t base = bytes ? farm_isolate_address_space() : 0;
+  const size_t base = bytes ? address_space() : 0;
   if (bytes && bytes < SIZE_MAX - base && (limit.rlim_max == RLIM_INFINITY || base + bytes < limit.rlim_max))
     limit.rlim_cur = base + bytes;
   setrlimit(RLIMIT_AS, &limit);

@@ -17,8 +17,6 @@ bool farm_isolate_open(struct farm_isolate *isolate, int channel);
 bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
                       const uint8_t *task, size_t size, struct farm_bytes *out);
 
-/* Bytes of address space in use now: the base over which a memory limit counts. */
-size_t farm_isolate_address_space(void);
 void farm_isolate_limit_memory(size_t bytes); /* soft RLIMIT_AS; 0 = none */
 
 #endif

@@ -48,9 +48,6 @@ int farm_link_rank(const struct farm_link *link) {
 int farm_link_ranks(const struct farm_link *link) {
   return link->ranks;
 }
-bool farm_link_sent(const struct farm_link *link) {
-  return link->sending == NULL;
-}
 
 static status post(struct farm_link *link, int rank, struct error *error) {
   struct farm_bytes *const out = &link->out[rank];

@@ -25,8 +25,6 @@ status farm_link_drain(struct farm_link *link,
                        status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
                                       struct error *error),
                        void *context, int *count, struct error *error);
-/* Everything handed over has left. */
-bool farm_link_sent(const struct farm_link *link);
 /* MPI_Finalize when `together` (all ranks do the same now), else MPI_Abort with this exit code: does not return. */
 void farm_link_close(struct farm_link *link, bool together, int exit_code);
 

@@ -99,9 +99,6 @@ static size_t depth(const struct farm_pool *pool) {
 size_t farm_pool_room(const struct farm_pool *pool) {
   return (size_t)farm_pool_slots(pool) * depth(pool);
 }
-size_t farm_pool_count(const struct farm_pool *pool) {
-  return pool->count;
-}
 
 /* ---- to the slots ---- */
 

@@ -20,7 +20,8 @@ double sph_run_extent(const struct sph_run *run) {
   return sph_shape_reach(&run->shape[0], diagonal);
 }
 
-void sph_run_end(struct sph_run *run, int stop, int outcome_state, const char *format, ...) {
+/* The first reason given stays, but a fault stands above any other. */
+static __attribute__((format(printf, 4, 5))) void end(struct sph_run *run, int stop, int outcome_state, const char *format, ...) {
   if (run->state.finished && (stop != SPH_STOP_FAULT || run->state.stop == SPH_STOP_FAULT))
     return;
   run->state.finished = 1;
@@ -136,7 +137,7 @@ static void look_at_damage(struct sph_run *run) {
     state->quiet_since = time;
   }
   if (time - state->quiet_since >= run->inputs.stop.quiet_time)
-    sph_run_end(run, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
+    end(run, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
 }
 
 static void look_at_energy(struct sph_run *run) {
@@ -144,9 +145,9 @@ static void look_at_energy(struct sph_run *run) {
   double closed = sph_run_closed(&ledger), input = run->state.energy_input + fabs(ledger.work_of_held);
   double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound;
   if (!isfinite(closed))
-    sph_run_end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s", sph_system_time(run->system));
+    end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s", sph_system_time(run->system));
   else if (!field_is_off(bound) && input > 0 && drift > bound * input)
-    sph_run_end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
+    end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
                 "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g: lower "
                 "fidelity.cfl, or take more particles",
                 sph_system_time(run->system), drift / input, bound);
@@ -157,10 +158,10 @@ static void look_at_end(struct sph_run *run) {
   if (time < run->inputs.stop.end_time)
     return;
   if (can_crack(run) && !isnan(run->state.first_damage))
-    sph_run_end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME,
+    end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME,
                 "damage still grew %.3g s before the hard end: raise stop.end_time", time - run->state.quiet_since);
   else /* nothing ever broke: there is no fracture that could still go on */
-    sph_run_end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
+    end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }
 
 void sph_run_advance(struct sph_run *run, uint64_t max_steps) {
@@ -169,7 +170,7 @@ void sph_run_advance(struct sph_run *run, uint64_t max_steps) {
     if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
       const char *why = sph_system_failure(run->system);
       bool collapse = strncmp(why, "the time step", strlen("the time step")) == 0;
-      sph_run_end(run, SPH_STOP_FAULT, collapse ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s", why);
+      end(run, SPH_STOP_FAULT, collapse ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s", why);
       return;
     }
     int limiter = sph_system_limiter(run->system);

@@ -66,9 +66,6 @@ void sph_run_advance(struct sph_run *run, uint64_t max_steps);
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; clamps are not credited */
 double sph_run_extent(const struct sph_run *run);       /* m, the target's reach: a length for errors */
-/* End the run: the first reason given stays, but a fault stands above any other. */
-void sph_run_end(struct sph_run *run, int stop, int outcome_state, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
 
 /* protocol.c: bodies with their flaws, where they stand and how they move. Fills shape, range, start, flaws... of the run. */
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
