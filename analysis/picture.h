@@ -81,6 +81,16 @@ struct picture_series {
 status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
                         const struct picture_series *series, struct error *error);
 
+/* Quantities along a line (depth below a crater, say), one panel each, one above the other; values that are no numbers are gaps. */
+struct picture_profile {
+  const char *label;      /* "damage", "pressure (Pa)" */
+  const double *y;
+  double at_least[2];     /* the panel shows this range at least; HUGE_VAL, -HUGE_VAL: what there is */
+};
+/* x ascending, `count` of them for every panel; one to three panels. STATUS_USAGE when there is no range to draw over. */
+status picture_profile(const char *path, double width, const char *title, const char *x_label, size_t count, const double *x,
+                       size_t panels, const struct picture_profile *panel, struct error *error);
+
 struct picture_axis {
   const char *label;
   size_t count;

@@ -10,7 +10,7 @@
 #define POINTS "VTKHDF/Points"
 #define COLUMN "VTKHDF/PointData/"
 
-static const char *const columns[] = {"damage", "pressure", "density", "energy", "distention", "smoothing_length", "flaws", "mass"};
+static const char *const columns[] = {"damage", "pressure", "density", "energy", "distention", "rest_distention", "smoothing_length", "flaws", "mass"};
 
 static status damaged(const char *path, const char *what, struct error *error) {
   return status_fail(error, STATUS_CONTENT, "%s is no fields file of particles, or it is damaged: %s", path, what);
@@ -100,6 +100,25 @@ status cloud_read_column(const char *path, const struct cloud *cloud, const char
     fields_read_text(file, at, "units", unit, 32);
     fields_read_text(file, at, "long_name", meaning, 128);
   }
+  fields_read_close(file);
+  return code;
+}
+
+status cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32], struct error *error) {
+  struct fields_read *file;
+  char at[96];
+  *values = NULL;
+  *rows = 0;
+  status code = fields_read_open(path, &file, error);
+  if (code)
+    return code;
+  snprintf(at, sizeof at, "axis/%.40s", name);
+  if (!fields_read_has(file, "axis"))
+    code = status_fail(error, STATUS_CONTENT, "%s has no profile: runs with an impact or a piston keep one", path);
+  else if (strchr(name, '/') || strchr(name, '.') || !(*values = fields_read_rows(file, at, 0, FIELDS_READ_REAL, rows)))
+    code = status_fail(error, STATUS_CONTENT, "%s has no '%s' along the axis; it has distention, damage, pressure, velocity", path, name);
+  else
+    fields_read_text(file, at, "units", unit, 32);
   fields_read_close(file);
   return code;
 }

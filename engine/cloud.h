@@ -29,6 +29,9 @@ status cloud_read(const char *path, struct cloud *cloud, struct error *error);
  * them (cut to their sizes). STATUS_CONTENT when the file has none such: the message lists what it has. */
 status cloud_read_column(const char *path, const struct cloud *cloud, const char *name, double **values, char unit[32],
                          char meaning[128], struct error *error);
+/* One column of the profile along the axis that a run has kept ("depth", "distention", "damage", "pressure", "velocity"): *rows
+ * values, malloc'd, as above. STATUS_CONTENT when there is none such. */
+status cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32], struct error *error);
 void cloud_clear(struct cloud *cloud);
 
 #endif

@@ -257,7 +257,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   cease_time REAL, -- [s] Time since which damage has grown by less than stop.quiet_growth; off when it still grows.
   mean_damage REAL, -- [1] Mean damage of the target at the end, by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles below fragments.damage, before the static pass.
-  mean_distention REAL, -- [1] Mean distention of the target at the end, by mass: 1 is solid; off without pores.
+  mean_distention REAL, -- [1] Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.
   largest_bare_fraction REAL, -- [1] M_1/M with the static pass and without the veneer of damaged particles.
   largest_veneer_fraction REAL, -- [1] M_1/M with the static pass and with the veneer.
   largest_dynamic_fraction REAL, -- [1] M_1/M without the static pass, with the veneer.
@@ -272,7 +272,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   crater_radius REAL, -- [m] Impact: radius of a circle of the crater's area at the first surface.
   crater_volume REAL, -- [m^3] Impact: volume between the first and the present surface of what is retained.
   crater_compaction_share REAL, -- [1] Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when there is neither.
-  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention below 1.01 that had more; off without pores.
+  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.
   compaction_volume REAL, -- [m^3] Volume that the target's retained matter has lost by closing pores; off without pores.
   compaction_depth REAL, -- [m] First depth of the deepest matter near the axis with distention below 1.01; off without pores.
   compaction_reach REAL, -- [m] Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.
@@ -856,7 +856,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamp
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention below 1.01 that had more; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 1);
 
@@ -924,7 +924,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'limited_force', '1', 'Share of the
 
 INSERT INTO column_doc VALUES ('result_sph', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'mean_distention', '1', 'Mean distention of the target at the end, by mass: 1 is solid; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'mean_distention', '1', 'Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 1);
 
@@ -1070,7 +1070,7 @@ INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped ove
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention below 1.01 that had more; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 0);
 
@@ -1182,7 +1182,7 @@ INSERT INTO column_doc VALUES ('runs', 'limited_force', '1', 'Share of the steps
 
 INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, by mass: 1 is solid; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
 

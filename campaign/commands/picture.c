@@ -45,7 +45,7 @@ static status choose_look(const struct options *options, struct picture_look *lo
   else if (options->view && !strcmp(options->view, "apart"))
     look->view = PICTURE_APART;
   else if (options->view)
-    return status_fail(error, STATUS_USAGE, "--view is cut, outside or apart, not '%s'", options->view);
+    return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", options->view);
   if (options->axis && (strlen(options->axis) != 1 || !strchr("xyz", options->axis[0])))
     return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", options->axis);
   if (options->axis)
@@ -102,7 +102,46 @@ cleanup:
   return code;
 }
 
+/* What lies along the axis: the quantity asked for, or distention and damage. */
+static status draw_profile(const char *fields, const char *picture, const struct options *options, struct error *error) {
+  enum { MOST = 2 };
+  const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
+  struct picture_profile panel[MOST];
+  struct cloud cloud;
+  double *depth = NULL, *values[MOST] = {NULL, NULL};
+  char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
+  size_t count = 0, rows = 0, panels = 0;
+  status code = cloud_read(fields, &cloud, error);
+  if (code || (code = cloud_read_axis(fields, "depth", &depth, &count, unit, error)))
+    goto cleanup;
+  for (; panels < MOST && names[panels]; panels++) {
+    if ((code = cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error)))
+      goto cleanup;
+    if (rows != count) {
+      code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
+      goto cleanup;
+    }
+    snprintf(labels[panels], sizeof labels[panels], strcmp(unit, "1") && *unit ? "%s (%s)" : "%s", names[panels], unit);
+    bool share = !strcmp(names[panels], "damage");
+    panel[panels] = (struct picture_profile){labels[panels], values[panels], {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
+  }
+  name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
+  code = picture_profile(picture, WIDTH, options->caption ? options->caption : title, "depth at the start (m)", count, depth, panels, panel,
+                         error);
+cleanup:
+  free(depth);
+  for (size_t k = 0; k < MOST; k++)
+    free(values[k]);
+  cloud_clear(&cloud);
+  return code;
+}
+
 static status draw(const char *fields, const char *picture, const struct options *options, struct error *error) {
+  if (cloud_in_file(fields) && options->view && !strcmp(options->view, "profile")) {
+    if (options->axis || options->at)
+      return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
+    return draw_profile(fields, picture, options, error);
+  }
   if (cloud_in_file(fields))
     return draw_particles(fields, picture, options->caption, options, error);
   if (options->what || options->view || options->axis || options->at) {
@@ -131,8 +170,8 @@ static const struct option_row rows[] = {
      "Particles: what colours them: damage (where there is any, else pressure), pressure, density, energy, distention, flaws..., "
      "or fragments."},
     {"view", 0, OPTION_TEXT, "VIEW", offsetof(struct options, view), 0, 0, NULL,
-     "Particles: cut (through a plane; the default), outside, or apart (fragments moved away from each other; the default "
-     "for fragments)."},
+     "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the default "
+     "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a plate)."},
     {"axis", 0, OPTION_TEXT, "x|y|z", offsetof(struct options, axis), 0, 0, NULL,
      "Particles: the axis that is looked along, at right angles to a cut (y)."},
     {"at", 0, OPTION_TEXT, "LENGTH", offsetof(struct options, at), 0, 0, NULL,
@@ -147,7 +186,8 @@ const struct command picture_command = {
     .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields). Grains in the\n"
            "plane: every fragment in a colour of its own, cracks inside fragments as lines. Particles in space: a cut, a view\n"
            "from outside, or the fragments apart. The ending chooses the format, .png or .svg.",
-    .examples = "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z",
+    .examples = "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
+                "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
     .options = rows,

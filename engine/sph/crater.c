@@ -8,7 +8,11 @@
 enum { SIDE_MOST = 2048 }; /* columns along one side */
 static const double compacted = 1.01;
 
-static double distention(const struct sph_particles *p, size_t i) { return p->distention ? p->distention[i] : 1; }
+static double distention(const struct sph_particles *start, size_t i) { return start->distention ? start->distention[i] : 1; }
+
+/* At P = 0: torn matter stands in (undamaged) tension, in which the pores of its elastic branch are open again, and yet closed ones stay
+ * closed. */
+static double at_rest(const struct sph_particles *now, size_t i) { return now->rest_distention ? now->rest_distention[i] : 1; }
 
 static bool is_ejected(const struct sph_particles *now, size_t i, double speed) {
   return now->vz[i] > speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
@@ -110,7 +114,7 @@ status sph_crater_find(const struct sph_particles *start, const struct sph_parti
     bottom = fmin(bottom, start->z[i]);
   }
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    double alpha = distention(now, i), closed = o->distention > 1 ? (distention(start, i) - alpha) / distention(start, i) : 0;
+    double alpha = at_rest(now, i), closed = o->distention > 1 ? (distention(start, i) - alpha) / distention(start, i) : 0;
     double volume = start->mass[i] / start->density[i];
     bool crushed = closed > 0 && alpha < compacted;
     if (crushed) out->compacted_mass += now->mass[i];
@@ -145,7 +149,7 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
     struct sph_crater_layer *l = &layers[(size_t)layer];
     double d = now->damage_cbrt ? now->damage_cbrt[i] : 0;
     l->depth += 1; /* a count, for now */
-    l->distention += distention(now, i);
+    l->distention += at_rest(now, i);
     l->damage += d * d * d;
     l->pressure += now->pressure[i];
     l->velocity += now->vz[i];

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "engine/sph/particle_fields.h"
-#include "engine/sph/run.h"
+#include "engine/sph/plate.h"
 #include "engine/sph/sph.h"
 
 static const struct fields_file_column curve_columns[] = {
@@ -15,13 +15,13 @@ static const struct fields_file_column curve_columns[] = {
     {"front", "m", "piston: where the shock is", 0},
     {"precursor", "m", "piston: where the elastic precursor is", 0},
 };
-/* Along the axis of an impact, from the surface down: how pores and damage change with depth. */
+/* Along the axis of an impact, from the surface down, or along a plate: how pores and damage change with depth. */
 static const struct fields_file_column axis_columns[] = {
     {"depth", "m", "of the layer at the start, below the surface", 0},
-    {"distention", "1", "mean over retained particles within 1.5 spacings of the axis", 0},
+    {"distention", "1", "mean over retained particles within 1.5 spacings of the axis, at rest (P = 0); of a plate: as it is, over its layer", 0},
     {"damage", "1", "mean D there", 0},
     {"pressure", "Pa", "mean there", 0},
-    {"velocity", "m/s", "mean there, outwards", 0},
+    {"velocity", "m/s", "mean there, outwards; of a plate along x", 0},
 };
 static double axis_value(const void *context, size_t row, size_t column, size_t k) {
   (void)k;
@@ -65,12 +65,14 @@ status sph_fields_write(struct sph_run *run, const char *path, struct error *err
   if (run->sample)
     fields_file_columns(file, "curve", run->state.samples, sizeof curve_columns / sizeof curve_columns[0], curve_columns, curve_value,
                         run->sample);
-  if (run->inputs.kind == SPH_IMPACT) {
+  if (run->inputs.kind == SPH_IMPACT || run->inputs.kind == SPH_PISTON) {
     static const size_t most = 4096;
     struct sph_crater_options options = sph_report_crater(run);
     struct sph_crater_layer *layers = malloc(most * sizeof *layers);
     if (layers)
-      fields_file_columns(file, "axis", sph_crater_profile(run->start, run->now, &options, layers, most),
+      fields_file_columns(file, "axis",
+                          run->inputs.kind == SPH_PISTON ? sph_plate_profile(run, layers, most)
+                                                         : sph_crater_profile(run->start, run->now, &options, layers, most),
                           sizeof axis_columns / sizeof axis_columns[0], axis_columns, axis_value, layers);
     else
       fields_file_fail(file);

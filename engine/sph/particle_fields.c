@@ -86,6 +86,7 @@ void sph_particle_fields_add(struct fields_file *file, const struct sph_particle
   scalar(file, AT("pressure"), n, p->pressure, "Pa", "pressure, undamaged: where it is negative, (1 - damage) of it acts");
   scalar(file, AT("smoothing_length"), n, p->h, "m", "smoothing length h; a particle's reach is 2h");
   scalar(file, AT("distention"), n, p->distention, "1", "distention: density of the matrix over density");
+  scalar(file, AT("rest_distention"), n, p->rest_distention, "1", "what it would be without pressure: below the first, pores are closed for good");
   if (p->damage_cbrt) {
     for (size_t i = 0; i < n; i++)
       room[i] = p->damage_cbrt[i] * p->damage_cbrt[i] * p->damage_cbrt[i];

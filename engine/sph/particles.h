@@ -32,6 +32,7 @@ struct sph_particles {
   uint8_t *held;           /* enum sph_freedom bits */
   double *damping;         /* 1/s: dv/dt = -damping v, for far sides that let waves out */
   double *distention;      /* alpha = rho_s/rho >= 1 */
+  double *rest_distention; /* what it would be at P = 0: pores that are closed for good (palpha.h); filled when read back */
 };
 
 /* Allocates all arrays that the flags (enum sph_particle_arrays) ask for, zeroed (distention: 1). STATUS_MEMORY. */

@@ -18,15 +18,38 @@ status sph_plate_start(struct sph_run *run, struct error *error) {
   return sph_plane_shock(&in->target.material, sph_scale_porous(&in->target), in->piston.speed, &run->exact, error);
 }
 
-static void fill_layers(const struct sph_run *run, const struct sph_particles *p) {
+static size_t layer_of(const struct sph_run *run, size_t i) {
   double last = (double)run->inputs.fidelity.points - 1;
+  return (size_t)fmax(0, fmin(last, run->start->x[i] / sph_scale_spacing(&run->inputs)));
+}
+
+static void fill_layers(const struct sph_run *run, const struct sph_particles *p) {
   memset(run->layer, 0, (size_t)run->inputs.fidelity.points * sizeof *run->layer);
   for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
-    struct sph_plate_layer *l = &run->layer[(size_t)fmax(0, fmin(last, run->start->x[i] / sph_scale_spacing(&run->inputs)))];
+    struct sph_plate_layer *l = &run->layer[layer_of(run, i)];
     l->x += p->x[i];
     l->density += p->density[i];
     l->count++;
   }
+}
+
+size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *layers, size_t most) {
+  const struct sph_particles *p = run->now;
+  double spacing = sph_scale_spacing(&run->inputs);
+  size_t count = (size_t)fmin((double)most, (double)run->inputs.fidelity.points);
+  fill_layers(run, p);
+  for (size_t k = 0; k < count; k++)
+    layers[k] = (struct sph_crater_layer){.depth = ((double)k + 0.5) * spacing};
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    size_t k = layer_of(run, i);
+    if (k >= count)
+      continue;
+    double n = run->layer[k].count;
+    layers[k].distention += (p->distention ? p->distention[i] : 1) / n;
+    layers[k].pressure += p->pressure[i] / n;
+    layers[k].velocity += p->vx[i] / n;
+  }
+  return count;
 }
 
 /* From the far side: the first place as dense as halfway from what is ahead of a front to what is behind it. */

@@ -8,6 +8,8 @@
 status sph_plate_start(struct sph_run *run, struct error *error);
 /* Places of shock and precursor, m from the plate's first surface; NaN where there is none. `p`: as read now. */
 void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, double *shock, double *precursor);
+/* State of the plate in layers of one spacing by their depth at the start; velocity along x. At most `most`; returns how many. */
+size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *layers, size_t most);
 /* Rows shock.* and precursor.* from what was recorded and from the particles last read. */
 void sph_plate_report(const struct sph_run *run, struct sph_results *results);
 

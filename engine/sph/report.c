@@ -83,11 +83,11 @@ static void damage(const struct sph_run *run, struct sph_results *results) {
     double d = p->damage_cbrt ? p->damage_cbrt[i] * p->damage_cbrt[i] * p->damage_cbrt[i] : 0;
     mass += p->mass[i];
     sum += p->mass[i] * d;
-    pores += p->distention ? p->mass[i] * p->distention[i] : 0;
+    pores += p->rest_distention ? p->mass[i] * p->rest_distention[i] : 0;
     whole += d < run->inputs.fragments.damage ? p->mass[i] : 0;
   }
   results->mean_damage = share(sum, mass);
-  if (p->distention && mass > 0)
+  if (p->rest_distention && mass > 0)
     results->mean_distention = not_infinite(fmax(pores / mass, 1));
   results->undamaged_fraction = share(whole, mass);
 }

@@ -31,7 +31,7 @@ static const struct field rows[] = {
     REAL(cease_time, "s", 0, .doc = "Time since which damage has grown by less than stop.quiet_growth; off when it still grows."),
     SHARE(mean_damage, .doc = "Mean damage of the target at the end, by mass.", .source = "BA95 eq. 14"),
     SHARE(undamaged_fraction, .doc = "Mass share of the target's particles below fragments.damage, before the static pass."),
-    REAL(mean_distention, "1", 1, .doc = "Mean distention of the target at the end, by mass: 1 is solid; off without pores.",
+    REAL(mean_distention, "1", 1, .doc = "Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.",
          .source = "Jutzi, Benz & Michel 2008"),
     SHARE(largest.bare_fraction, .doc = "M_1/M with the static pass and without the veneer of damaged particles.",
           .source = "BA95 section 4.4"),
@@ -54,7 +54,7 @@ static const struct field rows[] = {
     SHARE(crater.compaction_share,
           .doc = "Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when "
                  "there is neither.", .source = "Jutzi & Benz, section 3.1"),
-    SHARE(compaction.mass_fraction, .doc = "Mass share of the target with distention below 1.01 that had more; off without pores.",
+    SHARE(compaction.mass_fraction, .doc = "Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.",
           .source = "Jutzi & Benz, figure 2"),
     REAL(compaction.volume, "m^3", 0, .doc = "Volume that the target's retained matter has lost by closing pores; off without pores."),
     REAL(compaction.depth, "m", 0, .doc = "First depth of the deepest matter near the axis with distention below 1.01; off without pores."),

@@ -77,6 +77,7 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
     if (out->damage_cbrt && s->damage) out->damage_cbrt[to] = s->c.damage[i];
     if (out->damping && s->c.damping) out->damping[to] = s->c.damping[i];
     if (out->distention) out->distention[to] = s->c.distention ? s->c.distention[i] : 1;
+    if (out->rest_distention) out->rest_distention[to] = s->c.rest_distention ? s->c.rest_distention[i] : 1;
     if (out->held && s->held) out->held[to] = s->held[i];
   }
   for (size_t b = 0; b < s->body_count; b++)

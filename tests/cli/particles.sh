@@ -20,6 +20,7 @@ for k, time in enumerate(times):
 PY
 ok "the series lists four snapshots and their times"
 
+expect 0 "$clast" simulate elastic-bar --set fidelity.particles=600 --set "stop.end_time=5 us" --quiet --fields bar.hdf
 for what in damage pressure density energy flaws fragments; do
   expect 0 "$clast" picture end.hdf $what.png --what $what
   is_png $what.png
@@ -28,6 +29,15 @@ expect 0 "$clast" picture end.hdf cut.svg --what fragments --view cut --axis z -
 grep -q '</svg>' cut.svg || fail "no whole SVG"
 expect 0 "$clast" picture basalt-sphere_000001.hdf outside.png --view outside --axis x
 cmp -s damage.png pressure.png && fail "damage looks like pressure"
+expect 0 "$clast" picture end.hdf profile.svg --view profile
+grep -q '</svg>' profile.svg || fail "no whole SVG"
+expect 0 "$clast" picture end.hdf profile.png --view profile --what pressure
+is_png profile.png
+expect 64 "$clast" picture end.hdf x.png --view profile --axis z
+expect 65 "$clast" picture end.hdf x.png --view profile --what colour
+says "it has distention, damage"
+expect 65 "$clast" picture bar.hdf x.png --view profile
+says "keep one"
 expect 65 "$clast" picture end.hdf x.png --what colour
 says "damage, pressure"
 expect 64 "$clast" picture end.hdf x.png --view sideways
@@ -77,4 +87,4 @@ PY
 ok "snapshots before and after the stop are in one series"
 expect 74 "$clast" "${run[@]}" --fields none/such/folder/end.hdf
 one_error
-done_after 33
+done_after 40

@@ -187,6 +187,23 @@ static void maps_are_drawn(void **state) {
   assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", &x, &y, value, NULL), STATUS_USAGE);
 }
 
+static void profiles_are_drawn(void **state) {
+  (void)state;
+  double x[40], alpha[40], damage[40];
+  for (int i = 0; i < 40; i++) x[i] = 0.003 * i, alpha[i] = 1.5 - 0.5 * exp(-0.1 * i), damage[i] = i < 20;
+  alpha[7] = NAN; /* a gap */
+  const struct picture_profile panels[] = {{"distention", alpha, {HUGE_VAL, -HUGE_VAL}}, {"damage", damage, {0, 1}}};
+  assert_int_equal(picture_profile(at("profile.png"), 900, "Below a crater", "depth (m)", 40, x, 2, panels, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("profile.png"), &dark, &coloured, &width, &height);
+  assert_true(width == 900 && height > 500 && coloured > 0.002); /* two lines of 2.7 pixels and dots on them */
+  assert_int_equal(picture_profile(at("flat.svg"), 600, NULL, "x", 40, x, 1, &(struct picture_profile){"zero", (double[40]){0}, {HUGE_VAL, -HUGE_VAL}}, NULL),
+                   STATUS_OK);
+  assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 1, x, 1, panels, NULL), STATUS_USAGE);
+  assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 40, x, 0, panels, NULL), STATUS_USAGE);
+}
+
 static void errors_leave_nothing(void **state) {
   (void)state;
   static struct example e;
@@ -221,11 +238,12 @@ int main(int count, char **arguments) {
       cmocka_unit_test(fragments_are_drawn),
       cmocka_unit_test(spectra_are_drawn),
       cmocka_unit_test(maps_are_drawn),
+      cmocka_unit_test(profiles_are_drawn),
       cmocka_unit_test(errors_leave_nothing),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "nan.png"};
+    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "nan.png", "profile.png", "flat.svg"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
     if (rmdir(folder) != 0) failed++; /* something else was left behind */
   }

@@ -22,7 +22,7 @@ static struct sph_particles *slab(void) {
     p->z[i] = dx * ((double)(i / SIDE / SIDE) + 0.5);
     p->mass[i] = 1e-6;
     p->density[i] = 1000;
-    p->distention[i] = 2;
+    p->distention[i] = p->rest_distention[i] = 2;
   }
   return p;
 }
@@ -79,7 +79,7 @@ static void compacted(void **state) {
   for (size_t i = 0; i < now->n; i++)
     if (hypot(now->x[i], now->y[i]) < 10e-3 && now->z[i] > 10e-3) {
       now->z[i] = 10e-3 + (now->z[i] - 10e-3) / 2;
-      now->distention[i] = 1;
+      now->rest_distention[i] = 1; /* closed for good, though torn matter stands in tension and shows more */
       now->damage_cbrt[i] = 1;
       count++;
     }

@@ -62,6 +62,7 @@ static struct sph_particles *shattered(double count) {
     p->y[i] += 2e-5 * p->vy[i];
     p->z[i] += 2e-5 * p->vz[i];
     p->distention[i] = 1 + 0.5 * size;
+    p->rest_distention[i] = 1 + 0.4 * size;
   }
   return p;
 }
@@ -125,7 +126,8 @@ static void what_is_written_is_what_is_read(void **state) {
     const char *name;
     const double *column;
   } scalars[] = {{"mass", p->mass},         {"density", p->density}, {"energy", p->energy},
-                 {"pressure", p->pressure}, {"smoothing_length", p->h}, {"distention", p->distention}};
+                 {"pressure", p->pressure}, {"smoothing_length", p->h}, {"distention", p->distention},
+                 {"rest_distention", p->rest_distention}};
   for (size_t k = 0; k < sizeof scalars / sizeof *scalars; k++) {
     char name[100];
     snprintf(name, sizeof name, "VTKHDF/PointData/%s", scalars[k].name);
