@@ -1,3 +1,8 @@
+/* R of the stress before the pair loop, f^n (R_i + R_j) in it: pairs_kernels_tension.h, pairs_kernels_sum.h.
+ *
+ * Its work is booked nowhere, so that the energy error of a run contains it: with the factor f^n of each pair R is conjugate to no
+ * gradient that a particle knows, no stored energy belongs to it, and what it takes on the way apart differs from what it gives
+ * back on the way together. To book it the pair loop would have to sum the power of f^n (R_i + R_j) by itself, pair by pair. */
 #include "engine/sph/ranges.h"
 
 #include <math.h>

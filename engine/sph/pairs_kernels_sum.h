@@ -222,6 +222,7 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
   const size_t in_stride = artificial || corrected ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
   const REAL norm = (REAL)k.norm, quarter = (REAL)0.25;
   const VECTOR zero = {0};
+  const uint32_t *end = chunk->neighbour + chunk->start[(chunk->own + GROUP - 1) / GROUP];
   for (size_t i = 0; i < chunk->own; i += GROUP) {
     const REAL *mine[GROUP];
     REAL per_mine[GROUP];
@@ -239,6 +240,11 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       VECTOR c[PAIR_NARROW], g[PAIR_WIDE];
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(fetch)(in, in_stride, column, slot, c + column);
+      if (FIXED) { /* 4 % of a large run; nothing in double */
+        const uint32_t *next = slot + LANES < end ? slot + LANES : slot; /* lists follow each other */
+        UNROLL for (int lane = 0; lane < LANES; lane++)
+          __builtin_prefetch(out + next[lane] * out_stride, 1);
+      }
       VECTOR dx[GROUP], dy[GROUP], dz[GROUP], h[GROUP], hh[GROUP], square[GROUP], inverse_r[GROUP], inverse_h[GROUP], q[GROUP],
           t[GROUP], slope[GROUP], wx[GROUP], wy[GROUP], wz[GROUP], ux[GROUP], uy[GROUP], uz[GROUP], closing[GROUP], mu[GROUP],
           densities[GROUP], softened[GROUP], per[GROUP], viscous[GROUP], fx[GROUP], fy[GROUP], fz[GROUP];
