@@ -19,11 +19,18 @@ static status from_cairo(cairo_status_t code, const char *path, struct error *er
                      cairo_status_to_string(code));
 }
 
+status picture_canvas_named(const char *path, struct error *error) {
+  if (ends_in(path, ".png") || ends_in(path, ".svg"))
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png or .svg", path);
+}
+
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error) {
   *canvas = (struct picture_canvas){.path = path, .png = ends_in(path, ".png")};
-  if (!canvas->png && !ends_in(path, ".svg"))
-    return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png or .svg", path);
+  status code = picture_canvas_named(path, error);
+  if (code)
+    return code;
   if (!(width >= 200 && width <= 8000 && height >= 50 && height <= 16000))
     return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", path, width, height);
   int length = snprintf(canvas->temporary, sizeof canvas->temporary, "%s.%ld.part", path, (long)getpid());
@@ -33,7 +40,7 @@ status picture_canvas_open(struct picture_canvas *canvas, const char *path, doub
                         ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height))
                         : cairo_svg_surface_create(canvas->temporary, width, height);
   canvas->cairo = cairo_create(canvas->surface);
-  status code = from_cairo(cairo_status(canvas->cairo), path, error);
+  code = from_cairo(cairo_status(canvas->cairo), path, error);
   if (code) {
     cairo_destroy(canvas->cairo);
     cairo_surface_destroy(canvas->surface);

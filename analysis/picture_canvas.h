@@ -15,6 +15,8 @@ struct picture_canvas {
   const char *path;
   char temporary[4096];
 };
+/* STATUS_USAGE unless the name ends in .png or .svg. */
+status picture_canvas_named(const char *path, struct error *error);
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error);
 /* Writes and renames when code is STATUS_OK, else removes what was begun; returns code or what went wrong. */

@@ -54,8 +54,8 @@ static status resume(const struct run_request *request, void **run, struct error
   if (code == STATUS_MISSING)
     return STATUS_OK;
   if (code == STATUS_OK && seed != request->seed)
-    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is of seed %llu, not %llu", request->restart_path,
-                       (unsigned long long)seed, (unsigned long long)request->seed);
+    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is of seed %llu, not %llu: ask for seed %llu, or name another file",
+                       request->restart_path, (unsigned long long)seed, (unsigned long long)request->seed, (unsigned long long)seed);
   return code ? code : request->kind->restore(request->inputs, request->restart_path, run, error);
 }
 

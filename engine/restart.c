@@ -113,7 +113,7 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
   size_t got = fread(&head, sizeof head, 1, file);
   fclose(file);
   if (got != 1 || memcmp(head.magic, magic, sizeof magic) != 0)
-    return status_fail(error, STATUS_CONTENT, "'%s' is no restart file", path);
+    return status_fail(error, STATUS_CONTENT, "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
   *seed = head.seed;
   return STATUS_OK;
 }
@@ -130,7 +130,7 @@ status restart_open(const struct engine_kind *kind, const void *inputs, size_t c
   if (code)
     goto cleanup;
   if (b.size < sizeof magic + 8 || !get(&b, head, sizeof head) || memcmp(head, magic, sizeof magic) != 0) {
-    code = status_fail(error, STATUS_CONTENT, "'%s' is no restart file", path);
+    code = status_fail(error, STATUS_CONTENT, "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
     goto cleanup;
   }
   memcpy(&sum, b.at + b.size - 8, 8);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 status whole_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error) {
@@ -32,6 +33,25 @@ status whole_file_write(const char *path, const char *what, const void *bytes, s
   }
   free(temporary);
   return code;
+}
+
+status whole_file_try(const char *path, const char *what, struct error *error) {
+  size_t length = strlen(path) + 32;
+  char *temporary = malloc(length);
+  if (!temporary)
+    return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+  snprintf(temporary, length, "%s.%ld.tmp", path, (long)getpid());
+  struct stat there;
+  int why = stat(path, &there) == 0 && S_ISDIR(there.st_mode) ? EISDIR : 0;
+  FILE *file = why ? NULL : fopen(temporary, "wb");
+  if (!file && !why)
+    why = errno;
+  if (file) {
+    fclose(file);
+    unlink(temporary);
+  }
+  free(temporary);
+  return why ? status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why)) : STATUS_OK;
 }
 
 status whole_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error) {

@@ -9,6 +9,9 @@
 /* STATUS_IO with the system's reason (full disk, no permission, no such folder); nothing is left behind then. `what`
  * names the file's purpose in the message ("restart file"). */
 status whole_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error);
+/* Whether `path` could be written now, so that a long run does not end with a file that has no place: STATUS_IO with the
+ * system's reason. What stands there is left alone. */
+status whole_file_try(const char *path, const char *what, struct error *error);
 /* *bytes is malloc'd. STATUS_MISSING, STATUS_IO, STATUS_MEMORY. */
 status whole_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error);
 

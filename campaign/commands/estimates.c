@@ -210,8 +210,8 @@ const struct command estimates_command = {
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
     .doc = "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
            "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
-           "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle and more, each run's largest\n"
-           "fragment left out). Errors of the exponents come from resampling runs.",
+           "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle\n"
+           "and more, each run's largest fragment left out). Errors of the exponents come from resampling runs.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -207,7 +207,7 @@ void option_help(const struct command *command, FILE *out) {
   static const status always[] = {STATUS_OK, STATUS_FAILED_RUNS, STATUS_USAGE, STATUS_CONTENT, STATUS_MISSING,
                                   STATUS_INTERNAL, STATUS_MEMORY, STATUS_IO, STATUS_STOPPED};
   for (size_t i = 0; i < sizeof always / sizeof always[0]; i++)
-    if (command->runs_campaign || (always[i] != STATUS_FAILED_RUNS && always[i] != STATUS_STOPPED))
+    if (command->has_runs || (always[i] != STATUS_FAILED_RUNS && always[i] != STATUS_STOPPED))
       fprintf(out, "  %2d  %s\n", (int)always[i], status_meaning(always[i]));
 }
 

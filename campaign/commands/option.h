@@ -55,7 +55,7 @@ struct command {
   const struct option_row *options;
   size_t option_count;
   size_t options_size;   /* sizeof the options struct */
-  bool runs_campaign;    /* exits 1 and 75 apply */
+  bool has_runs;         /* exits 1 and 75 apply */
   /* Prints data on stdout, remarks on stderr; an error is returned, not printed. */
   status (*run)(const struct command_line *line, struct error *error);
 };

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "analysis/estimates.h"
+#include "analysis/picture_canvas.h"
 #include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
@@ -13,6 +14,7 @@
 #include "campaign/commands/resume.h"
 #include "campaign/commands/snapshots.h"
 #include "campaign/run.h"
+#include "engine/whole_file.h"
 
 enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for a million particles */
 
@@ -40,6 +42,18 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
   int percent = (int)floor(100 * kind->progress(run));
   if (watch->terminal && percent != watch->percent)
     fprintf(stderr, "\r%3d %% of the longest time it may take", watch->percent = percent);
+  return code;
+}
+
+/* What the run is to leave behind has a place: found out before the run, not after it. */
+static status places(const struct options *options, struct error *error) {
+  status code = options->picture ? picture_canvas_named(options->picture, error) : STATUS_OK;
+  if (!code && options->picture)
+    code = whole_file_try(options->picture, "picture", error);
+  if (!code && options->fields)
+    code = whole_file_try(options->fields, "fields file", error);
+  if (!code && options->restart)
+    code = whole_file_try(options->restart, "restart file", error);
   return code;
 }
 
@@ -98,6 +112,8 @@ static status run(const struct command_line *line, struct error *error) {
   if (!code)
     code = scene_check(scene, error);
   if (!code)
+    code = places(options, error);
+  if (!code)
     code = simulate(scene, options, format, error);
   scene_free(scene);
   return code;
@@ -132,6 +148,7 @@ const struct command simulate_command = {
                 "clast simulate disc-explosion --set threshold.strain=5% --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
+    .has_runs = true,
     .options = rows,
     .option_count = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct options),
