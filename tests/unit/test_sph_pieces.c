@@ -253,6 +253,8 @@ static void static_strength_breaks(void **state) {
   p->damage_cbrt[6] = cbrt(0.1); /* the damaged stress: 16.2 */
   p->stress[1][7] = 18e6;
   p->damage_cbrt[7] = cbrt(0.02); /* 17.64 */
+  p->stress[1][1] = 18e6;
+  p->damage_cbrt[1] = cbrt(0.1); /* 16.2: damage takes shear, too */
   f = find(p, &o);
   const uint8_t broken[9] = {0, 0, 1, 0, 0, 1, 0, 1, 0};
   for (int i = 0; i < 9; i++)

@@ -83,6 +83,45 @@ static void ledger_by_hand(void **state) {
   sph_particles_free(p);
 }
 
+/* Every limit of the step as motion_range.h says it, from the columns, while a blow goes on; the step is the least of them. */
+static void limits_by_hand(void **state) {
+  (void)state;
+  struct collision c = collide(1000);
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  double share[3] = {0}; /* of the viscous terms and of shear in the Courant limit: were they missing, it would be seen */
+  for (int step = 0; step < 60; step++) {
+    case_steps(s, 1);
+    double courant = 0, bare = 0, linear = 0, fluid = 0, force = 0, energy = 0, density = 0, damage = 0;
+    for (size_t i = 0; i < s->n; i++) {
+      const double h = s->c.h[i], sound = s->c.sound_speed[i], left = 1 - pow(s->c.damage[i], 3), signal = fmax(s->c.signal[i], 0);
+      const double speed = sqrt(sound * sound + 4.0 / 3 * case_basalt.shear_modulus * left / s->c.density[i]);
+      const double pull = sqrt(pow(s->c.ax[i], 2) + pow(s->c.ay[i], 2) + pow(s->c.az[i], 2));
+      const double divergence = s->c.gradient[0][i] + s->c.gradient[4][i] + s->c.gradient[8][i];
+      if (s->c.signal[i] < 0) continue;
+      courant = fmax(courant, (speed + 0.6 * (1.5 * sound + 3 * signal)) / (0.3 * h));
+      bare = fmax(bare, speed / (0.3 * h)), linear = fmax(linear, (speed + 0.9 * sound) / (0.3 * h));
+      fluid = fmax(fluid, (sound + 0.6 * (1.5 * sound + 3 * signal)) / (0.3 * h));
+      force = fmax(force, sqrt(pull / h) / 0.3);
+      energy = fmax(energy, 5 * fabs(s->c.energy_rate[i]) / (s->c.energy[i] + 0.01 * sound * sound));
+      density = fmax(density, 10 * fabs(divergence));
+      damage = fmax(damage, s->c.damage_rate[i] / 0.2);
+    }
+    const double *worst = s->now.worst;
+    /* the density in c_L is that before half the change of its rate: well below a percent */
+    assert_true(fabs(worst[SPH_LIMIT_COURANT] / courant - 1) < 0.01);
+    assert_true(fabs(worst[SPH_LIMIT_FORCE] - force) <= 1e-9 * force && fabs(worst[SPH_LIMIT_ENERGY] - energy) <= 1e-9 * energy);
+    assert_true(fabs(worst[SPH_LIMIT_DENSITY] - density) <= 1e-9 * density && fabs(worst[SPH_LIMIT_DAMAGE] - damage) <= 1e-9 * damage);
+    share[0] = fmax(share[0], 1 - bare / courant), share[1] = fmax(share[1], 1 - linear / courant), share[2] = fmax(share[2], 1 - fluid / courant);
+    const double longest = 1 / fmax(worst[SPH_LIMIT_COURANT], fmax(fmax(force, energy), fmax(density, damage)));
+    case_steps(s, 1);
+    assert_true(fabs(sph_system_last_step(s) / longest - 1) < 1e-9);
+  }
+  assert_true(share[0] > 0.03 && share[1] > 0.03 && share[2] > 0.03);
+  assert_true(sph_system_damage(s, NULL) > 0);
+  sph_system_free(s);
+  let_go(&c);
+}
+
 /* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition alone, which
  * sees only pairs that already touch, would let it (the energy then grows several times over). */
 static void fast(void **state) {
@@ -476,7 +515,7 @@ int main(void) {
       cmocka_unit_test(absent),    cmocka_unit_test(clamps),    cmocka_unit_test(thin),    cmocka_unit_test(lost),
       cmocka_unit_test(refused),   cmocka_unit_test(held),      cmocka_unit_test(fast),
       cmocka_unit_test(every_module),
-      cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand),
+      cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand), cmocka_unit_test(limits_by_hand),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
