@@ -204,7 +204,7 @@ static void examples_are_ready_to_run(void **state) {
     if (plan_make(campaign, &options, &plan, &error) != STATUS_OK)
       fail_msg("%s: %s", path, error.message);
     assert_int_equal(plan.points, campaign_points(campaign));
-    assert_true(plan.points >= 3 && plan.runs_least >= 60 && plan.memory_most > 1e5 && !plan.store_exists);
+    assert_true(plan.points >= 3 && plan.runs_least >= 12 && plan.memory_most > 1e5 && !plan.store_exists);
     assert_int_equal(plan.runs_there, 0);
     assert_true(isnan(plan.run_s_mean));
     char *json = plan_json(campaign, &plan, 2);
@@ -215,7 +215,7 @@ static void examples_are_ready_to_run(void **state) {
     seen++;
   }
   closedir(folder);
-  assert_int_equal(seen, 9);
+  assert_int_equal(seen, 10);
 }
 
 int main(void) {
