@@ -94,12 +94,13 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
     code = estimates_make(result->fragment_count, result->fragments, result->estimates, error);
     result->estimate_count = ESTIMATES_COUNT;
   }
-  if (code == STATUS_OK && request->fields_path)
+  const bool whole = code == STATUS_OK;
+  if (whole && request->fields_path)
     code = write_fields(kind, run, request->fields_path, error);
+  if (!whole)
+    run_result_clear(result);
 cleanup:
   kind->free(run);
-  if (code != STATUS_OK)
-    run_result_clear(result);
   return code;
 }
 

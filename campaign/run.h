@@ -29,7 +29,8 @@ typedef status (*run_watch)(void *context, const struct engine_kind *kind, void 
 
 /* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that the
  * engine cannot run together (STATUS_CONTENT of prepare) are a result, OUTCOME_INVALID, not an error: the same seed would
- * fail the same way again. main() has called analysis_init(). */
+ * fail the same way again. main() has called analysis_init(). On an error *result is empty, but for a fields file
+ * that could not be written: the results are there then (result->result is not NULL) and to be cleared. */
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error);
 void run_result_clear(struct run_result *result);

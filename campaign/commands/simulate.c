@@ -87,8 +87,10 @@ static status simulate(const struct scene *scene, const struct options *options,
   }
   if (*temporary)
     remove(temporary);
-  if (!code)
-    code = results_print(scene->kind, options->seed, &result, format, error);
+  if (result.result) { /* also when a file of it could not be written: hours of computing are not to be lost for that */
+    const status printed = results_print(scene->kind, options->seed, &result, format, code ? NULL : error);
+    code = code ? code : printed;
+  }
   if (!code && options->restart)
     resume_end(&resume);
   if (!code && !campaign_usable(&result.outcome))
