@@ -2,6 +2,7 @@
 #include "tests/sph_case.h"
 
 #include "engine/sph/bodies.h"
+#include "engine/sph/ranges.h"
 #include "engine/sph/system_layout.h"
 
 enum { SIDE = 8, SMALL = 3 };
@@ -118,6 +119,59 @@ static void limits_by_hand(void **state) {
   }
   assert_true(share[0] > 0.03 && share[1] > 0.03 && share[2] > 0.03);
   assert_true(sph_system_damage(s, NULL) > 0);
+  sph_system_free(s);
+  let_go(&c);
+}
+
+/* h^3 rho keeps while matter is squeezed and expands, within the bounds of h. */
+static void h_follows_density(void **state) {
+  (void)state;
+  struct collision c = collide(3000);
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  double densest = 1, thinnest = 1;
+  for (int look = 0; look < 6; look++) {
+    case_steps(s, 20);
+    for (size_t i = 0; i < s->n; i++) {
+      const double h = s->c.h[i] / s->c.h_initial[i], density = s->c.density[i] / 2700;
+      densest = fmax(densest, density), thinnest = fmin(thinnest, density);
+      /* the cube root is a series, within (0.1)^4/24 a step at most */
+      if (density > 0.2) assert_true(fabs(h * h * h * density - 1) < 1e-3);
+    }
+  }
+  assert_true(densest > 1.1 && thinnest < 0.9);
+  sph_system_free(s);
+  let_go(&c);
+}
+
+/* Flaws open by eq. 21, of the damaged stress: E eps = lambda(S) - P where pulled, lambda(S) - P/(1-D) where pressed. */
+static void flaws_open_by_the_damaged_stress(void **state) {
+  (void)state;
+  struct collision c = collide(0);
+  c.parameters.cap = SPH_CAP_NONE;
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  static const struct {
+    double tension, pressure, damage; /* of the weakest flaw's E eps; D */
+    bool opens;
+  } cases[] = {{2, 0.8, 0, true},     {2, 0.8, 0.5, false},   {2, 1.01, 0, false},   {2.7, 0.8, 0.5, true},
+               {0.6, -0.5, 0, true},  {0.6, -0.5, 0.5, true}, {0.6, -0.3, 0.5, false}, {1.01, 0, 0.9, true}, {3, -3, 1, false}};
+  double *weakest = malloc(s->n * sizeof *weakest);
+  memcpy(weakest, s->c.weakest, s->n * sizeof *weakest);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    for (size_t i = 0; i < s->n; i++) {
+      const double w = weakest[i];
+      s->c.weakest[i] = cases[k].damage < 1 ? w : HUGE_VAL;
+      s->c.stress[0][i] = cases[k].tension * w, s->c.stress[3][i] = -0.5 * cases[k].tension * w;
+      s->c.stress[1][i] = s->c.stress[2][i] = s->c.stress[4][i] = 0;
+      s->c.pressure[i] = cases[k].pressure * w;
+      s->c.damage[i] = cbrt(cases[k].damage);
+      s->c.open_from[i] = s->c.open_below[i] = 0;
+    }
+    for (size_t b = 0; b < s->block_count; b++)
+      s->ranges->crack(s, &s->solid[s->block[b].body], &s->block[b]);
+    for (size_t i = 0; i < s->n; i++)
+      if ((s->c.damage_rate[i] > 0) != cases[k].opens) fail_msg("case %zu: rate %g", k, s->c.damage_rate[i]);
+  }
+  free(weakest);
   sph_system_free(s);
   let_go(&c);
 }
@@ -515,7 +569,8 @@ int main(void) {
       cmocka_unit_test(absent),    cmocka_unit_test(clamps),    cmocka_unit_test(thin),    cmocka_unit_test(lost),
       cmocka_unit_test(refused),   cmocka_unit_test(held),      cmocka_unit_test(fast),
       cmocka_unit_test(every_module),
-      cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand), cmocka_unit_test(limits_by_hand),
+      cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand), cmocka_unit_test(limits_by_hand), cmocka_unit_test(h_follows_density),
+      cmocka_unit_test(flaws_open_by_the_damaged_stress),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
