@@ -234,9 +234,9 @@ static void solid_bits(void **state) {
 static void beside_a_solid(void **state) {
   (void)state;
   struct impact m = impact_of(&porous_basalt, NULL, true);
-  double last[725], most = 0;
+  double last[725], rest[725], most = 0;
   for (size_t i = 0; i < 725; i++)
-    last[i] = m.p->distention[i];
+    last[i] = rest[i] = m.p->distention[i];
   int limited = 0;
   for (int k = 0; k < 150; k++) {
     case_steps(m.s, 1);
@@ -245,6 +245,8 @@ static void beside_a_solid(void **state) {
     for (size_t i = 0; i < 725; i++) {
       most = fmax(most, fabs(m.p->distention[i] - last[i]));
       last[i] = m.p->distention[i];
+      if (!(m.p->rest_distention[i] <= rest[i])) fail_msg("closed pores have opened: %g after %g", m.p->rest_distention[i], rest[i]);
+      rest[i] = m.p->rest_distention[i];
     }
   }
   size_t crushed = 0;
