@@ -248,7 +248,7 @@ static const struct field rows[] = {
     CHOICE(fidelity.flaws, flaw_lists, .when = "target.fracture=auto|on",
            .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
            .doc = "How a particle's flaws are stored."),
-    COUNT(fidelity.threads, 1, 1, 1024, .doc = "Threads of the pair loop. The bits do not depend on it."),
+    COUNT(fidelity.threads, 1, 1, 1024, .doc = "Threads of one run, for a big one on an idle machine. The bits do not depend on it."),
     REAL(fidelity.energy_bound, "1", 0.05, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. off: it "
                 "only reports the drift."),
