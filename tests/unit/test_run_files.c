@@ -16,7 +16,7 @@ static char folder[] = "/tmp/clast_run_files_XXXXXX";
 
 static const char *in_folder(const char *name) {
   static char path[200];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
+  snprintf(path, sizeof path, "%s/%.100s", folder, name);
   return path;
 }
 
