@@ -96,11 +96,11 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
     enough = sph_neighbours_list(s->neighbours, k, &c->lists) && find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
   }
   if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
-  s->slots = s->most_slots = 0;
+  s->others = s->most_slots = 0;
   for (size_t k = 0; k < s->count; k++) {
     struct sph_chunk *c = &s->chunk[k];
-    c->record_at = s->slots;
-    s->slots += c->own + c->others;
+    c->others_before = s->others;
+    s->others += c->others;
     if (c->own + c->others > s->most_slots) s->most_slots = c->own + c->others;
   }
   return STATUS_OK;

@@ -16,13 +16,13 @@ struct sph_chunk {
   size_t first, own, others;        /* others: how many foreign ones, */
   uint32_t *other;                  /* their numbers: ascending, all above the chunk's own */
   struct sph_neighbour_lists lists; /* of slots */
-  size_t record_at;                 /* slots of all chunks before it */
+  size_t others_before;             /* others of all chunks before it */
   size_t other_capacity;
-  atomic_bool summed;               /* in this pass of the pair loop */
+  atomic_bool summed, taken;        /* in this pass of the pair loop */
 };
 
 struct sph_chunks {
-  size_t count, share, most_slots, slots; /* most_slots: of one chunk; slots: of all */
+  size_t count, share, most_slots, others; /* most_slots: own and others of one chunk; others: of all; 0 both before the first listing */
   struct sph_chunk *chunk;
   struct sph_neighbours *neighbours;
   uint32_t *start; /* of all lists */

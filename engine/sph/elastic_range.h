@@ -51,24 +51,26 @@ RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_so
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool pores) {
   const double half = 0.5 * s->dt, solid_two_mu = 2 * body->physics.material.shear_modulus;
   const double *f = s->c.shear_factor, *alpha = s->c.distention;
-  double *const *g = s->c.gradient;
+  double *const *g = b->sums->gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];
-  const double *density = s->c.density, *term = s->c.pressure_term, *heating = s->c.heating, *power = s->c.power;
+  const double *density = s->c.density, *term = s->c.pressure_term, *heating = b->sums->heating, *power = b->sums->power;
   const double *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2], *oyy = s->c.damaged[3];
   const double *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
   double *energy = s->c.energy, *energy_rate = s->c.energy_rate;
   double *sxx = s->c.stress[0], *sxy = s->c.stress[1], *sxz = s->c.stress[2], *syy = s->c.stress[3], *syz = s->c.stress[4];
   double *rxx = s->c.stress_rate[0], *rxy = s->c.stress_rate[1], *rxz = s->c.stress_rate[2], *ryy = s->c.stress_rate[3];
   double *ryz = s->c.stress_rate[4];
+  const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++) {
-    const double exx = g0[i], eyy = g4[i], ezz = g8[i], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
-    const double exy = 0.5 * (g1[i] + g3[i]), exz = 0.5 * (g2[i] + g6[i]), eyz = 0.5 * (g5[i] + g7[i]);
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = low + k;
+    const double exx = g0[k], eyy = g4[k], ezz = g8[k], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
+    const double exy = 0.5 * (g1[k] + g3[k]), exz = 0.5 * (g2[k] + g6[k]), eyz = 0.5 * (g5[k] + g7[k]);
     const double two_mu = pores ? solid_two_mu * f[i] / alpha[i] : solid_two_mu;
-    const double wxy = 0.5 * (g1[i] - g3[i]), wxz = 0.5 * (g2[i] - g6[i]), wyz = 0.5 * (g5[i] - g7[i]);
+    const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
     const double work = term[i] * divergence + oxx[i] * exx + oyy[i] * eyy + ozz[i] * ezz +
                         2 * (oxy[i] * exy + oxz[i] * exz + oyz[i] * eyz);
-    const double heat = (power ? power[i] : density[i] * work) + heating[i];
+    const double heat = (power ? power[k] : density[i] * work) + heating[k];
     energy[i] += half * (heat - energy_rate[i]);
     energy_rate[i] = heat;
     const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);

@@ -74,7 +74,7 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid
  * half with the new acceleration, as the step itself uses them. Damping likewise. */
 RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
-  double *const a[3] = {s->c.new_ax, s->c.new_ay, s->c.new_az};
+  double *const a[3] = {b->sums->ax, b->sums->ay, b->sums->az};
   const double *const v[3] = {s->c.vx, s->c.vy, s->c.vz};
   for (size_t i = b->low; s->c.damping && i < b->high; i++) {
     const double rate = s->c.damping[i];
@@ -82,7 +82,7 @@ RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, 
     double square = 0;
     for (int k = 0; k < 3; k++) {
       square += v[k][i] * v[k][i];
-      a[k][i] -= rate * v[k][i];
+      a[k][i - b->low] -= rate * v[k][i];
     }
     b->damped += s->c.mass[i] * rate * square;
   }
@@ -90,8 +90,8 @@ RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, 
     if (!s->held[i]) continue;
     for (int k = 0; k < 3; k++)
       if (s->held[i] & 1u << k) {
-        b->work_of_held -= s->c.mass[i] * a[k][i] * v[k][i];
-        a[k][i] = 0;
+        b->work_of_held -= s->c.mass[i] * a[k][i - b->low] * v[k][i];
+        a[k][i - b->low] = 0;
       }
   }
 }
@@ -100,13 +100,15 @@ RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, 
 RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   const double half = 0.5 * s->dt;
-  const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8], *heating = s->c.heating;
+  const struct sph_pair_sums *sums = b->sums;
+  const double *xx = sums->gradient[0], *yy = sums->gradient[4], *zz = sums->gradient[8], *heating = sums->heating, *power = sums->power;
   const double *density = s->c.density, *term = s->c.pressure_term;
-  const double *power = s->c.power;
   double *energy = s->c.energy, *rate = s->c.energy_rate;
+  const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++) {
-    const double now = (power ? power[i] : density[i] * term[i] * (xx[i] + yy[i] + zz[i])) + heating[i];
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = low + k;
+    const double now = (power ? power[k] : density[i] * term[i] * (xx[k] + yy[k] + zz[k])) + heating[k];
     energy[i] += half * (now - rate[i]);
     rate[i] = now;
   }
@@ -127,17 +129,17 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const size_t low = b->low, n = b->high - b->low;
   double *const velocity[3] = {s->c.vx, s->c.vy, s->c.vz};
   double *const old[3] = {s->c.ax, s->c.ay, s->c.az};
-  const double *const new[3] = {s->c.new_ax, s->c.new_ay, s->c.new_az};
+  const double *const new[3] = {b->sums->ax, b->sums->ay, b->sums->az};
   for (int k = 0; k < 3; k++) {
     double *v = velocity[k], *was = old[k];
     const double *a = new[k];
     RANGE_LOOP
-    for (size_t i = low; i < b->high; i++) {
-      v[i] += half * (a[i] - was[i]);
-      was[i] = a[i];
+    for (size_t m = 0; m < n; m++) {
+      v[low + m] += half * (a[m] - was[low + m]);
+      was[low + m] = a[m];
     }
   }
-  const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8], *signal = s->c.signal;
+  const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8], *signal = b->sums->signal;
   const double *c = s->c.sound_speed, *d = s->c.damage, *ax = s->c.ax, *ay = s->c.ay, *az = s->c.az;
   const double *energy_rate = s->c.energy_rate, *energy = s->c.energy, *h0 = s->c.h_initial;
   const double *x = s->c.x, *y = s->c.y, *z = s->c.z, *vx = s->c.vx, *vy = s->c.vy, *vz = s->c.vz;
@@ -150,7 +152,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   RANGE_LOOP
   for (size_t k = 0; k < n; k++) {
     const size_t i = low + k;
-    const double divergence = xx[i] + yy[i] + zz[i], before = density[i];
+    const double divergence = xx[k] + yy[k] + zz[k], before = density[i];
     const double rate = -before * divergence, change = half * (rate - density_rate[i]), now = before + change;
     density_rate[i] = rate;
     density[i] = now;
@@ -164,7 +166,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
      * not fly past where it would find some. Nor must a body much faster than sound leap into another, which it sees only when
      * they touch: nobody flies farther than h/2 a step. (That binds above some three times the speed of sound.) */
     const double flight = sqrt(vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
-    courant[k] = (signal[i] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[i], step * flight)) * inverse;
+    courant[k] = (signal[k] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[k], step * flight)) * inverse;
     const double pull2 = ax[i] * ax[i] + ay[i] * ay[i] + az[i] * az[i];
     force[k] = pull2 * inverse * inverse;
     heat[k] = fabs(energy_rate[i]) / (energy[i] + 0.01 * c2);

@@ -1,6 +1,7 @@
 /* Chunks of particles that stand together in space, each with records of its own particles and of the foreign ones that they
- * meet: a chunk's records stay in the cache while it is summed, and what foreign particles get is added afterwards in the
- * order of chunks, so that bits depend on neither the number of threads nor their timing. */
+ * meet: a chunk's records stay in the cache while it is summed. What its foreign ones got is kept until their own chunk has been
+ * summed, and then added in the order of chunks, so that bits depend on neither the number of threads nor their timing. Foreign ones
+ * belong to later chunks only: when a chunk and all before it are summed, its sums are complete and nobody needs its fields any more. */
 #include "engine/sph/pairs.h"
 
 #include <math.h>
@@ -19,7 +20,13 @@
 #include "engine/sph/pairs_kernels.h"
 #include "engine/sph/spline.h"
 
-enum { LINE = 64, PAD = 7 }; /* PAD: how far neighbours.h reads beyond the end */
+enum {
+  LINE = 64,
+  PAD = 7,                        /* how far neighbours.h reads beyond the end */
+  FIRST_CORRECTION = 15, SUMS = 21, /* columns of struct sph_pair_sums */
+  STRIDE = SPH_PIECE + 8,         /* from one to the next: not a multiple of 4 kB, where all would want the same places in the cache */
+  ROOM = SUMS * STRIDE,
+};
 
 /* Units in which the numbers of float records are of the order of 1; in double all are 1. per_...: their inverses. */
 struct units {
@@ -36,16 +43,29 @@ struct sph_pairs {
   double *listed[5]; /* x y z h slack when the lists were made */
   double *reach;
   struct sph_chunks lists;
-  size_t record_capacity;
-  void *in;          /* records, per thread */
+  void *in;          /* records of a chunk, per thread */
   size_t in_capacity;
-  void *out;         /* records of sums, of all chunks */
+  void *out;         /* records of sums of a chunk: `depth` of them, used in turn */
+  size_t out_capacity, depth;
+  void *foreign;     /* records of sums of the foreign ones, of all chunks */
+  size_t foreign_capacity;
+  double *room;      /* sums of a piece, per thread */
   double quantum[3]; /* m, of float records' positions, */
   double grain;      /* and the same but for periodic axes: the unit of h there */
   struct units units;
   bool units_chosen; /* since the last listing; in double they stay 1 */
   size_t within;     /* pairs inside the support at the last pass, twice */
 };
+
+static size_t threads_of(const struct sph_pairs *p) {
+  return p->options.threads > 1 ? (size_t)p->options.threads : 1;
+}
+
+/* So many chunks later than summed a chunk's sums are handed over. One thread does it at once, while they are in its cache; several
+ * keep some for the end, for those that find no chunk to sum while the last ones are. */
+static size_t lag_of(const struct sph_pairs *p) {
+  return threads_of(p) > 1 ? 4 * threads_of(p) : 0;
+}
 
 static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
   if (wanted <= *capacity) return true;
@@ -73,8 +93,9 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
     p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
     if (p->artificial) p->opposed[0] = malloc(6 * (n + 1) * sizeof(double));
+    p->room = malloc(threads_of(p) * ROOM * sizeof(double));
   }
-  if (!p || !p->listed[0] || (p->artificial && !p->opposed[0]) ||
+  if (!p || !p->listed[0] || (p->artificial && !p->opposed[0]) || !p->room ||
       sph_chunks_create(n, p->real == sizeof(float) ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error) != STATUS_OK) {
     sph_pairs_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
@@ -84,6 +105,8 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
   for (size_t k = 1; k < 6 && p->artificial; k++)
     p->opposed[k] = p->opposed[0] + k * (n + 1);
   p->reach = p->listed[0] + 5 * (n + PAD);
+  p->depth = lag_of(p) + threads_of(p);
+  if (p->depth > p->lists.count) p->depth = p->lists.count ? p->lists.count : 1;
   *out = p;
   return STATUS_OK;
 }
@@ -95,12 +118,15 @@ void sph_pairs_free(struct sph_pairs *p) {
   free(p->opposed[0]);
   free(p->in);
   free(p->out);
+  free(p->foreign);
+  free(p->room);
   free(p);
 }
 
 size_t sph_pairs_bytes(const struct sph_pairs *p) {
   return sizeof *p + (p->artificial ? 12 : 6) * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) +
-         p->record_capacity * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real;
+         (p->out_capacity + p->foreign_capacity) * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real +
+         threads_of(p) * ROOM * sizeof(double);
 }
 
 static double image(double along, double length) {
@@ -111,7 +137,7 @@ bool sph_pairs_worn(const struct sph_pairs *p, size_t low, size_t high, const do
                     const double *h) {
   const double *periodic = p->options.periodic;
   const bool open = isnan(periodic[0]) && isnan(periodic[1]) && isnan(periodic[2]);
-  bool worn = !p->lists.slots;
+  bool worn = !p->lists.most_slots;
   for (size_t i = low; i < high; i++) { /* both partners of a pair within their slack: r_listed < h_i + h_j + both slacks */
     double dx = x[i] - p->listed[0][i], dy = y[i] - p->listed[1][i], dz = z[i] - p->listed[2][i];
     if (!open) dx = image(dx, periodic[0]), dy = image(dy, periodic[1]), dz = image(dz, periodic[2]);
@@ -139,12 +165,12 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
   p->grain = fmax(least * 0x1p-20, widest * 0x1p-29);
   for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
     p->quantum[d] = isnan(p->options.periodic[d]) ? p->grain : p->options.periodic[d] * 0x1p-32;
-  const size_t threads = p->options.threads > 1 ? (size_t)p->options.threads : 1;
   const status code =
       sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic, p->options.threads, error);
   if (code) return code;
-  if (!grow(&p->out, &p->record_capacity, p->lists.slots, p->out_columns * p->real) ||
-      !grow(&p->in, &p->in_capacity, threads * p->lists.most_slots, p->in_columns * p->real))
+  if (!grow(&p->foreign, &p->foreign_capacity, p->lists.others, p->out_columns * p->real) ||
+      !grow(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, p->out_columns * p->real) ||
+      !grow(&p->in, &p->in_capacity, threads_of(p) * p->lists.most_slots, p->in_columns * p->real))
     return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", p->n);
   p->units_chosen = p->real == sizeof(double);
   return STATUS_OK;
@@ -229,27 +255,28 @@ static void restore_tiny(unsigned before) {
 }
 
 static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_source *source,
-                      const struct sph_pair_constants *constants, void *in) {
+                      const struct sph_pair_constants *constants, void *in, void *out) {
   const struct sph_pair_kernels *kernels = p->kernels;
   const struct sph_pair_chunk view = {.own = c->own,
                                       .slots = c->own + c->others,
                                       .start = c->lists.start,
                                       .count = c->lists.count,
                                       .neighbour = c->lists.j};
-  char *out = (char *)p->out + c->record_at * p->out_columns * p->real;
   const bool corrected = p->options.gradient_correction;
   const unsigned mode = flush_tiny();
-  memset(out, 0, view.slots * p->out_columns * p->real);
+  const size_t size = p->out_columns * p->real;
+  memset(out, 0, view.slots * size);
   if (p->real == sizeof(double)) {
     kernels->pack_double(source, c->first, NULL, c->own, p->in_columns, in);
     kernels->pack_double(source, 0, c->other, c->others, p->in_columns, (double *)in + c->own * p->in_columns);
-    kernels->sum_double[corrected][p->artificial](&view, constants, in, (double *)(void *)out);
+    kernels->sum_double[corrected][p->artificial](&view, constants, in, out);
   } else {
     kernels->pack_float(source, c->first, NULL, c->own, p->in_columns, in);
     kernels->pack_float(source, 0, c->other, c->others, p->in_columns, (float *)in + c->own * p->in_columns);
-    kernels->sum_float[corrected][p->artificial](&view, constants, in, (float *)(void *)out);
+    kernels->sum_float[corrected][p->artificial](&view, constants, in, out);
   }
   restore_tiny(mode);
+  memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
 }
 
 static double between(double x, double low, double high) {
@@ -304,16 +331,21 @@ static size_t first_from(const uint32_t *numbers, size_t count, size_t number) {
   return low;
 }
 
+static void *sums_of_chunk(const struct sph_pairs *p, size_t k) {
+  return (char *)p->out + k % p->depth * p->lists.most_slots * p->out_columns * p->real;
+}
+
 /* What the own particles of chunk k got as foreign ones of all chunks before it. */
-INLINE void add_foreign(const struct sph_pairs *p, const struct sph_chunk *c, size_t k, const bool whole) {
+INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
+  const struct sph_chunk *c = &p->lists.chunk[k];
   const size_t columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : PAIR_NARROW, size = p->out_columns * p->real;
-  char *own = (char *)p->out + c->record_at * size;
+  char *own = sums_of_chunk(p, k);
   for (size_t before = 0; before < k; before++) {
     const struct sph_chunk *b = &p->lists.chunk[before];
     const uint32_t *foreign = b->other;
     for (size_t m = first_from(foreign, b->others, c->first); m < b->others && foreign[m] < c->first + c->own; m++) {
       char *to = own + (foreign[m] - c->first) * size;
-      const char *from = (const char *)p->out + (b->record_at + b->own + m) * size;
+      const char *from = (const char *)p->foreign + (b->others_before + m) * size;
       const double signal = fmax(at(whole, to, SUM_SIGNAL), at(whole, from, SUM_SIGNAL));
       if (whole) {
         for (size_t column = 0; column < columns; column++)
@@ -328,13 +360,22 @@ INLINE void add_foreign(const struct sph_pairs *p, const struct sph_chunk *c, si
   }
 }
 
-static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+/* Columns of a piece's sums. */
+static struct sph_pair_sums sums_in(const struct sph_pairs *p, double *room) {
+  struct sph_pair_sums s = {.ax = room, .ay = room + STRIDE, .az = room + 2 * STRIDE, .heating = room + 12 * STRIDE, .signal = room + 13 * STRIDE};
+  for (size_t k = 0; k < 9; k++)
+    s.gradient[k] = room + (SUM_GRADIENT + k) * STRIDE;
+  if (!p->options.gradient_correction) return s;
+  s.power = room + 14 * STRIDE;
+  for (size_t k = 0; k < 6; k++)
+    s.correction[k] = room + (FIRST_CORRECTION + k) * STRIDE;
+  return s;
+}
+
+static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_pair_sums *sums) {
   const struct units *u = &p->units;
   const double acceleration = u->velocity * u->velocity / u->length;
-  struct sph_pair_sink s = {.column = {sums->ax, sums->ay, sums->az},
-                            .scale = {acceleration, acceleration, acceleration},
-                            .density = p->options.volume_weights ? NULL : f->density, /* m_j/rho_i */
-                            .unit = u->density};
+  struct sph_pair_sink s = {.column = {sums->ax, sums->ay, sums->az}, .scale = {acceleration, acceleration, acceleration}, .unit = u->density};
   for (int k = 0; k < 9; k++)
     s.column[SUM_GRADIENT + k] = sums->gradient[k], s.scale[SUM_GRADIENT + k] = u->velocity / u->length;
   s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = 0.5 * acceleration * u->velocity;
@@ -342,92 +383,107 @@ static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_
   return s;
 }
 
-/* New corrections from the moments of a chunk's own particles, the gradients corrected by them, and the work of the forces. */
-static void correct(const struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+/* Of `count` particles from `first` on: new corrections from the moments in their records, the gradients corrected by them, and the
+ * work of the forces. */
+static void correct(const struct sph_pairs *p, size_t first, size_t count, const char *records, const struct sph_pair_fields *f,
+                    const struct sph_pair_sums *sums) {
   const bool whole = p->real == sizeof(double);
   const double length = whole ? 1 : p->grain / p->units.length;
-  const char *own = (const char *)p->out + c->record_at * PAIR_WIDE * p->real;
-  for (size_t i = c->first; i < c->first + c->own; i++, own += PAIR_WIDE * p->real) {
+  for (size_t k = 0; k < count; k++, records += PAIR_WIDE * p->real) {
+    const size_t i = first + k;
     const double weight = p->options.volume_weights ? 1 : p->units.density / f->density[i]; /* m_j/rho_i */
     double gradient[9], moment[6], correction[6], conjugate[9];
     for (size_t m = 0; m < 6; m++)
-      moment[m] = at(whole, own, SUM_MOMENT + m) * weight * length;
+      moment[m] = at(whole, records, SUM_MOMENT + m) * weight * length;
     for (int m = 0; m < 6; m++)
       correction[m] = f->correction[m][i];
     for (int m = 0; m < 9; m++)
-      gradient[m] = sums->gradient[m][i];
+      gradient[m] = sums->gradient[m][k];
     times(correction, gradient, conjugate);
-    sums->power[i] = power(f, p->options.strength, i, conjugate);
+    sums->power[k] = power(f, p->options.strength, i, conjugate);
     invert(moment, correction);
     for (int m = 0; m < 6; m++)
-      sums->correction[m][i] = correction[m];
+      sums->correction[m][k] = correction[m];
     times(correction, gradient, conjugate);
     for (int m = 0; m < 9; m++)
-      sums->gradient[m][i] = conjugate[m];
+      sums->gradient[m][k] = conjugate[m];
   }
 }
 
-/* The sums of chunk k in SI units; returns how many neighbours its particles have. */
-static size_t unpack(const struct sph_pairs *p, size_t k, const struct sph_pair_sink *sink, const struct sph_pair_fields *f,
-                     const struct sph_pair_sums *sums) {
-  const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t columns = p->out_columns;
-  const unsigned mode = flush_tiny();
-  double within;
-  if (p->real == sizeof(double)) {
-    add_foreign(p, c, k, true);
-    within = p->kernels->unpack_double(sink, c->first, c->own, columns, (const double *)p->out + c->record_at * columns);
-  } else {
-    add_foreign(p, c, k, false);
-    within = p->kernels->unpack_float(sink, c->first, c->own, columns, (const float *)p->out + c->record_at * columns);
-  }
-  if (p->options.gradient_correction) correct(p, c, f, sums);
-  restore_tiny(mode);
-  return (size_t)within;
-}
-
-/* A pass: every chunk is summed, and unpacked when it and all before it are summed. */
+/* A pass: every chunk is summed, and handed over when it and all before it are summed. */
 struct pass {
   struct sph_pairs *pairs;
   const struct sph_pair_fields *fields;
-  const struct sph_pair_sums *sums;
   struct sph_pair_source source;
-  struct sph_pair_sink sink;
   struct sph_pair_constants constants;
+  sph_pairs_take *take;
+  void *context;
   atomic_size_t next; /* turn */
   atomic_size_t within;
 };
 
+/* The sums of chunk k in SI units, piece by piece; returns how many neighbours its particles have. */
+static size_t hand_over(const struct pass *w, size_t k, double *room) {
+  const struct sph_pairs *p = w->pairs;
+  const struct sph_pair_fields *f = w->fields;
+  const struct sph_chunk *c = &p->lists.chunk[k];
+  const size_t size = p->out_columns * p->real;
+  const char *records = sums_of_chunk(p, k);
+  const struct sph_pair_sums sums = sums_in(p, room);
+  struct sph_pair_sink sink = sink_of(p, &sums);
+  double within = 0;
+  for (size_t done = 0; done < c->own; done += SPH_PIECE) {
+    const size_t first = c->first + done, count = c->own - done < SPH_PIECE ? c->own - done : SPH_PIECE;
+    const unsigned mode = flush_tiny();
+    if (!done) p->real == sizeof(double) ? add_foreign(p, k, true) : add_foreign(p, k, false);
+    sink.density = p->options.volume_weights ? NULL : f->density + first; /* m_j/rho_i */
+    if (p->real == sizeof(double))
+      within += p->kernels->unpack_double(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
+    else
+      within += p->kernels->unpack_float(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
+    if (p->options.gradient_correction) correct(p, first, count, records + done * size, f, &sums);
+    restore_tiny(mode);
+    w->take(w->context, first, count, &sums);
+  }
+  return (size_t)within;
+}
+
+/* Until another thread, which took that turn long ago, has done its work. */
+static void wait_for(atomic_bool *done) {
+  while (!atomic_load_explicit(done, memory_order_acquire))
+    sched_yield();
+}
+
 static void sum_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_pairs *p = w->pairs;
   struct sph_chunk *c = &p->lists.chunk[k];
-  sum_chunk(p, c, &w->source, &w->constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real);
+  if (k >= p->depth) wait_for(&p->lists.chunk[k - p->depth].taken);
+  sum_chunk(p, c, &w->source, &w->constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real, sums_of_chunk(p, k));
   atomic_store_explicit(&c->summed, true, memory_order_release);
 }
 
-static void unpack_in_turn(struct pass *w, size_t k) {
+static void hand_over_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_pairs *p = w->pairs;
   for (size_t before = 0; before <= k; before++)
-    while (!atomic_load_explicit(&p->lists.chunk[before].summed, memory_order_acquire))
-      sched_yield(); /* its turn came long ago: it is being summed */
-  atomic_fetch_add(&w->within, unpack(p, k, &w->sink, w->fields, w->sums));
+    wait_for(&p->lists.chunk[before].summed);
+  atomic_fetch_add(&w->within, hand_over(w, k, p->room + thread * ROOM));
+  atomic_store_explicit(&p->lists.chunk[k].taken, true, memory_order_release);
 }
 
-/* Turns are taken in order: chunk 0, 1, ... is summed, and unpacked `lag` chunks later. One thread does it at once, while the sums
- * are in its cache; several keep some for the end, for those that find no chunk to sum while the last ones are. */
+/* Turns are taken in order: chunk 0, 1, ... is summed, and handed over some chunks later. */
 static void take_turns(struct pass *w, size_t thread) {
-  const size_t count = w->pairs->lists.count, threads = (size_t)w->pairs->options.threads, lag = threads > 1 ? 4 * threads : 0;
+  const size_t count = w->pairs->lists.count, lag = lag_of(w->pairs);
   for (size_t turn; (turn = atomic_fetch_add(&w->next, 1)) < 2 * (count + lag);) {
     const size_t k = turn / 2;
     if (turn % 2 == 0 && k < count) sum_in_turn(w, k, thread);
-    if (turn % 2 == 1 && k >= lag && k - lag < count) unpack_in_turn(w, k - lag);
+    if (turn % 2 == 1 && k >= lag && k - lag < count) hand_over_in_turn(w, k - lag, thread);
   }
 }
 
-void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *f, sph_pairs_take *take, void *context) {
   const struct sph_pair_options *o = &p->options;
   if (!p->units_chosen) choose_units(p, n, f);
-  struct pass w = {.pairs = p, .fields = f, .sums = sums};
+  struct pass w = {.pairs = p, .fields = f, .take = take, .context = context};
   struct sph_pair_constants *constants = &w.constants;
   *constants = (struct sph_pair_constants){.alpha = o->viscosity_alpha,
                                            .twice_beta = 2 * o->viscosity_beta,
@@ -447,10 +503,10 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
   for (size_t k = 0; k < p->lists.count; k++) {
     struct sph_chunk *c = &p->lists.chunk[k];
     atomic_init(&c->summed, false);
+    atomic_init(&c->taken, false);
     if (p->artificial) p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
   }
   w.source = source_of(p, f);
-  w.sink = sink_of(p, f, sums);
 #ifdef _OPENMP
 #pragma omp parallel num_threads(o->threads) if (o->threads > 1)
   take_turns(&w, (size_t)omp_get_thread_num());

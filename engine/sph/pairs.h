@@ -47,7 +47,7 @@ struct sph_pair_fields {
   const double *correction[6]; /* B of the pass before (at first: 1); only with gradient_correction */
 };
 
-/* Arrays of n in sorted order; overwritten by each pass. */
+/* What a pass finds, for some particles that stand one after the other. */
 struct sph_pair_sums {
   double *ax, *ay, *az;    /* m/s^2 */
   double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
@@ -55,10 +55,12 @@ struct sph_pair_sums {
   /* Only with gradient_correction, else NULL. The work of the forces' B, J/kg/s, rho_i (pressure_term tr(g) + stress : g) with g the
    * sum times that B: total energy is then conserved however much B changes between two passes. */
   double *power;
-  double *correction[6]; /* the new B; may be the same arrays as the old */
+  double *correction[6]; /* the new B; NULL without */
   double *signal;          /* m/s: largest |mu_ij| = h |v.r|/(r^2 + 0.01 h^2) of approaching pairs, for the time step; -1 without
                               neighbours: what nobody feels need not be resolved */
 };
+
+enum { SPH_PIECE = 512 }; /* particles whose sums are handed over at once */
 
 struct sph_pairs; /* opaque: lists and records */
 
@@ -79,8 +81,12 @@ status sph_pairs_list(struct sph_pairs *pairs, size_t n, const double *x, const 
 /* x y z h slack of the last listing, n each; what the lists are made of again after a restart has put them back. */
 double *const *sph_pairs_listed(struct sph_pairs *pairs);
 status sph_pairs_relist(struct sph_pairs *pairs, struct error *error);
-void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields,
-                   const struct sph_pair_sums *sums);
+/* Takes the sums of `count` particles from `first` on (a multiple of SPH_PIECE), at most SPH_PIECE of them, which may be changed and are
+ * gone afterwards. */
+typedef void sph_pairs_take(void *context, size_t first, size_t count, const struct sph_pair_sums *sums);
+/* A pass over all pairs. Sums are handed over piece by piece, as soon as they are complete, while they lie in the cache: a piece's fields
+ * are not read any more then and may be changed. With threads `take` is called by all of them at once. */
+void sph_pairs_sum(struct sph_pairs *pairs, size_t n, const struct sph_pair_fields *fields, sph_pairs_take *take, void *context);
 /* Mean number of neighbours in the lists (both sides counted): what a pass takes time for. */
 double sph_pairs_reached(const struct sph_pairs *pairs);
 /* Mean number of neighbours within 2h at the last pass (both sides counted, itself not). */

@@ -145,7 +145,7 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
  * onto the crush curve is taken as already crushing in full (f = 0). In a shock the rate grows by up to a quarter
  * within a step: three quarters are planned. */
 RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double *xx = s->c.gradient[0], *yy = s->c.gradient[4], *zz = s->c.gradient[8];
+  const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8];
   const double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor, *density = s->c.density;
   const double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed, *h = s->c.h;
   const double edge = body->porosity.given.elastic_pressure, cfl = s->p.cfl;
@@ -154,7 +154,7 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
   RANGE_LOOP
   for (size_t k = 0; k < n; k++) {
     const size_t i = low + k;
-    const double squeeze = -(xx[i] + yy[i] + zz[i]);
+    const double squeeze = -(xx[k] + yy[k] + zz[k]);
     const double soon = pressure[i] + density[i] * sound_speed[i] * cfl * h[i] * squeeze;
     const double share = squeeze > 0 && soon > edge && rest[i] > 1 ? 1 : 1 - f[i];
     inverse[k] = share * alpha[i] * fabs(squeeze);

@@ -70,22 +70,6 @@ static const struct {
     {COLUMN(correction[3]), CORRECTION},
     {COLUMN(correction[4]), CORRECTION},
     {COLUMN(correction[5]), CORRECTION},
-    /* scratch of the pair loop, not kept */
-    {COLUMN(new_ax), ALWAYS},
-    {COLUMN(new_ay), ALWAYS},
-    {COLUMN(new_az), ALWAYS},
-    {COLUMN(gradient[0]), ALWAYS},
-    {COLUMN(gradient[1]), ALWAYS},
-    {COLUMN(gradient[2]), ALWAYS},
-    {COLUMN(gradient[3]), ALWAYS},
-    {COLUMN(gradient[4]), ALWAYS},
-    {COLUMN(gradient[5]), ALWAYS},
-    {COLUMN(gradient[6]), ALWAYS},
-    {COLUMN(gradient[7]), ALWAYS},
-    {COLUMN(gradient[8]), ALWAYS},
-    {COLUMN(heating), ALWAYS},
-    {COLUMN(signal), ALWAYS},
-    {COLUMN(power), CORRECTION},
 };
 _Static_assert(sizeof rows / sizeof *rows == SPH_COLUMNS, "a row per column");
 
@@ -108,19 +92,14 @@ static double **slot_of(struct sph_system *s, size_t row) {
   return (double **)((char *)&s->c + rows[row].offset);
 }
 
-size_t sph_system_create_columns(struct sph_system *s, double **slot[SPH_COLUMNS], size_t *kept) {
+size_t sph_system_create_columns(struct sph_system *s, double **slot[SPH_COLUMNS]) {
   size_t count = 0;
-  *kept = 0;
-  for (size_t r = 0; r < SPH_COLUMNS; r++) {
-    double **column = slot_of(s, r);
-    if (!*column) continue;
-    if (rows[r].offset < COLUMN(new_ax)) ++*kept;
-    slot[count++] = column;
-  }
+  for (size_t r = 0; r < SPH_COLUMNS; r++)
+    if (*slot_of(s, r)) slot[count++] = slot_of(s, r);
   return count;
 }
 
-/* Sixty columns are read side by side: with pages of 4 kB that is more than the address cache of a core holds. */
+/* Dozens of columns are read side by side: with pages of 4 kB that is more than the address cache of a core holds. */
 static double *huge_pages(size_t bytes) {
   const size_t page = (size_t)1 << 21;
   if (bytes < 2 * page) return aligned_alloc(64, (bytes + 63) / 64 * 64);
@@ -244,17 +223,21 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
   }
 }
 
+static size_t end_of_block(const struct sph_solid *body, size_t low) {
+  const size_t end = (low / SPH_BLOCK + 1) * SPH_BLOCK;
+  return end < body->last ? end : body->last;
+}
+
 static status make_blocks(struct sph_system *s, struct error *error) {
   for (size_t b = 0; b < s->body_count; b++)
-    s->block_count += (s->solid[b].last - s->solid[b].first + SPH_BLOCK - 1) / SPH_BLOCK;
+    for (size_t low = s->solid[b].first; low < s->solid[b].last; low = end_of_block(&s->solid[b], low))
+      s->block_count++;
   s->block = calloc(s->block_count ? s->block_count : 1, sizeof *s->block);
   if (!s->block) return status_fail(error, STATUS_MEMORY, "no memory for %zu blocks", s->block_count);
   size_t k = 0;
   for (size_t b = 0; b < s->body_count; b++)
-    for (size_t low = s->solid[b].first; low < s->solid[b].last; low += SPH_BLOCK) {
-      const size_t high = low + SPH_BLOCK < s->solid[b].last ? low + SPH_BLOCK : s->solid[b].last;
-      s->block[k++] = (struct sph_block){.low = low, .high = high, .body = (uint32_t)b};
-    }
+    for (size_t low = s->solid[b].first; low < s->solid[b].last; low = end_of_block(&s->solid[b], low))
+      s->block[k++] = (struct sph_block){.low = low, .high = end_of_block(&s->solid[b], low), .body = (uint32_t)b};
   return STATUS_OK;
 }
 

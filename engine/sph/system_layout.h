@@ -10,7 +10,7 @@
 #include "engine/sph/system.h"
 #include "engine/sph/weibull.h"
 
-enum { SPH_BLOCK = 512, SPH_HOOKS = 24 };
+enum { SPH_BLOCK = SPH_PIECE, SPH_HOOKS = 24 };
 
 /* Columns, all of n. Not allocated (NULL) where no body needs them: system.c has the rows. The deviator is kept by five
  * components, xx xy xz yy yz: its trace is zero by construction. */
@@ -36,18 +36,16 @@ struct sph_columns {
   double *shear_factor;             /* f of the last evaluation */
   double *tension, *compaction;     /* D^(1/3) by flaws and by closed pores, of which `damage` is made */
   double *correction[6];            /* B, of the gradient correction, at the last pair loop */
-  /* overwritten by each pair loop */
-  double *new_ax, *new_ay, *new_az, *gradient[9], *heating, *signal;
-  double *power; /* NULL without gradient correction */
 };
 
 struct sph_solid;
 struct sph_block;
 typedef void (*sph_hook)(struct sph_system *system, const struct sph_solid *body, struct sph_block *block);
 
-/* A fixed piece of a body, and what its hooks found there in this step. */
+/* A fixed piece of a body that lies within one piece of the pair loop, and what its hooks found there in this step. */
 struct sph_block {
   size_t low, high;
+  const struct sph_pair_sums *sums; /* of its particles, the first of them at 0; only while `after` hooks run */
   uint32_t body;
   double worst[SPH_LIMITS]; /* largest inverse of a time step, 1/s, per limiter */
   double clamped;           /* J */
@@ -107,10 +105,9 @@ struct sph_system {
   char failure[256];
 };
 
-/* Pointer slots of the columns that exist, in a fixed order, those that only the pair loop writes last. Returns how many;
- * *kept: how many of them carry state. */
+/* Pointer slots of the columns that exist, in a fixed order. Returns how many. */
 enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
-size_t sph_system_create_columns(struct sph_system *system, double **slot[SPH_COLUMNS], size_t *kept);
+size_t sph_system_create_columns(struct sph_system *system, double **slot[SPH_COLUMNS]);
 
 /* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
@@ -15,37 +16,41 @@ enum {
   LEAST_HORIZON = 2,
   ROOM = 4,     /* most slack, in h */
   LISTING = 50, /* neighbours whose sums take as long as making lists (bench_sph pairs) */
-  SCRATCH = 9,  /* columns */
 };
 
 /* What stands at order[i] comes to i. */
-static void permute(struct sph_system *s) {
+static bool permute(struct sph_system *s) {
   double **slot[SPH_COLUMNS];
-  size_t kept;
-  sph_system_create_columns(s, slot, &kept);
+  const size_t columns = sph_system_create_columns(s, slot), threads = s->p.threads > 1 ? (size_t)s->p.threads : 1;
+  double *room = malloc(threads * s->n * sizeof *room);
+  if (!room) {
+    snprintf(s->failure, sizeof s->failure, "no memory to sort %zu particles", s->n);
+    return false;
+  }
 #ifdef _OPENMP
-  const int threads = s->p.threads < SCRATCH ? s->p.threads : SCRATCH;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(s->p.threads) if (s->p.threads > 1)
 #endif
-  for (size_t k = 0; k < kept; k++) {
+  for (size_t k = 0; k < columns; k++) {
 #ifdef _OPENMP
-    double *scratch = s->c.gradient[omp_get_thread_num()];
+    double *scratch = room + (size_t)omp_get_thread_num() * s->n;
 #else
-    double *scratch = s->c.gradient[0];
+    double *scratch = room;
 #endif
     double *column = *slot[k];
     for (size_t i = 0; i < s->n; i++)
       scratch[i] = column[s->order[i]];
     memcpy(column, scratch, s->n * sizeof(double));
   }
-  uint32_t *word = (uint32_t *)(void *)s->c.gradient[0];
+  uint32_t *word = (uint32_t *)(void *)room;
   for (size_t i = 0; i < s->n; i++)
     word[i] = s->id[s->order[i]];
   memcpy(s->id, word, s->n * sizeof *word);
-  uint8_t *byte = (uint8_t *)s->c.gradient[0];
+  uint8_t *byte = (uint8_t *)room;
   for (size_t i = 0; s->held && i < s->n; i++)
     byte[i] = s->held[s->order[i]];
   if (s->held) memcpy(s->held, byte, s->n);
+  free(room);
+  return true;
 }
 
 /* Bodies stay in their places; within each, along the space-filling curve. */
@@ -61,8 +66,7 @@ static bool sort(struct sph_system *s) {
     for (size_t i = first; i < first + count; i++)
       s->order[i] += (uint32_t)first;
   }
-  permute(s);
-  return true;
+  return permute(s);
 }
 
 static double wrapped(double x, double length) {

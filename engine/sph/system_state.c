@@ -14,8 +14,8 @@ enum { SECTIONS = SPH_COLUMNS + 10 };
 
 static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   double **slot[SPH_COLUMNS];
-  size_t kept, count = 0;
-  sph_system_create_columns(s, slot, &kept);
+  size_t count = 0;
+  const size_t kept = sph_system_create_columns(s, slot);
   out[count++] = (struct section){&s->n, sizeof s->n};
   out[count++] = (struct section){&s->now, sizeof s->now};
   for (size_t k = 0; k < kept; k++)

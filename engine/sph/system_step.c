@@ -3,7 +3,7 @@
  *   predict x v rho u h S D | pressure, yield, open flaws, damaged stress | one pair loop | rates, half the change of rates
  *
  * Everything happens block by block, so that the columns of a block are read once from memory before the pair loop and once
- * after it. */
+ * in it: rates follow as soon as a block's sums are complete. */
 #include "engine/sph/system_step.h"
 
 #include <math.h>
@@ -15,18 +15,55 @@
 
 static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
 
-static void run_blocks(struct sph_system *s, bool after) {
+static void run(struct sph_system *s, struct sph_block *block, const sph_hook *hook, size_t count) {
+  for (size_t m = 0; m < count; m++)
+    hook[m](s, &s->solid[block->body], block);
+}
+
+static void before_pairs(struct sph_system *s) {
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
 #endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
+    run(s, block, s->solid[block->body].before, s->solid[block->body].before_count);
+    block->worn = sph_pairs_worn(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
+  }
+}
+
+/* The first block from place `at` on. */
+static size_t first_block(const struct sph_system *s, size_t at) {
+  size_t low = 0, high = s->block_count;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (s->block[middle].low < at)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* What the pair loop found for a piece goes on at once into the rates of its blocks. */
+static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
+  struct sph_system *s = context;
+  for (size_t m = 0; s->p.gradient_correction && m < 6; m++)
+    memcpy(s->c.correction[m] + first, sums->correction[m], count * sizeof(double));
+  for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
+    struct sph_block *block = &s->block[k];
     const struct sph_solid *body = &s->solid[block->body];
-    const sph_hook *hook = after ? body->after : body->before;
-    const size_t count = after ? body->after_count : body->before_count;
-    for (size_t m = 0; m < count; m++)
-      hook[m](s, body, block);
-    if (!after) block->worn = sph_pairs_worn(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
+    const size_t skip = block->low - first;
+    struct sph_pair_sums own = {.ax = sums->ax + skip,
+                                .ay = sums->ay + skip,
+                                .az = sums->az + skip,
+                                .heating = sums->heating + skip,
+                                .power = sums->power ? sums->power + skip : NULL,
+                                .signal = sums->signal + skip};
+    for (int m = 0; m < 9; m++)
+      own.gradient[m] = sums->gradient[m] + skip;
+    block->sums = &own;
+    run(s, block, body->after, body->after_count);
+    block->sums = NULL;
   }
 }
 
@@ -43,14 +80,9 @@ static void sum_pairs(struct sph_system *s) {
                                    .density = c->density,
                                    .sound_speed = c->sound_speed,
                                    .pressure_term = c->pressure_term};
-  struct sph_pair_sums sums = {.ax = c->new_ax, .ay = c->new_ay, .az = c->new_az, .heating = c->heating, .power = c->power, .signal = c->signal};
-  for (int k = 0; k < 6; k++) {
-    fields.stress[k] = c->damaged[k];
-    fields.correction[k] = sums.correction[k] = c->correction[k];
-  }
-  for (int k = 0; k < 9; k++)
-    sums.gradient[k] = c->gradient[k];
-  sph_pairs_sum(s->pairs, s->n, &fields, &sums);
+  for (int k = 0; k < 6; k++)
+    fields.stress[k] = c->damaged[k], fields.correction[k] = c->correction[k];
+  sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
   s->now.neighbours = sph_pairs_neighbours(s->pairs);
 }
 
@@ -93,10 +125,9 @@ static bool advance(struct sph_system *s, double dt) {
     b->density_held = 0;
     b->lost = s->n;
   }
-  run_blocks(s, false);
+  before_pairs(s);
   if (!sph_system_list(s)) return false;
   sum_pairs(s);
-  run_blocks(s, true);
   return gather(s, dt);
 }
 

@@ -1,10 +1,10 @@
 /* Pinned hashes of three small runs of engine sph: what to do when they change is said in tests/golden.h. */
 #include "tests/golden.h"
 
-enum { RESULTS_VERSION = 2 };
+enum { RESULTS_VERSION = 3 };
 #define GOLDEN_SPHERE "ac9f9cde572852afd2c615a5b073f2bc"
 #define GOLDEN_ROD "17ffa36ba1d7d9ebd76955e2ac522b04"
-#define GOLDEN_RINGS "d0cf0c97fe42a44d13e0f0707a4efb47"
+#define GOLDEN_RINGS "14c5f3155317e6d241caeb1c8fd26d07"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {
   struct ran ran = run_case_run(&sph_engine, inputs, 11);

@@ -14,6 +14,7 @@
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
+#include "tests/pair_sums.h"
 
 enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11, SUMS = 14 }; /* three chunks, twelve */
 
@@ -91,8 +92,8 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
       s->correction[k][i] = k == 0 || k == 3 || k == 5;
   }
   if (options->gradient_correction)
-    sph_pairs_sum(pairs, c->n, &f, &sums); /* the forces' correction is that of the pass before */
-  sph_pairs_sum(pairs, c->n, &f, &sums);
+    sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums); /* the forces' correction is that of the pass before */
+  sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
   s->neighbours = sph_pairs_neighbours(pairs);
   sph_pairs_free(pairs);
   return s;
@@ -438,7 +439,7 @@ static void not_finite_does_no_harm(void **state) {
       c->a[k][5 + k] = bad[k];
       assert_true(sph_pairs_worn(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]));
       assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
-      sph_pairs_sum(pairs, c->n, &f, &sums);
+      sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
       c->a[k][5 + k] = x;
     }
     sph_pairs_free(pairs);

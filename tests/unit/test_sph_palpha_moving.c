@@ -30,11 +30,21 @@ static struct sph_system *cube(const struct sph_palpha *porosity, bool strength,
   return s;
 }
 
+/* A hook over all blocks; those of rates find simple shear, dv_x/dy = 1/s. */
 static void call(struct sph_system *s, size_t offset) {
+  double zero[SPH_BLOCK] = {0}, one[SPH_BLOCK];
+  for (size_t i = 0; i < SPH_BLOCK; i++)
+    one[i] = 1;
+  struct sph_pair_sums sums = {.ax = zero, .ay = zero, .az = zero, .heating = zero, .signal = zero};
+  for (int k = 0; k < 9; k++)
+    sums.gradient[k] = k == 1 ? one : zero;
   sph_hook hook;
   memcpy(&hook, (const char *)s->ranges + offset, sizeof hook);
-  for (size_t k = 0; k < s->block_count; k++)
+  for (size_t k = 0; k < s->block_count; k++) {
+    s->block[k].sums = &sums;
     hook(s, &s->solid[s->block[k].body], &s->block[k]);
+    s->block[k].sums = NULL;
+  }
 }
 
 /* Random states, all branches mixed within a block: the loop gives what sph_palpha_update gives. */
@@ -102,8 +112,6 @@ static void shear_rate(void **state) {
     s->c.density[i] = 1800 * (1 + 0.6 * (double)i / (double)n);
   call(s, offsetof(struct sph_ranges, palpha));
   for (size_t i = 0; i < n; i++) {
-    for (int k = 0; k < 9; k++)
-      s->c.gradient[k][i] = k == 1 ? 1 : 0;
     for (int k = 0; k < 5; k++)
       s->c.stress[k][i] = s->c.stress_rate[k][i] = 0;
   }
