@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/sph/exchange.h"
+
 enum { BITS = 64 };
 
 status sph_chunks_create(size_t n, size_t share, const struct sph_pair_kernels *kernels, struct sph_chunks *out,
@@ -93,7 +95,10 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
     c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
     c->lists.start = s->start + 2 * c->first + k;
     c->lists.count = c->lists.start + c->own + 1;
-    enough = sph_neighbours_list(s->neighbours, k, &c->lists) && find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
+    const struct sph_exchange_places places = {x + c->first, y + c->first, z + c->first, reach + c->first, periodic};
+    enough = sph_neighbours_list(s->neighbours, k, &c->lists) &&
+             (s->share == 1 || sph_exchange(&places, c->own, s->share, &c->lists)) &&
+             find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
   }
   if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
   s->others = s->most_slots = 0;

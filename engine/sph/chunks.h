@@ -15,7 +15,7 @@ enum { SPH_CHUNK = 4096 };
 struct sph_chunk {
   size_t first, own, others;        /* others: how many foreign ones, */
   uint32_t *other;                  /* their numbers: ascending, all above the chunk's own */
-  struct sph_neighbour_lists lists; /* of slots */
+  struct sph_neighbour_lists lists; /* of slots; shared ones are whole batches (exchange.h) */
   size_t others_before;             /* others of all chunks before it */
   size_t other_capacity;
   atomic_bool summed, taken;        /* in this pass of the pair loop */

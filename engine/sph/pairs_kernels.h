@@ -35,7 +35,7 @@ struct sph_pair_chunk {
   size_t own, slots;        /* particles whose lists these are; those and the foreign ones behind them */
   const uint32_t *start;    /* by group: multiples of 16 */
   const uint32_t *count;    /* by group: how many of them are neighbours */
-  const uint32_t *neighbour; /* slots; among them members of the group but the first, and never one before its first */
+  const uint32_t *neighbour; /* slots; among them members of the group but the first */
 };
 
 /* What records are made of: arrays of all particles. */
