@@ -89,8 +89,10 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->kernels = sph_pairs_kernels_choose();
     p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
     p->artificial = options->artificial_stress > 0 && options->strength;
-    p->in_columns = p->artificial || options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
-    p->out_columns = options->gradient_correction ? PAIR_WIDE : PAIR_NARROW;
+    const bool corrected = options->gradient_correction;
+    const size_t middle = options->precision == SPH_FLOAT ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
+    p->in_columns = p->artificial && corrected ? PAIR_WIDE : p->artificial || corrected ? middle : PAIR_NARROW;
+    p->out_columns = corrected ? middle : PAIR_NARROW;
     p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
     if (p->artificial) p->opposed[0] = malloc(6 * (n + 1) * sizeof(double));
     p->room = malloc(threads_of(p) * ROOM * sizeof(double));
@@ -208,13 +210,6 @@ static void choose_units(struct sph_pairs *p, size_t n, const struct sph_pair_fi
   p->units_chosen = true;
 }
 
-/* v = M w for a symmetric M (xx xy xz yy yz zz). */
-static void apply(const double *m, const double w[3], double v[3]) {
-  v[0] = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
-  v[1] = m[1] * w[0] + m[3] * w[1] + m[4] * w[2];
-  v[2] = m[2] * w[0] + m[4] * w[1] + m[5] * w[2];
-}
-
 static struct sph_pair_source source_of(const struct sph_pairs *p, const struct sph_pair_fields *f) {
   const struct units *u = &p->units;
   const double length = p->real == sizeof(double) ? 1 : p->grain;
@@ -254,7 +249,8 @@ static void restore_tiny(unsigned before) {
 #endif
 }
 
-static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_source *source,
+/* Returns how many pairs are within the support. */
+static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_source *source,
                       const struct sph_pair_constants *constants, void *in, void *out) {
   const struct sph_pair_kernels *kernels = p->kernels;
   const struct sph_pair_chunk view = {.own = c->own,
@@ -265,51 +261,20 @@ static void sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const stru
   const bool corrected = p->options.gradient_correction;
   const unsigned mode = flush_tiny();
   const size_t size = p->out_columns * p->real;
+  double within;
   memset(out, 0, view.slots * size);
   if (p->real == sizeof(double)) {
     kernels->pack_double(source, c->first, NULL, c->own, p->in_columns, in);
     kernels->pack_double(source, 0, c->other, c->others, p->in_columns, (double *)in + c->own * p->in_columns);
-    kernels->sum_double[corrected][p->artificial](&view, constants, in, out);
+    within = kernels->sum_double[corrected][p->artificial](&view, constants, in, out);
   } else {
     kernels->pack_float(source, c->first, NULL, c->own, p->in_columns, in);
     kernels->pack_float(source, 0, c->other, c->others, p->in_columns, (float *)in + c->own * p->in_columns);
-    kernels->sum_float[corrected][p->artificial](&view, constants, in, out);
+    within = kernels->sum_float[corrected][p->artificial](&view, constants, in, out);
   }
   restore_tiny(mode);
   memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
-}
-
-static double between(double x, double low, double high) {
-  const double t = x < low ? 0 : x > high ? 1 : (x - low) / (high - low);
-  return t * t * (3 - 2 * t);
-}
-
-/* B, the inverse of the moment, as far as there are enough neighbours all round; else 1, and what lies between for what is between.
- * In a body the mean eigenvalue is 1, 0.3 in a corner, and the determinant over its cube at least 0.8, in a sharp point 0.6;
- * among debris, a few neighbours anywhere, it is anything below: a strain made of those would be noise, and its forces stiff. */
-static void invert(const double m[6], double inverse[6]) {
-  const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
-  const double determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3, cube = mean * mean * mean;
-  const double share = mean > 0 ? between(mean, 0.1, 0.2) * between(determinant / cube, 0.3, 0.6) : 0;
-  const double s = share > 0 ? share / determinant : 0;
-  inverse[0] = 1 - share + s * a, inverse[1] = s * b, inverse[2] = s * c;
-  inverse[3] = 1 - share + s * (m[0] * m[5] - m[2] * m[2]);
-  inverse[4] = s * (m[1] * m[2] - m[0] * m[4]);
-  inverse[5] = 1 - share + s * (m[0] * m[3] - m[1] * m[1]);
-}
-
-static void times(const double symmetric[6], const double gradient[9], double out[9]) {
-  for (int row = 0; row < 3; row++)
-    apply(symmetric, gradient + 3 * row, out + 3 * row);
-}
-
-/* rho (sigma/rho^2) : gradient, J/kg/s. */
-static double power(const struct sph_pair_fields *f, bool strength, size_t i, const double g[9]) {
-  double sum = f->pressure_term[i] * (g[0] + g[4] + g[8]);
-  if (strength)
-    sum += f->stress[0][i] * g[0] + f->stress[3][i] * g[4] + f->stress[5][i] * g[8] + f->stress[1][i] * (g[1] + g[3]) +
-           f->stress[2][i] * (g[2] + g[6]) + f->stress[4][i] * (g[5] + g[7]);
-  return f->density[i] * sum;
+  return within;
 }
 
 #define INLINE static inline __attribute__((always_inline))
@@ -338,7 +303,7 @@ static void *sums_of_chunk(const struct sph_pairs *p, size_t k) {
 /* What the own particles of chunk k got as foreign ones of all chunks before it. */
 INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
   const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t columns = p->out_columns == PAIR_WIDE ? SUM_MOMENT + 6 : PAIR_NARROW, size = p->out_columns * p->real;
+  const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW, size = p->out_columns * p->real;
   char *own = sums_of_chunk(p, k);
   for (size_t before = 0; before < k; before++) {
     const struct sph_chunk *b = &p->lists.chunk[before];
@@ -380,34 +345,9 @@ static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_
     s.column[SUM_GRADIENT + k] = sums->gradient[k], s.scale[SUM_GRADIENT + k] = u->velocity / u->length;
   s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = 0.5 * acceleration * u->velocity;
   s.column[SUM_SIGNAL] = sums->signal, s.scale[SUM_SIGNAL] = u->velocity;
+  for (int k = 0; k < 6 && p->options.gradient_correction; k++)
+    s.column[SUM_MOMENT + k] = sums->correction[k], s.scale[SUM_MOMENT + k] = p->real == sizeof(double) ? -1 : -p->grain / u->length;
   return s;
-}
-
-/* Of `count` particles from `first` on: new corrections from the moments in their records, the gradients corrected by them, and the
- * work of the forces. */
-static void correct(const struct sph_pairs *p, size_t first, size_t count, const char *records, const struct sph_pair_fields *f,
-                    const struct sph_pair_sums *sums) {
-  const bool whole = p->real == sizeof(double);
-  const double length = whole ? 1 : p->grain / p->units.length;
-  for (size_t k = 0; k < count; k++, records += PAIR_WIDE * p->real) {
-    const size_t i = first + k;
-    const double weight = p->options.volume_weights ? 1 : p->units.density / f->density[i]; /* m_j/rho_i */
-    double gradient[9], moment[6], correction[6], conjugate[9];
-    for (size_t m = 0; m < 6; m++)
-      moment[m] = at(whole, records, SUM_MOMENT + m) * weight * length;
-    for (int m = 0; m < 6; m++)
-      correction[m] = f->correction[m][i];
-    for (int m = 0; m < 9; m++)
-      gradient[m] = sums->gradient[m][k];
-    times(correction, gradient, conjugate);
-    sums->power[k] = power(f, p->options.strength, i, conjugate);
-    invert(moment, correction);
-    for (int m = 0; m < 6; m++)
-      sums->correction[m][k] = correction[m];
-    times(correction, gradient, conjugate);
-    for (int m = 0; m < 9; m++)
-      sums->gradient[m][k] = conjugate[m];
-  }
 }
 
 /* A pass: every chunk is summed, and handed over when it and all before it are summed. */
@@ -422,8 +362,20 @@ struct pass {
   atomic_size_t within;
 };
 
-/* The sums of chunk k in SI units, piece by piece; returns how many neighbours its particles have. */
-static size_t hand_over(const struct pass *w, size_t k, double *room) {
+/* Of `count` particles from `first` on, whose moments stand where their new corrections will. */
+static void correct(const struct sph_pairs *p, size_t first, size_t count, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
+  struct sph_pair_correction c = {.density = f->density + first, .pressure_term = f->pressure_term + first, .power = sums->power};
+  for (int k = 0; k < 6; k++) {
+    c.old[k] = f->correction[k] + first, c.correction[k] = sums->correction[k];
+    c.stress[k] = p->options.strength ? f->stress[k] + first : NULL;
+  }
+  for (int k = 0; k < 9; k++)
+    c.gradient[k] = sums->gradient[k];
+  p->kernels->correct(&c, count);
+}
+
+/* The sums of chunk k in SI units, piece by piece. */
+static void hand_over(const struct pass *w, size_t k, double *room) {
   const struct sph_pairs *p = w->pairs;
   const struct sph_pair_fields *f = w->fields;
   const struct sph_chunk *c = &p->lists.chunk[k];
@@ -431,21 +383,19 @@ static size_t hand_over(const struct pass *w, size_t k, double *room) {
   const char *records = sums_of_chunk(p, k);
   const struct sph_pair_sums sums = sums_in(p, room);
   struct sph_pair_sink sink = sink_of(p, &sums);
-  double within = 0;
   for (size_t done = 0; done < c->own; done += SPH_PIECE) {
     const size_t first = c->first + done, count = c->own - done < SPH_PIECE ? c->own - done : SPH_PIECE;
     const unsigned mode = flush_tiny();
     if (!done) p->real == sizeof(double) ? add_foreign(p, k, true) : add_foreign(p, k, false);
     sink.density = p->options.volume_weights ? NULL : f->density + first; /* m_j/rho_i */
     if (p->real == sizeof(double))
-      within += p->kernels->unpack_double(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
+      p->kernels->unpack_double(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
     else
-      within += p->kernels->unpack_float(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
-    if (p->options.gradient_correction) correct(p, first, count, records + done * size, f, &sums);
+      p->kernels->unpack_float(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
+    if (p->options.gradient_correction) correct(p, first, count, f, &sums);
     restore_tiny(mode);
     w->take(w->context, first, count, &sums);
   }
-  return (size_t)within;
 }
 
 /* Until another thread, which took that turn long ago, has done its work. */
@@ -458,7 +408,8 @@ static void sum_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_pairs *p = w->pairs;
   struct sph_chunk *c = &p->lists.chunk[k];
   if (k >= p->depth) wait_for(&p->lists.chunk[k - p->depth].taken);
-  sum_chunk(p, c, &w->source, &w->constants, (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real, sums_of_chunk(p, k));
+  void *in = (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real;
+  atomic_fetch_add(&w->within, (size_t)sum_chunk(p, c, &w->source, &w->constants, in, sums_of_chunk(p, k)));
   atomic_store_explicit(&c->summed, true, memory_order_release);
 }
 
@@ -466,7 +417,7 @@ static void hand_over_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_pairs *p = w->pairs;
   for (size_t before = 0; before <= k; before++)
     wait_for(&p->lists.chunk[before].summed);
-  atomic_fetch_add(&w->within, hand_over(w, k, p->room + thread * ROOM));
+  hand_over(w, k, p->room + thread * ROOM);
   atomic_store_explicit(&p->lists.chunk[k].taken, true, memory_order_release);
 }
 
@@ -513,7 +464,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
 #else
   take_turns(&w, 0);
 #endif
-  p->within = w.within;
+  p->within = 2 * w.within;
 }
 
 double sph_pairs_neighbours(const struct sph_pairs *p) {

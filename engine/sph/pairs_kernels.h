@@ -18,14 +18,17 @@ enum sph_pair_column {
   PAIR_XX, PAIR_XY, PAIR_XZ, PAIR_YY, PAIR_YZ, PAIR_ZZ, /* T: sigma/rho^2, the pressure term in it; times B where corrected */
   PAIR_SOUND, PAIR_DENSITY,
   PAIR_ARTIFICIAL,      /* six more where there is artificial stress: R */
-  PAIR_YX = 24, PAIR_ZX, PAIR_ZY, /* three more where the gradient is corrected: T is no longer symmetric */
+  PAIR_TURNED = 16,     /* and YX ZX ZY of T where the gradient is corrected: it is no longer symmetric; */
+  PAIR_TURNED_TOO = 24, /* where both are, here */
 };
 /* Columns of a record of sums. */
 enum sph_pair_sum {
-  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12 /* twice */, SUM_SIGNAL, SUM_COUNT,
-  SUM_MOMENT = 16, /* six more where the gradient is corrected */
+  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12 /* twice */, SUM_SIGNAL /* above zero for those with neighbours */,
+  SUM_MOMENT, /* six, negative, where the gradient is corrected */
+  SUM_COLUMNS = SUM_MOMENT + 6,
 };
-enum { PAIR_NARROW = 16, PAIR_WIDE = 32 }; /* columns: without and with more; whole cache lines */
+/* Columns from a record to the next: without more, with artificial stress or correction (or moments), with both. */
+enum { PAIR_NARROW = 16, PAIR_MIDDLE_DOUBLE = 24, PAIR_MIDDLE_FLOAT = 32, PAIR_WIDE = 32 };
 
 /* So many particles that follow each other share one list: what any of them may meet. A neighbour is then loaded and its sums
  * are stored once for all of them. */
@@ -50,10 +53,19 @@ struct sph_pair_source {
 
 /* Where sums go: arrays of all particles. */
 struct sph_pair_sink {
-  double *column[PAIR_NARROW]; /* by enum sph_pair_sum; that of SUM_COUNT is not written */
-  double scale[PAIR_NARROW];   /* from the records' units */
-  const double *density;       /* NULL: the gradient's sum is it; else times unit/density */
+  double *column[SUM_COLUMNS]; /* by enum sph_pair_sum; NULL from the moments on without them */
+  double scale[SUM_COLUMNS];   /* from the records' units */
+  const double *density;       /* NULL: gradient and moments are the sums; else times unit/density */
   double unit;
+};
+
+/* Arrays of the particles that are corrected. */
+struct sph_pair_correction {
+  const double *old[6];                    /* B that the forces were made with */
+  const double *density, *pressure_term, *stress[6]; /* stress: NULL without strength */
+  double *gradient[9];                     /* what was summed; after: times the new B */
+  double *correction[6];                   /* moments; after: the new B */
+  double *power;                           /* after: the work of the forces, J/kg/s */
 };
 
 struct sph_pair_constants {
@@ -80,9 +92,9 @@ struct sph_near_particles {
 
 struct sph_pair_kernels {
   const char *name;
-  /* [gradient corrected][artificial stress]: which records are wide */
-  void (*sum_double[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const double *in, double *out);
-  void (*sum_float[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const float *in, float *out);
+  /* [gradient corrected][artificial stress]. They return how many pairs are within the support. */
+  double (*sum_double[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const double *in, double *out);
+  double (*sum_float[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const float *in, float *out);
   /* Of the children of `count` parent boxes (8 each) those that may hold particles within reach of `own`, and that are not below
    * `lowest`: how many, and their numbers in `found` (8 times count). */
   size_t (*near_boxes)(const struct sph_near_boxes *boxes, const uint32_t *parent, size_t count, const struct sph_near_box *own,
@@ -97,10 +109,12 @@ struct sph_pair_kernels {
   /* The records of `count` particles, those from `first` on or (not NULL) those that `which` names, `stride` columns each. */
   void (*pack_double)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, double *in);
   void (*pack_float)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, float *in);
-  /* The sums of `count` particles from `first` on, whose records begin at `records`, but for moments; -1 for the signal of those
-   * without neighbours. Returns how many neighbours they have together. */
-  double (*unpack_double)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const double *records);
-  double (*unpack_float)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const float *records);
+  /* The sums of `count` particles from `first` on, whose records begin at `records`; -1 for the signal of those without
+   * neighbours. */
+  void (*unpack_double)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const double *records);
+  void (*unpack_float)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const float *records);
+  /* What moments make of the sums of `count` particles: pairs_kernels_correct.h. */
+  void (*correct)(const struct sph_pair_correction *, size_t count);
   /* The artificial stress R of the particles first..last-1, opposed to the tension in stress[] + pressure_term I (xx xy xz yy
    * yz zz): pairs_kernels_tension.h. */
   void (*oppose)(double epsilon, const double *const stress[6], const double *pressure_term, size_t first, size_t last,

@@ -67,6 +67,7 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #define AVX512_MASK           __mmask8
 #endif
 #include "engine/sph/pairs_kernels_sum.h"
+#include "engine/sph/pairs_kernels_correct.h"
 #include "engine/sph/pairs_kernels_pack.h"
 #include "engine/sph/pairs_kernels_tension.h"
 #undef VECTOR
@@ -74,9 +75,11 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef UNROLL
 #undef PART
 #undef PARTS
+#undef LEAST_SIGNAL
 #undef EACH
 #undef GAIN
-#undef LOSE
+#undef LEFT
+#undef RIGHT
 #undef LOW
 #undef HIGH
 #undef FIRST
@@ -114,9 +117,11 @@ INLINE inverse_f inverse_of_f(inverse_f a) {
 #undef UNROLL
 #undef PART
 #undef PARTS
+#undef LEAST_SIGNAL
 #undef EACH
 #undef GAIN
-#undef LOSE
+#undef LEFT
+#undef RIGHT
 #undef LOW
 #undef HIGH
 #undef FIRST
@@ -137,5 +142,6 @@ const struct sph_pair_kernels KERNELS_TABLE = {
     .pack_float = float_pack,
     .unpack_double = double_unpack,
     .unpack_float = float_unpack,
+    .correct = double_correct,
     .oppose = double_oppose,
 };

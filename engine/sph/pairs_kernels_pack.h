@@ -1,46 +1,48 @@
 /* Records out of columns and sums back into columns, LANES particles at a time, in one precision (pairs_kernels_sum.h, which comes first, has the
- * transposition). */
+ * transposition). Columns are of double: so many particles at once as registers of those hold. */
 
-INLINE void NAME(column)(const double *from, double scale, size_t first, const uint32_t *which, double to[LANES]) {
-  if (!from) {
-    for (size_t lane = 0; lane < LANES; lane++)
-      to[lane] = 0;
-  } else if (which) {
-    for (size_t lane = 0; lane < LANES; lane++)
-      to[lane] = from[which[lane]] * scale;
+typedef REAL NAME(narrow) __attribute__((vector_size(WIDTH / sizeof(double) * sizeof(REAL))));
+
+/* `scale` times what the column has for AT_ONCE particles, those from `first` on or those that `which` names. */
+INLINE double_vector NAME(column)(const double *from, double scale, size_t first, const uint32_t *which) {
+  double_vector v = {0};
+  if (!from) return v;
+  if (!which) {
+    memcpy(&v, from + first, sizeof v);
   } else {
-    for (size_t lane = 0; lane < LANES; lane++)
-      to[lane] = from[first + lane] * scale;
+#ifdef AVX512
+    v = (double_vector)_mm512_i32gather_pd(_mm256_loadu_si256((const void *)which), from, sizeof *from);
+#else
+    for (size_t lane = 0; lane < AT_ONCE; lane++)
+      v[lane] = from[which[lane]];
+#endif
   }
-}
-
-/* T = sigma B / rho^2, which is not symmetric. */
-INLINE void NAME(turn)(double t[PAIR_WIDE][LANES], double b[6][LANES]) {
-  static const int row[3][3] = {{PAIR_XX, PAIR_XY, PAIR_XZ}, {PAIR_YX, PAIR_YY, PAIR_YZ}, {PAIR_ZX, PAIR_ZY, PAIR_ZZ}};
-  static const int of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
-  for (size_t lane = 0; lane < LANES; lane++) {
-    double s[6];
-    for (int k = 0; k < 6; k++)
-      s[k] = t[PAIR_XX + k][lane];
-    for (int a = 0; a < 3; a++)
-      for (int c = 0; c < 3; c++)
-        t[row[a][c]][lane] = b[of[c][0]][lane] * s[of[a][0]] + b[of[c][1]][lane] * s[of[a][1]] + b[of[c][2]][lane] * s[of[a][2]];
-  }
+  return v * scale;
 }
 
 /* Positions as float records hold them: towards zero, and round the 2^32 quanta that a record can tell apart. */
-INLINE void NAME(quanta)(const double x[LANES], double per_quantum, REAL to[LANES]) {
-  int32_t at[LANES];
-  for (size_t lane = 0; lane < LANES; lane++) {
+INLINE NAME(narrow) NAME(quanta)(double_vector x, double per_quantum) {
+  NAME(narrow) to = {0};
+#if FIXED
+  int32_t at[AT_ONCE];
+  for (size_t lane = 0; lane < AT_ONCE; lane++) {
     const double t = x[lane] * per_quantum;
     const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
     at[lane] = (int32_t)(uint32_t)(uint64_t)whole;
   }
-  memcpy(to, at, sizeof at);
+  memcpy(&to, at, sizeof at);
+#else
+  (void)x, (void)per_quantum;
+#endif
+  return to;
 }
 
 /* Of `count` particles: those from `first` on, or those that `which` names. */
 static void NAME(pack)(const struct sph_pair_source *source, size_t first, const uint32_t *which, size_t count, size_t stride, REAL *in) {
+  const bool artificial = source->column[PAIR_ARTIFICIAL] != NULL, corrected = source->correction[0] != NULL;
+  const size_t turned = artificial ? PAIR_TURNED_TOO : PAIR_TURNED;
+  REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
+  memset(room, 0, sizeof room); /* there are more columns than are used */
   for (size_t k = 0; k < count; k += LANES) {
     const size_t left = count - k < LANES ? count - k : LANES;
     const uint32_t *at = which ? which + k : NULL;
@@ -52,34 +54,41 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
       }
       at = last;
     }
-    double room[PAIR_WIDE][LANES], pressure[LANES], correction[6][LANES];
-    for (size_t c = 0; c < stride; c++)
-      NAME(column)(source->column[c], source->scale[c], first + k, at, room[c]);
-    NAME(column)(source->pressure, source->scale[PAIR_XX], first + k, at, pressure);
-    for (size_t lane = 0; lane < LANES; lane++)
-      room[PAIR_XX][lane] += pressure[lane], room[PAIR_YY][lane] += pressure[lane], room[PAIR_ZZ][lane] += pressure[lane];
-    if (source->volume_weights) /* sigma, not sigma/rho^2 */
-      for (int c = 0; c < 6; c++)
-        for (size_t lane = 0; lane < LANES; lane++) {
-          const double square = room[PAIR_DENSITY][lane] * room[PAIR_DENSITY][lane];
-          room[PAIR_XX + c][lane] *= square;
-          if (stride > PAIR_NARROW) room[PAIR_ARTIFICIAL + c][lane] *= square;
+    for (size_t part = 0; part < LANES; part += AT_ONCE) {
+      const size_t from = first + k + part;
+      const uint32_t *these = at ? at + part : NULL;
+      double_vector its[PAIR_NARROW], more[6], t[9], b[6];
+      UNROLL for (size_t c = 0; c < PAIR_NARROW; c++)
+        its[c] = NAME(column)(source->column[c], source->scale[c], from, these);
+      const double_vector pressure = NAME(column)(source->pressure, source->scale[PAIR_XX], from, these);
+      its[PAIR_XX] += pressure, its[PAIR_YY] += pressure, its[PAIR_ZZ] += pressure;
+      const double_vector square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
+      UNROLL for (size_t c = 0; c < 6; c++)
+        if (source->volume_weights) its[PAIR_XX + c] *= square; /* sigma, not sigma/rho^2 */
+      if (artificial) {
+        UNROLL for (size_t c = 0; c < 6; c++) {
+          more[c] = NAME(column)(source->column[PAIR_ARTIFICIAL + c], source->scale[PAIR_ARTIFICIAL + c], from, these);
+          if (source->volume_weights) more[c] *= square;
+          *(NAME(narrow) *)(void *)(room[PAIR_ARTIFICIAL + c] + part) = __builtin_convertvector(more[c], NAME(narrow));
         }
-    if (source->correction[0]) {
-      for (int c = 0; c < 6; c++)
-        NAME(column)(source->correction[c], 1, first + k, at, correction[c]);
-      NAME(turn)(room, correction);
+      }
+      if (corrected) {
+        UNROLL for (size_t c = 0; c < 6; c++)
+          b[c] = NAME(column)(source->correction[c], 1, from, these);
+        double_turn(its + PAIR_XX, b, t);
+        UNROLL for (size_t c = 0; c < 6; c++)
+          its[PAIR_XX + c] = t[c];
+        UNROLL for (size_t c = 0; c < 3; c++)
+          *(NAME(narrow) *)(void *)(room[turned + c] + part) = __builtin_convertvector(t[6 + c], NAME(narrow));
+      }
+      UNROLL for (size_t c = 0; c < PAIR_NARROW; c++)
+        *(NAME(narrow) *)(void *)(room[c] + part) =
+            FIXED && c <= PAIR_Z ? NAME(quanta)(its[c], source->per_quantum[c]) : __builtin_convertvector(its[c], NAME(narrow));
     }
-    REAL narrow[PAIR_WIDE][LANES] __attribute__((aligned(64)));
-    for (size_t c = 0; c < stride; c++)
-      for (size_t lane = 0; lane < LANES; lane++)
-        narrow[c][lane] = (REAL)room[c][lane];
-    for (size_t c = PAIR_X; FIXED && c <= PAIR_Z; c++)
-      NAME(quanta)(room[c], source->per_quantum[c], narrow[c]);
     for (size_t c = 0; c < stride; c += LANES) {
       VECTOR r[LANES];
       UNROLL for (size_t m = 0; m < LANES; m++)
-        r[m] = *(const VECTOR *)(const void *)narrow[c + m];
+        r[m] = *(const VECTOR *)(const void *)room[c + m];
       NAME(transpose)(r);
       for (size_t lane = 0; lane < left; lane++)
         *(VECTOR *)(void *)(in + (k + lane) * stride + c) = r[lane];
@@ -88,33 +97,30 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
 }
 
 /* What LANES particles got, from room[column][lane]; `lanes` of them count. Lines are written whole, so that few stores wait for
- * memory. Returns how many neighbours they have. */
-INLINE double NAME(deliver)(const struct sph_pair_sink *sink, size_t first, size_t lanes, REAL room[PAIR_NARROW][LANES]) {
-  double weight[LANES], within = 0;
+ * memory. */
+INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const size_t lanes, REAL room[PAIR_WIDE][LANES]) {
+  double weight[LANES];
   for (size_t lane = 0; lane < lanes; lane++)
     weight[lane] = sink->density ? sink->unit / sink->density[first + lane] : 1;
-  for (int c = SUM_ACCELERATION; c < SUM_GRADIENT; c++)
+  for (int c = 0; c < SUM_COLUMNS; c++) {
+    if (c == SUM_SIGNAL || !sink->column[c]) continue;
+    const bool weighted = (c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT;
     for (size_t lane = 0; lane < lanes; lane++)
-      sink->column[c][first + lane] = (double)room[c][lane] * sink->scale[c];
-  for (int c = SUM_GRADIENT; c < SUM_HEATING; c++)
-    for (size_t lane = 0; lane < lanes; lane++)
-      sink->column[c][first + lane] = (double)room[c][lane] * weight[lane] * sink->scale[c];
-  for (size_t lane = 0; lane < lanes; lane++) {
-    const double count = (double)room[SUM_COUNT][lane];
-    sink->column[SUM_HEATING][first + lane] = (double)room[SUM_HEATING][lane] * sink->scale[SUM_HEATING];
-    sink->column[SUM_SIGNAL][first + lane] = count > 0 ? (double)room[SUM_SIGNAL][lane] * sink->scale[SUM_SIGNAL] : -1;
-    within += count;
+      sink->column[c][first + lane] = weighted ? (double)room[c][lane] * weight[lane] * sink->scale[c] : (double)room[c][lane] * sink->scale[c];
   }
-  return within;
+  for (size_t lane = 0; lane < lanes; lane++) {
+    const double signal = (double)room[SUM_SIGNAL][lane], least = (double)LEAST_SIGNAL;
+    sink->column[SUM_SIGNAL][first + lane] = signal > least ? signal * sink->scale[SUM_SIGNAL] : signal > 0 ? 0 : -1;
+  }
 }
 
-/* The sums of `count` particles from `first` on, whose records begin at `records`. Returns how many neighbours they have. */
-static double NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride, const REAL *records) {
-  double within = 0;
+/* The sums of `count` particles from `first` on, whose records begin at `records`. */
+static void NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride, const REAL *records) {
+  const size_t columns = sink->column[SUM_MOMENT] ? SUM_COLUMNS : PAIR_NARROW;
   for (size_t k = 0; k < count; k += LANES) {
     const size_t left = count - k < LANES ? count - k : LANES;
-    REAL room[PAIR_NARROW][LANES] __attribute__((aligned(64)));
-    for (size_t c = 0; c < PAIR_NARROW; c += LANES) {
+    REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
+    for (size_t c = 0; c < columns; c += LANES) {
       VECTOR r[LANES];
       UNROLL for (size_t lane = 0; lane < LANES; lane++)
         r[lane] = *(const VECTOR *)(const void *)(records + (k + (lane < left ? lane : 0)) * stride + c);
@@ -122,7 +128,6 @@ static double NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_
       UNROLL for (size_t m = 0; m < LANES; m++)
         *(VECTOR *)(void *)room[c + m] = r[m];
     }
-    within += left == LANES ? NAME(deliver)(sink, first + k, LANES, room) : NAME(deliver)(sink, first + k, left, room);
+    left == LANES ? NAME(deliver)(sink, first + k, LANES, room) : NAME(deliver)(sink, first + k, left, room);
   }
-  return within;
 }

@@ -20,6 +20,8 @@ typedef INT NAME(mask) __attribute__((vector_size(LANES * sizeof(REAL))));
 #define SECOND(a, b) __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15)
 #define EVEN(a, b)   __builtin_shufflevector(a, b, 0, 1, 4, 5, 8, 9, 12, 13)
 #define ODD(a, b)    __builtin_shufflevector(a, b, 2, 3, 6, 7, 10, 11, 14, 15)
+#define LEFT(a, b)   __builtin_shufflevector(a, b, 0, 1, 8, 9, 2, 3, 10, 11)
+#define RIGHT(a, b)  __builtin_shufflevector(a, b, 4, 5, 12, 13, 6, 7, 14, 15)
 #elif LANES == 4
 #define LOW(a, b)    __builtin_shufflevector(a, b, 0, 4, 1, 5)
 #define HIGH(a, b)   __builtin_shufflevector(a, b, 2, 6, 3, 7)
@@ -167,6 +169,33 @@ INLINE void NAME(spread)(REAL *out, size_t stride, size_t column, const uint32_t
   }
 }
 
+/* Likewise of four columns only, among which the signal is not. */
+INLINE void NAME(spread_four)(REAL *out, size_t stride, size_t column, const uint32_t *slot, VECTOR r[4]) {
+#if LANES <= 4
+  UNROLL for (size_t done = 0; done < 4; done += LANES)
+    NAME(spread)(out, stride, column + done, slot, r + done);
+#else
+  VECTOR u[4], row[4];
+  UNROLL for (int g = 0; g < 4; g += PART)
+    NAME(turn_quarters)(r + g, u + g);
+#if FIXED /* quarter q of u[c] is record q PART + c */
+  UNROLL for (int k = 0; k < 4; k++)
+    row[k] = u[k];
+#else /* half of a record in a quarter */
+  row[0] = LEFT(u[0], u[2]), row[1] = LEFT(u[1], u[3]), row[2] = RIGHT(u[0], u[2]), row[3] = RIGHT(u[1], u[3]);
+#endif
+  typedef REAL four __attribute__((vector_size(4 * sizeof(REAL))));
+  UNROLL for (int part = 0; part < LANES / 4; part++) {
+    UNROLL for (int c = 0; c < 4; c++) {
+      const int lane = FIXED ? part * PART + c : c / 2 * 4 + part * 2 + c % 2;
+      union { VECTOR all; four of[LANES / 4]; } its = {row[c]};
+      four *to = (four *)(void *)(out + slot[lane] * stride + column);
+      *to += its.of[part];
+    }
+  }
+#endif
+}
+
 /* r[k] is column + k of what one record gets, lane by lane: the transposition's tree, but two registers become one at each of
  * its nodes. The signal is
  * the odd one of a pair. */
@@ -212,16 +241,21 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
 #endif
 }
 
+/* Of those that do not approach, but have neighbours. */
+#define LEAST_SIGNAL (FIXED ? (REAL)0x1p-126 : (REAL)0x1p-1022)
+
 #define EACH UNROLL for (int m = 0; m < GROUP; m++)
 #define GAIN(column, value) (g[column] = m ? g[column] + (value) : (value)) /* of a neighbour, from member m */
-#define LOSE(column, value) (g[column] = m ? g[column] - (value) : -(value))
 
-INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
+INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
                       const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
-  const size_t in_stride = artificial || corrected ? PAIR_WIDE : PAIR_NARROW, out_stride = corrected ? PAIR_WIDE : PAIR_NARROW;
+  const size_t middle = FIXED ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
+  const size_t in_stride = artificial && corrected ? PAIR_WIDE : artificial || corrected ? middle : PAIR_NARROW;
+  const size_t out_stride = corrected ? middle : PAIR_NARROW;
   const REAL norm = (REAL)k.norm, quarter = (REAL)0.25;
   const VECTOR zero = {0};
+  VECTOR within = zero;
   const uint32_t *end = chunk->neighbour + chunk->start[(chunk->own + GROUP - 1) / GROUP];
   for (size_t i = 0; i < chunk->own; i += GROUP) {
     const REAL *mine[GROUP];
@@ -297,18 +331,18 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         EACH per_densities[m] = per_mine[m] * per_its;
       }
       if (k.strength || corrected) {
+        const size_t turned = (artificial ? PAIR_TURNED_TOO : PAIR_TURNED) - PAIR_NARROW;
         VECTOR more[PAIR_WIDE - PAIR_NARROW];
         UNROLL for (size_t column = 0; column < PAIR_WIDE - PAIR_NARROW; column += LANES)
-          if ((artificial && column < 6) || (corrected && column + LANES > 8 && column < 11))
+          if ((artificial && column < 6) || (corrected && column + LANES > turned && column < turned + 3))
             NAME(fetch)(in, in_stride, PAIR_NARROW + column, slot, more + column);
         EACH {
           VECTOR xx = mine[m][PAIR_XX] + c[PAIR_XX], yy = mine[m][PAIR_YY] + c[PAIR_YY], zz = mine[m][PAIR_ZZ] + c[PAIR_ZZ],
                  xy = mine[m][PAIR_XY] + c[PAIR_XY], xz = mine[m][PAIR_XZ] + c[PAIR_XZ], yz = mine[m][PAIR_YZ] + c[PAIR_YZ];
           VECTOR yx = xy, zx = xz, zy = yz;
           if (corrected) {
-            yx = mine[m][PAIR_YX] + more[PAIR_YX - PAIR_NARROW];
-            zx = mine[m][PAIR_ZX] + more[PAIR_ZX - PAIR_NARROW];
-            zy = mine[m][PAIR_ZY] + more[PAIR_ZY - PAIR_NARROW];
+            const REAL *own = mine[m] + PAIR_NARROW + turned;
+            yx = own[0] + more[turned], zx = own[1] + more[turned + 1], zy = own[2] + more[turned + 2];
           }
           if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
             VECTOR f = NAME(select)(within_h[m], 1 - q[m] * q[m] * ((REAL)1.5 - (REAL)0.75 * q[m]), quarter * t[m] * t[m] * t[m]);
@@ -342,24 +376,23 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
       VECTOR volume = c[PAIR_MASS]; /* with volume weights; else the sum is divided by rho_i afterwards */
       if (k.volume_weights) volume *= per_its;
       EACH {
-        const VECTOR cooling = viscous[m] * slope[m] * closing[m], signal = NAME(keep)(near[m], mu[m]); /* twice */
-        const VECTOR one = NAME(keep)(near[m], zero + 1), mj = c[PAIR_MASS];
+        const VECTOR cooling = viscous[m] * slope[m] * closing[m], mj = c[PAIR_MASS]; /* cooling: twice */
+        const VECTOR signal = NAME(keep)(near[m], NAME(larger)(zero + LEAST_SIGNAL, mu[m]));
         VECTOR mi = zero + mine[m][PAIR_MASS], opposite = zero - mine[m][PAIR_MASS];
         s[m][0] += mj * fx[m], s[m][1] += mj * fy[m], s[m][2] += mj * fz[m];
         s[m][SUM_HEATING] -= mj * cooling;
         s[m][SUM_SIGNAL] = NAME(larger)(s[m][SUM_SIGNAL], signal);
-        s[m][SUM_COUNT] += one;
+        within += NAME(keep)(near[m], zero + 1);
         GAIN(0, opposite * fx[m]), GAIN(1, opposite * fy[m]), GAIN(2, opposite * fz[m]);
         GAIN(SUM_HEATING, opposite * cooling);
         g[SUM_SIGNAL] = m ? NAME(larger)(g[SUM_SIGNAL], signal) : signal;
-        GAIN(SUM_COUNT, one);
         VECTOR ax = volume * wx[m], ay = volume * wy[m], az = volume * wz[m];
         s[m][3] += ux[m] * ax, s[m][4] += ux[m] * ay, s[m][5] += ux[m] * az;
         s[m][6] += uy[m] * ax, s[m][7] += uy[m] * ay, s[m][8] += uy[m] * az;
         s[m][9] += uz[m] * ax, s[m][10] += uz[m] * ay, s[m][11] += uz[m] * az;
         if (corrected) {
-          s[m][16] -= dx[m] * ax, s[m][17] -= dx[m] * ay, s[m][18] -= dx[m] * az;
-          s[m][19] -= dy[m] * ay, s[m][20] -= dy[m] * az, s[m][21] -= dz[m] * az;
+          s[m][14] += dx[m] * ax, s[m][15] += dx[m] * ay, s[m][16] += dx[m] * az;
+          s[m][17] += dy[m] * ay, s[m][18] += dy[m] * az, s[m][19] += dz[m] * az;
         }
         if (k.volume_weights) mi *= per_mine[m];
         ax = mi * wx[m], ay = mi * wy[m], az = mi * wz[m];
@@ -367,41 +400,40 @@ INLINE void NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_
         GAIN(6, uy[m] * ax), GAIN(7, uy[m] * ay), GAIN(8, uy[m] * az);
         GAIN(9, uz[m] * ax), GAIN(10, uz[m] * ay), GAIN(11, uz[m] * az);
         if (corrected) {
-          LOSE(16, dx[m] * ax), LOSE(17, dx[m] * ay), LOSE(18, dx[m] * az);
-          LOSE(19, dy[m] * ay), LOSE(20, dy[m] * az), LOSE(21, dz[m] * az);
+          GAIN(14, dx[m] * ax), GAIN(15, dx[m] * ay), GAIN(16, dx[m] * az);
+          GAIN(17, dy[m] * ay), GAIN(18, dy[m] * az), GAIN(19, dz[m] * az);
         }
       }
-      g[SUM_COUNT + 1] = zero;
+      if (!corrected) g[14] = g[15] = zero;
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(spread)(out, out_stride, column, slot, g + column);
-      if (corrected) {
-        UNROLL for (int column = 22; column < PAIR_WIDE; column++)
-          g[column] = zero;
-        UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
-          NAME(spread)(out, out_stride, column, slot, g + column);
-      }
+      if (corrected) NAME(spread_four)(out, out_stride, PAIR_NARROW, slot, g + PAIR_NARROW);
     }
     EACH {
       if (m > 0 && !whole) continue;
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(collect)(out + (i + (size_t)m) * out_stride, column, s[m] + column);
       if (corrected) {
-        UNROLL for (size_t column = SUM_MOMENT; column < SUM_MOMENT + 6; column += LANES)
+        UNROLL for (size_t column = PAIR_NARROW; column < SUM_COLUMNS; column += LANES)
           NAME(collect)(out + (i + (size_t)m) * out_stride, column, s[m] + column);
       }
     }
   }
+  double pairs = 0;
+  UNROLL for (int lane = 0; lane < LANES; lane++)
+    pairs += (double)within[lane];
+  return pairs;
 }
 
-static void NAME(sum_plain)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
-  NAME(sum)(c, k, in, out, false, false);
+static double NAME(sum_plain)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
+  return NAME(sum)(c, k, in, out, false, false);
 }
-static void NAME(sum_artificial)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
-  NAME(sum)(c, k, in, out, false, true);
+static double NAME(sum_artificial)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
+  return NAME(sum)(c, k, in, out, false, true);
 }
-static void NAME(sum_corrected)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
-  NAME(sum)(c, k, in, out, true, false);
+static double NAME(sum_corrected)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
+  return NAME(sum)(c, k, in, out, true, false);
 }
-static void NAME(sum_both)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
-  NAME(sum)(c, k, in, out, true, true);
+static double NAME(sum_both)(const struct sph_pair_chunk *c, const struct sph_pair_constants *k, const REAL *in, REAL *out) {
+  return NAME(sum)(c, k, in, out, true, true);
 }
