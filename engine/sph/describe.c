@@ -143,9 +143,8 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sph_scale_poisson_ratio(&target->material));
   fputc('\n', out);
   if (sph_scale_cracks(target)) {
-    struct sph_shape shape = sph_scale_target(in);
-    double E = sph_scale_young_modulus(&target->material), m = target->material.weibull.m;
-    double log_kv = log(target->material.weibull.k) + log(sph_shape_volume(&shape)), n = (double)in->fidelity.particles;
+    double E = sph_scale_young_modulus(&target->material), m = target->material.weibull.m, n = (double)in->fidelity.particles;
+    double log_kv = log(target->material.weibull.k) + log(sph_scale_target_mass(in) / target->material.density); /* solid volume */
     fprintf(out, "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
                  "%.0f m/s\n",
             flaws_expected(n), exp(-log_kv / m), E * exp(-log_kv / m), exp((log(flaws_expected(n)) - log_kv) / m),

@@ -237,6 +237,14 @@ static void pores(void **state) {
   assert_true(fabs(in.target.material.porosity.fraction - 0.6) < 1e-12);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
   refused("target: {material: {name: porous-ice, porosity: {distention: 2.5, fraction: 0.5}}}", "give one of the two");
+  /* flaws are of the solid: at the same radius 2.5 times as many pores as matter change kV, and with it the static strength */
+  struct sph_inputs thin = good("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}"),
+                    whole = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
+  double kv = 1.4e38 * 4.0 / 3 * 3.14159265358979323846 * 2.7e-5; /* ice's m is 9.6; E of the input's own moduli */
+  double young = sph_scale_young_modulus(&whole.target.material);
+  assert_true(whole.target.material.weibull.k == 1.4e38 && whole.target.material.weibull.m == 9.6);
+  assert_true(fabs(whole.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv, -1 / 9.6)) - 1) < 1e-12); /* logs of 90 */
+  assert_true(fabs(thin.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv / 2.5, -1 / 9.6)) - 1) < 1e-12);
   in = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
   assert_true(!sph_scale_porous(&in.target) && sph_scale_density(&in.target) == 917);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 1}}}");

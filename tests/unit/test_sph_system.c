@@ -190,6 +190,40 @@ static void flaws_open_by_the_damaged_stress(void **state) {
   let_go(&c);
 }
 
+/* Damage at its cap has no rate: else it would go on shortening the time step. Below the cap it has, and reaches it, not more. */
+static void growth_ends_at_the_cap(void **state) {
+  (void)state;
+  struct collision c = collide(0);
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  static const double share[] = {0.5, 0.999, 1, 1.001}; /* of the cap, in D^(1/3) */
+  size_t below_one = 0;
+  for (int k = 0; k < 4; k++) {
+    for (int pass = 0; pass < 2; pass++) { /* the first pass finds the cap of this load */
+      for (size_t i = 0; i < s->n; i++) {
+        const double w = s->c.weakest[i], d = pass ? share[k] * s->c.damage_cap[i] : 0;
+        s->c.damage[i] = d;
+        s->c.stress[0][i] = 1.3 * w, s->c.stress[3][i] = -0.65 * w;
+        s->c.stress[1][i] = s->c.stress[2][i] = s->c.stress[4][i] = s->c.pressure[i] = 0;
+      }
+      for (size_t b = 0; b < s->block_count; b++)
+        s->ranges->crack(s, &s->solid[s->block[b].body], &s->block[b]);
+    }
+    for (size_t i = 0; i < s->n; i++) {
+      if (!(s->c.damage_cap[i] < 0.99)) continue; /* all of its flaws are open */
+      below_one++;
+      assert_true(k < 2 ? s->c.damage_rate[i] > 0 : s->c.damage_rate[i] == 0);
+    }
+    const double before = s->c.damage[0];
+    s->dt = k < 2 ? 1 : 1e-9; /* long beside what is left to grow */
+    for (size_t b = 0; b < s->block_count; b++)
+      s->ranges->damage_predict(s, &s->solid[s->block[b].body], &s->block[b]);
+    assert_true(s->c.damage[0] == (k < 2 ? s->c.damage_cap[0] : before));
+  }
+  assert_true(below_one > s->n); /* most have flaws left at this load */
+  sph_system_free(s);
+  let_go(&c);
+}
+
 /* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition alone, which
  * sees only pairs that already touch, would let it (the energy then grows several times over). */
 static void fast(void **state) {
@@ -581,7 +615,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(conserved), cmocka_unit_test(restarted), cmocka_unit_test(threads), cmocka_unit_test(lists_stay_short_in_a_fast_body), cmocka_unit_test(renumbered),
       cmocka_unit_test(absent),    cmocka_unit_test(clamps),    cmocka_unit_test(thin),    cmocka_unit_test(lost),
-      cmocka_unit_test(refused),   cmocka_unit_test(held),      cmocka_unit_test(fast),
+      cmocka_unit_test(refused),   cmocka_unit_test(held),      cmocka_unit_test(growth_ends_at_the_cap), cmocka_unit_test(fast),
       cmocka_unit_test(every_module),
       cmocka_unit_test(not_thinner_than_alone), cmocka_unit_test(ledger_by_hand), cmocka_unit_test(limits_by_hand), cmocka_unit_test(h_follows_density),
       cmocka_unit_test(flaws_open_by_the_damaged_stress),
