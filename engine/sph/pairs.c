@@ -273,7 +273,7 @@ static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const st
     within = kernels->sum_float[corrected][p->artificial](&view, constants, in, out);
   }
   restore_tiny(mode);
-  memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
+  if (c->others) memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
   return within;
 }
 
