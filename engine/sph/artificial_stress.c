@@ -1,8 +1,9 @@
 /* R of the stress before the pair loop, f^n (R_i + R_j) in it: pairs_kernels_tension.h, pairs_kernels_sum.h.
  *
- * Its work is booked nowhere, so that the energy error of a run contains it: with the factor f^n of each pair R is conjugate to no
- * gradient that a particle knows, no stored energy belongs to it, and what it takes on the way apart differs from what it gives
- * back on the way together. To book it the pair loop would have to sum the power of f^n (R_i + R_j) by itself, pair by pair. */
+ * With the factor f^n of each pair R is conjugate to no gradient that a particle knows, so that its power is no sigma : eps: the pair
+ * loop sums it pair by pair, and half of it goes to each of the two particles' internal energies, as the work of any other stress
+ * does. Total energy is conserved then. R pushes the more the nearer two are, and so it can take more than was stored: a particle
+ * whose internal energy would fall below zero is held there, which is booked (energy.clamped). */
 #include "engine/sph/ranges.h"
 
 #include <math.h>

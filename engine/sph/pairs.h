@@ -4,7 +4,7 @@
  * Per pair, with h = (h_i + h_j)/2, the cubic spline W of support 2h, and sigma the damaged stress with the pressure in it:
  *   dv_i/dt   = sum_j m_j (sigma_i/rho_i^2 + sigma_j/rho_j^2 - Pi_ij + f^n (R_i + R_j)) . grad_i W      [BA95 eq. 17]
  *   dv_a/dx_b = sum_j (m_j/rho_i) (v_j - v_i)_a grad_i W_b          [BA95 eq. 18]; m_j/rho_j with `volume_weights`
- *   heating   = 1/2 sum_j m_j Pi_ij (v_i - v_j) . grad_i W          (viscous, J/kg/s; eq. 4 lacks it)
+ *   heating   = 1/2 sum_j m_j (v_i - v_j) . (Pi_ij - f^n (R_i + R_j)) . grad_i W   (J/kg/s; eq. 4 lacks it)
  * Pi: Monaghan's viscosity, approaching pairs only (damaged ones included).
  *
  * With the gradient correction dv_a/dx_b is multiplied by B_i, the inverse of M_i = sum_j (m_j/rho_i) (x_j - x_i) grad_i W, so that
@@ -51,7 +51,7 @@ struct sph_pair_fields {
 struct sph_pair_sums {
   double *ax, *ay, *az;    /* m/s^2 */
   double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
-  double *heating;         /* J/kg/s */
+  double *heating;         /* J/kg/s: viscous, and the work of the artificial stress, which has either sign */
   /* Only with gradient_correction, else NULL. The work of the forces' B, J/kg/s, rho_i (pressure_term tr(g) + stress : g) with g the
    * sum times that B: total energy is then conserved however much B changes between two passes. */
   double *power;

@@ -326,6 +326,8 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
         viscous[m] = mu_per * ((REAL)k.twice_beta * mu[m] + (REAL)k.alpha * (mine[m][PAIR_SOUND] + c[PAIR_SOUND]));
       }
       VECTOR per_its = zero, per_densities[GROUP]; /* the inverse of its density and of both */
+      VECTOR work[GROUP]; /* that the artificial stress takes from the motion */
+      EACH work[m] = zero;
       if (k.volume_weights) {
         per_its = INVERSE(c[PAIR_DENSITY]);
         EACH per_densities[m] = per_mine[m] * per_its;
@@ -350,9 +352,13 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
             f *= f;
             f *= f;
             const REAL *own = mine[m] + PAIR_ARTIFICIAL;
-            xx += f * (own[0] + more[0]), xy += f * (own[1] + more[1]), xz += f * (own[2] + more[2]);
-            yy += f * (own[3] + more[3]), yz += f * (own[4] + more[4]), zz += f * (own[5] + more[5]);
-            if (corrected) yx += f * (own[1] + more[1]), zx += f * (own[2] + more[2]), zy += f * (own[4] + more[4]);
+            const VECTOR rxx = f * (own[0] + more[0]), rxy = f * (own[1] + more[1]), rxz = f * (own[2] + more[2]);
+            const VECTOR ryy = f * (own[3] + more[3]), ryz = f * (own[4] + more[4]), rzz = f * (own[5] + more[5]);
+            xx += rxx, xy += rxy, xz += rxz, yy += ryy, yz += ryz, zz += rzz;
+            if (corrected) yx += rxy, zx += rxz, zy += ryz;
+            work[m] = ux[m] * (rxx * wx[m] + rxy * wy[m] + rxz * wz[m]) + uy[m] * (rxy * wx[m] + ryy * wy[m] + ryz * wz[m]) +
+                      uz[m] * (rxz * wx[m] + ryz * wy[m] + rzz * wz[m]);
+            if (k.volume_weights) work[m] *= per_densities[m];
           }
           if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
             const VECTOR both = per_densities[m];
@@ -376,7 +382,9 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
       VECTOR volume = c[PAIR_MASS]; /* with volume weights; else the sum is divided by rho_i afterwards */
       if (k.volume_weights) volume *= per_its;
       EACH {
-        const VECTOR cooling = viscous[m] * slope[m] * closing[m], mj = c[PAIR_MASS]; /* cooling: twice */
+        VECTOR cooling = viscous[m] * slope[m] * closing[m]; /* twice */
+        if (artificial) cooling -= work[m];
+        const VECTOR mj = c[PAIR_MASS];
         const VECTOR signal = NAME(keep)(near[m], NAME(larger)(zero + LEAST_SIGNAL, mu[m]));
         VECTOR mi = zero + mine[m][PAIR_MASS], opposite = zero - mine[m][PAIR_MASS];
         s[m][0] += mj * fx[m], s[m][1] += mj * fy[m], s[m][2] += mj * fz[m];

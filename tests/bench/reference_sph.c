@@ -35,14 +35,19 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
       double si = 1, sj = 1; /* of sigma/rho^2 */
       if (o->volume_weights) si = f->density[i] / f->density[j], sj = f->density[j] / f->density[i];
       double along = si * f->pressure_term[i] + sj * f->pressure_term[j] - viscous, t[6] = {along, 0, 0, along, 0, along};
-      double ratio = artificial ? sph_spline(r, h) / sph_spline(o->spacing_over_h * h, h) : 0;
+      double ratio = artificial ? sph_spline(r, h) / sph_spline(o->spacing_over_h * h, h) : 0, opposed[6] = {0}, work = 0;
       for (int c = 0; c < 6; c++) {
         if (o->strength) t[c] += si * f->stress[c][i] + sj * f->stress[c][j];
-        if (artificial) t[c] += pow(ratio, 4) * (si * artificial[c][i] + sj * artificial[c][j]);
+        if (artificial) opposed[c] = pow(ratio, 4) * (si * artificial[c][i] + sj * artificial[c][j]);
+        t[c] += opposed[c];
       }
+      static const int at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+      for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+          work -= v[a] * opposed[at[a][b]] * w[b];
       double force[3] = {t[0] * w[0] + t[1] * w[1] + t[2] * w[2], t[1] * w[0] + t[3] * w[1] + t[4] * w[2],
                          t[2] * w[0] + t[4] * w[1] + t[5] * w[2]};
-      double mi = f->mass[i], mj = f->mass[j], heat = 0.5 * viscous * slope * closing;
+      double mi = f->mass[i], mj = f->mass[j], heat = 0.5 * (viscous * slope * closing + work);
       sums->ax[i] += mj * force[0], sums->ay[i] += mj * force[1], sums->az[i] += mj * force[2];
       sums->ax[j] -= mi * force[0], sums->ay[j] -= mi * force[1], sums->az[j] -= mi * force[2];
       sums->heating[i] += mj * heat, sums->heating[j] += mi * heat;
