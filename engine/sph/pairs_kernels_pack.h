@@ -96,21 +96,25 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
   }
 }
 
-/* What LANES particles got, from room[column][lane]; `lanes` of them count. Lines are written whole, so that few stores wait for
- * memory. */
-INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const size_t lanes, REAL room[PAIR_WIDE][LANES]) {
-  double weight[LANES];
-  for (size_t lane = 0; lane < lanes; lane++)
-    weight[lane] = sink->density ? sink->unit / sink->density[first + lane] : 1;
-  for (int c = 0; c < SUM_COLUMNS; c++) {
-    if (c == SUM_SIGNAL || !sink->column[c]) continue;
-    const bool weighted = (c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT;
-    for (size_t lane = 0; lane < lanes; lane++)
-      sink->column[c][first + lane] = weighted ? (double)room[c][lane] * weight[lane] * sink->scale[c] : (double)room[c][lane] * sink->scale[c];
+/* Columns of the first `lanes` of the AT_ONCE particles that stand at `part` of room[column]. Lines are written whole, so that few
+ * stores wait for memory. */
+INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const size_t lanes, REAL room[PAIR_WIDE][LANES], size_t part) {
+  const double_vector zero = {0}, one = zero + 1;
+  double_vector weight = one;
+  if (sink->density) {
+    double_vector density = one;
+    memcpy(&density, sink->density + first, lanes * sizeof(double));
+    weight = sink->unit / density;
   }
-  for (size_t lane = 0; lane < lanes; lane++) {
-    const double signal = (double)room[SUM_SIGNAL][lane], least = (double)LEAST_SIGNAL;
-    sink->column[SUM_SIGNAL][first + lane] = signal > least ? signal * sink->scale[SUM_SIGNAL] : signal > 0 ? 0 : -1;
+  UNROLL for (size_t c = 0; c < SUM_COLUMNS; c++) {
+    if (c >= SUM_MOMENT && !sink->column[c]) break;
+    double_vector v = __builtin_convertvector(*(const NAME(narrow) *)(const void *)(room[c] + part), double_vector);
+    const double_vector own = v;
+    if ((c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT) v *= weight;
+    v *= sink->scale[c];
+    if (c == SUM_SIGNAL)
+      v = double_select(double_less(zero, own), double_keep(double_less(zero + (double)LEAST_SIGNAL, own), v), -one);
+    memcpy(sink->column[c] + first, &v, lanes * sizeof(double));
   }
 }
 
@@ -128,6 +132,11 @@ static void NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_t 
       UNROLL for (size_t m = 0; m < LANES; m++)
         *(VECTOR *)(void *)room[c + m] = r[m];
     }
-    left == LANES ? NAME(deliver)(sink, first + k, LANES, room) : NAME(deliver)(sink, first + k, left, room);
+    for (size_t part = 0; part < left; part += AT_ONCE) {
+      if (left - part >= AT_ONCE)
+        NAME(deliver)(sink, first + k + part, AT_ONCE, room, part);
+      else
+        NAME(deliver)(sink, first + k + part, left - part, room, part);
+    }
   }
 }

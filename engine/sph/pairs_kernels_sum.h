@@ -413,9 +413,9 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
         }
       }
       if (!corrected) g[14] = g[15] = zero;
+      if (corrected) NAME(spread_four)(out, out_stride, PAIR_NARROW, slot, g + PAIR_NARROW);
       UNROLL for (size_t column = 0; column < PAIR_NARROW; column += LANES)
         NAME(spread)(out, out_stride, column, slot, g + column);
-      if (corrected) NAME(spread_four)(out, out_stride, PAIR_NARROW, slot, g + PAIR_NARROW);
     }
     EACH {
       if (m > 0 && !whole) continue;
