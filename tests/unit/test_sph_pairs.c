@@ -23,6 +23,8 @@ struct cloud {
   size_t n;
 };
 
+static const char *const classes[] = {"baseline", "v3", "v4"};
+
 static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
   uint64_t z = *state += 0x9e3779b97f4a7c15u;
   z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
@@ -152,7 +154,6 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
  * 2^-24 and positions in units of h/2^20 give some 1e-5. */
 static void kernels_equal_plain_c(void **state) {
   (void)state;
-  static const char *const classes[] = {"baseline", "v3", "v4"};
   static const double scales[] = {1, 1e-7, 1e6};
   for (int variant = 0; variant < 16; variant++) {
     const double spacing = scales[variant % 3], length = 18 * spacing;
@@ -198,10 +199,11 @@ static void momentum_is_conserved(void **state) {
 }
 
 /* The gradient is the conjugate of the forces, with volumes and with the correction too: sum m v.a + sum m sigma/rho :
- * grad v = -heat, viscous and of the artificial stress. */
+ * grad v = -heat, viscous and of the artificial stress. In every CPU class. */
 static void work_equals_strain_energy(void **state) {
   (void)state;
-  for (int variant = 0; variant < 16; variant++) {
+  for (int variant = 0; variant < 3 * 16; variant++) {
+    assert_int_equal(setenv("CLAST_CPU", classes[variant / 16], 1), 0);
     struct cloud *c = cloud_make(SIDE, 1, true, 2);
     struct sph_pair_options options = usual;
     options.volume_weights = variant & 1;
@@ -232,13 +234,15 @@ static void work_equals_strain_energy(void **state) {
     }
     free(s), free(c);
   }
+  unsetenv("CLAST_CPU");
 }
 
-/* A linear velocity field comes back exactly with the correction, corners and edges included. */
+/* A linear velocity field comes back exactly with the correction, corners and edges included, in every CPU class. */
 static void corrected_gradient_is_linear(void **state) {
   (void)state;
   static const double g[9] = {0.3, -1, 0.2, 1, 0.1, 0.5, -0.2, 0.7, -0.4};
-  for (int variant = 0; variant < 8; variant++) {
+  for (int variant = 0; variant < 3 * 8; variant++) {
+    assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
     struct cloud *c = cloud_make(12, 1, false, 3);
     for (size_t i = 0; i < c->n; i++)
       for (int a = 0; a < 3; a++)
@@ -254,6 +258,7 @@ static void corrected_gradient_is_linear(void **state) {
         assert_true(fabs(s->a[3 + k][i] - g[k]) < (variant & 4 ? 1e-4 : 1e-11));
     free(s), free(c);
   }
+  unsetenv("CLAST_CPU");
 }
 
 /* Each pair once, however lists are cut into chunks: equal masses, no stress, unit volume weights, so that what a
@@ -547,7 +552,6 @@ static void swap_particles(struct cloud *c, size_t i, size_t j) {
  * and upon each other. */
 static void lists_equal_brute_force(void **state) {
   (void)state;
-  static const char *const classes[] = {"baseline", "v3", "v4"};
   static const size_t chunks[] = {4096, 256, 100};
   for (int variant = 0; variant < 24; variant++) {
     const bool periodic = variant & 1, shuffled = variant & 2, odd = variant & 4;
@@ -719,7 +723,6 @@ static void artificial_stress_opposes_tension_only(void **state) {
 static void opposed_stress_equals_plain_c(void **state) {
   (void)state;
   enum { COUNT = 203, FIRST = 3 };
-  static const char *const classes[] = {"baseline", "v3", "v4"};
   static double stress[6][COUNT], pressure[COUNT], r[6][COUNT];
   double *out[6];
   const double *in[6];
