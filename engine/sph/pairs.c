@@ -340,10 +340,14 @@ static struct sph_pair_sums sums_in(const struct sph_pairs *p, double *room) {
 static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_pair_sums *sums) {
   const struct units *u = &p->units;
   const double acceleration = u->velocity * u->velocity / u->length;
-  struct sph_pair_sink s = {.column = {sums->ax, sums->ay, sums->az}, .scale = {acceleration, acceleration, acceleration}, .unit = u->density};
+  struct sph_pair_sink s = {.column = {sums->ax, sums->ay, sums->az},
+                            .scale = {acceleration, acceleration, acceleration},
+                            .mass_unit = u->mass,
+                            .density_unit = u->density,
+                            .volume_weights = p->options.volume_weights};
   for (int k = 0; k < 9; k++)
     s.column[SUM_GRADIENT + k] = sums->gradient[k], s.scale[SUM_GRADIENT + k] = u->velocity / u->length;
-  s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = 0.5 * acceleration * u->velocity;
+  s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = -0.5 * acceleration * u->velocity;
   s.column[SUM_SIGNAL] = sums->signal, s.scale[SUM_SIGNAL] = u->velocity;
   for (int k = 0; k < 6 && p->options.gradient_correction; k++)
     s.column[SUM_MOMENT + k] = sums->correction[k], s.scale[SUM_MOMENT + k] = p->real == sizeof(double) ? -1 : -p->grain / u->length;
@@ -387,7 +391,7 @@ static void hand_over(const struct pass *w, size_t k, double *room) {
     const size_t first = c->first + done, count = c->own - done < SPH_PIECE ? c->own - done : SPH_PIECE;
     const unsigned mode = flush_tiny();
     if (!done) p->real == sizeof(double) ? add_foreign(p, k, true) : add_foreign(p, k, false);
-    sink.density = p->options.volume_weights ? NULL : f->density + first; /* m_j/rho_i */
+    sink.density = f->density + first, sink.mass = f->mass + first;
     if (p->real == sizeof(double))
       p->kernels->unpack_double(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
     else

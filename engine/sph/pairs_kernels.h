@@ -21,9 +21,10 @@ enum sph_pair_column {
   PAIR_TURNED = 16,     /* and YX ZX ZY of T where the gradient is corrected: it is no longer symmetric; */
   PAIR_TURNED_TOO = 24, /* where both are, here */
 };
-/* Columns of a record of sums. */
+/* Columns of a record of sums. In float they are those of both masses times what a pair does (volumes with volume weights), which is
+ * the same number for both; what is not symmetric is divided out of the sums. */
 enum sph_pair_sum {
-  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12 /* twice */, SUM_SIGNAL /* above zero for those with neighbours */,
+  SUM_ACCELERATION, SUM_GRADIENT = 3, SUM_HEATING = 12 /* twice, negative */, SUM_SIGNAL /* above zero for those with neighbours */,
   SUM_MOMENT, /* six, negative, where the gradient is corrected */
   SUM_COLUMNS = SUM_MOMENT + 6,
 };
@@ -55,8 +56,9 @@ struct sph_pair_source {
 struct sph_pair_sink {
   double *column[SUM_COLUMNS]; /* by enum sph_pair_sum; NULL from the moments on without them */
   double scale[SUM_COLUMNS];   /* from the records' units */
-  const double *density;       /* NULL: gradient and moments are the sums; else times unit/density */
-  double unit;
+  const double *mass, *density;
+  double mass_unit, density_unit;
+  bool volume_weights; /* else gradient and moments are divided by the density */
 };
 
 /* Arrays of the particles that are corrected. */

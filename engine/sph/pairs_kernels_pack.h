@@ -100,17 +100,25 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
  * stores wait for memory. */
 INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const size_t lanes, REAL room[PAIR_WIDE][LANES], size_t part) {
   const double_vector zero = {0}, one = zero + 1;
-  double_vector weight = one;
-  if (sink->density) {
+  double_vector weight = one, per_mass = one;
+  if (FIXED || !sink->volume_weights) {
     double_vector density = one;
     memcpy(&density, sink->density + first, lanes * sizeof(double));
-    weight = sink->unit / density;
+    weight = sink->volume_weights ? density / sink->density_unit : sink->density_unit / density;
+  }
+  if (FIXED) {
+    memcpy(&per_mass, sink->mass + first, lanes * sizeof(double));
+    per_mass = sink->mass_unit / per_mass;
+    weight *= per_mass;
   }
   UNROLL for (size_t c = 0; c < SUM_COLUMNS; c++) {
     if (c >= SUM_MOMENT && !sink->column[c]) break;
     double_vector v = __builtin_convertvector(*(const NAME(narrow) *)(const void *)(room[c] + part), double_vector);
     const double_vector own = v;
-    if ((c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT) v *= weight;
+    if ((c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT)
+      v *= weight;
+    else if (FIXED && c != SUM_SIGNAL)
+      v *= per_mass;
     v *= sink->scale[c];
     if (c == SUM_SIGNAL)
       v = double_select(double_less(zero, own), double_keep(double_less(zero + (double)LEAST_SIGNAL, own), v), -one);

@@ -96,6 +96,12 @@ INLINE VECTOR NAME(keep)(NAME(choice) choice, VECTOR yes) {
 INLINE VECTOR NAME(larger)(VECTOR a, VECTOR b) {
   return (VECTOR)AVX512(max_, )(a, b);
 }
+INLINE VECTOR NAME(keep_larger)(NAME(choice) choice, VECTOR a, VECTOR b) {
+  return (VECTOR)AVX512(maskz_max_, )(choice, a, b);
+}
+INLINE VECTOR NAME(add_chosen)(VECTOR a, NAME(choice) choice, VECTOR b) {
+  return (VECTOR)AVX512(mask_add_, )(a, choice, a, b);
+}
 INLINE VECTOR NAME(larger_at)(unsigned lanes, VECTOR a, VECTOR b, VECTOR elsewhere) {
   return (VECTOR)AVX512(mask_max_, )(elsewhere, (AVX512_MASK)lanes, a, b);
 }
@@ -118,6 +124,12 @@ INLINE VECTOR NAME(keep)(MASK choice, VECTOR yes) {
 }
 INLINE VECTOR NAME(larger)(VECTOR a, VECTOR b) {
   return NAME(select)(a > b, a, b);
+}
+INLINE VECTOR NAME(keep_larger)(MASK choice, VECTOR a, VECTOR b) {
+  return NAME(keep)(choice, NAME(larger)(a, b));
+}
+INLINE VECTOR NAME(add_chosen)(VECTOR a, MASK choice, VECTOR b) {
+  return a + NAME(keep)(choice, b);
 }
 INLINE VECTOR NAME(larger_at)(unsigned lanes, VECTOR a, VECTOR b, VECTOR elsewhere) {
   MASK pick = {0};
@@ -224,15 +236,16 @@ INLINE void NAME(collect)(REAL *out, size_t column, VECTOR r[LANES]) {
   *to = NAME(add)(*to, u[0], NAME(largest)(column));
 }
 
+/* From me to it. */
 INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair_constants *k) {
 #if FIXED
   union { REAL real; INT integer; } at = {.real = mine};
   typedef uint32_t whole __attribute__((vector_size(LANES * sizeof(REAL))));
-  whole difference = (uint32_t)at.integer - (whole)its;
+  whole difference = (whole)its - (uint32_t)at.integer;
   const VECTOR d = __builtin_convertvector((MASK)difference, VECTOR);
   return k->wrapped ? d * (REAL)k->quantum[axis] : d;
 #else
-  VECTOR d = mine - its;
+  VECTOR d = its - mine;
   if (k->wrapped && k->per_period[axis] > 0) { /* the nearest image */
     VECTOR turns = d * k->per_period[axis] + 6755399441055744.0; /* 1.5 x 2^52: rounds to an integer */
     d -= (turns - 6755399441055744.0) * k->periodic[axis];
@@ -245,6 +258,7 @@ INLINE VECTOR NAME(along)(REAL mine, VECTOR its, int axis, const struct sph_pair
 #define LEAST_SIGNAL (FIXED ? (REAL)0x1p-126 : (REAL)0x1p-1022)
 
 #define EACH UNROLL for (int m = 0; m < GROUP; m++)
+#define TIMES(factor, value) (FIXED ? (value) : (factor) * (value)) /* in float the slope has both factors in it */
 #define GAIN(column, value) (g[column] = m ? g[column] + (value) : (value)) /* of a neighbour, from member m */
 
 INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in, REAL *out,
@@ -253,17 +267,18 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
   const size_t middle = FIXED ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
   const size_t in_stride = artificial && corrected ? PAIR_WIDE : artificial || corrected ? middle : PAIR_NARROW;
   const size_t out_stride = corrected ? middle : PAIR_NARROW;
-  const REAL norm = (REAL)k.norm, quarter = (REAL)0.25;
+  const REAL quarter = (REAL)0.25;
   const VECTOR zero = {0};
   VECTOR within = zero;
   const uint32_t *end = chunk->neighbour + chunk->start[(chunk->own + GROUP - 1) / GROUP];
   for (size_t i = 0; i < chunk->own; i += GROUP) {
     const REAL *mine[GROUP];
-    REAL per_mine[GROUP];
+    REAL per_mine[GROUP], my_weight[GROUP];
     VECTOR s[GROUP][PAIR_WIDE]; /* my sums, lane by lane */
     EACH {
       mine[m] = in + (i + (size_t)m < chunk->own ? i + (size_t)m : i) * in_stride;
       per_mine[m] = k.volume_weights ? 1 / mine[m][PAIR_DENSITY] : 0;
+      my_weight[m] = (REAL)k.norm * mine[m][PAIR_MASS] * (k.volume_weights ? per_mine[m] : 1);
       UNROLL for (int column = 0; column < PAIR_WIDE; column++)
         s[m][column] = zero;
     }
@@ -294,44 +309,47 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
         densities[m] = mine[m][PAIR_DENSITY] + c[PAIR_DENSITY];
         softened[m] = densities[m] * (square[m] + (REAL)0.01 * hh[m]);
         near[m] = NAME(first_lanes)(total - done);
-        if (m > 0) near[m] &= NAME(less)(zero, square[m]); /* I stand in the list of the one before me */
         if (m > 0 && !whole) near[m] &= NAME(less)(zero, zero);
       }
-      EACH { /* coincident particles: no force, no division by zero */
-        if (FIXED) { /* they are a quantum apart; one inverse for two */
+      EACH { /* coincident particles: no force, no division by zero. But m > 0 stands in the list itself, and is not near itself */
+        if (FIXED) { /* a quantum apart, or q is not a number; one inverse for two */
           const VECTOR both = INVERSE(h[m] * softened[m]);
-          inverse_r[m] = ROOT(NAME(larger)(square[m], zero + 1));
-          inverse_h[m] = both * softened[m], per[m] = both * h[m];
+          inverse_r[m] = ROOT(m ? square[m] : NAME(larger)(square[m], zero + 1));
+          inverse_h[m] = both * softened[m], per[m] = both * hh[m];
         } else {
           const VECTOR least = (REAL)1e-12 * hh[m];
+          if (m > 0) near[m] &= NAME(less)(zero, square[m]);
           inverse_r[m] = ROOT(NAME(larger)(square[m], least));
           inverse_h[m] = INVERSE(h[m]), per[m] = INVERSE(softened[m]);
         }
         q[m] = square[m] * inverse_r[m] * inverse_h[m], t[m] = 2 - q[m];
         near[m] &= FIXED ? NAME(less)(zero, t[m]) : NAME(less)(square[m], 4 * hh[m]);
       }
+      VECTOR per_its = zero, per_densities[GROUP]; /* the inverse of its density and of both */
+      if (k.volume_weights) {
+        per_its = INVERSE(c[PAIR_DENSITY]);
+        EACH per_densities[m] = per_mine[m] * per_its;
+      }
+      const VECTOR its_volume = k.volume_weights ? c[PAIR_MASS] * per_its : c[PAIR_MASS];
       EACH {
         const VECTOR inner = (REAL)2.25 * q[m] - 3, outer = (REAL)-0.75 * t[m] * t[m] * (h[m] * inverse_r[m]);
         const VECTOR inverse_hh = inverse_h[m] * inverse_h[m]; /* in float h^-4 alone may be too small a number */
-        const VECTOR scale = FIXED ? norm * inverse_hh * inverse_hh * inverse_h[m] : inverse_hh * inverse_hh * inverse_h[m] * norm;
+        const VECTOR scale = FIXED ? my_weight[m] * its_volume * inverse_hh * inverse_hh * inverse_h[m]
+                                   : inverse_hh * inverse_hh * inverse_h[m] * (REAL)k.norm;
         within_h[m] = NAME(less)(q[m], zero + 1);
         slope[m] = NAME(keep)(near[m], NAME(select)(within_h[m], inner, outer) * scale); /* W'/r */
         wx[m] = slope[m] * dx[m], wy[m] = slope[m] * dy[m], wz[m] = slope[m] * dz[m];
       }
       EACH {
-        ux[m] = c[PAIR_VX] - mine[m][PAIR_VX], uy[m] = c[PAIR_VY] - mine[m][PAIR_VY], uz[m] = c[PAIR_VZ] - mine[m][PAIR_VZ];
+        ux[m] = mine[m][PAIR_VX] - c[PAIR_VX], uy[m] = mine[m][PAIR_VY] - c[PAIR_VY], uz[m] = mine[m][PAIR_VZ] - c[PAIR_VZ];
         closing[m] = ux[m] * dx[m] + uy[m] * dy[m] + uz[m] * dz[m]; /* positive when they approach */
-        const VECTOR mu_per = h[m] * NAME(larger)(closing[m], zero) * per[m];
+        const VECTOR mu_per = FIXED ? NAME(larger)(closing[m], zero) * per[m] : h[m] * NAME(larger)(closing[m], zero) * per[m];
         mu[m] = mu_per * densities[m];
         viscous[m] = mu_per * ((REAL)k.twice_beta * mu[m] + (REAL)k.alpha * (mine[m][PAIR_SOUND] + c[PAIR_SOUND]));
+        if (FIXED && k.volume_weights) viscous[m] *= mine[m][PAIR_DENSITY] * c[PAIR_DENSITY];
       }
-      VECTOR per_its = zero, per_densities[GROUP]; /* the inverse of its density and of both */
       VECTOR work[GROUP]; /* that the artificial stress takes from the motion */
       EACH work[m] = zero;
-      if (k.volume_weights) {
-        per_its = INVERSE(c[PAIR_DENSITY]);
-        EACH per_densities[m] = per_mine[m] * per_its;
-      }
       if (k.strength || corrected) {
         const size_t turned = (artificial ? PAIR_TURNED_TOO : PAIR_TURNED) - PAIR_NARROW;
         VECTOR more[PAIR_WIDE - PAIR_NARROW];
@@ -348,6 +366,7 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
           }
           if (artificial) { /* f^4 (R_i + R_j), f = W(r)/W(spacing). Monaghan 2000; Gray, Monaghan & Swift 2001 */
             VECTOR f = NAME(select)(within_h[m], 1 - q[m] * q[m] * ((REAL)1.5 - (REAL)0.75 * q[m]), quarter * t[m] * t[m] * t[m]);
+            if (FIXED) f = NAME(keep)(near[m], f); /* where q is not a number */
             f *= (REAL)(1 / k.spline_at_spacing);
             f *= f;
             f *= f;
@@ -358,9 +377,9 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
             if (corrected) yx += rxy, zx += rxz, zy += ryz;
             work[m] = ux[m] * (rxx * wx[m] + rxy * wy[m] + rxz * wz[m]) + uy[m] * (rxy * wx[m] + ryy * wy[m] + ryz * wz[m]) +
                       uz[m] * (rxz * wx[m] + ryz * wy[m] + rzz * wz[m]);
-            if (k.volume_weights) work[m] *= per_densities[m];
+            if (!FIXED && k.volume_weights) work[m] *= per_densities[m];
           }
-          if (k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
+          if (!FIXED && k.volume_weights) { /* T is of sigma, not of sigma/rho^2: forces conjugate to that gradient */
             const VECTOR both = per_densities[m];
             xx *= both, xy *= both, xz *= both, yy *= both, yz *= both, zz *= both;
             if (corrected) yx *= both, zx *= both, zy *= both;
@@ -374,27 +393,24 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
       } else {
         EACH {
           VECTOR p = mine[m][PAIR_XX] + c[PAIR_XX];
-          if (k.volume_weights) p *= per_densities[m];
+          if (!FIXED && k.volume_weights) p *= per_densities[m];
           p -= viscous[m];
           fx[m] = p * wx[m], fy[m] = p * wy[m], fz[m] = p * wz[m];
         }
       }
-      VECTOR volume = c[PAIR_MASS]; /* with volume weights; else the sum is divided by rho_i afterwards */
-      if (k.volume_weights) volume *= per_its;
       EACH {
         VECTOR cooling = viscous[m] * slope[m] * closing[m]; /* twice */
         if (artificial) cooling -= work[m];
-        const VECTOR mj = c[PAIR_MASS];
-        const VECTOR signal = NAME(keep)(near[m], NAME(larger)(zero + LEAST_SIGNAL, mu[m]));
-        VECTOR mi = zero + mine[m][PAIR_MASS], opposite = zero - mine[m][PAIR_MASS];
-        s[m][0] += mj * fx[m], s[m][1] += mj * fy[m], s[m][2] += mj * fz[m];
-        s[m][SUM_HEATING] -= mj * cooling;
+        const VECTOR signal = NAME(keep_larger)(near[m], mu[m], zero + LEAST_SIGNAL);
         s[m][SUM_SIGNAL] = NAME(larger)(s[m][SUM_SIGNAL], signal);
-        within += NAME(keep)(near[m], zero + 1);
-        GAIN(0, opposite * fx[m]), GAIN(1, opposite * fy[m]), GAIN(2, opposite * fz[m]);
-        GAIN(SUM_HEATING, opposite * cooling);
         g[SUM_SIGNAL] = m ? NAME(larger)(g[SUM_SIGNAL], signal) : signal;
-        VECTOR ax = volume * wx[m], ay = volume * wy[m], az = volume * wz[m];
+        within = NAME(add_chosen)(within, near[m], zero + 1);
+        const VECTOR mj = c[PAIR_MASS], mi = zero + mine[m][PAIR_MASS], my_volume = k.volume_weights ? mi * per_mine[m] : mi;
+        s[m][0] -= TIMES(mj, fx[m]), s[m][1] -= TIMES(mj, fy[m]), s[m][2] -= TIMES(mj, fz[m]);
+        s[m][SUM_HEATING] += TIMES(mj, cooling);
+        GAIN(0, TIMES(mi, fx[m])), GAIN(1, TIMES(mi, fy[m])), GAIN(2, TIMES(mi, fz[m]));
+        GAIN(SUM_HEATING, TIMES(mi, cooling));
+        VECTOR ax = TIMES(its_volume, wx[m]), ay = TIMES(its_volume, wy[m]), az = TIMES(its_volume, wz[m]);
         s[m][3] += ux[m] * ax, s[m][4] += ux[m] * ay, s[m][5] += ux[m] * az;
         s[m][6] += uy[m] * ax, s[m][7] += uy[m] * ay, s[m][8] += uy[m] * az;
         s[m][9] += uz[m] * ax, s[m][10] += uz[m] * ay, s[m][11] += uz[m] * az;
@@ -402,8 +418,7 @@ INLINE double NAME(sum)(const struct sph_pair_chunk *chunk, const struct sph_pai
           s[m][14] += dx[m] * ax, s[m][15] += dx[m] * ay, s[m][16] += dx[m] * az;
           s[m][17] += dy[m] * ay, s[m][18] += dy[m] * az, s[m][19] += dz[m] * az;
         }
-        if (k.volume_weights) mi *= per_mine[m];
-        ax = mi * wx[m], ay = mi * wy[m], az = mi * wz[m];
+        ax = TIMES(my_volume, wx[m]), ay = TIMES(my_volume, wy[m]), az = TIMES(my_volume, wz[m]);
         GAIN(3, ux[m] * ax), GAIN(4, ux[m] * ay), GAIN(5, ux[m] * az);
         GAIN(6, uy[m] * ax), GAIN(7, uy[m] * ay), GAIN(8, uy[m] * az);
         GAIN(9, uz[m] * ax), GAIN(10, uz[m] * ay), GAIN(11, uz[m] * az);
