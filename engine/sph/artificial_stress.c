@@ -19,6 +19,6 @@ const struct sph_module sph_artificial_stress_module = {
     .source = "Monaghan 2000; Gray, Monaghan & Swift 2001",
     .when = "artificial_stress above 0",
     .on = on,
-    .bytes = 0,
+    .bytes = 6 * sizeof(double), /* R (pairs.c) */
     .hook = {0},
 };

@@ -14,6 +14,6 @@ const struct sph_module sph_gradient_correction_module = {
     .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
     .when = "gradient_correction is asked for",
     .on = on,
-    .bytes = (6 + 10) * sizeof(double), /* B, and wider records of what foreign particles get (pairs.c) */
+    .bytes = (6 + 5) * sizeof(double), /* B, and wider records of what foreign particles get (pairs.c) */
     .hook = {0},
 };

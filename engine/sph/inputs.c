@@ -182,7 +182,7 @@ static const struct field rows[] = {
          .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
     SWITCH(method.gradient_correction, 0,
            .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without strain and keeps its "
-                  "angular momentum, and its free sides are as stiff as its inside. For ringing and spinning bodies; costs two fifths "
+                  "angular momentum, and its free sides are as stiff as its inside. For ringing and spinning bodies; costs a quarter "
                   "more time.",
            .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
     SWITCH(method.volume_weights, 0,
