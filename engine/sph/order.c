@@ -8,6 +8,26 @@ struct key {
   uint32_t id;
 };
 
+enum { BITS = 62 }; /* of a coordinate: cells of a millimetre across 1e15 m */
+
+/* From coordinates to Hilbert's index, whose bits are those of axis 0, 1, 2 in turn (Skilling 2004, AIP Conf. Proc. 707, 381). */
+static void follow_curve(uint64_t axis[3]) {
+  for (uint64_t bit = (uint64_t)1 << (BITS - 1); bit > 1; bit >>= 1)
+    for (int d = 0; d < 3; d++) { /* of each cell: turned over, or its axes exchanged */
+      const uint64_t below = bit - 1, turn = -(uint64_t)((axis[d] & bit) != 0);
+      const uint64_t exchange = (axis[0] ^ axis[d]) & below & ~turn;
+      axis[0] ^= (below & turn) ^ exchange;
+      axis[d] ^= exchange;
+    }
+  axis[1] ^= axis[0];
+  axis[2] ^= axis[1];
+  uint64_t turned = 0;
+  for (uint64_t bit = (uint64_t)1 << (BITS - 1); bit > 1; bit >>= 1)
+    if (axis[2] & bit) turned ^= bit - 1;
+  for (int d = 0; d < 3; d++)
+    axis[d] ^= turned;
+}
+
 /* Is the highest set bit of a below that of b? */
 static int lower_bit(uint64_t a, uint64_t b) {
   return a < b && a < (a ^ b);
@@ -37,13 +57,14 @@ status sph_order_find(size_t n, const double *x, const double *y, const double *
     lowest[d] = low;
     extent = fmax(extent, high - low);
   }
-  double scale = extent > 0 && isfinite(extent) ? 4.6e18 / extent : 0; /* below 2^62: cells of a millimetre across 1e15 m */
+  double scale = extent > 0 && isfinite(extent) ? 4.6e18 / extent : 0; /* below 2^BITS */
   for (size_t i = 0; i < n; i++) {
     keys[i].id = (uint32_t)i;
     for (int d = 0; d < 3; d++) {
       double t = (place[d][i] - lowest[d]) * scale;
       keys[i].axis[d] = t > 0 ? (uint64_t)t : 0; /* what is not finite stands first; the step ends on it elsewhere */
     }
+    follow_curve(keys[i].axis);
   }
   qsort(keys, n, sizeof *keys, compare);
   for (size_t i = 0; i < n; i++)

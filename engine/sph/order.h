@@ -1,4 +1,5 @@
-/* A space-filling order of particles (Morton), so that neighbours are near in memory. Deterministic: ties by id. */
+/* An order of particles along Hilbert's curve, so that neighbours are near in memory, and that any stretch of it has a small
+ * surface. Deterministic: ties by id. */
 #ifndef CLAST_ENGINE_SPH_ORDER_H
 #define CLAST_ENGINE_SPH_ORDER_H
 

@@ -126,14 +126,14 @@ bool sph_system_list_again(struct sph_system *s) {
   return false;
 }
 
-/* Is more lost in a step, on pairs beyond the support that only the room of fast particles brings in, than lists for half as many
- * steps would cost? So it is where many fly fast and close together. By counting, not by the clock: bits depend on it. */
-static bool too_wide(const struct sph_system *s) {
+/* What is lost, until the lists are worn, on pairs beyond the support that only the room of fast particles brings in: much where many fly
+ * fast and close together. In neighbours, like LISTING. By counting, not by the clock: bits depend on it. */
+static double lost_on_room(const struct sph_system *s) {
   double swollen = 0;
   for (size_t k = 0; k < s->block_count; k++)
     swollen += s->block[k].swollen;
   const double beyond = sph_pairs_reached(s->pairs) - s->now.neighbours, most = s->now.neighbours * swollen / (double)s->n;
-  return fmin(beyond, most) * (double)s->now.horizon > 2 * LISTING;
+  return fmin(beyond, most) * (double)s->now.horizon;
 }
 
 bool sph_system_list(struct sph_system *s) {
@@ -145,12 +145,14 @@ bool sph_system_list(struct sph_system *s) {
   if (s->now.listings++ % LISTINGS_PER_SORT == 0) {
     if (!sort(s)) return false;
     s->now.horizon = s->now.horizon ? 2 * s->now.horizon : HORIZON;
-    if (s->now.horizon > HORIZON) s->now.horizon = HORIZON;
   }
+  if (s->now.horizon > HORIZON) s->now.horizon = HORIZON;
   if (!list_anew(s)) return false;
-  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && too_wide(s)) {
+  /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some eight times the loss */
+  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * LISTING) {
     s->now.horizon /= 2;
     if (!list_anew(s)) return false;
   }
+  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * LISTING) s->now.horizon *= 2; /* of the next ones */
   return true;
 }
