@@ -27,11 +27,12 @@ void sph_chunks_clear(struct sph_chunks *c) {
   sph_neighbours_free(c->neighbours);
   free(c->chunk);
   free(c->start);
+  free(c->shares);
   *c = (struct sph_chunks){0};
 }
 
 size_t sph_chunks_bytes(const struct sph_chunks *c) {
-  size_t bytes = sph_neighbours_bytes(c->neighbours);
+  size_t bytes = sph_neighbours_bytes(c->neighbours) + c->share_capacity * sizeof *c->shares;
   for (size_t k = 0; k < c->count; k++)
     bytes += sizeof *c->chunk + (c->chunk[k].lists.capacity + c->chunk[k].other_capacity + 2 * c->chunk[k].own + 1) * sizeof(uint32_t);
   return bytes;
@@ -81,6 +82,51 @@ cleanup:
   return enough;
 }
 
+/* One past the last of `others` from `first` on that belongs to the same chunk as that. */
+static size_t end_of_share(const struct sph_chunk *c, size_t first) {
+  const uint32_t owner = c->other[first] / SPH_CHUNK;
+  size_t low = first, high = c->others;
+  while (high - low > 1) {
+    const size_t middle = (low + high) / 2;
+    if (c->other[middle] / SPH_CHUNK == owner)
+      low = middle;
+    else
+      high = middle;
+  }
+  return high;
+}
+
+static bool find_shares(struct sph_chunks *s) {
+  size_t total = 0;
+  for (size_t k = 0; k < s->count; k++)
+    s->chunk[k].shares = 0;
+  for (size_t k = 0; k < s->count; k++)
+    for (size_t m = 0; m < s->chunk[k].others; m = end_of_share(&s->chunk[k], m), total++)
+      s->chunk[s->chunk[k].other[m] / SPH_CHUNK].shares++;
+  if (total > s->share_capacity) {
+    free(s->shares);
+    s->share_capacity = total + total / 8;
+    s->shares = malloc(s->share_capacity * sizeof *s->shares);
+    if (!s->shares) {
+      s->share_capacity = 0;
+      return false;
+    }
+  }
+  struct sph_chunk_share *next = s->shares;
+  for (size_t k = 0; k < s->count; k++) {
+    s->chunk[k].share = next;
+    if (next) next += s->chunk[k].shares;
+    s->chunk[k].shares = 0;
+  }
+  for (size_t k = 0; k < s->count; k++)
+    for (size_t m = 0, end; m < s->chunk[k].others; m = end) {
+      struct sph_chunk *owner = &s->chunk[s->chunk[k].other[m] / SPH_CHUNK];
+      end = end_of_share(&s->chunk[k], m);
+      s->shares[(size_t)(owner->share - s->shares) + owner->shares++] = (struct sph_chunk_share){(uint32_t)k, (uint32_t)m, (uint32_t)(end - m)};
+    }
+  return true;
+}
+
 status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const double *y, const double *z, const double *reach,
                        const double periodic[3], int threads, struct error *error) {
   const status code = sph_neighbours_find(s->neighbours, n, x, y, z, reach, periodic, threads, error);
@@ -100,7 +146,7 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
              (s->share == 1 || sph_exchange(&places, c->own, s->share, &c->lists)) &&
              find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
   }
-  if (!enough) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
+  if (!enough || !find_shares(s)) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
   s->others = s->most_slots = 0;
   for (size_t k = 0; k < s->count; k++) {
     struct sph_chunk *c = &s->chunk[k];

@@ -12,11 +12,18 @@
 
 enum { SPH_CHUNK = 4096 };
 
+/* A stretch of a chunk's `other`: those that belong to another chunk. */
+struct sph_chunk_share {
+  uint32_t chunk, first, count;
+};
+
 struct sph_chunk {
   size_t first, own, others;        /* others: how many foreign ones, */
   uint32_t *other;                  /* their numbers: ascending, all above the chunk's own */
   struct sph_neighbour_lists lists; /* of slots; shared ones are whole batches (exchange.h) */
   size_t others_before;             /* others of all chunks before it */
+  size_t shares;                    /* which particles of this chunk are others of which chunks, in the order of chunks: how many, */
+  const struct sph_chunk_share *share;
   size_t other_capacity;
   atomic_bool summed, taken;        /* in this pass of the pair loop */
 };
@@ -26,6 +33,8 @@ struct sph_chunks {
   struct sph_chunk *chunk;
   struct sph_neighbours *neighbours;
   uint32_t *start; /* of all lists */
+  struct sph_chunk_share *shares; /* of all chunks */
+  size_t share_capacity;
 };
 
 /* For n particles; `share`: as for sph_neighbours_create. STATUS_MEMORY: then nothing is left to free. */

@@ -283,19 +283,6 @@ INLINE double at(bool whole, const void *record, size_t column) {
   return whole ? ((const double *)record)[column] : (double)((const float *)record)[column];
 }
 
-/* The first of `count` ascending numbers that is not below `number`. */
-static size_t first_from(const uint32_t *numbers, size_t count, size_t number) {
-  size_t low = 0, high = count;
-  while (low < high) {
-    const size_t middle = (low + high) / 2;
-    if (numbers[middle] < number)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 static void *sums_of_chunk(const struct sph_pairs *p, size_t k) {
   return (char *)p->out + k % p->depth * p->lists.most_slots * p->out_columns * p->real;
 }
@@ -305,11 +292,11 @@ INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
   const struct sph_chunk *c = &p->lists.chunk[k];
   const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW, size = p->out_columns * p->real;
   char *own = sums_of_chunk(p, k);
-  for (size_t before = 0; before < k; before++) {
-    const struct sph_chunk *b = &p->lists.chunk[before];
-    const uint32_t *foreign = b->other;
-    for (size_t m = first_from(foreign, b->others, c->first); m < b->others && foreign[m] < c->first + c->own; m++) {
-      char *to = own + (foreign[m] - c->first) * size;
+  for (size_t q = 0; q < c->shares; q++) {
+    const struct sph_chunk_share share = c->share[q];
+    const struct sph_chunk *b = &p->lists.chunk[share.chunk];
+    for (size_t m = share.first; m < share.first + share.count; m++) {
+      char *to = own + (b->other[m] - c->first) * size;
       const char *from = (const char *)p->foreign + (b->others_before + m) * size;
       const double signal = fmax(at(whole, to, SUM_SIGNAL), at(whole, from, SUM_SIGNAL));
       if (whole) {

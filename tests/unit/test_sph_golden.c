@@ -2,9 +2,9 @@
 #include "tests/golden.h"
 
 enum { RESULTS_VERSION = 3 };
-#define GOLDEN_SPHERE "ac9f9cde572852afd2c615a5b073f2bc"
-#define GOLDEN_ROD "17ffa36ba1d7d9ebd76955e2ac522b04"
-#define GOLDEN_RINGS "2e609d4d1931930dfba1a5a891f7cebe"
+#define GOLDEN_SPHERE "4ff8afacf8278df539f1b93bbd93f598"
+#define GOLDEN_ROD "74e611b8733fcfd21e19a795ed89c870"
+#define GOLDEN_RINGS "191f406bf3f43ea73d5acd72eb154fc1"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {
   struct ran ran = run_case_run(&sph_engine, inputs, 11);

@@ -701,6 +701,24 @@ static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
   free(c);
 }
 
+/* Hilbert's curve goes from each cell of a grid to one that shares a face with it. */
+static void order_follows_the_curve(void **state) {
+  (void)state;
+  enum { SIDE = 16, CELLS = SIDE * SIDE * SIDE };
+  static double x[3][CELLS];
+  static uint32_t order[CELLS];
+  struct error error = {0};
+  for (size_t i = 0; i < CELLS; i++)
+    x[0][i] = (double)(i % SIDE), x[1][i] = (double)(i / SIDE % SIDE), x[2][i] = (double)(i / SIDE / SIDE);
+  assert_int_equal(sph_order_find(CELLS, x[0], x[1], x[2], order, &error), STATUS_OK);
+  for (size_t k = 1; k < CELLS; k++) {
+    double way = 0;
+    for (int d = 0; d < 3; d++)
+      way += fabs(x[d][order[k]] - x[d][order[k - 1]]);
+    assert_true(way == 1);
+  }
+}
+
 /* R is minus epsilon times the tensile part: along the axes of a turned tensor of known principal values. */
 static void artificial_stress_opposes_tension_only(void **state) {
   (void)state;
@@ -782,6 +800,7 @@ int main(void) {
       cmocka_unit_test(thin_periodic_boxes_are_refused),
       cmocka_unit_test(lists_wear_out_with_the_slack),
       cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near),
+      cmocka_unit_test(order_follows_the_curve),
       cmocka_unit_test(artificial_stress_opposes_tension_only),
       cmocka_unit_test(opposed_stress_equals_plain_c),
   };
