@@ -704,12 +704,12 @@ static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
 /* Hilbert's curve goes from each cell of a grid to one that shares a face with it. */
 static void order_follows_the_curve(void **state) {
   (void)state;
-  enum { SIDE = 16, CELLS = SIDE * SIDE * SIDE };
+  enum { ACROSS_GRID = 16, CELLS = ACROSS_GRID * ACROSS_GRID * ACROSS_GRID };
   static double x[3][CELLS];
   static uint32_t order[CELLS];
   struct error error = {0};
   for (size_t i = 0; i < CELLS; i++)
-    x[0][i] = (double)(i % SIDE), x[1][i] = (double)(i / SIDE % SIDE), x[2][i] = (double)(i / SIDE / SIDE);
+    x[0][i] = (double)(i % ACROSS_GRID), x[1][i] = (double)(i / ACROSS_GRID % ACROSS_GRID), x[2][i] = (double)(i / ACROSS_GRID / ACROSS_GRID);
   assert_int_equal(sph_order_find(CELLS, x[0], x[1], x[2], order, &error), STATUS_OK);
   for (size_t k = 1; k < CELLS; k++) {
     double way = 0;
