@@ -91,6 +91,21 @@ struct picture_profile {
 status picture_profile(const char *path, double width, const char *title, const char *x_label, size_t count, const double *x,
                        size_t panels, const struct picture_profile *panel, struct error *error);
 
+/* A mean with its interval over an input's value. */
+struct picture_mean {
+  double x, y, half; /* half width of the interval; 0 or NaN: none is drawn */
+};
+struct picture_curve {
+  const char *label; /* may be NULL */
+  size_t count;
+  const struct picture_mean *mean; /* x ascending */
+};
+/* One to eight curves: dots with error bars, joined by lines. x is logarithmic when all of it is positive and spans a factor of 20
+ * and more. The legend stands beside the frame, so the picture is wider than `width` by it. STATUS_USAGE when there is no dot to
+ * draw. */
+status picture_curves(const char *path, double width, const char *title, const char *x_label, const char *y_label, size_t count,
+                      const struct picture_curve *curve, struct error *error);
+
 struct picture_axis {
   const char *label;
   size_t count;

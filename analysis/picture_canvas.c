@@ -101,6 +101,11 @@ void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, doub
                         companded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), alpha);
 }
 
+void picture_canvas_series(cairo_t *cairo, size_t series, double alpha) {
+  static const double hues[PICTURE_CANVAS_SERIES] = {255, 30, 145, 320, 85, 200, 0, 285};
+  picture_canvas_colour(cairo, 0.55, 0.15, hues[series % PICTURE_CANVAS_SERIES], alpha);
+}
+
 double picture_canvas_round_length(double length) {
   double decade = pow(10, floor(log10(length)));
   double part = length / decade;

@@ -28,6 +28,9 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
+/* Of one of several series, told apart by hue. */
+enum { PICTURE_CANVAS_SERIES = 8 };
+void picture_canvas_series(cairo_t *cairo, size_t series, double alpha);
 /* The next of 1, 2, 5 x 10^n at or below. */
 double picture_canvas_round_length(double length);
 /* "5 cm", "2 m", "500 µm". */

@@ -6,8 +6,6 @@
 #include "analysis/picture.h"
 #include "analysis/picture_canvas.h"
 
-enum { MOST_SERIES = 8 };
-
 struct frame {
   cairo_t *cairo;
   double left, top, width, height, font;
@@ -17,11 +15,6 @@ struct frame {
 static double at_x(const struct frame *f, double log_mass) { return f->left + f->width * (log_mass - f->x0) / (f->x1 - f->x0); }
 static double at_y(const struct frame *f, double log_density) {
   return f->top + f->height * (f->y1 - log_density) / (f->y1 - f->y0);
-}
-
-static void series_colour(cairo_t *cairo, size_t i, double alpha) {
-  static const double hues[MOST_SERIES] = {255, 30, 145, 320, 85, 200, 0, 285};
-  picture_canvas_colour(cairo, 0.55, 0.15, hues[i], alpha);
 }
 
 static double middle(const struct pooled_bin *bin) { return (log10(bin->lower) + log10(bin->upper)) / 2; }
@@ -85,7 +78,7 @@ static void points(const struct frame *f, const struct picture_series *series, s
     cairo_set_line_width(cairo, 0.09 * f->font);
     if (bin->standard_error > 0) {
       double low = bin->density - bin->standard_error;
-      series_colour(cairo, index, low > 0 ? 0.75 : 0.3); /* reaches down to zero: faint, or it would rule the picture */
+      picture_canvas_series(cairo, index, low > 0 ? 0.75 : 0.3); /* reaches down to zero: faint, or it would rule the picture */
       double bottom = low > 0 ? fmin(at_y(f, log10(low)), floor_y) : floor_y;
       double top = fmax(at_y(f, log10(bin->density + bin->standard_error)), f->top);
       cairo_move_to(cairo, x, bottom);
@@ -99,7 +92,7 @@ static void points(const struct frame *f, const struct picture_series *series, s
       cairo_stroke(cairo);
     }
     cairo_arc(cairo, x, y, radius, 0, 2 * M_PI);
-    series_colour(cairo, index, 1);
+    picture_canvas_series(cairo, index, 1);
     cairo_fill_preserve(cairo);
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_set_line_width(cairo, 0.06 * f->font);
@@ -125,7 +118,7 @@ static void fit_line(const struct frame *f, const struct picture_fit *fit, size_
   const double dashes[3][2] = {{1, 0}, {0.9, 0.5}, {0.25, 0.4}};
   double dash[2] = {dashes[number % 3][0] * f->font, dashes[number % 3][1] * f->font};
   if (number % 3) cairo_set_dash(cairo, dash, 2, 0);
-  series_colour(cairo, index, 0.95);
+  picture_canvas_series(cairo, index, 0.95);
   cairo_set_line_width(cairo, 0.14 * f->font);
   cairo_move_to(cairo, at_x(f, log10(fit->lower)), at_y(f, level - fit->beta * log10(fit->lower)));
   cairo_line_to(cairo, at_x(f, log10(upper)), at_y(f, level - fit->beta * log10(upper)));
@@ -153,7 +146,7 @@ static void legend(const struct frame *f, size_t count, const struct picture_ser
       if (!text) continue;
       cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
       picture_canvas_text(cairo, left, y, 0.95 * f->font, PICTURE_LEFT, line == 0, text);
-      series_colour(cairo, s, 1);
+      picture_canvas_series(cairo, s, 1);
       if (line == 0) {
         cairo_arc(cairo, mark + f->font, y - 0.33 * f->font, 0.3 * f->font, 0, 2 * M_PI);
         cairo_fill(cairo);
@@ -175,8 +168,8 @@ static void legend(const struct frame *f, size_t count, const struct picture_ser
 
 status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
                         const struct picture_series *series, struct error *error) {
-  if (count < 1 || count > MOST_SERIES)
-    return status_fail(error, STATUS_USAGE, "%s: one to %d spectra in a picture, not %zu", path, MOST_SERIES, count);
+  if (count < 1 || count > PICTURE_CANVAS_SERIES)
+    return status_fail(error, STATUS_USAGE, "%s: one to %d spectra in a picture, not %zu", path, PICTURE_CANVAS_SERIES, count);
   double font = width / 46, height = 0.72 * width;
   struct frame f = {.left = 5.2 * font, .top = (title ? 3 : 1) * font, .font = font};
   f.width = width - f.left - font;

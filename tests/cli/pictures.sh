@@ -23,6 +23,21 @@ is_svg map.svg
 expect 0 "$clast" map small.db beta.png -x strain -y angle -q dust_fraction
 is_png beta.png
 
+expect 0 "$clast" plot small.db lines.png -x strain --by angle
+is_png lines.png
+expect 0 "$clast" plot small.db dust.svg -x strain -q dust_fraction
+is_svg dust.svg
+expect 64 "$clast" plot small.db m.png
+says "--x"
+expect 64 "$clast" plot small.db m.png -x strain --by strain
+expect 64 "$clast" plot small.db m.png -x strain,angle
+expect 64 "$clast" plot small.db m.png -x strain -q largest_fraction,dust_fraction
+says "one quantity"
+expect 64 "$clast" plot small.db m.png -x strain -q nothing
+says "largest_fraction"
+expect 64 "$clast" plot small.db m.jpg -x strain
+expect 74 "$clast" plot small.db no/such/folder/m.png -x strain
+
 expect 64 "$clast" map small.db m.png -x strain
 expect 64 "$clast" map small.db m.png -x strain -y strain
 expect 64 "$clast" map small.db m.png -x strain -y nothing
@@ -46,4 +61,4 @@ head -c 3000 disc.h5 >cut.h5
 expect 65 "$clast" picture cut.h5 none.png
 [ ! -e none.png ] || fail "a picture was left behind"
 [ -z "$(find . -name '*.part')" ] || fail "a .part file was left behind"
-done_after 23
+done_after 34

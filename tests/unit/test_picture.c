@@ -17,6 +17,7 @@
 #include "analysis/analysis.h"
 #include "analysis/picture.h"
 #include "engine/random.h"
+#include "tests/sweep.h"
 
 static char folder[256];
 static const char *at(const char *name) {
@@ -204,6 +205,53 @@ static void profiles_are_drawn(void **state) {
   assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 40, x, 0, panels, NULL), STATUS_USAGE);
 }
 
+/* Where there is blue and where there is red, in the middle of the lines: pixels of each hue in a part of the picture. */
+static int hued(const char *path, bool red, double x0, double x1, double y0, double y1) {
+  cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
+  assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
+  const unsigned char *data = cairo_image_surface_get_data(surface);
+  const int width = cairo_image_surface_get_width(surface), height = cairo_image_surface_get_height(surface);
+  const int stride = cairo_image_surface_get_stride(surface);
+  int count = 0;
+  for (int y = (int)(y0 * height); y < (int)(y1 * height); y++)
+    for (int x = (int)(x0 * width); x < (int)(x1 * width); x++) {
+      const unsigned char *p = data + y * stride + 4 * x; /* blue, green, red */
+      count += red ? p[2] > p[0] + 60 : p[0] > p[2] + 60;
+    }
+  cairo_surface_destroy(surface);
+  return count;
+}
+
+static void curves_are_drawn(void **state) {
+  (void)state;
+  const struct picture_mean high[] = {{1, 0.9, 0.05}, {10, 0.9, 0.05}, {100, 0.9, 0.05}}; /* no gap between them in log x */
+  const struct picture_mean low[] = {{1, 0.1, 0}, {10, NAN, 0}, {100, 0.1, NAN}};
+  const struct picture_curve curves[] = {{NULL, 3, high}, {NULL, 3, low}};
+  assert_int_equal(picture_curves(at("curves.png"), 900, "M_1/M", "k (1/m^3)", "largest fraction", 2, curves, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("curves.png"), &dark, &coloured, &width, &height);
+  assert_true(width == 900); /* no legend, no room for one */
+  assert_true(hued(at("curves.png"), false, 0.2, 0.9, 0.1, 0.4) > 1000 && hued(at("curves.png"), true, 0.2, 0.9, 0.1, 0.4) == 0);
+  assert_true(hued(at("curves.png"), true, 0, 1, 0.6, 0.9) > 100); /* dots */
+  assert_true(hued(at("curves.png"), true, 0.3, 0.85, 0.1, 0.9) == 0); /* and no line over what is no number */
+  /* the dot in the middle of the decades stands in the middle of the axis; a bar is taller than a dot */
+  const double middle = (7.5 + 0.5 * (46 - 8.5)) / 46;
+  const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1), line = hued(at("curves.png"), false, middle - 0.11, middle - 0.09, 0, 1);
+  assert_true(dot > 3 * line && line > 20);
+  assert_true(hued(at("curves.png"), false, middle - 0.002, middle + 0.002, 0, 1) > 80); /* a dot alone: 13 lines of 4 pixels */
+  const struct picture_mean short_way[] = {{1, 0.1, 0}, {10, 0.9, 0}, {19, 0.9, 0}}; /* below a factor of 20: linear */
+  assert_int_equal(picture_curves(at("narrow.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){"one label", 3, short_way}, NULL), STATUS_OK);
+  ink(at("narrow.png"), &dark, &coloured, &width, &height);
+  assert_true(width > 950);
+  const double share = middle * 900 / width;
+  assert_true(hued(at("narrow.png"), false, share - 0.01, share + 0.01, 0, 0.2) > 2 * hued(at("narrow.png"), false, share + 0.05, share + 0.07, 0, 0.2));
+  assert_int_equal(picture_curves(at("one.svg"), 600, NULL, "x", "y", 1, &(struct picture_curve){"lonely", 1, high}, NULL), STATUS_OK);
+  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 0, NULL, NULL), STATUS_USAGE);
+  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 1, &(struct picture_curve){NULL, 1, &low[1]}, NULL), STATUS_USAGE);
+  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 9, curves, NULL), STATUS_USAGE);
+}
+
 static void errors_leave_nothing(void **state) {
   (void)state;
   static struct example e;
@@ -239,13 +287,14 @@ int main(int count, char **arguments) {
       cmocka_unit_test(spectra_are_drawn),
       cmocka_unit_test(maps_are_drawn),
       cmocka_unit_test(profiles_are_drawn),
+      cmocka_unit_test(curves_are_drawn),
       cmocka_unit_test(errors_leave_nothing),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "nan.png", "profile.png", "flat.svg"};
+    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "curves.png", "narrow.png", "one.svg", "nan.png", "profile.png", "flat.svg"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
-    if (rmdir(folder) != 0) failed++; /* something else was left behind */
+    if (sweep(folder) != 0) failed++;
   }
   return failed;
 }

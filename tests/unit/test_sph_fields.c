@@ -23,6 +23,7 @@
 #include "engine/sph/bodies.h"
 #include "engine/sph/inputs.h"
 #include "engine/sph/particle_fields.h"
+#include "tests/sweep.h"
 
 static char folder[256];
 static const char *at(const char *name) {
@@ -432,6 +433,6 @@ int main(int argc, char **argv) {
       cmocka_unit_test_prestate(pictures, &keep),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (!keep && rmdir(folder)) return 1; /* something was left behind */
+  if (!keep && sweep(folder)) return 1;
   return failed;
 }

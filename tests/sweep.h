@@ -1,0 +1,27 @@
+/* A test's own folder goes when the test ends, passed or failed. */
+#ifndef CLAST_TESTS_SWEEP_H
+#define CLAST_TESTS_SWEEP_H
+
+#include <dirent.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Removes the folder and the files in it, and says which there were; how many. */
+static inline int sweep(const char *folder) {
+  int left = 0;
+  DIR *list = opendir(folder);
+  for (const struct dirent *entry; list && (entry = readdir(list));) {
+    char path[1024];
+    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
+    snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+    fprintf(stderr, "left behind: %s\n", path);
+    unlink(path);
+    left++;
+  }
+  if (list) closedir(list);
+  rmdir(folder);
+  return left;
+}
+
+#endif
