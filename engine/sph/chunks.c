@@ -14,7 +14,7 @@ status sph_chunks_create(size_t n, size_t share, const struct sph_pair_kernels *
   c.start = malloc((2 * n + c.count + 1) * sizeof *c.start);
   c.neighbours = sph_neighbours_create(n, SPH_CHUNK, share, kernels);
   *out = c;
-  if (c.chunk && c.start && c.neighbours) return STATUS_OK;
+  if (c.chunk && c.start && c.neighbours && (share == 1 || n <= SPH_NUMBER)) return STATUS_OK;
   sph_chunks_clear(out);
   return status_fail(error, STATUS_MEMORY, "no memory for lists of neighbours of %zu particles", n);
 }
@@ -141,9 +141,8 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
     c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
     c->lists.start = s->start + 2 * c->first + k;
     c->lists.count = c->lists.start + c->own + 1;
-    const struct sph_exchange_places places = {x + c->first, y + c->first, z + c->first, reach + c->first, periodic};
     enough = sph_neighbours_list(s->neighbours, k, &c->lists) &&
-             (s->share == 1 || sph_exchange(&places, c->own, s->share, &c->lists)) &&
+             (s->share == 1 || sph_exchange(c->own, &c->lists)) &&
              find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
   }
   if (!enough || !find_shares(s)) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);

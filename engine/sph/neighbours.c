@@ -288,13 +288,13 @@ static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t
   return true;
 }
 
-/* Joins two ascending lists, the second of which stands at `more`, in the place of the first. */
+/* Joins two ascending lists, the second of which stands at `more`, in the place of the first; with the tags of both. */
 static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t *more, size_t more_count, size_t *joined) {
   if (!grow((void **)&w->joint, &w->joint_capacity, count + more_count, 0, sizeof *w->joint)) return false;
   size_t used = 0;
   for (size_t a = 0, b = 0; a < count || b < more_count; used++) {
-    const uint32_t left = a < count ? list[a] : UINT32_MAX, right = b < more_count ? more[b] : UINT32_MAX;
-    w->joint[used] = left < right ? left : right;
+    const uint32_t left = a < count ? list[a] & SPH_NUMBER : UINT32_MAX, right = b < more_count ? more[b] & SPH_NUMBER : UINT32_MAX;
+    w->joint[used] = (left <= right ? list[a] : 0) | (right <= left ? more[b] : 0);
     a += left <= right;
     b += right <= left;
   }
@@ -317,7 +317,8 @@ static bool list_group(const struct sph_neighbours *s, size_t group, size_t firs
     next = k + s->share - before < size ? k + s->share - before : size;
     double *const others[4] = {at[0] + k + 1, at[1] + k + 1, at[2] + k + 1, at[3] + k + 1};
     size_t begin = *used, count = s->kernels->near_pairs(candidates - k - 1, others, w->number + k + 1,
-                                                         (const double(*)[4])own + k, next - k, s->period, lists->j + *used, &lists->pairs);
+                                                         (const double(*)[4])own + k, next - k, s->period, s->share > 1 ? 1U << (SPH_TAGS + before) : 0,
+                                                         lists->j + *used, &lists->pairs);
     if (before) {
       begin = lists->start[list];
       if (!join(w, lists->j + begin, lists->count[list], lists->j + *used, count, &count)) return false;

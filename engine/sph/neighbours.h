@@ -16,6 +16,10 @@ enum { SPH_LIST_ALIGN = 16 };
 
 struct sph_neighbours; /* opaque: the boxes */
 
+/* Where several particles share a list, at most four, bit SPH_TAGS + k of an entry says that it is a neighbour of the k-th of them; the
+ * bits below are its number. */
+enum { SPH_TAGS = 28, SPH_NUMBER = (1 << SPH_TAGS) - 1 };
+
 /* Of a chunk whose first particle is `first`. List g is that of the `share` particles from first + share g on: whoever comes after
  * the first of them and is a neighbour of one of them (or one of them), ascending, counted from `first`. It stands at j[start[g]]
  * .. j[start[g] + count[g] - 1]; start[g] is a multiple of SPH_LIST_ALIGN, and what lies between lists is their first particle. */

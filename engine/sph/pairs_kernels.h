@@ -105,9 +105,10 @@ struct sph_pair_kernels {
   size_t (*near_particles)(const struct sph_near_particles *particles, const uint32_t *group, size_t count,
                            const struct sph_near_box *own, const double period[3], double *at[4], uint32_t *number);
   /* Of `count` candidates at x y z reach the numbers of those within the sum of reaches of one of `owns` others; `at` and `number`
-   * may be read, and `found` written, up to 7 beyond the end. To *pairs is added how many that are, counted for each of those others. */
+   * may be read, and `found` written, up to 7 beyond the end. `tag`, when not 0, is a bit that is set in the numbers of those within
+   * reach of the first of the others; the next one, of the second, and so on. To *pairs is added how many that are, counted for each of those others. */
   size_t (*near_pairs)(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
-                       const double period[3], uint32_t *found, size_t *pairs);
+                       const double period[3], uint32_t tag, uint32_t *found, size_t *pairs);
   /* The records of `count` particles, those from `first` on or (not NULL) those that `which` names, `stride` columns each. */
   void (*pack_double)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, double *in);
   void (*pack_float)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride, float *in);

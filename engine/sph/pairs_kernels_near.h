@@ -42,6 +42,17 @@ INLINE void near_compress_numbers(uint32_t *to, unsigned mask, const uint32_t *f
 #endif
 }
 
+/* Sets bits of those of `mask`. */
+INLINE void near_tag(uint32_t number[8], unsigned mask, uint32_t bits) {
+#ifdef __AVX512F__
+  const __m256i its = _mm256_loadu_si256((const __m256i *)(const void *)number);
+  _mm256_storeu_si256((__m256i *)(void *)number, _mm256_mask_or_epi32(its, (__mmask8)mask, its, _mm256_set1_epi32((int)bits)));
+#else
+  for (unsigned k = 0; k < 8; k++)
+    number[k] |= (mask >> k & 1) ? bits : 0;
+#endif
+}
+
 /* From `d` to its nearest image. */
 INLINE near_vector near_image(near_vector d, double period, const bool wrapped) {
   if (!wrapped || !(period > 0)) return d;
@@ -114,11 +125,13 @@ INLINE size_t near_particles_of(const struct sph_near_particles *p, const uint32
 }
 
 INLINE size_t near_pairs_of(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], const size_t owns,
-                            const double period[3], uint32_t *found, size_t *pairs, const bool wrapped) {
+                            const double period[3], uint32_t tag, uint32_t *found, size_t *pairs, const bool wrapped) {
   size_t n = 0, total = 0;
   for (size_t k = 0; k < count; k += 8) {
     const unsigned all = count - k < 8 ? (1U << (count - k)) - 1 : ~0U;
+    uint32_t its[8];
     unsigned mask = 0;
+    memcpy(its, number + k, sizeof its);
     for (size_t m = 0; m < owns; m++) {
       const near_vector reach = near_load(at[3] + k) + own[m][3];
       near_vector square = {0};
@@ -129,9 +142,10 @@ INLINE size_t near_pairs_of(size_t count, double *const at[4], const uint32_t *n
       }
       const unsigned near = near_less(square, reach * reach) & all;
       mask |= near;
+      if (tag) near_tag(its, near, tag << m);
       if (owns > 1) total += (size_t)__builtin_popcount(near);
     }
-    near_compress_numbers(found + n, mask, number + k);
+    near_compress_numbers(found + n, mask, its);
     n += (size_t)__builtin_popcount(mask);
   }
   *pairs += owns > 1 ? total : n;
@@ -155,9 +169,9 @@ static size_t near_particles(const struct sph_near_particles *particles, const u
 }
 
 static size_t near_pairs(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
-                         const double period[3], uint32_t *found, size_t *pairs) {
-  if (near_wraps(period)) return near_pairs_of(count, at, number, own, owns, period, found, pairs, true);
-  if (owns == 1) return near_pairs_of(count, at, number, own, 1, period, found, pairs, false);
-  if (owns == 2) return near_pairs_of(count, at, number, own, 2, period, found, pairs, false);
-  return near_pairs_of(count, at, number, own, owns, period, found, pairs, false);
+                         const double period[3], uint32_t tag, uint32_t *found, size_t *pairs) {
+  if (near_wraps(period)) return near_pairs_of(count, at, number, own, owns, period, tag, found, pairs, true);
+  if (owns == 1) return near_pairs_of(count, at, number, own, 1, period, tag, found, pairs, false);
+  if (owns == 2) return near_pairs_of(count, at, number, own, 2, period, tag, found, pairs, false);
+  return near_pairs_of(count, at, number, own, owns, period, tag, found, pairs, false);
 }

@@ -630,9 +630,15 @@ static void shared_lists_join_those_of_their_members(void **state) {
             met[single.j[single.start[base + i] + k]] = 1;
         assert_true(start[g] % SPH_LIST_ALIGN == 0 && start[g + 1] >= start[g] + count[g]);
         for (size_t k = 0; k < count[g]; k++) {
-          const uint32_t j = lists.j[start[g] + k];
-          assert_true(j > first && (k == 0 || j > lists.j[start[g] + k - 1]));
+          const uint32_t j = lists.j[start[g] + k] & SPH_NUMBER, whose = lists.j[start[g] + k] >> SPH_TAGS;
+          assert_true(j > first && (k == 0 || j > (lists.j[start[g] + k - 1] & SPH_NUMBER)));
           assert_true(met[base + j] || j < last);
+          for (size_t i = first; i < last && j >= last; i++) {
+            bool its = false;
+            for (size_t m = 0; m < single.count[base + i]; m++)
+              its |= single.j[single.start[base + i] + m] == base + j;
+            assert_int_equal(whose >> (i - first) & 1, its);
+          }
           is_there[base + j] = 1;
         }
         for (size_t k = count[g]; k < start[g + 1] - start[g]; k++)
