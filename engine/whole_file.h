@@ -1,4 +1,5 @@
-/* Files that are there whole or not at all: written to a temporary name beside the target, flushed to the disk, renamed. */
+/* Files that are there whole or not at all: written to a temporary name beside the target, flushed to the disk, renamed. A process
+ * that is killed amid a write leaves FILE.tmp, which the next write of FILE takes over. */
 #ifndef CLAST_ENGINE_WHOLE_FILE_H
 #define CLAST_ENGINE_WHOLE_FILE_H
 

@@ -4,6 +4,7 @@
 
 #include <dirent.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -204,8 +205,22 @@ static void failed_writes_are_one_error_and_leave_nothing(void **state) {
   failed_writes_leave_nothing(&sph_engine, &sph);
 }
 
+/* What stands in the folder beside a.restart, and whether it is the one temporary file of that name. */
+static int beside(bool *temporary) {
+  int count = 0;
+  *temporary = false;
+  DIR *list = opendir(folder);
+  for (const struct dirent *entry; (entry = readdir(list));) {
+    if (entry->d_name[0] == '.' || strcmp(entry->d_name, "a.restart") == 0) continue;
+    *temporary |= strcmp(entry->d_name, "a.restart.tmp") == 0;
+    count++;
+  }
+  closedir(list);
+  return count;
+}
+
 /* A process that does nothing but write is killed at twenty moments: the file is always whole, and of the run. What a kill may
- * leave behind is a temporary file beside it, named as such. */
+ * leave behind is one temporary file beside it, and the next write takes that away; but not one that is being written. */
 static void killed_amid_a_write_the_file_is_whole(void **state) {
   (void)state;
   const struct sph_inputs inputs = sphere();
@@ -231,13 +246,39 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
     assert_true(sph_engine.time(again) == sph_engine.time(run));
     sph_engine.free(again);
   }
+  bool temporary;
+  assert_true(beside(&temporary) == (temporary ? 1 : 0)); /* twenty kills heap nothing up */
+  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb"); /* of a process that is gone */
+  fputs("of a write that was never finished", stale);
+  fclose(stale);
+  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  assert_int_equal(beside(&temporary), 0);
+  FILE *other = fopen(in_folder("a.restart.tmp"), "wb"); /* of one that is at it */
+  fputs("half", other);
+  fflush(other);
+  assert_int_equal(flock(fileno(other), LOCK_EX), 0);
+  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  assert_true(beside(&temporary) == 1 && temporary);
+  struct stat there;
+  assert_true(stat(in_folder("a.restart.tmp"), &there) == 0 && there.st_size == 4);
+  fclose(other);
+  const pid_t rival = fork(); /* two that write the same file: no write fails */
+  assert_true(rival >= 0);
+  for (int k = 0; k < 100; k++)
+    if (sph_engine.save(run, path, NULL)) {
+      if (rival == 0) _exit(1);
+      fail();
+    }
+  if (rival == 0)
+    _exit(0);
+  int ended;
+  assert_int_equal(waitpid(rival, &ended, 0), rival);
+  assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
+  assert_int_equal(beside(&temporary), 0);
+  assert_int_equal(sph_engine.restore(&inputs, path, &again, NULL), STATUS_OK);
+  sph_engine.free(again);
   sph_engine.free(run);
   unlink(path);
-  DIR *left = opendir(folder);
-  for (const struct dirent *entry; (entry = readdir(left));)
-    if (strstr(entry->d_name, ".tmp"))
-      unlink(in_folder(entry->d_name));
-  closedir(left);
 }
 
 int main(void) {
