@@ -10,10 +10,12 @@
 #include "engine/sph/run.h"
 #include "engine/sph/scale.h"
 
-/* Measured by tests/unit/test_sph_engine.c: bytes per particle of the moving system with its lists (sph_system_bytes), and of all
- * that stands beside it (particles as set up and as read back, fragments at the end). */
-enum { SPEED = 2000000 }; /* particle-steps/s of one core (bench_sph) */
-enum { BYTES_SYSTEM = 1100, BYTES_BESIDE = 600, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
+/* Bytes per particle of the moving system but its lists (sph_system_bytes of 10 000 particles; 100 less of 100 000), what the
+ * gradient correction adds, lists at the usual h, and all that stands beside the system (particles as set up and as read back;
+ * fragments at the end, when dust is many: what a whole process had at its peak, less the system). */
+enum { BYTES_SYSTEM = 730, BYTES_CORRECTION = 140, BYTES_LISTS = 108, BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
+/* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2 to 3 GHz). */
+enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 60, COST_ARTIFICIAL = 35 };
 static const double pi = 3.14159265358979323846;
 static const double euler = 0.57721566490153286;
 
@@ -40,8 +42,8 @@ struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
 static double flaws_expected(double particles) { return particles * (log(fmax(particles, 1)) + euler); }
 
 size_t sph_describe_memory(const struct sph_inputs *in) {
-  double particles = sph_scale_particles(in), lists = pow(in->fidelity.smoothing / SPH_BODIES_H * (1 + in->fidelity.skin), 3) * 40 * 4;
-  double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists);
+  double particles = sph_scale_particles(in), lists = pow(in->fidelity.smoothing / SPH_BODIES_H * (1 + in->fidelity.skin), 3) * BYTES_LISTS;
+  double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists + (in->method.gradient_correction ? BYTES_CORRECTION : 0));
   if (sph_scale_cracks(&in->target))
     bytes += flaws_expected(particles) * BYTES_PER_FLAW;
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
@@ -51,6 +53,13 @@ static double steps_expected(const struct sph_inputs *in) {
   double h = sph_scale_smallest_spacing(in) * in->fidelity.smoothing;
   double blow = in->kind == SPH_IMPACT ? 0.25 * in->impact.speed : 0; /* compressed matter is faster than sound at rest */
   return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_scale_wave_speed(&in->target) + blow));
+}
+
+/* Particle-steps of one core in a second. */
+static double speed_expected(const struct sph_inputs *in) {
+  double cost = in->fidelity.precision == SPH_FLOAT ? COST_FLOAT : COST_DOUBLE;
+  cost += (in->method.gradient_correction ? COST_CORRECTION : 0) + (in->method.artificial_stress > 0 ? COST_ARTIFICIAL : 0);
+  return 1e9 / cost;
 }
 
 double sph_describe_work(const struct sph_inputs *in) { return sph_scale_particles(in) * steps_expected(in); }
@@ -193,11 +202,11 @@ char *sph_describe_scene(const struct sph_inputs *in) {
   double particles = sph_scale_particles(in);
   fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
           (double)sph_describe_memory(in) / 1e6);
-  const double steps = steps_expected(in), seconds = steps * particles / SPEED;
-  fprintf(out, "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.0e particle-steps a second\n",
+  const double steps = steps_expected(in), speed = speed_expected(in), seconds = steps * particles / speed;
+  fprintf(out, "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.2g particle-steps a second\n",
           steps, particles, sph_scale_cracks(&in->target) ? ", fewer when fracture ceases before" : "",
           seconds < 100 ? seconds : seconds < 6000 ? seconds / 60 : seconds / 3600,
-          seconds < 100 ? "s" : seconds < 6000 ? "minutes" : "hours", (double)SPEED);
+          seconds < 100 ? "s" : seconds < 6000 ? "minutes" : "hours", speed);
   if (fclose(out)) {
     free(text);
     return NULL;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "engine/cpu_class.h"
+#include "tests/sweep.h"
 
 static char folder[] = "/tmp/clast_run_files_XXXXXX";
 
@@ -28,7 +29,7 @@ static int make_folder(void **state) {
 
 static int remove_folder(void **state) {
   (void)state;
-  return rmdir(folder); /* fails when a test or a failed write left anything behind */
+  return sweep(folder); /* whatever a test or a failed write left behind */
 }
 
 static struct dem_inputs disc(bool gear) {
