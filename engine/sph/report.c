@@ -156,6 +156,17 @@ static status crater(const struct sph_run *run, struct sph_results *results, str
 
 static bool closed(const struct sph_run *run) { return !run->start->held && !run->start->damping; }
 
+/* What changes of momentum are measured against: bodies that stop each other must not make a small error look large. */
+static double momentum_scale(const struct sph_run *run, const struct sph_ledger *ledger) {
+  return fmax(ledger->momentum_scale, run->state.momentum_scale_start);
+}
+
+/* Angular momentum about axis k keeps where both other directions are open. */
+static double angular_change(const struct sph_run *run, const struct sph_ledger *ledger, int k) {
+  const bool keeps = isnan(run->periodic[(k + 1) % 3]) && isnan(run->periodic[(k + 2) % 3]);
+  return keeps ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
+}
+
 static void shares_of_steps(const struct sph_run *run, struct sph_results *results) {
   double steps = (double)sph_system_steps(run->system);
   const uint64_t *by = run->state.limited;
@@ -208,8 +219,8 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
   results->clamped_share = input > 0 ? not_infinite(fabs(ledger->clamped) / input) : (double)NAN;
   results->density_held_share = share((double)ledger->density_held, steps * (double)run->start->n);
   for (int k = 0; k < 3; k++)
-    change[k] = ledger->angular_momentum[k] - run->state.angular_start[k];
-  double scale = fmax(norm(run->state.angular_start), ledger->momentum_scale * sph_run_extent(run));
+    change[k] = angular_change(run, ledger, k);
+  double scale = fmax(norm(run->state.angular_start), momentum_scale(run, ledger) * sph_run_extent(run));
   if (closed(run) && scale > 0)
     results->angular_momentum_error = not_infinite(norm(change) / scale);
   shares_of_steps(run, results);
@@ -239,8 +250,8 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->energy_error = input > 0 ? not_infinite(fabs(sph_run_closed(ledger) - run->state.energy_start) / input) : (double)NAN;
   for (int k = 0; k < 3; k++)
     change[k] = ledger->momentum[k] - run->state.momentum_start[k];
-  outcome->momentum_error =
-      closed(run) && ledger->momentum_scale > 0 ? not_infinite(norm(change) / ledger->momentum_scale) : (double)NAN;
+  const double scale = momentum_scale(run, ledger);
+  outcome->momentum_error = closed(run) && scale > 0 ? not_infinite(norm(change) / scale) : (double)NAN;
   for (size_t k = 0; k < pieces->count; k++) {
     double v = norm(pieces->fragments[k].velocity);
     translation += 0.5 * pieces->fragments[k].mass * v * v;

@@ -69,8 +69,8 @@ static const struct field rows[] = {
     REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input: booked apart, not credited in energy_error."),
     SHARE(density_held_share, .doc = "Particle-steps at the lowest density allowed, over all: clamps that put in no energy."),
     REAL(angular_momentum_error, "1", 0,
-         .doc = "Change of angular momentum over the larger of its first size and the sum of momenta times the target's reach; off "
-                "with grips or damped sides."),
+         .doc = "Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) "
+                "times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats."),
     SHARE(limited.courant, .doc = "Share of the steps whose length the speed of sound and the viscosity set."),
     SHARE(limited.force, .doc = "Share of the steps whose length the acceleration set."),
     SHARE(limited.damage, .doc = "Share of the steps whose length the growth of damage set."),

@@ -72,6 +72,7 @@ static void begin(struct sph_run *run) {
   run->state.energy_input = ledger.kinetic;
   memcpy(run->state.momentum_start, ledger.momentum, sizeof ledger.momentum);
   memcpy(run->state.angular_start, ledger.angular_momentum, sizeof ledger.angular_momentum);
+  run->state.momentum_scale_start = ledger.momentum_scale;
   run->state.smallest_step = HUGE_VAL;
   run->state.first_damage = NAN;
 }

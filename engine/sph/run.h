@@ -25,6 +25,7 @@ struct sph_state {
   char message[FIELD_TEXT_SIZE];
   double energy_start, energy_input;               /* J: ledger's closed sum, kinetic energy at the start */
   double momentum_start[3], angular_start[3];
+  double momentum_scale_start;                     /* kg m/s, sum |p| at the start */
   double smallest_step;                            /* s */
   double first_damage;                             /* s, NaN: none yet */
   double quiet_damage, quiet_since;                /* mean damage, and when it was that; the rule of stop.quiet_time */
