@@ -284,7 +284,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   energy_input REAL, -- [J] Energy put in: kinetic energy at the start, and the size of the grips' work.
   clamped_share REAL, -- [1] energy.clamped over energy_input: booked apart, not credited in energy_error.
   density_held_share REAL, -- [1] Particle-steps at the lowest density allowed, over all: clamps that put in no energy.
-  angular_momentum_error REAL, -- [1] Change of angular momentum over the larger of its first size and the sum of momenta times the target's reach; off with grips or damped sides.
+  angular_momentum_error REAL, -- [1] Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats.
   limited_courant REAL, -- [1] Share of the steps whose length the speed of sound and the viscosity set.
   limited_force REAL, -- [1] Share of the steps whose length the acceleration set.
   limited_damage REAL, -- [1] Share of the steps whose length the growth of damage set.
@@ -848,7 +848,7 @@ INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression:
 
 INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta times the target''s reach; off with grips or damped sides.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target''s reach; off with grips or damped sides. Only about axes across which nothing repeats.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time since which damage has grown by less than stop.quiet_growth; off when it still grows.', 1);
 
@@ -1050,7 +1050,7 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta times the target''s reach; off with grips or damped sides.', 0);
+INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target''s reach; off with grips or damped sides. Only about axes across which nothing repeats.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
