@@ -14,7 +14,7 @@ status sph_chunks_create(size_t n, size_t share, const struct sph_pair_kernels *
   c.start = malloc((2 * n + c.count + 1) * sizeof *c.start);
   c.neighbours = sph_neighbours_create(n, SPH_CHUNK, share, kernels);
   *out = c;
-  if (c.chunk && c.start && c.neighbours && (share == 1 || n <= SPH_NUMBER)) return STATUS_OK;
+  if (c.chunk && c.start && c.neighbours) return STATUS_OK;
   sph_chunks_clear(out);
   return status_fail(error, STATUS_MEMORY, "no memory for lists of neighbours of %zu particles", n);
 }

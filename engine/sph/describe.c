@@ -15,7 +15,7 @@
  * fragments at the end, when dust is many: what a whole process had at its peak, less the system). */
 enum { BYTES_SYSTEM = 730, BYTES_CORRECTION = 140, BYTES_LISTS = 108, BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 /* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2 to 3 GHz). */
-enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 60, COST_ARTIFICIAL = 35 };
+enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
 static const double pi = 3.14159265358979323846;
 static const double euler = 0.57721566490153286;
 

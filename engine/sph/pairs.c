@@ -80,8 +80,10 @@ static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
 }
 
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error) {
-  struct sph_pairs *p = calloc(1, sizeof *p);
   *out = NULL;
+  if (options->precision == SPH_FLOAT && n > SPH_NUMBER)
+    return status_fail(error, STATUS_CONTENT, "float precision takes %d particles at most, not %zu: use double", SPH_NUMBER, n);
+  struct sph_pairs *p = calloc(1, sizeof *p);
   if (p) {
     p->options = *options;
     p->units = (struct units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1};

@@ -64,7 +64,7 @@ enum { SPH_PIECE = 512 }; /* particles whose sums are handed over at once */
 
 struct sph_pairs; /* opaque: lists and records */
 
-/* STATUS_MEMORY. `n` particles at most; nothing is allocated later but by sph_pairs_list when lists must grow. */
+/* STATUS_MEMORY; STATUS_CONTENT for more particles than float lists can name (neighbours.h). `n` particles at most; nothing is allocated later but by sph_pairs_list when lists must grow. */
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error);
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);

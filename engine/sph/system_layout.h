@@ -12,7 +12,7 @@
 
 enum { SPH_BLOCK = SPH_PIECE, SPH_HOOKS = 24 };
 
-/* Columns, all of n. Not allocated (NULL) where no body needs them: system.c has the rows. The deviator is kept by five
+/* Columns, all of n. Not allocated (NULL) where no body needs them: system_create.c has the rows. The deviator is kept by five
  * components, xx xy xz yy yz: its trace is zero by construction. */
 struct sph_columns {
   double *x, *y, *z;

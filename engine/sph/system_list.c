@@ -136,6 +136,10 @@ static double lost_on_room(const struct sph_system *s) {
   return fmin(beyond, most) * (double)s->now.horizon;
 }
 
+static void lengthen(struct sph_system *s) {
+  s->now.horizon = s->now.horizon && s->now.horizon < HORIZON / 2 ? 2 * s->now.horizon : HORIZON;
+}
+
 bool sph_system_list(struct sph_system *s) {
   bool worn = s->now.listings == 0;
   for (size_t k = 0; k < s->block_count; k++)
@@ -144,15 +148,14 @@ bool sph_system_list(struct sph_system *s) {
   wrap(s);
   if (s->now.listings++ % LISTINGS_PER_SORT == 0) {
     if (!sort(s)) return false;
-    s->now.horizon = s->now.horizon ? 2 * s->now.horizon : HORIZON;
+    lengthen(s);
   }
-  if (s->now.horizon > HORIZON) s->now.horizon = HORIZON;
   if (!list_anew(s)) return false;
   /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some eight times the loss */
   while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * LISTING) {
     s->now.horizon /= 2;
     if (!list_anew(s)) return false;
   }
-  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * LISTING) s->now.horizon *= 2; /* of the next ones */
+  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * LISTING) lengthen(s); /* the next ones */
   return true;
 }

@@ -15,10 +15,10 @@ enum { SECTIONS = SPH_COLUMNS + 10 };
 static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
   double **slot[SPH_COLUMNS];
   size_t count = 0;
-  const size_t kept = sph_system_create_columns(s, slot);
+  const size_t columns = sph_system_create_columns(s, slot);
   out[count++] = (struct section){&s->n, sizeof s->n};
   out[count++] = (struct section){&s->now, sizeof s->now};
-  for (size_t k = 0; k < kept; k++)
+  for (size_t k = 0; k < columns; k++)
     out[count++] = (struct section){*slot[k], s->n * sizeof(double)};
   for (int k = 0; k < 5; k++)
     out[count++] = (struct section){sph_pairs_listed(s->pairs)[k], s->n * sizeof(double)};

@@ -707,6 +707,18 @@ static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
   free(c);
 }
 
+/* Entries of shared lists have bits for a number, and bits for whose it is. */
+static void float_takes_so_many_particles(void **state) {
+  (void)state;
+  struct sph_pair_options options = usual;
+  struct sph_pairs *pairs;
+  struct error error = {0};
+  options.precision = SPH_FLOAT;
+  assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
+  assert_null(pairs);
+  assert_non_null(strstr(error.message, "268435455"));
+}
+
 /* Hilbert's curve goes from each cell of a grid to one that shares a face with it. */
 static void order_follows_the_curve(void **state) {
   (void)state;
@@ -806,6 +818,7 @@ int main(void) {
       cmocka_unit_test(thin_periodic_boxes_are_refused),
       cmocka_unit_test(lists_wear_out_with_the_slack),
       cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near),
+      cmocka_unit_test(float_takes_so_many_particles),
       cmocka_unit_test(order_follows_the_curve),
       cmocka_unit_test(artificial_stress_opposes_tension_only),
       cmocka_unit_test(opposed_stress_equals_plain_c),
