@@ -54,8 +54,8 @@ void outcome_fragments(struct outcome *outcome, size_t count, const struct fragm
   }
   double largest = count > 0 ? fragments[0].mass : 0, rest = mass - largest;
   outcome->total_mass = mass;
-  outcome->dust_fraction = mass > 0 ? fmin(dust / mass, 1) : 0;
-  outcome->largest_fraction = mass > 0 ? fmin(largest / mass, 1) : 0;
+  outcome->dust_fraction = mass > 0 ? dust / mass : 0;
+  outcome->largest_fraction = mass > 0 ? largest / mass : 0;
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;
   outcome->mean_fragment_mass = mass > 0 ? square / mass : 0;
   outcome->mean_fragment_mass_rest = count > 1 && rest > 0 ? fmax(square - largest * largest, 0) / rest : 0;

@@ -1,6 +1,8 @@
 /* Is the store what it says? Each check is a question whose answer must be none. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -68,6 +70,47 @@ static status check_results(struct report *report, struct error *error) {
   while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
     result = no_rows(report, (const char *)sqlite3_column_text(statement, 0), error);
   sqlite3_finalize(statement);
+  return result;
+}
+
+/* `' column is value' || ...` over a table's columns that have a range, for each row's value that is not in it; false: none has.
+ * Older stores lack columns. */
+static bool range_columns(struct store *store, const char *table, const struct field_table *fields, FILE *sql) {
+  bool any = false;
+  for (size_t k = 0; k < fields->count; k++) {
+    const struct field *row = &fields->rows[k];
+    char name[FIELD_TEXT_SIZE];
+    if ((row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) || (row->minimum == -HUGE_VAL && row->maximum == HUGE_VAL)) continue;
+    sql_column_name(row->path, name, sizeof name);
+    if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK) continue;
+    fprintf(sql, "%siif(\"%s\" < %.17g OR \"%s\" > %.17g, ' %s is ' || \"%s\", '')", any ? " || " : "", name,
+            fmax(row->minimum, -DBL_MAX), name, fmin(row->maximum, DBL_MAX), name, name);
+    any = true;
+  }
+  return any;
+}
+
+/* Results of runs that count, within the ranges of their rows: a share above 1 is an error of the sums. Those of another
+ * results_version cannot be judged. */
+static status check_ranges(struct report *report, struct error *error) {
+  status result = STATUS_OK;
+  for (size_t k = 0; result == STATUS_OK && k < 2 * engine_count(); k++) {
+    const struct engine_kind *kind = engine_at(k / 2);
+    const struct schema_table own = schema_result_table(kind);
+    const char *name = k % 2 ? own.name : "run";
+    char *sql = NULL;
+    size_t size = 0;
+    FILE *text = open_memstream(&sql, &size);
+    if (!text) return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    fputs("SELECT 'run ' || run_id || ', out of range:' || wrong FROM (SELECT run_id, ", text);
+    const bool any = range_columns(report->store, name, k % 2 ? kind->results : &outcome_table, text);
+    fprintf(text, " AS wrong FROM run JOIN point USING (point_id)%s%s%s WHERE counts AND engine = '%s' AND results_version = %d) WHERE wrong <> ''",
+            k % 2 ? " JOIN \"" : "", k % 2 ? name : "", k % 2 ? "\" USING (run_id)" : "", kind->name, kind->results_version);
+    fclose(text);
+    if (!sql) return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    if (any) result = no_rows(report, sql, error);
+    free(sql);
+  }
   return result;
 }
 
@@ -198,6 +241,7 @@ status store_check(struct store *store, void (*line)(void *context, const char *
   for (size_t i = 0; result == STATUS_OK && i < sizeof questions / sizeof questions[0]; i++)
     result = no_rows(&report, questions[i], error);
   if (result == STATUS_OK) result = check_results(&report, error);
+  if (result == STATUS_OK) result = check_ranges(&report, error);
   if (result == STATUS_OK) result = check_files(&report, error);
   if (result == STATUS_OK) result = sums_mismatches(store->db, &wrong, error);
   if (result == STATUS_OK && wrong > 0)

@@ -27,10 +27,10 @@ status sph_report_pieces(const struct sph_run *run, double static_strength, bool
   return sph_pieces_find(run->now, &options, pieces, error);
 }
 
-static double share(double part, double whole) {
-  return whole > 0 && isfinite(part) ? fmin(fmax(part / whole, 0), 1) : (double)NAN;
-}
 static double not_infinite(double value) { return isfinite(value) ? value : (double)NAN; }
+/* As it is: a part is summed in the order of the whole, so that roundings do not lift it above; a share that is not within 0..1 is an
+ * error of the sums, which `clast check` names. */
+static double share(double part, double whole) { return whole > 0 ? not_infinite(part / whole) : (double)NAN; }
 static double norm(const double v[3]) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 static double largest_mass(const struct sph_pieces *pieces) { return pieces->count ? pieces->fragments[0].mass : 0; }
 
@@ -88,7 +88,7 @@ static void damage(const struct sph_run *run, struct sph_results *results) {
   }
   results->mean_damage = share(sum, mass);
   if (p->rest_distention && mass > 0)
-    results->mean_distention = not_infinite(fmax(pores / mass, 1));
+    results->mean_distention = not_infinite(pores / mass);
   results->undamaged_fraction = share(whole, mass);
 }
 

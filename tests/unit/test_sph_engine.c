@@ -305,6 +305,30 @@ static void figures_by_hand(void **state) {
   }
 }
 
+/* A part larger than its whole is an error of the sums, and is shown as it is; no whole, no share. */
+static void a_share_above_one_is_shown(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  for (int fault = 0; fault < 3; fault++) {
+    struct ran ran = {0};
+    if (fault == 1) {
+      sph_run_advance(run, UINT64_MAX);
+      for (int k = 0; k < SPH_LIMITS; k++)
+        run->state.limited[k] = 0;
+      run->state.limited[SPH_LIMIT_FORCE] = 3 * sph_system_steps(run->system);
+    }
+    if (fault == 2) run->state.limited[SPH_LIMIT_FORCE] = sph_system_steps(run->system); /* all of it */
+    assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL), STATUS_OK);
+    const double share = ran.results.sph.limited.force;
+    assert_true(fault == 0 ? isnan(share) : share == (fault == 1 ? 3 : 1));
+    assert_true(fault == 0 || ran.results.sph.limited.courant == 0);
+    free(ran.fragments);
+  }
+  sph_run_free(run);
+}
+
 static void seeds_move_flaws(void **state) {
   (void)state;
   struct sph_inputs inputs = SMALL("stop.end_time=30 us"), poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
@@ -419,6 +443,7 @@ int main(void) {
                                      cmocka_unit_test(chunks_and_restarts_do_not_matter),
                                      cmocka_unit_test(stop_rules),
                                      cmocka_unit_test(figures_by_hand),
+                                     cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(seeds_move_flaws),
                                      cmocka_unit_test(more_than_memory_is_refused),
                                      cmocka_unit_test(overlapping_bodies_are_refused),

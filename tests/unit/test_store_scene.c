@@ -23,7 +23,7 @@ static void line(void *context, const char *text) {
   snprintf((char *)context + used, 4000 - used, "%s\n", text);
 }
 
-/* One run of every built-in scene, its results zero but for two fragments. */
+/* One run of every built-in scene, its results those of nothing but two fragments. */
 static void populate(const char *path) {
   struct store *store = NULL;
   OK(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
@@ -38,6 +38,7 @@ static void populate(const char *path) {
     struct outcome outcome = {.state = OUTCOME_COMPLETED};
     void *result = calloc(1, scene->kind->results->size);
     struct estimate estimates[ESTIMATES_COUNT];
+    field_defaults(scene->kind->results, result);
     outcome_fragments(&outcome, 2, fragments);
     OK(estimates_make(2, fragments, estimates, &error));
     struct store_run run = {.point_id = point,
@@ -93,8 +94,38 @@ static void a_changed_seed_or_scene_is_found(void **state) {
   }
 }
 
+/* A share above 1, in what all engines report and in an engine's own results; not of runs that do not count, and of no other version. */
+static void results_out_of_range_are_found(void **state) {
+  (void)state;
+  static const struct {
+    const char *damage, *word; /* NULL: none of that kind */
+  } cases[] = {
+      {"UPDATE run SET second_fraction = 1.0000001 WHERE run_id = 1", "run 1, out of range: second_fraction is 1.0000001\n"},
+      {"UPDATE result_sph SET limited_courant = 1.5, limited_force = -0.25", ", out of range: limited_courant is 1.5 limited_force is -0.25\n"},
+      {"UPDATE result_sph SET limited_courant = NULL, limited_force = 1", NULL},
+      {"UPDATE run SET second_fraction = 2, results_version = results_version + 1000", NULL},
+      {"UPDATE run SET second_fraction = 2, counts = 0, state = 'energy'", NULL},
+  };
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char path[64], problems[4000] = "";
+    struct store *store = NULL;
+    populate(fixture_path(path, "scene-range"));
+    sqlite3 *db = NULL;
+    sqlite3_open(path, &db);
+    assert_int_equal(sqlite3_exec(db, cases[i].damage, NULL, NULL, NULL), SQLITE_OK);
+    assert_true(sqlite3_changes(db) > 0);
+    sqlite3_close(db);
+    OK(store_open_reader(path, &store, &error));
+    const status code = store_check(store, line, problems, &error);
+    if (cases[i].word ? code != STATUS_CONTENT || !strstr(problems, cases[i].word) : strstr(problems, "range") != NULL)
+      fail_msg("%s: said '%s'", cases[i].damage, problems);
+    store_close(store, NULL);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(identities_follow_from_the_scenes),
-                                     cmocka_unit_test(a_changed_seed_or_scene_is_found)};
+                                     cmocka_unit_test(a_changed_seed_or_scene_is_found),
+                                     cmocka_unit_test(results_out_of_range_are_found)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
