@@ -1,7 +1,9 @@
 #include "analysis/estimates.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
 static const char *const window_docs = "fragments of 2 elements (grains or particles) and more (from 1.5 mean element masses), the largest left out\n"
@@ -105,4 +107,22 @@ const struct estimate *estimates_headline(size_t count, const struct estimate *r
   for (size_t i = 0; i < count; i++)
     if (rows[i].headline) return &rows[i];
   return NULL;
+}
+
+status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window, struct error *error) {
+  *is = strncmp(name, "beta", strlen("beta")) == 0;
+  *method = (enum exponent_method)ESTIMATES_HEADLINE_METHOD;
+  *window = (enum estimates_window)ESTIMATES_HEADLINE_WINDOW;
+  if (!*is || strcmp(name, "beta") == 0) return STATUS_OK;
+  for (int m = EXPONENT_LEAST_SQUARES; m <= EXPONENT_MASSES; m++)
+    for (int w = 0; w < ESTIMATES_WINDOWS; w++) {
+      char known[64];
+      snprintf(known, sizeof known, "beta_%s_%s", exponent_method_names[m], estimates_window_names[w]);
+      *method = (enum exponent_method)m;
+      *window = (enum estimates_window)w;
+      if (strcmp(name, known) == 0) return STATUS_OK;
+    }
+  return status_fail(error, STATUS_USAGE,
+                     "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW with method least_squares, binned or masses "
+                     "and window from_2, from_5 or from_10", name);
 }

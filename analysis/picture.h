@@ -93,7 +93,7 @@ status picture_profile(const char *path, double width, const char *title, const 
 
 /* A mean with its interval over an input's value. */
 struct picture_mean {
-  double x, y, half; /* half width of the interval; 0 or NaN: none is drawn */
+  double x, y, low, high; /* ends of the interval; NaN: none is drawn */
 };
 struct picture_curve {
   const char *label; /* may be NULL */

@@ -9,7 +9,7 @@
 enum { LOG_FROM = 20 }; /* a factor between the ends of x */
 
 static bool there(const struct picture_mean *m) { return isfinite(m->x) && isfinite(m->y); }
-static double half(const struct picture_mean *m) { return m->half > 0 && isfinite(m->half) ? m->half : 0; }
+static bool barred(const struct picture_mean *m) { return isfinite(m->low) && isfinite(m->high) && m->low < m->high; }
 
 static bool choose_ranges(size_t count, const struct picture_curve *curve, struct picture_frame *f) {
   f->x[0] = f->y[0] = HUGE_VAL;
@@ -19,7 +19,8 @@ static bool choose_ranges(size_t count, const struct picture_curve *curve, struc
       const struct picture_mean *m = &curve[c].mean[i];
       if (!there(m)) continue;
       f->x[0] = fmin(f->x[0], m->x), f->x[1] = fmax(f->x[1], m->x);
-      f->y[0] = fmin(f->y[0], m->y - half(m)), f->y[1] = fmax(f->y[1], m->y + half(m));
+      f->y[0] = fmin(f->y[0], m->y), f->y[1] = fmax(f->y[1], m->y);
+      if (barred(m)) f->y[0] = fmin(f->y[0], m->low), f->y[1] = fmax(f->y[1], m->high);
     }
   if (!(f->x[1] >= f->x[0])) return false;
   f->log_x = f->x[0] > 0 && f->x[1] >= LOG_FROM * f->x[0];
@@ -46,10 +47,10 @@ static void draw(const struct picture_frame *f, const struct picture_curve *curv
   for (size_t i = 0; i < curve->count; i++) {
     const struct picture_mean *m = &curve->mean[i];
     if (!there(m)) continue;
-    const double x = picture_frame_across(f, m->x), ends[2] = {picture_frame_up(f, m->y - half(m)), picture_frame_up(f, m->y + half(m))};
+    const double x = picture_frame_across(f, m->x), ends[2] = {picture_frame_up(f, m->low), picture_frame_up(f, m->high)};
     picture_canvas_series(cairo, index, 1);
     cairo_set_line_width(cairo, 0.1 * f->font);
-    for (int k = 0; k < 2 && half(m) > 0; k++) {
+    for (int k = 0; k < 2 && barred(m); k++) {
       cairo_move_to(cairo, x, ends[0]);
       cairo_line_to(cairo, x, ends[1]);
       cairo_move_to(cairo, x - radius, ends[k]);

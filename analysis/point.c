@@ -92,23 +92,34 @@ double point_window(const struct point_data *point, enum estimates_window window
   return estimates_window_elements(window) * point->element_mass;
 }
 
+static status estimate(const struct point_data *point, enum exponent_method method, enum estimates_window window, size_t resamples,
+                       double level, struct pooled_exponent *out, struct error *error) {
+  const double lower = point_window(point, window);
+  if (lower > 0) return pooled_exponent(&point->runs, method, lower, resamples, level, RESAMPLE_SEED, out, error);
+  *out = (struct pooled_exponent){.fit = {.method = (int)method}, .interval = {NAN, NAN, NAN, NAN, 0}}; /* no runs, or none with estimates */
+  out->fit.lower = out->fit.upper = out->fit.beta = out->fit.standard_error = NAN;
+  out->fit.cutoff_mass = out->fit.ks_distance = out->fit.log_likelihood = NAN;
+  return STATUS_OK;
+}
+
+status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
+                      enum estimates_window window, size_t resamples, double level, struct pooled_exponent *out,
+                      struct error *error) {
+  struct point_data point;
+  status code = point_read(store, point_id, results_version, &point, error);
+  if (code) return code;
+  code = estimate(&point, method, window, resamples, level, out, error);
+  point_release(&point);
+  return code;
+}
+
 status point_estimates(const struct point_data *point, size_t resamples, double level,
                        struct point_estimate rows[POINT_ESTIMATES], struct error *error) {
   static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
   status code = STATUS_OK;
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct point_estimate){.window = (enum estimates_window)(i % ESTIMATES_WINDOWS)};
-    struct pooled_exponent *exponent = &rows[i].exponent;
-    double lower = point_window(point, rows[i].window);
-    if (lower > 0) {
-      code = pooled_exponent(&point->runs, methods[i / ESTIMATES_WINDOWS], lower, resamples, level, RESAMPLE_SEED, exponent,
-                             error);
-    } else { /* no runs, or none with estimates: no element mass */
-      exponent->fit.method = (int)methods[i / ESTIMATES_WINDOWS];
-      exponent->fit.lower = exponent->fit.upper = exponent->fit.beta = exponent->fit.standard_error = NAN;
-      exponent->fit.cutoff_mass = exponent->fit.ks_distance = exponent->fit.log_likelihood = NAN;
-      exponent->interval = (struct sample_interval){NAN, NAN, NAN, NAN, 0};
-    }
+    code = estimate(point, methods[i / ESTIMATES_WINDOWS], rows[i].window, resamples, level, &rows[i].exponent, error);
   }
   return code;
 }

@@ -19,6 +19,8 @@ struct map {
   double (*points)[3];
   size_t count;
   bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
 };
 
 static status take_columns(void *context, size_t count, const char *const *names, struct error *error) {
@@ -57,24 +59,19 @@ static status take_group(void *context, size_t count, const struct query_value *
 static status take_point(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count;
   struct map *map = context;
-  struct point_data point;
-  status code = point_read(map->store, values[2].integer, 0, &point, error);
-  if (code)
-    return code;
-  struct pooled_exponent out = {.fit = {.beta = NAN}};
-  double lower = point_window(&point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
-  if (lower > 0)
-    code = pooled_exponent(&point.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0, 0.95, 0, &out, error);
-  point_release(&point);
+  struct pooled_exponent out;
+  status code = point_exponent(map->store, values[2].integer, 0, map->method, map->window, 0, 0.95, &out, error);
   return code ? code : add(map, &values[0], &values[1], out.fit.beta, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct map map = {.exponent = strcmp(options->quantity, "beta") == 0};
+  struct map map = {0};
   if (!options->x || !options->y)
     return status_fail(error, STATUS_USAGE, "a map needs --x and --y, two inputs that the campaign varied");
-  status code = store_open_reader(line->arguments[0], &map.store, error);
+  status code = estimates_named(options->quantity, &map.exponent, &map.method, &map.window, error);
+  if (!code)
+    code = store_open_reader(line->arguments[0], &map.store, error);
   if (code)
     return code;
   char by[600], sql[700], title[128];
@@ -89,10 +86,9 @@ static status run(const struct command_line *line, struct error *error) {
     snprintf(sql, sizeof sql, "select distinct \"%s\", \"%s\", point_id from points", map.name[0], map.name[1]);
     code = query_run(map.store, sql, 0, NULL, 0, &points, error);
   }
-  snprintf(title, sizeof title, "%s, mean over seeds", options->quantity);
+  snprintf(title, sizeof title, map.exponent ? "exponent %s, pooled over seeds" : "%s, mean over seeds", options->quantity);
   if (!code)
-    code = picture_map_points(line->arguments[1], WIDTH, map.exponent ? "exponent beta, pooled over seeds" : title,
-                              options->quantity, map.name[0], map.name[1], map.count, (const double(*)[3])map.points, error);
+    code = picture_map_points(line->arguments[1], WIDTH, title, options->quantity, map.name[0], map.name[1], map.count, (const double(*)[3])map.points, error);
   free(map.points);
   store_close(map.store, NULL);
   return code;
@@ -102,7 +98,8 @@ static const struct option_row rows[] = {
     {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL, "Varied input along the bottom: a path or its unique ending."},
     {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input along the side."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
-     "Result to show: a column of the view runs, or beta for the pooled exponent."},
+     "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
+     "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };
 
 const struct command map_command = {

@@ -1,22 +1,26 @@
-/* `clast plot STORE PICTURE`: a result over one varied input, a line for each value of another. */
+/* `clast plot STORE PICTURE`: a result or an exponent over one varied input, a line for each value of another. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/picture.h"
+#include "analysis/point.h"
 #include "campaign/commands/commands.h"
 #include "db/query.h"
 
 /* Columns of query_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF = 8, COLUMNS = 9 };
-enum { WIDTH = 900, MOST_CURVES = 8, MOST_MEANS = 1000 };
+enum { WIDTH = 900, MOST_CURVES = 8, MOST_MEANS = 1000, RESAMPLES = 1000 };
 
 struct options {
   const char *x, *by, *quantity;
 };
 
 struct plot {
+  struct store *store;
+  bool exponent; /* a fit to the runs of each point, no mean of a column */
+  enum exponent_method method;
+  enum estimates_window window;
   size_t axes;       /* 1, or 2 with --by */
   char name[3][256]; /* columns: the axes', and the quantity's */
   struct picture_curve curve[MOST_CURVES];
@@ -39,20 +43,18 @@ static status take_columns(void *context, size_t count, const char *const *names
   return STATUS_OK;
 }
 
-static status take_group(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count;
-  struct plot *plot = context;
-  const struct query_value *x = &values[0], *rest = values + plot->axes;
+/* keys: the axes' values. */
+static status add(struct plot *plot, const struct query_value *keys, int64_t version, struct picture_mean mean, struct error *error) {
+  const struct query_value *x = &keys[0];
   if (x->kind == QUERY_TEXT)
     return status_fail(error, STATUS_USAGE, "%s is no number: it can tell lines apart (--by), but is no axis", plot->name[0]);
   if (x->kind == QUERY_NULL)
     return STATUS_OK; /* off, or does not apply: no place on an axis of numbers */
   char value[sizeof plot->value[0]] = "";
-  const int64_t version = rest[VERSION].integer;
-  if (plot->axes == 2 && values[1].kind == QUERY_TEXT)
-    snprintf(value, sizeof value, "%s", values[1].text);
-  else if (plot->axes == 2 && values[1].kind != QUERY_NULL)
-    snprintf(value, sizeof value, "%.6g", values[1].real);
+  if (plot->axes == 2 && keys[1].kind == QUERY_TEXT)
+    snprintf(value, sizeof value, "%s", keys[1].text);
+  else if (plot->axes == 2 && keys[1].kind != QUERY_NULL)
+    snprintf(value, sizeof value, "%.6g", keys[1].real);
   size_t c = 0;
   while (c < plot->count && (strcmp(plot->value[c], value) != 0 || plot->version[c] != version))
     c++;
@@ -69,8 +71,43 @@ static status take_group(void *context, size_t count, const struct query_value *
   struct picture_curve *curve = &plot->curve[c];
   if (curve->count == MOST_MEANS)
     return status_fail(error, STATUS_USAGE, "a line of more than %d points cannot be read", MOST_MEANS);
-  plot->mean[c][curve->count++] = (struct picture_mean){x->real, rest[MEAN].real, rest[N].integer > 1 ? rest[HALF].real : 0};
+  mean.x = x->real;
+  for (size_t i = 0; plot->exponent && i < curve->count; i++)
+    if (plot->mean[c][i].x == mean.x)
+      return status_fail(error, STATUS_USAGE, "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
+                         plot->name[0], mean.x);
+  plot->mean[c][curve->count++] = mean;
   return STATUS_OK;
+}
+
+static status take_group(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count;
+  struct plot *plot = context;
+  const struct query_value *rest = values + plot->axes;
+  const double mean = rest[MEAN].real, half = rest[N].integer > 1 ? rest[HALF].real : (double)NAN;
+  return add(plot, values, rest[VERSION].integer, (struct picture_mean){0, mean, mean - half, mean + half}, error);
+}
+
+/* The axes, point_id, results_version, n. */
+static status take_point(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count;
+  struct plot *plot = context;
+  const struct query_value *rest = values + plot->axes;
+  struct pooled_exponent out;
+  status code = point_exponent(plot->store, rest[0].integer, rest[1].integer, plot->method, plot->window, RESAMPLES, 0.95, &out, error);
+  if (code)
+    return code;
+  const bool several = rest[2].integer > 1;
+  const struct picture_mean mean = {0, out.fit.beta, several ? out.interval.lower : (double)NAN, several ? out.interval.upper : (double)NAN};
+  return add(plot, values, rest[1].integer, mean, error);
+}
+
+static status fit_points(struct plot *plot, struct error *error) {
+  const struct query_sink sink = {plot, NULL, take_point};
+  char sql[1000];
+  snprintf(sql, sizeof sql, "select \"%s\", %s%s%s point_id, results_version, n from points where n > 0 order by point_id, results_version",
+           plot->name[0], plot->axes == 2 ? "\"" : "", plot->axes == 2 ? plot->name[1] : "", plot->axes == 2 ? "\"," : "");
+  return query_run(plot->store, sql, 0, NULL, 0, &sink, error);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -115,24 +152,29 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (!options->x)
     return status_fail(error, STATUS_USAGE, "a plot needs --x, an input that the campaign varied");
-  struct store *store = NULL;
-  status code = store_open_reader(line->arguments[0], &store, error);
+  struct plot plot = {.axes = options->by ? 2 : 1};
+  status code = estimates_named(options->quantity, &plot.exponent, &plot.method, &plot.window, error);
+  if (!code)
+    code = store_open_reader(line->arguments[0], &plot.store, error);
   if (code)
     return code;
-  struct plot plot = {.axes = options->by ? 2 : 1};
-  struct query_sink sink = {&plot, take_columns, take_group};
+  struct query_sink sink = {&plot, take_columns, plot.exponent ? NULL : take_group};
   char by[600], title[400], x_label[300], y_label[300], by_label[300];
   snprintf(by, sizeof by, "%s%s%s", options->x, options->by ? "," : "", options->by ? options->by : "");
-  code = query_group(store, by, options->quantity, &sink, error);
-  if (!code && !(code = label_axis(store, plot.name[0], x_label, error)) && !(code = label_axis(store, plot.name[1], by_label, error)) &&
-      !(code = label_axis(store, plot.name[2], y_label, error))) {
+  code = query_group(plot.store, by, plot.exponent ? "largest_fraction" : options->quantity, &sink, error);
+  if (!code && plot.exponent) {
+    snprintf(plot.name[2], sizeof plot.name[2], "%s", options->quantity);
+    code = fit_points(&plot, error);
+  }
+  if (!code && !(code = label_axis(plot.store, plot.name[0], x_label, error)) && !(code = label_axis(plot.store, plot.name[1], by_label, error)) &&
+      !(code = label_axis(plot.store, plot.name[2], y_label, error))) {
     finish(&plot, by_label);
-    snprintf(title, sizeof title, "%s, mean over seeds with 95 %% interval", plot.name[2]);
+    snprintf(title, sizeof title, "%s, %s over seeds with 95 %% interval", plot.name[2], plot.exponent ? "pooled" : "mean");
     code = picture_curves(line->arguments[1], WIDTH, title, x_label, y_label, plot.count, plot.curve, error);
   }
   for (size_t c = 0; c < plot.count; c++)
     free(plot.mean[c]);
-  store_close(store, NULL);
+  store_close(plot.store, NULL);
   return code;
 }
 
@@ -140,7 +182,8 @@ static const struct option_row rows[] = {
     {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL, "Varied input along the bottom: a path or its unique ending."},
     {"by", 'b', OPTION_TEXT, "AXIS", offsetof(struct options, by), 0, 0, NULL, "Another varied input: a line for each of its values, at most 8."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
-     "Result to show: a column of the view runs."},
+     "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
+     "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };
 
 const struct command plot_command = {
@@ -149,9 +192,10 @@ const struct command plot_command = {
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over one varied input as lines with error bars",
     .doc = "Draws the mean over seeds of a result against a varied input, with the 95 % interval of the mean (Student t) where\n"
-           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same numbers. An\n"
+           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same numbers. Of\n"
+           "an exponent (`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An\n"
            "axis over a factor of 20 and more is logarithmic. The ending chooses the format, .png or .svg.",
-    .examples = "clast plot out.db largest.png -x strain --by angle\nclast plot out.db dust.svg -x strain -q dust_fraction",
+    .examples = "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
     .options = rows,

@@ -20,13 +20,38 @@ expect 0 "$clast" spectrum small.db --picture spectrum.png
 is_png spectrum.png
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
-expect 0 "$clast" map small.db beta.png -x strain -y angle -q dust_fraction
+expect 0 "$clast" map small.db beta.png -x strain -y angle -q beta_binned_from_2
 is_png beta.png
 
 expect 0 "$clast" plot small.db lines.png -x strain --by angle
 is_png lines.png
 expect 0 "$clast" plot small.db dust.svg -x strain -q dust_fraction
 is_svg dust.svg
+expect 0 "$clast" plot small.db beta.svg -x strain --by angle -q beta_masses_from_2
+expect 0 "$clast" estimates small.db --json --resamples 1000
+# The lines of the picture stand as high as the numbers of the table: all on one scale.
+python - <<'PY'
+import json, re
+rows = [r for r in json.load(open('out')) if r['window'] == 'from_2']
+text = open('beta.svg').read()
+path = lambda kind: [[tuple(map(float, p)) for p in re.findall(r'[ML] (\S+) (\S+)', d)] for d in re.findall(r'<path style="fill:none;[^"]*' + kind + r'[^"]*" d="([^"]*)"', text)]
+lines = path('stroke-opacity:0.6')
+angles = sorted({r['threshold_angle'] for r in rows})
+assert len(lines) == len(angles) == 2, lines
+dots = [(r['beta_masses'], y) for a, line in zip(angles, lines)
+        for r, (x, y) in zip(sorted((r for r in rows if r['threshold_angle'] == a), key=lambda r: r['threshold_strain']), line, strict=True)]
+dots.sort()
+(v0, y0), (v1, y1) = dots[0], dots[-1]
+assert len(dots) == 4 and v1 > v0 + 0.01 and y1 < y0 - 50, dots
+height = lambda v: y0 + (y1 - y0) * (v - v0) / (v1 - v0)
+for v, y in dots:
+    assert abs(y - height(v)) < 0.01, dots  # points of a page, which holds six decimals of them
+PY
+ok "the picture shows the table's exponents"
+expect 64 "$clast" plot small.db m.png -x strain -q beta
+says "--by"
+expect 64 "$clast" plot small.db m.png -x strain --by angle -q beta_ks_from_2
+says "beta_METHOD_WINDOW"
 expect 64 "$clast" plot small.db m.png
 says "--x"
 expect 64 "$clast" plot small.db m.png -x strain --by strain
@@ -61,4 +86,4 @@ head -c 3000 disc.h5 >cut.h5
 expect 65 "$clast" picture cut.h5 none.png
 [ ! -e none.png ] || fail "a picture was left behind"
 [ -z "$(find . -name '*.part')" ] || fail "a .part file was left behind"
-done_after 34
+done_after 39

@@ -224,8 +224,8 @@ static int hued(const char *path, bool red, double x0, double x1, double y0, dou
 
 static void curves_are_drawn(void **state) {
   (void)state;
-  const struct picture_mean high[] = {{1, 0.9, 0.05}, {10, 0.9, 0.05}, {100, 0.9, 0.05}}; /* no gap between them in log x */
-  const struct picture_mean low[] = {{1, 0.1, 0}, {10, NAN, 0}, {100, 0.1, NAN}};
+  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95}, {10, 0.9, 0.85, 0.95}, {100, 0.9, 0.85, 0.95}}; /* no gap between them in log x */
+  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1}, {10, NAN, 0, 0}, {100, 0.1, NAN, NAN}};
   const struct picture_curve curves[] = {{NULL, 3, high}, {NULL, 3, low}};
   assert_int_equal(picture_curves(at("curves.png"), 900, "M_1/M", "k (1/m^3)", "largest fraction", 2, curves, NULL), STATUS_OK);
   double dark, coloured;
@@ -240,12 +240,16 @@ static void curves_are_drawn(void **state) {
   const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1), line = hued(at("curves.png"), false, middle - 0.11, middle - 0.09, 0, 1);
   assert_true(dot > 3 * line && line > 20);
   assert_true(hued(at("curves.png"), false, middle - 0.002, middle + 0.002, 0, 1) > 80); /* a dot alone: 13 lines of 4 pixels */
-  const struct picture_mean short_way[] = {{1, 0.1, 0}, {10, 0.9, 0}, {19, 0.9, 0}}; /* below a factor of 20: linear */
+  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN}, {10, 0.9, NAN, NAN}, {19, 0.9, NAN, NAN}}; /* below a factor of 20: linear */
   assert_int_equal(picture_curves(at("narrow.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){"one label", 3, short_way}, NULL), STATUS_OK);
   ink(at("narrow.png"), &dark, &coloured, &width, &height);
   assert_true(width > 950);
   const double share = middle * 900 / width;
   assert_true(hued(at("narrow.png"), false, share - 0.01, share + 0.01, 0, 0.2) > 2 * hued(at("narrow.png"), false, share + 0.05, share + 0.07, 0, 0.2));
+  const struct picture_mean uneven[] = {{1, 0.2, 0.1, 0.8}, {3, 0.2, 0.1, 0.8}}; /* bars reach to their ends, whatever lies between */
+  assert_int_equal(picture_curves(at("uneven.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){NULL, 2, uneven}, NULL), STATUS_OK);
+  const int above = hued(at("uneven.png"), false, 0, 1, 0, 0.65), below = hued(at("uneven.png"), false, 0, 1, 0.8, 1);
+  assert_true(above > 5 * below && below > 10);
   assert_int_equal(picture_curves(at("one.svg"), 600, NULL, "x", "y", 1, &(struct picture_curve){"lonely", 1, high}, NULL), STATUS_OK);
   assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 0, NULL, NULL), STATUS_USAGE);
   assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 1, &(struct picture_curve){NULL, 1, &low[1]}, NULL), STATUS_USAGE);
@@ -292,7 +296,7 @@ int main(int count, char **arguments) {
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "curves.png", "narrow.png", "one.svg", "nan.png", "profile.png", "flat.svg"};
+    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "curves.png", "narrow.png", "uneven.png", "one.svg", "nan.png", "profile.png", "flat.svg"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
     if (sweep(folder) != 0) failed++;
   }

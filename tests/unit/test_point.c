@@ -73,6 +73,23 @@ static void runs_that_count_in_order(void **state) {
     /* log m is uniform over three decades: beta is 1, and least squares is biased low by far less than 0.3 there */
     assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
   }
+  for (int i = 0; i < POINT_ESTIMATES; i++) { /* each by its name */
+    static const char *const names[] = {"beta_least_squares_from_2", "beta_least_squares_from_5", "beta_least_squares_from_10",
+                                        "beta_binned_from_2",        "beta_binned_from_5",        "beta_binned_from_10",
+                                        "beta_masses_from_2",        "beta",                      "beta_masses_from_10"};
+    struct pooled_exponent one;
+    enum exponent_method method;
+    enum estimates_window window;
+    bool is = false;
+    OK(estimates_named(names[i], &is, &method, &window, &error));
+    assert_true(is);
+    OK(point_exponent(store, id, 0, method, window, 100, 0.95, &one, &error));
+    assert_int_equal(one.fit.n, rows[i].exponent.fit.n);
+    assert_true(one.fit.beta == rows[i].exponent.fit.beta && one.interval.upper == rows[i].exponent.interval.upper);
+    OK(estimates_named(i ? "largest_fraction" : "bet", &is, &method, &window, &error));
+    assert_false(is);
+    assert_int_equal(estimates_named(i ? "beta_ks_from_2" : "beta_masses", &is, &method, &window, &error), STATUS_USAGE);
+  }
   struct point_curve curve;
   OK(point_curve_make(&point, NULL, &curve, &error));
   struct picture_series series = point_curve_series(&curve);
