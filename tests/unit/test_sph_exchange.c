@@ -10,19 +10,13 @@
 #include <cmocka.h>
 
 #include "engine/sph/exchange.h"
+#include "tests/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };
 
 struct cloud {
   double x[MOST + 7], y[MOST + 7], z[MOST + 7], reach[MOST + 7];
 };
-
-static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
-  uint64_t z = *state += 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return (double)((z ^ z >> 31) >> 11) * 0x1p-53 - 0.5;
-}
 
 /* A jittered lattice of spacing 1, row by row; some lie far off, nowhere or upon another, some reach thrice as far. */
 static struct cloud *cloud_make(bool odd) {

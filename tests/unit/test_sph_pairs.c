@@ -10,10 +10,10 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/order.h"
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
+#include "tests/noise.h"
 #include "tests/pair_sums.h"
 
 enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11, SUMS = 14 }; /* three chunks, twelve */
@@ -24,13 +24,6 @@ struct cloud {
 };
 
 static const char *const classes[] = {"baseline", "v3", "v4"};
-
-static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
-  uint64_t z = *state += 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return (double)((z ^ z >> 31) >> 11) * 0x1p-53 - 0.5;
-}
 
 /* A jittered cubic lattice of `spacing` with all fields drawn; when `mixed` every 50th particle is up to 10 times
  * larger. */
@@ -686,27 +679,6 @@ static void lists_wear_out_with_the_slack(void **state) {
   free(c);
 }
 
-static void order_is_a_permutation_that_keeps_neighbours_near(void **state) {
-  (void)state;
-  struct cloud *c = cloud_make(12, 1, false, 5);
-  uint32_t order[12 * 12 * 12];
-  struct error error = {0};
-  c->a[2][3] = 1e9; /* the rest must not fall into one cell */
-  assert_int_equal(sph_order_find(c->n, c->a[0], c->a[1], c->a[2], order, &error), STATUS_OK);
-  char seen[12 * 12 * 12] = {0};
-  double step = 0;
-  for (size_t k = 0; k < c->n; k++) {
-    assert_false(seen[order[k]]);
-    seen[order[k]] = 1;
-    if (k && order[k] != 3 && order[k - 1] != 3)
-      step +=
-          sqrt(pow(c->a[0][order[k]] - c->a[0][order[k - 1]], 2) + pow(c->a[1][order[k]] - c->a[1][order[k - 1]], 2) +
-               pow(c->a[2][order[k]] - c->a[2][order[k - 1]], 2));
-  }
-  assert_true(step / (double)c->n < 2.5); /* spacing 1; drawn at random it would be about 8 */
-  free(c);
-}
-
 /* Entries of shared lists have bits for a number, and bits for whose it is. */
 static void float_takes_so_many_particles(void **state) {
   (void)state;
@@ -717,24 +689,6 @@ static void float_takes_so_many_particles(void **state) {
   assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
   assert_null(pairs);
   assert_non_null(strstr(error.message, "268435455"));
-}
-
-/* Hilbert's curve goes from each cell of a grid to one that shares a face with it. */
-static void order_follows_the_curve(void **state) {
-  (void)state;
-  enum { ACROSS_GRID = 16, CELLS = ACROSS_GRID * ACROSS_GRID * ACROSS_GRID };
-  static double x[3][CELLS];
-  static uint32_t order[CELLS];
-  struct error error = {0};
-  for (size_t i = 0; i < CELLS; i++)
-    x[0][i] = (double)(i % ACROSS_GRID), x[1][i] = (double)(i / ACROSS_GRID % ACROSS_GRID), x[2][i] = (double)(i / ACROSS_GRID / ACROSS_GRID);
-  assert_int_equal(sph_order_find(CELLS, x[0], x[1], x[2], order, &error), STATUS_OK);
-  for (size_t k = 1; k < CELLS; k++) {
-    double way = 0;
-    for (int d = 0; d < 3; d++)
-      way += fabs(x[d][order[k]] - x[d][order[k - 1]]);
-    assert_true(way == 1);
-  }
 }
 
 /* R is minus epsilon times the tensile part: along the axes of a turned tensor of known principal values. */
@@ -817,9 +771,7 @@ int main(void) {
       cmocka_unit_test(shared_lists_join_those_of_their_members),
       cmocka_unit_test(thin_periodic_boxes_are_refused),
       cmocka_unit_test(lists_wear_out_with_the_slack),
-      cmocka_unit_test(order_is_a_permutation_that_keeps_neighbours_near),
       cmocka_unit_test(float_takes_so_many_particles),
-      cmocka_unit_test(order_follows_the_curve),
       cmocka_unit_test(artificial_stress_opposes_tension_only),
       cmocka_unit_test(opposed_stress_equals_plain_c),
   };
