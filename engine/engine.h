@@ -27,7 +27,8 @@ struct engine_kind {
   /* Build the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
   /* Advance by at most max_steps; *finished when the scene's stop rule, its end or a failure came. A numerical failure
-   * (NaN, collapse) is no error status: the run is finished and says so in its outcome. */
+   * (NaN, collapse) is no error status: the run is finished and says so in its outcome. STATUS_MEMORY is one: the machine's, not
+   * the run's, so that no result is made of it. */
   status (*step)(void *run, uint64_t max_steps, bool *finished, struct error *error);
   double (*progress)(const void *run); /* 0..1, simulated time over the hard end */
   double (*time)(const void *run);     /* s simulated so far: what snapshots are labelled by */

@@ -39,7 +39,9 @@ status sph_restart_load(const struct sph_inputs *inputs, const char *path, struc
   if (!code)
     code = sph_run_create(inputs, restart_seed(restart), &run, error);
   if (!code && !take(run, restart))
-    code = restart_refuse(path, error);
+    code = sph_system_fault(run->system) == SPH_FAULT_MEMORY
+               ? status_fail(error, STATUS_MEMORY, "%s", sph_system_failure(run->system))
+               : restart_refuse(path, error);
   restart_close(restart);
   if (code)
     sph_run_free(run);

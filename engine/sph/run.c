@@ -165,14 +165,16 @@ static void look_at_end(struct sph_run *run) {
     end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }
 
-void sph_run_advance(struct sph_run *run, uint64_t max_steps) {
+status sph_run_advance(struct sph_run *run, uint64_t max_steps) {
   struct sph_state *state = &run->state;
   for (uint64_t k = 0; k < max_steps && !state->finished; k++) {
     if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
-      const char *why = sph_system_failure(run->system);
-      bool collapse = strncmp(why, "the time step", strlen("the time step")) == 0;
-      end(run, SPH_STOP_FAULT, collapse ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s", why);
-      return;
+      const int fault = sph_system_fault(run->system);
+      if (fault == SPH_FAULT_MEMORY)
+        return STATUS_MEMORY;
+      end(run, SPH_STOP_FAULT, fault == SPH_FAULT_TIME_STEP ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s",
+          sph_system_failure(run->system));
+      break;
     }
     int limiter = sph_system_limiter(run->system);
     state->limited[limiter]++;
@@ -187,4 +189,5 @@ void sph_run_advance(struct sph_run *run, uint64_t max_steps) {
     if (steps % LEDGER_INTERVAL == 0 || state->finished)
       look_at_energy(run);
   }
+  return STATUS_OK;
 }

@@ -61,8 +61,8 @@ struct sph_run {
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
 void sph_run_free(struct sph_run *run); /* NULL is fine */
-/* At most max_steps, independent of how they are split over calls. */
-void sph_run_advance(struct sph_run *run, uint64_t max_steps);
+/* At most max_steps, independent of how they are split over calls. STATUS_MEMORY: that is no result, and the run cannot go on. */
+status sph_run_advance(struct sph_run *run, uint64_t max_steps);
 /* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
 const struct sph_particles *sph_run_read(struct sph_run *run);
 double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; clamps are not credited */

@@ -22,10 +22,10 @@ static status prepare(const void *inputs, uint64_t seed, void **run, struct erro
 }
 
 static status step(void *run, uint64_t max_steps, bool *finished, struct error *error) {
-  (void)error;
-  sph_run_advance(run, max_steps);
-  *finished = ((struct sph_run *)run)->state.finished;
-  return STATUS_OK;
+  struct sph_run *r = run;
+  const status code = sph_run_advance(r, max_steps);
+  *finished = r->state.finished;
+  return code ? status_fail(error, code, "%s", sph_system_failure(r->system)) : STATUS_OK;
 }
 
 static double time_of(const void *run) { return sph_system_time(((const struct sph_run *)run)->system); }

@@ -30,6 +30,9 @@ size_t sph_system_bytes(const struct sph_system *s) {
   return bytes;
 }
 
+int sph_system_fault(const struct sph_system *s) {
+  return s->fault;
+}
 const char *sph_system_failure(const struct sph_system *s) {
   return s->failure;
 }
@@ -46,7 +49,7 @@ uint64_t sph_system_steps(const struct sph_system *s) {
   return s->now.steps;
 }
 double sph_system_neighbours(const struct sph_system *s) {
-  return sph_pairs_neighbours(s->pairs);
+  return s->now.neighbours;
 }
 
 static double wrapped(double x, double length) {

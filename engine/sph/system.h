@@ -64,8 +64,15 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
 void sph_system_free(struct sph_system *system); /* NULL is fine */
 size_t sph_system_bytes(const struct sph_system *system);
 
-/* One time step, not beyond `until` (s). False when something is no longer finite or the step collapsed (see failure). */
+enum sph_fault { /* why a step could not be done */
+  SPH_FAULT_NONE,
+  SPH_FAULT_NOT_FINITE, SPH_FAULT_TIME_STEP, /* of the numbers: the same on any machine */
+  SPH_FAULT_MEMORY,                          /* of the machine: a run that had more of it would have gone on */
+};
+
+/* One time step, not beyond `until` (s). False on a fault, and from then on. */
 bool sph_system_step(struct sph_system *system, double until);
+int sph_system_fault(const struct sph_system *system);           /* enum sph_fault */
 const char *sph_system_failure(const struct sph_system *system); /* what, where, when; empty when all is well */
 double sph_system_time(const struct sph_system *system);
 double sph_system_last_step(const struct sph_system *system); /* s */

@@ -280,7 +280,8 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
   if (done == STATUS_OK) done = make_pairs(s, error);
   if (done != STATUS_OK) return done;
   fill(s, p);
-  if (!sph_system_step_begin(s)) return status_fail(error, STATUS_CONTENT, "at the start: %s", s->failure);
+  if (!sph_system_step_begin(s))
+    return status_fail(error, s->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT, "at the start: %s", s->failure);
   return STATUS_OK;
 }
 

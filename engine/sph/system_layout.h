@@ -102,6 +102,7 @@ struct sph_system {
   bool damage;                    /* of flaws, or of pores that close */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
+  int fault;        /* enum sph_fault; in words: */
   char failure[256];
 };
 

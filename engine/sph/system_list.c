@@ -24,6 +24,7 @@ static bool permute(struct sph_system *s) {
   const size_t columns = sph_system_create_columns(s, slot), threads = s->p.threads > 1 ? (size_t)s->p.threads : 1;
   double *room = malloc(threads * s->n * sizeof *room);
   if (!room) {
+    s->fault = SPH_FAULT_MEMORY;
     snprintf(s->failure, sizeof s->failure, "no memory to sort %zu particles", s->n);
     return false;
   }
@@ -60,6 +61,7 @@ static bool sort(struct sph_system *s) {
     const size_t first = s->solid[b].first, count = s->solid[b].last - first;
     if (!count) continue;
     if (sph_order_find(count, s->c.x + first, s->c.y + first, s->c.z + first, s->order + first, &error) != STATUS_OK) {
+      s->fault = SPH_FAULT_MEMORY;
       snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
       return false;
     }
@@ -122,6 +124,7 @@ static bool list_anew(struct sph_system *s) {
 bool sph_system_list_again(struct sph_system *s) {
   struct error error = {0};
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK) return true;
+  s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
   snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
   return false;
 }

@@ -59,9 +59,11 @@ bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size)
   }
   for (size_t i = 0; i < n; i++)
     if (s->id[i] >= n) {
+      s->fault = SPH_FAULT_NOT_FINITE;
       snprintf(s->failure, sizeof s->failure, "the state read back is no state of this system");
       return false;
     }
+  s->fault = SPH_FAULT_NONE;
   s->failure[0] = '\0';
   return sph_system_list_again(s);
 }

@@ -105,6 +105,7 @@ static bool gather(struct sph_system *s, double dt) {
   for (size_t k = 0; k < s->block_count; k++)
     if (s->block[k].lost < s->n) {
       const size_t i = s->block[k].lost;
+      s->fault = SPH_FAULT_NOT_FINITE;
       snprintf(s->failure, sizeof s->failure,
                "particle %u of body %u is no longer finite (or beyond 1e30) at %.6g s, step %llu: x %.4g %.4g %.4g m, "
                "density %.4g kg/m^3, energy %.4g J/kg",
@@ -138,13 +139,14 @@ bool sph_system_step_begin(struct sph_system *s) {
 
 bool sph_system_step(struct sph_system *s, double until) {
   int limiter;
-  if (s->failure[0]) return false;
+  if (s->fault) return false;
   const double dt = sph_limits_step(s, until, &limiter);
   if (!(dt > 0)) return dt == 0; /* already there */
   const bool chosen = limiter != SPH_LIMIT_END && limiter != SPH_LIMIT_GIVEN;
   if (chosen && s->now.first_step == 0) s->now.first_step = dt;
   if (chosen && (dt < collapse * s->now.first_step || s->now.time + dt == s->now.time)) {
     static const char *const names[SPH_LIMITS] = {"Courant", "force", "damage", "distention", "energy", "density", "given", "end"};
+    s->fault = SPH_FAULT_TIME_STEP;
     snprintf(s->failure, sizeof s->failure, "the time step fell to %.3g s (%s limit) at %.6g s, step %llu; it began with %.3g s",
              dt, names[limiter], s->now.time, (unsigned long long)s->now.steps, s->now.first_step);
     return false;

@@ -2,6 +2,7 @@
  * matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
 #include "tests/run_case.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "engine/sph/run.h"
@@ -172,6 +173,12 @@ static void chunks_and_restarts_do_not_matter(void **state) {
     if (sph_engine.save(run, path, &error))
       fail_msg("%s", error.message);
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
+    sph_engine.free(run);
+    if (sph_engine.restore(&cases[c], path, &run, &error))
+      fail_msg("%s", error.message);
+    run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
+    if (sph_engine.save(run, path, &error)) /* at the end, too: no step is left to find anything again */
+      fail_msg("%s", error.message);
     sph_engine.free(run);
     if (sph_engine.restore(&cases[c], path, &run, &error))
       fail_msg("%s", error.message);
@@ -351,6 +358,41 @@ static void more_than_memory_is_refused(void **state) {
   assert_non_null(strstr(error.message, " GB"));
 }
 
+#ifndef __SANITIZE_ADDRESS__ /* which needs address space of its own */
+static size_t address_space(void) {
+  unsigned long pages = 0;
+  FILE *in = fopen("/proc/self/statm", "r");
+  assert_true(in && fscanf(in, "%lu", &pages) == 1);
+  fclose(in);
+  return pages * (size_t)sysconf(_SC_PAGESIZE);
+}
+
+/* Lists that outgrow the memory in the middle of a run: an attempt that failed, never a result that is stored for good. */
+static void memory_that_runs_out_is_no_result(void **state) {
+  (void)state;
+  struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=4000");
+  struct rlimit before, tight;
+  struct error error = {0};
+  bool finished = false;
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  assert_int_equal(sph_engine.step(run, 5, &finished, &error), STATUS_OK);
+  run->system->p.h_highest = 1e3;
+  for (size_t i = 0; i < run->system->n; i++)
+    run->system->c.h[i] *= 10; /* nearly all pairs: some 30 MB of lists */
+  getrlimit(RLIMIT_AS, &before);
+  tight = before;
+  tight.rlim_cur = address_space() + (1 << 20);
+  setrlimit(RLIMIT_AS, &tight);
+  const status code = sph_engine.step(run, 5, &finished, &error), again = sph_engine.step(run, 5, &finished, NULL);
+  setrlimit(RLIMIT_AS, &before);
+  print_message("%s\n", error.message);
+  assert_true(code == STATUS_MEMORY && again == STATUS_MEMORY && !finished);
+  assert_non_null(strstr(error.message, "no memory"));
+  sph_run_free(run);
+}
+#endif
+
 /* Overlaps are refused by name. */
 static void overlapping_bodies_are_refused(void **state) {
   (void)state;
@@ -446,6 +488,9 @@ int main(void) {
                                      cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(seeds_move_flaws),
                                      cmocka_unit_test(more_than_memory_is_refused),
+#ifndef __SANITIZE_ADDRESS__
+                                     cmocka_unit_test(memory_that_runs_out_is_no_result),
+#endif
                                      cmocka_unit_test(overlapping_bodies_are_refused),
                                      cmocka_unit_test(ends_of_the_ranges)};
   return cmocka_run_group_tests(tests, NULL, NULL);
