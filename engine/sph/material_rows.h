@@ -33,12 +33,15 @@
   R(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG, STRENGTH, "mu: shear modulus.",                 \
     "Benz & Asphaug 1995, eq. 6")                                                                                      \
   R(yield_stress, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG | SPH_MATERIAL_ABOVE, STRENGTH,                   \
-    "Y_0: von Mises yield stress of cold matter. off: elastic at any stress.", "Benz & Asphaug 1995, eq. 9")           \
+    "Y_0: von Mises yield stress of cold matter; with pores of the solid between them, and the porous body yields at "  \
+    "Y_0/alpha. off: elastic at any stress.", "Benz & Asphaug 1995, eq. 9; Jutzi, Benz & Michel 2008")                 \
   R(melt_energy, "J/kg", 1, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG, STRENGTH,                                       \
     "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",               \
     "Benz & Asphaug 1995, section 2")                                                                                  \
   R(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG, ALWAYS,                                         \
-    "Largest tension of matter without flaws (lowest pressure is minus this). off: no limit, down to -A and beyond.", NULL) \
+    "Largest tension of matter without flaws (lowest pressure is minus this). With pores it is that of the porous body, as "  \
+    "strengths are measured (our choice); of the solid's value give that over alpha_0. off: no limit, down to -A and "   \
+    "beyond.", NULL)                                                                                                   \
   R(weibull.m, "1", 1, 200, SPH_MATERIAL_OFF, FRACTURE,                                                                \
     "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all flaws alike. off: no "   \
     "flaws.", "Benz & Asphaug 1995, eq. 11")                                                                           \

@@ -145,6 +145,24 @@ static void yield_falls_with_alpha(void **state) {
 }
 
 /* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change harms nothing. */
+/* Not so tension_limit: it is that of the porous body, whatever its distention, and falls as far as the solid has expanded. */
+static void tension_limit_is_of_the_body(void **state) {
+  (void)state;
+  size_t n;
+  struct sph_system *s = cube(&porous_basalt, false, false, &n);
+  s->solid[0].physics.material.tension_limit = 1e6;
+  for (size_t i = 0; i < n; i++) {
+    const double expanded = i % 3 == 0 ? 1 : i % 3 == 1 ? 0.95 : 0.9; /* of the solid: whole, half torn, torn */
+    s->c.distention[i] = 1 + 0.002 * (double)i;
+    s->c.density[i] = expanded * 2700 / s->c.distention[i];
+    s->c.pressure[i] = i % 2 ? -1e7 : 2e5;
+  }
+  call(s, offsetof(struct sph_ranges, tension_limit));
+  for (size_t i = 0; i < n; i++)
+    near(s->c.pressure[i], i % 2 == 0 ? 2e5 : i % 3 == 0 ? -1e6 : i % 3 == 1 ? -5e5 : 0, 1e-6, "pressure"); /* a dozen roundings of 1e6 */
+  sph_system_free(s);
+}
+
 static void damage_adds_up(void **state) {
   (void)state;
   for (int flaws = 0; flaws < 2; flaws++) {
@@ -344,7 +362,7 @@ static void refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(loop_is_the_formula), cmocka_unit_test(deviator_follows_alpha), cmocka_unit_test(shear_rate),
-      cmocka_unit_test(yield_falls_with_alpha), cmocka_unit_test(damage_adds_up), cmocka_unit_test(solid_bits),
+      cmocka_unit_test(yield_falls_with_alpha), cmocka_unit_test(tension_limit_is_of_the_body), cmocka_unit_test(damage_adds_up), cmocka_unit_test(solid_bits),
       cmocka_unit_test(beside_a_solid), cmocka_unit_test(restart), cmocka_unit_test(tends_to_the_solid),
       cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
