@@ -113,7 +113,20 @@ static void ring(struct sph_run *run) {
   }
 }
 
-static void set_in_motion(struct sph_run *run, const double flight[3]) {
+/* A grip at each end, or nothing pulls. */
+static status grip(struct sph_run *run, struct error *error) {
+  const double length = run->inputs.stretch.grip;
+  bool below = false, above = false;
+  sph_bodies_hold(run->start, run->range[0], &(struct sph_middle){.axis = {0, 0, 1}, .half = run->inputs.target.length / 2 - length},
+                  SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  for (size_t i = 0; i < run->range[0].n; i++)
+    if (run->start->held[i]) *(run->start->z[i] < 0 ? &below : &above) = true;
+  return below && above ? STATUS_OK
+                        : status_fail(error, STATUS_CONTENT, "a grip of %.4g m holds no particle (they are %.4g m apart): raise "
+                                      "stretch.grip or fidelity.particles", length, run->range[0].spacing);
+}
+
+static status set_in_motion(struct sph_run *run, const double flight[3], struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   const double origin[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, spin[3] = {0, 0, in->target.spin};
   double v[3] = {0, 0, 0};
@@ -128,10 +141,7 @@ static void set_in_motion(struct sph_run *run, const double flight[3]) {
   case SPH_STRETCH:
     sph_bodies_stretch(run->start, run->range[0], origin, axis, in->stretch.rate,
                        in->target.strength ? sph_scale_poisson_ratio(&in->target.material) : 0);
-    sph_bodies_hold(run->start, run->range[0],
-                    &(struct sph_middle){.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.grip},
-                    SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
-    break;
+    return grip(run, error);
   case SPH_VIBRATION:
     ring(run);
     break;
@@ -148,6 +158,7 @@ static void set_in_motion(struct sph_run *run, const double flight[3]) {
       run->start->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
     break;
   }
+  return STATUS_OK;
 }
 
 static status make_flaws(struct sph_run *run, struct error *error) {
@@ -169,12 +180,18 @@ static status make_flaws(struct sph_run *run, struct error *error) {
 
 /* A wave that crosses the layer and returns keeps exp(-rate depth/(3 c)) of its amplitude: half of the kinetic energy, which is
  * half of its energy, twice the integral of rate (s/depth)^2. 10.5 c/depth leaves 3 %. */
-static void damp(struct sph_run *run) {
+static status damp(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
-  if (run->start->damping)
-    sph_bodies_damp(run->start, run->range[0], &run->shape[0],
-                    SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, in->sides.depth,
-                    10.5 * sph_scale_wave_speed(&in->target) / in->sides.depth);
+  if (!run->start->damping)
+    return STATUS_OK;
+  sph_bodies_damp(run->start, run->range[0], &run->shape[0],
+                  SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, in->sides.depth,
+                  10.5 * sph_scale_wave_speed(&in->target) / in->sides.depth);
+  for (size_t i = 0; i < run->range[0].n; i++)
+    if (run->start->damping[i] > 0)
+      return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT, "a damping layer of %.4g m holds no particle (they are %.4g m apart): raise sides.depth "
+                     "or fidelity.particles, or set sides.far: free", in->sides.depth, run->range[0].spacing);
 }
 
 static void open_pores(struct sph_run *run) {
@@ -203,7 +220,7 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
     return code;
   run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
   open_pores(run);
-  set_in_motion(run, flight);
-  damp(run);
+  if ((code = set_in_motion(run, flight, error)) || (code = damp(run, error)))
+    return code;
   return make_flaws(run, error);
 }

@@ -404,6 +404,32 @@ static void overlapping_bodies_are_refused(void **state) {
   assert_non_null(strstr(error.message, "overlap"));
 }
 
+/* Grips and damping layers that hold no particle would silently do nothing. */
+static void empty_layers_are_refused(void **state) {
+  (void)state;
+  const struct {
+    struct sph_inputs inputs;
+    const char *word;
+  } cases[] = {{SPH_CASE("tensile-rod", "fidelity.particles=1500", "stretch.grip=0.1 mm"), "stretch.grip"},
+               {SPH_CASE("porous-target", "fidelity.particles=1500", "sides.depth=1 mm"), "sides.depth"}};
+  for (int c = 0; c < 2; c++) {
+    void *run;
+    struct error error = {0};
+    assert_int_equal(sph_engine.prepare(&cases[c].inputs, 1, &run, &error), STATUS_CONTENT);
+    assert_true(strstr(error.message, cases[c].word) && strstr(error.message, "no particle"));
+  }
+}
+
+/* Matter that flies apart has a larger h, in a slab that repeats no larger one than fits. */
+static void vapour_in_a_slab(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s", "stop.end_time=10 us");
+  struct ran ran = run_case_run(&sph_engine, &inputs, 1);
+  if (ran.outcome.state != OUTCOME_COMPLETED) fail_msg("%s", ran.outcome.message);
+  assert_true(ran.outcome.energy_error < 5e-3);
+  free(ran.fragments);
+}
+
 /* At the ends of their ranges inputs give a clear error or a run with an honest status and finite numbers. */
 static const char *scene; /* a file: 3.4 mm of nylon into 3 cm of basalt */
 static void extreme(const char *a, const char *b, const char *c, const char *d) {
@@ -492,6 +518,8 @@ int main(void) {
                                      cmocka_unit_test(memory_that_runs_out_is_no_result),
 #endif
                                      cmocka_unit_test(overlapping_bodies_are_refused),
+                                     cmocka_unit_test(empty_layers_are_refused),
+                                     cmocka_unit_test(vapour_in_a_slab),
                                      cmocka_unit_test(ends_of_the_ranges)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
