@@ -253,7 +253,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
   specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the target's mass; off without one.
   fracture_ceased INTEGER, -- Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break.
-  first_damage REAL, -- [s] Time at which damage began; off when there is none.
+  first_damage REAL, -- [s] Time at which damage of a body with flaws began; off when there is none.
   cease_time REAL, -- [s] Time since which damage has grown by less than stop.quiet_growth; off when it still grows.
   mean_damage REAL, -- [1] Mean damage of the target at the end, by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles below fragments.damage, before the static pass.
@@ -272,7 +272,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   crater_radius REAL, -- [m] Impact: radius of a circle of the crater's area at the first surface.
   crater_volume REAL, -- [m^3] Impact: volume between the first and the present surface of what is retained.
   crater_compaction_share REAL, -- [1] Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when there is neither.
-  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.
+  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.
   compaction_volume REAL, -- [m^3] Volume that the target's retained matter has lost by closing pores; off without pores.
   compaction_depth REAL, -- [m] First depth of the deepest matter near the axis with distention below 1.01; off without pores.
   compaction_reach REAL, -- [m] Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.
@@ -856,7 +856,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamp
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 1);
 
@@ -890,7 +890,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'energy_kinetic', 'J', 'Kinetic ene
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done by grips.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time at which damage began; off when there is none.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time at which damage of a body with flaws began; off when there is none.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Explicit flaws in all bodies.', 1);
 
@@ -1070,7 +1070,7 @@ INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped ove
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 0);
 
@@ -1134,7 +1134,7 @@ INSERT INTO column_doc VALUES ('runs', 'finished_at', 's', 'when it was stored, 
 
 INSERT INTO column_doc VALUES ('runs', 'first_break', 's', 'Time of the first break; off when none broke.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time at which damage began; off when there is none.', 0);
+INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time at which damage of a body with flaws began; off when there is none.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Explicit flaws in all bodies.', 0);
 

@@ -27,6 +27,7 @@ struct map {
   size_t nx, ny;
   double x, y, size;
   double *before, *after; /* highest particle at the start and now, -inf where none is */
+  double *bottom;         /* lowest particle at the start */
 };
 
 static bool column_of(const struct map *m, double x, double y, size_t *at) {
@@ -47,14 +48,18 @@ static status make_map(const struct sph_particles *start, const struct sph_parti
   *m = (struct map){.x = low[0], .y = low[1], .size = fmax(2 * o->spacing, widest / (SIDE_MOST - 1))};
   m->nx = (size_t)((high[0] - low[0]) / m->size) + 1;
   m->ny = (size_t)((high[1] - low[1]) / m->size) + 1;
-  m->before = malloc(2 * m->nx * m->ny * sizeof(double));
+  m->before = malloc(3 * m->nx * m->ny * sizeof(double));
   if (!m->before) return status_fail(error, STATUS_MEMORY, "no memory for a map of the crater");
   m->after = m->before + m->nx * m->ny;
-  for (size_t k = 0; k < 2 * m->nx * m->ny; k++)
-    m->before[k] = -HUGE_VAL;
+  m->bottom = m->after + m->nx * m->ny;
+  for (size_t k = 0; k < m->nx * m->ny; k++)
+    m->before[k] = m->after[k] = -HUGE_VAL, m->bottom[k] = HUGE_VAL;
   for (size_t i = o->first; i < o->first + o->count; i++) {
     size_t at;
-    if (column_of(m, start->x[i], start->y[i], &at)) m->before[at] = fmax(m->before[at], start->z[i]);
+    if (column_of(m, start->x[i], start->y[i], &at)) {
+      m->before[at] = fmax(m->before[at], start->z[i]);
+      m->bottom[at] = fmin(m->bottom[at], start->z[i]);
+    }
     if (!is_ejected(now, i, o->ejection_speed) && column_of(m, now->x[i], now->y[i], &at))
       m->after[at] = fmax(m->after[at], now->z[i]);
   }
@@ -63,8 +68,7 @@ static status make_map(const struct sph_particles *start, const struct sph_parti
 
 /* The connected region round the axis, at least one spacing deep. A column through which all has gone is as deep as the
  * target was there. */
-static status dig(const struct map *m, const struct sph_crater_options *o, double bottom, struct sph_crater *out,
-                  struct error *error) {
+static status dig(const struct map *m, const struct sph_crater_options *o, struct sph_crater *out, struct error *error) {
   size_t *queue = malloc(m->nx * m->ny * sizeof *queue), head = 0, tail = 0, at;
   unsigned char *seen = calloc(m->nx * m->ny, 1);
   if (!queue || !seen) {
@@ -85,7 +89,7 @@ static status dig(const struct map *m, const struct sph_crater_options *o, doubl
   while (head < tail) {
     at = queue[head++];
     if (m->before[at] == -HUGE_VAL) continue;
-    double deep = m->before[at] - fmax(m->after[at], bottom);
+    double deep = m->before[at] - fmax(m->after[at], m->bottom[at]);
     if (!(deep >= o->spacing)) continue;
     dug += area;
     out->volume += deep * area;
@@ -108,15 +112,14 @@ status sph_crater_find(const struct sph_particles *start, const struct sph_parti
                        const struct sph_crater_options *o, struct sph_crater *out, struct error *error) {
   *out = (struct sph_crater){0};
   if (!o->count || !(o->spacing > 0)) return STATUS_OK;
-  double top = -HUGE_VAL, bottom = HUGE_VAL;
+  double top = -HUGE_VAL;
   for (size_t i = o->first; i < o->first + o->count; i++) {
     if (off_axis(start, i, o->axis) < 2 * o->spacing) top = fmax(top, start->z[i]);
-    bottom = fmin(bottom, start->z[i]);
   }
   for (size_t i = o->first; i < o->first + o->count; i++) {
     double alpha = at_rest(now, i), closed = o->distention > 1 ? (distention(start, i) - alpha) / distention(start, i) : 0;
     double volume = start->mass[i] / start->density[i];
-    bool crushed = closed > 0 && alpha < compacted;
+    bool crushed = closed > 0 && alpha < compacted && distention(start, i) >= compacted;
     if (crushed) out->compacted_mass += now->mass[i];
     if (is_ejected(now, i, o->ejection_speed)) {
       out->ejected_mass += now->mass[i];
@@ -131,7 +134,7 @@ status sph_crater_find(const struct sph_particles *start, const struct sph_parti
   }
   struct map map;
   status code = make_map(start, now, o, &map, error);
-  if (!code) code = dig(&map, o, bottom, out, error);
+  if (!code) code = dig(&map, o, out, error);
   free(map.before);
   return code;
 }

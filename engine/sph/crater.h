@@ -22,7 +22,7 @@ struct sph_crater_options {
 struct sph_crater {
   double ejected_mass, ejected_momentum; /* kg; kg m/s outwards */
   double depth, radius, volume;          /* m, m^3; 0 without a crater. radius: of a circle of the same area */
-  double compacted_mass;                 /* kg, of particles with alpha < 1.01 (here and below: at rest) that had more */
+  double compacted_mass;                 /* kg, of particles with alpha < 1.01 (here and below: at rest) that had 1.01 or more */
   double compaction_volume;              /* m^3, of pores closed, of the retained particles */
   double ejecta_volume;                  /* m^3, that ejecta had at the start */
   double compaction_depth;               /* m, below the first surface: deepest particle near the axis with alpha < 1.01 */

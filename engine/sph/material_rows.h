@@ -39,9 +39,10 @@
     "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",               \
     "Benz & Asphaug 1995, section 2")                                                                                  \
   R(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_LOG, ALWAYS,                                         \
-    "Largest tension of matter without flaws (lowest pressure is minus this). With pores it is that of the porous body, as "  \
-    "strengths are measured (our choice); of the solid's value give that over alpha_0. off: no limit, down to -A and "   \
-    "beyond.", NULL)                                                                                                   \
+    "Largest tension of matter without flaws (lowest pressure is minus this). It falls with expansion, to none at 0.9 of "  \
+    "the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) of it. With pores it is that of the porous "    \
+    "body, as strengths are measured (our choice); of the solid's value give that over alpha_0. off: no limit, down to " \
+    "-A and beyond.", NULL)                                                                                            \
   R(weibull.m, "1", 1, 200, SPH_MATERIAL_OFF, FRACTURE,                                                                \
     "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all flaws alike. off: no "   \
     "flaws.", "Benz & Asphaug 1995, eq. 11")                                                                           \

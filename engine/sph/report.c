@@ -73,7 +73,7 @@ static void second(const struct sph_run *run, const struct sph_pieces *pieces, s
     away[d] = f->position[d] - centre[d];
   for (int d = 0; d < 3; d++)
     cosine += away[d] * run->impact_direction[d] / norm(away);
-  results->second.angle = not_infinite(acos(fmax(-1, fmin(1, cosine))));
+  results->second.angle = not_infinite(acos(cosine > 1 ? 1 : cosine < -1 ? -1 : cosine)); /* not of fmin, which makes 1 of NaN */
 }
 
 static void damage(const struct sph_run *run, struct sph_results *results) {

@@ -27,7 +27,7 @@ static const struct field rows[] = {
     REAL(specific_energy, "J/kg", 0, .doc = "Q: kinetic energy of the projectile over the target's mass; off without one."),
     ROW(fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
         .doc = "Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break."),
-    REAL(first_damage, "s", 0, .doc = "Time at which damage began; off when there is none."),
+    REAL(first_damage, "s", 0, .doc = "Time at which damage of a body with flaws began; off when there is none."),
     REAL(cease_time, "s", 0, .doc = "Time since which damage has grown by less than stop.quiet_growth; off when it still grows."),
     SHARE(mean_damage, .doc = "Mean damage of the target at the end, by mass.", .source = "BA95 eq. 14"),
     SHARE(undamaged_fraction, .doc = "Mass share of the target's particles below fragments.damage, before the static pass."),
@@ -54,7 +54,7 @@ static const struct field rows[] = {
     SHARE(crater.compaction_share,
           .doc = "Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when "
                  "there is neither.", .source = "Jutzi & Benz, section 3.1"),
-    SHARE(compaction.mass_fraction, .doc = "Mass share of the target with distention (at rest) below 1.01 that had more; off without pores.",
+    SHARE(compaction.mass_fraction, .doc = "Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.",
           .source = "Jutzi & Benz, figure 2"),
     REAL(compaction.volume, "m^3", 0, .doc = "Volume that the target's retained matter has lost by closing pores; off without pores."),
     REAL(compaction.depth, "m", 0, .doc = "First depth of the deepest matter near the axis with distention below 1.01; off without pores."),

@@ -104,7 +104,44 @@ static void compacted(void **state) {
   sph_particles_free(now);
 }
 
+/* A ball of which nothing is left: its crater is the ball, not the room below its upper half as well. */
+static void nothing_left(void **state) {
+  (void)state;
+  struct sph_particles *start = slab(), *now = slab();
+  const double radius = 14e-3;
+  size_t n = 0;
+  for (size_t i = 0; i < start->n; i++)
+    if (hypot(hypot(start->x[i], start->y[i]), start->z[i] - 15e-3) < radius) {
+      start->x[n] = now->x[n] = start->x[i], start->y[n] = now->y[n] = start->y[i], start->z[n] = now->z[n] = start->z[i];
+      now->vz[n++] = 20;
+    }
+  struct sph_crater_options ball = options;
+  struct sph_crater c;
+  ball.count = n;
+  assert_int_equal(sph_crater_find(start, now, &ball, &c, NULL), STATUS_OK);
+  near(c.volume, (double)n * 1e-9, 0.15, "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
+  near(c.radius, radius, 0.1, "radius");
+  near(c.depth, 2 * radius, 0.05, "depth");
+  sph_particles_free(start);
+  sph_particles_free(now);
+}
+
+/* Matter of hardly any pores is not compacted by the first of them that closes. */
+static void hardly_porous(void **state) {
+  (void)state;
+  struct sph_particles *start = slab(), *now = slab();
+  for (size_t i = 0; i < now->n; i++)
+    start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
+  struct sph_crater_options few = options;
+  struct sph_crater c;
+  few.distention = 1.005;
+  assert_int_equal(sph_crater_find(start, now, &few, &c, NULL), STATUS_OK);
+  assert_true(c.compacted_mass == 0 && c.compaction_depth == 0 && c.compaction_volume > 0);
+  sph_particles_free(start);
+  sph_particles_free(now);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out), cmocka_unit_test(compacted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out), cmocka_unit_test(nothing_left), cmocka_unit_test(hardly_porous), cmocka_unit_test(compacted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

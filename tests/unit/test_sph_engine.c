@@ -336,6 +336,22 @@ static void a_share_above_one_is_shown(void **state) {
   sph_run_free(run);
 }
 
+/* What cannot be told is off, not a number that looks like one. */
+static void no_angle_of_nowhere(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  for (size_t i = 0; i < run->system->n; i++) /* all broken: the second fragment is a particle, and one of them is nowhere */
+    run->system->c.damage[i] = 1;
+  run->system->c.x[0] = NAN;
+  struct ran ran = {0};
+  assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL), STATUS_OK);
+  assert_true(ran.count > 1 && isnan(ran.results.sph.second.angle));
+  free(ran.fragments);
+  sph_run_free(run);
+}
+
 static void seeds_move_flaws(void **state) {
   (void)state;
   struct sph_inputs inputs = SMALL("stop.end_time=30 us"), poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
@@ -512,6 +528,7 @@ int main(void) {
                                      cmocka_unit_test(stop_rules),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(a_share_above_one_is_shown),
+                                     cmocka_unit_test(no_angle_of_nowhere),
                                      cmocka_unit_test(seeds_move_flaws),
                                      cmocka_unit_test(more_than_memory_is_refused),
 #ifndef __SANITIZE_ADDRESS__
