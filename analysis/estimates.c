@@ -103,12 +103,6 @@ status estimates_make(size_t n, const struct fragment *fragments, struct estimat
   return code;
 }
 
-const struct estimate *estimates_headline(size_t count, const struct estimate *rows) {
-  for (size_t i = 0; i < count; i++)
-    if (rows[i].headline) return &rows[i];
-  return NULL;
-}
-
 status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window, struct error *error) {
   *is = strncmp(name, "beta", strlen("beta")) == 0;
   *method = (enum exponent_method)ESTIMATES_HEADLINE_METHOD;

@@ -36,9 +36,6 @@ enum {
 status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
                       struct error *error);
 
-/* The row called `beta`; NULL when there is none among them. */
-const struct estimate *estimates_headline(size_t count, const struct estimate *rows);
-
 /* An exponent pooled over a point's runs, by name: "beta" is the headline, "beta_METHOD_WINDOW" ("beta_masses_from_2") another of
  * those that points have. *is = false for other names; STATUS_USAGE for one that only begins like them. */
 status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window, struct error *error);

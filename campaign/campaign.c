@@ -324,16 +324,6 @@ void campaign_free(struct campaign *campaign) {
   free(campaign);
 }
 
-uint64_t campaign_points(const struct campaign *campaign) {
-  struct design *design = NULL;
-  if (design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, NULL) != STATUS_OK)
-    return 0;
-  uint64_t points = design_points(design);
-  design_free(design);
-  return points;
-}
-
 int64_t campaign_replicates_least(const struct campaign *campaign) {
   return campaign->per_point ? campaign->per_point : campaign->until_minimum;
 }

@@ -68,8 +68,6 @@ status campaign_parse(const char *name, const char *text, size_t size, const cha
                       struct error *error);
 void campaign_free(struct campaign *campaign); /* NULL is fine */
 
-/* Points of the design (0 to 2^53; the document check refused more). Duplicates among them are computed once. */
-uint64_t campaign_points(const struct campaign *campaign);
 /* Replicates of a point at least, and at most. Equal for per_point. */
 int64_t campaign_replicates_least(const struct campaign *campaign);
 int64_t campaign_replicates_most(const struct campaign *campaign);

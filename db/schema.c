@@ -6,17 +6,6 @@
 #include "db/schema_tables.h"
 #include "db/views.h"
 
-size_t schema_table_count(void) {
-  return schema_tables_count + engine_count();
-}
-
-struct schema_table schema_table_at(size_t index, const struct field_table *estimate_table) {
-  if (index >= schema_tables_count) return schema_result_table(engine_at(index - schema_tables_count));
-  struct schema_table table = schema_tables[index];
-  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0) table.fields = estimate_table;
-  return table;
-}
-
 static const struct schema_column result_columns[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
 };
@@ -28,6 +17,14 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
                                .fields = kind->results,
                                .options = "STRICT"};
   snprintf(table.name, sizeof table.name, "result_%s", kind->name);
+  return table;
+}
+
+/* The tables in the order in which they must be created: engines' results last. */
+static struct schema_table table_at(size_t index, const struct field_table *estimate_table) {
+  if (index >= schema_tables_count) return schema_result_table(engine_at(index - schema_tables_count));
+  struct schema_table table = schema_tables[index];
+  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0) table.fields = estimate_table;
   return table;
 }
 
@@ -44,7 +41,7 @@ static void write_column(const char *name, const char *declaration, bool last, c
           unit ? "] " : "");
 }
 
-void schema_write_table(const struct schema_table *table, FILE *out) {
+static void write_table(const struct schema_table *table, FILE *out) {
   size_t fields = table->fields ? table->fields->count : 0;
   fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
   for (size_t i = 0; i < table->count; i++) {
@@ -108,7 +105,7 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   size_t size = 0;
   FILE *text = open_memstream(&sql, &size);
   if (!text) return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
-  schema_write_table(table, text);
+  write_table(table, text);
   for (size_t i = 0; i < schema_tables_indexes_count; i++)
     if (strcmp(schema_tables_indexes[i][0], table->name) == 0) fprintf(text, "%s\n", schema_tables_indexes[i][1]);
   fclose(text);
@@ -142,8 +139,8 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
 
 status schema_complete_all(sqlite3 *db, const struct field_table *estimate_table, struct error *error) {
   status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < schema_table_count(); i++) {
-    struct schema_table table = schema_table_at(i, estimate_table);
+  for (size_t i = 0; result == STATUS_OK && i < schema_tables_count + engine_count(); i++) {
+    struct schema_table table = table_at(i, estimate_table);
     result = schema_complete(db, &table, error);
   }
   return result;

@@ -29,15 +29,10 @@ struct schema_table {
   const char *options;              /* STRICT, perhaps WITHOUT ROWID */
 };
 
-/* Tables in the order in which they must be created. estimate_table NULL: the tables of
- * estimates have their fixed columns only. */
-size_t schema_table_count(void);
-struct schema_table schema_table_at(size_t index, const struct field_table *estimate_table);
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
 
-/* Text of the CREATE statement, then CREATE INDEX statements of that table if it has any. */
-void schema_write_table(const struct schema_table *table, FILE *out);
-/* Everything as one SQL text: pragmas, tables, indexes, column docs, the views of a store in which nothing is varied.
+/* Everything as one SQL text: pragmas, tables, indexes, column docs, the views of a store in which nothing is varied; what
+ * schemas/results.sql must equal. estimate_table NULL (here and below): the tables of estimates have their fixed columns only.
  * malloc'd, NULL when out of memory. */
 char *schema_sql(const struct field_table *estimate_table);
 

@@ -196,10 +196,6 @@ status store_close(struct store *store, struct error *error) {
   return result;
 }
 
-struct sqlite3 *store_handle(struct store *store) {
-  return store->db;
-}
-
 static void take_back(struct store *store) {
   sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL); /* an error may have done it already */
   for (size_t i = 0; i < store->batch_identity_count; i++) {
@@ -321,8 +317,4 @@ status store_export(struct store *store, const char *path, struct error *error) 
   if (!store->writer) sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
   if (result != STATUS_OK) unlink(path);
   return result;
-}
-
-char *store_schema_sql(const struct field_table *estimate_table) {
-  return schema_sql(estimate_table);
 }

@@ -29,7 +29,6 @@ status store_open_writer(const char *path, const struct field_table *estimate_ta
 status store_open_reader(const char *path, struct store **out, struct error *error);
 /* Commits, checkpoints, back to journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
-struct sqlite3 *store_handle(struct store *store); /* for analysis' queries; borrowed */
 
 /* Provenance: one row per invocation of `clast run`. `facts` is a JSON object (version, commit, compiler, flags, cpu
  * class, libraries, host, ranks, slots, command line). */
@@ -133,8 +132,5 @@ status store_export(struct store *store, const char *path, struct error *error);
 /* What a determinism test compares: every run by identity with all its deterministic values (%a), masses and spectrum;
  * no volatile field, no time, host or session, no surplus run. Same text whatever the number of workers. */
 status store_dump(struct store *store, FILE *out, struct error *error);
-
-/* The whole schema as SQL text (what schemas/results.sql must equal). malloc'd, NULL when out of memory. */
-char *store_schema_sql(const struct field_table *estimate_table);
 
 #endif

@@ -23,7 +23,7 @@ static hid_t checked(struct fields_file *f, hid_t id) {
 
 void fields_file_fail(struct fields_file *f) { f->failed = f->memory = true; }
 
-void fields_file_group(struct fields_file *f, const char *group) {
+static void make_group(struct fields_file *f, const char *group) {
   hid_t id = checked(f, H5Gcreate2(f->file, group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   if (id >= 0)
     H5Gclose(id);
@@ -41,7 +41,8 @@ static void attribute(struct fields_file *f, const char *at, const char *name, h
   H5Oclose(object);
 }
 
-void fields_file_text(struct fields_file *f, const char *at, const char *name, const char *text) {
+/* Text is ASCII of fixed length: VTK asks for it. */
+static void text_attribute(struct fields_file *f, const char *at, const char *name, const char *text) {
   hid_t type = checked(f, H5Tcopy(H5T_C_S1));
   size_t length = strlen(text);
   f->failed |= H5Tset_size(type, length ? length : 1) < 0;
@@ -50,7 +51,7 @@ void fields_file_text(struct fields_file *f, const char *at, const char *name, c
   H5Tclose(type);
 }
 
-void fields_file_integers(struct fields_file *f, const char *at, const char *name, size_t count, const int64_t *values) {
+static void integer_attribute(struct fields_file *f, const char *at, const char *name, size_t count, const int64_t *values) {
   attribute(f, at, name, H5T_STD_I64LE, H5T_NATIVE_INT64, count, values);
 }
 
@@ -76,9 +77,9 @@ static void data(struct fields_file *f, const char *name, hid_t type, bool compr
   H5Pclose(links);
   H5Sclose(space);
   if (units)
-    fields_file_text(f, name, "units", units);
+    text_attribute(f, name, "units", units);
   if (long_name)
-    fields_file_text(f, name, "long_name", long_name);
+    text_attribute(f, name, "long_name", long_name);
 }
 
 void fields_file_data(struct fields_file *f, const char *name, enum fields_file_kind kind, size_t rows, size_t width,
@@ -131,9 +132,9 @@ void fields_file_columns(struct fields_file *f, const char *group, size_t rows, 
 
 void fields_file_vtk(struct fields_file *f, size_t points, size_t cells, size_t connectivity) {
   const int64_t version[2] = {1, 0}, counts[3] = {(int64_t)points, (int64_t)cells, (int64_t)connectivity};
-  fields_file_group(f, "VTKHDF");
-  fields_file_integers(f, "VTKHDF", "Version", 2, version);
-  fields_file_text(f, "VTKHDF", "Type", "UnstructuredGrid");
+  make_group(f, "VTKHDF");
+  integer_attribute(f, "VTKHDF", "Version", 2, version);
+  text_attribute(f, "VTKHDF", "Type", "UnstructuredGrid");
   fields_file_data(f, "VTKHDF/NumberOfPoints", FIELDS_FILE_INTEGER, 1, 0, &counts[0], NULL, NULL);
   fields_file_data(f, "VTKHDF/NumberOfCells", FIELDS_FILE_INTEGER, 1, 0, &counts[1], NULL, NULL);
   fields_file_data(f, "VTKHDF/NumberOfConnectivityIds", FIELDS_FILE_INTEGER, 1, 0, &counts[2], NULL, NULL);
@@ -143,14 +144,14 @@ static void head(struct fields_file *f, const char *engine, const char *doc, int
                  const struct field_table *table, const void *inputs) {
   const int64_t format = 1, version = results_version, number = (int64_t)seed;
   char *scene = field_json(table, inputs);
-  fields_file_group(f, "run");
-  fields_file_integers(f, "run", "format", 1, &format);
-  fields_file_text(f, "run", "engine", engine);
-  fields_file_text(f, "run", "doc", doc);
-  fields_file_integers(f, "run", "results_version", 1, &version);
-  fields_file_integers(f, "run", "seed", 1, &number);
+  make_group(f, "run");
+  integer_attribute(f, "run", "format", 1, &format);
+  text_attribute(f, "run", "engine", engine);
+  text_attribute(f, "run", "doc", doc);
+  integer_attribute(f, "run", "results_version", 1, &version);
+  integer_attribute(f, "run", "seed", 1, &number);
   if (scene)
-    fields_file_text(f, "run", "scene", scene);
+    text_attribute(f, "run", "scene", scene);
   f->failed |= !scene;
   free(scene);
 }

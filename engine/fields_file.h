@@ -23,10 +23,7 @@ status fields_file_save(struct fields_file *file, const char *path, struct error
 /* Memory that the writer needed could not be had: save will say so. */
 void fields_file_fail(struct fields_file *file);
 
-void fields_file_group(struct fields_file *file, const char *group);
-/* Attributes of a group or data set that is there. Text is ASCII of fixed length: VTK asks for it. */
-void fields_file_text(struct fields_file *file, const char *at, const char *name, const char *text);
-void fields_file_integers(struct fields_file *file, const char *at, const char *name, size_t count, const int64_t *values);
+/* An attribute of a group or data set that is there. */
 void fields_file_real(struct fields_file *file, const char *at, const char *name, double value);
 
 enum fields_file_kind { FIELDS_FILE_REAL, FIELDS_FILE_INTEGER, FIELDS_FILE_BYTE }; /* double, int64_t, unsigned char */

@@ -101,9 +101,6 @@ status document_finish(struct document *document, const char **report) {
 const char *document_text(const struct document *document) {
   return document->text;
 }
-const char *document_name(const struct document *document) {
-  return document->name;
-}
 document_node *document_root(struct document *document) {
   return document->root;
 }

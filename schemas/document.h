@@ -22,7 +22,6 @@ status document_parse(const char *name, const char *text, size_t size, struct do
 void document_free(struct document *document); /* NULL is fine */
 
 const char *document_text(const struct document *document); /* the file as read, NUL-terminated */
-const char *document_name(const struct document *document);
 
 enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };
 

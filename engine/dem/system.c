@@ -193,9 +193,6 @@ bool dem_system_step(struct dem_system *s) {
   return true;
 }
 
-size_t dem_system_grains(const struct dem_system *s) {
-  return s->count;
-}
 double dem_system_time(const struct dem_system *s) {
   return s->now.time;
 }

@@ -60,7 +60,6 @@ void dem_system_drive(struct dem_system *system, uint32_t grain, double vx, doub
 /* One time step. False when a position or velocity is no longer finite. */
 bool dem_system_step(struct dem_system *system);
 
-size_t dem_system_grains(const struct dem_system *system);
 double dem_system_time(const struct dem_system *system);
 uint64_t dem_system_steps(const struct dem_system *system);
 struct dem_ledger dem_system_ledger(struct dem_system *system);

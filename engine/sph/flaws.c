@@ -123,15 +123,3 @@ void sph_flaws_free(struct sph_flaws *flaws) {
   free(flaws->log_strain);
   free(flaws);
 }
-
-size_t sph_flaws_active(const struct sph_flaws *flaws, size_t i, double log_strain) {
-  size_t low = flaws->first[i], high = flaws->first[i + 1];
-  while (low < high) { /* first flaw stronger than the strain */
-    size_t middle = low + (high - low) / 2;
-    if (flaws->log_strain[middle] <= log_strain)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low - flaws->first[i];
-}

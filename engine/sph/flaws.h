@@ -48,7 +48,4 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
                       struct sph_flaws **out, struct error *error);
 void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
 
-/* How many of particle i's flaws are active at ln(strain). */
-size_t sph_flaws_active(const struct sph_flaws *flaws, size_t i, double log_strain);
-
 #endif

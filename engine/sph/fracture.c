@@ -17,11 +17,6 @@ double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, 
   return mean + 2 * p * cos(angle);
 }
 
-double sph_fracture_strain(double tension, double damage, double young_modulus) {
-  double left = 1 - damage;
-  return tension > 0 && left > 0 ? tension / (left * young_modulus) : 0;
-}
-
 double sph_fracture_rate(size_t active, int growth) {
   const double n = (double)active;
   return growth == SPH_GROWTH_LINEAR ? n : cbrt(n);
@@ -32,14 +27,6 @@ double sph_fracture_limit(size_t active, size_t total, int cap) {
   return cap == SPH_CAP_BA95 ? cbrt(cbrt(share)) /* D_max = share^(1/3), and the state is its cube root */
          : cap == SPH_CAP_COUNT ? cbrt(share)
                                 : 1;
-}
-
-double sph_fracture_grow(double damage_cbrt, size_t active, size_t total, int growth, int cap, double rate, double dt) {
-  if (!active) return damage_cbrt;
-  double grown = damage_cbrt + sph_fracture_rate(active, growth) * rate * dt;
-  const double limit = sph_fracture_limit(active, total, cap);
-  if (grown > limit) grown = limit;
-  return grown > damage_cbrt ? grown : damage_cbrt;
 }
 
 static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {

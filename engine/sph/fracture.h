@@ -16,16 +16,8 @@ enum sph_fracture_cap { SPH_CAP_BA95, SPH_CAP_COUNT, SPH_CAP_NONE };
 /* Largest principal value of a symmetric tensor. */
 double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, double yz, double zz);
 
-/* Local scalar strain, BA95 eq. 21: tension over (1-D) E, from the damaged tension. 0 when fully damaged or compressed.
- */
-double sph_fracture_strain(double damaged_tension, double damage, double young_modulus);
-
 /* Rate of D^(1/3) in units of c_g/R_s, and the cube root of D_max, while `active` of `total` flaws are open. */
 double sph_fracture_rate(size_t active, int growth);
 double sph_fracture_limit(size_t active, size_t total, int cap);
-
-/* D^(1/3) after dt with `active` of `total` flaws open. growth_rate = c_g / R_s, 1/s. */
-double sph_fracture_grow(double damage_cbrt, size_t active, size_t total, int growth, int cap, double growth_rate,
-                         double dt);
 
 #endif

@@ -1,6 +1,7 @@
 #include "engine/sph/plane_shock.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "engine/sph/palpha.h"
 #include "engine/sph/tillotson.h"

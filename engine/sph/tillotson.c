@@ -58,15 +58,6 @@ struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double rho0, do
   return (struct sph_pressure){r.p, r.by_rho, r.by_u, sqrt(c2 > floor2 ? c2 : floor2)};
 }
 
-void sph_tillotson_range(const struct sph_tillotson *t, double rho0, size_t n, const double *rho, const double *u,
-                         double *pressure, double *sound_speed) {
-  for (size_t i = 0; i < n; i++) {
-    struct sph_pressure p = sph_tillotson(t, rho0, rho[i], u[i]);
-    pressure[i] = p.pressure;
-    sound_speed[i] = p.sound_speed;
-  }
-}
-
 static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
   (void)parameters;
   return !body->porosity;

@@ -9,8 +9,6 @@
 #ifndef CLAST_ENGINE_SPH_TILLOTSON_H
 #define CLAST_ENGINE_SPH_TILLOTSON_H
 
-#include <stddef.h>
-
 #include "engine/sph/material.h"
 
 struct sph_pressure {
@@ -22,8 +20,5 @@ struct sph_pressure {
 
 /* u < 0 is evaluated at u = 0 (the pole is at -E0 eta^2); the step clamps u itself and books what that puts in. */
 struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double density0, double density, double u);
-/* The same over ranges; pressure and sound speed only. */
-void sph_tillotson_range(const struct sph_tillotson *t, double density0, size_t n, const double *density,
-                         const double *u, double *pressure, double *sound_speed);
 
 #endif

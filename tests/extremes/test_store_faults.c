@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <time.h>
 
+#include "db/store/internal.h"
 #include "tests/store_fixture.h"
 
 static struct error error;
@@ -238,7 +239,7 @@ static void reader_never_blocks_the_writer(void **state) {
   OK(store_open_writer(path, &fixture_estimates_table, &writer, NULL, 0, &error));
   OK(store_open_reader(path, &reader, &error));
   sqlite3_stmt *half = NULL;
-  sqlite3_prepare_v2(store_handle(reader), "SELECT run_id FROM run", -1, &half, NULL);
+  sqlite3_prepare_v2(reader->db, "SELECT run_id FROM run", -1, &half, NULL);
   assert_int_equal(sqlite3_step(half), SQLITE_ROW);
   double start = now();
   OK(fixture_populate(writer, M, K, RUNS, true, &error));
@@ -276,7 +277,7 @@ static void after_a_failure_nothing_is_pretended(void **state) {
   assert_true(store_has_run(store, f.run.identity));
   uint8_t first[16];
   memcpy(first, f.run.identity, 16);
-  sqlite3_exec(store_handle(store), "PRAGMA max_page_count = 1", NULL, NULL, NULL); /* = as many as there are */
+  sqlite3_exec(store->db, "PRAGMA max_page_count = 1", NULL, NULL, NULL); /* = as many as there are */
   status result = STATUS_OK;
   for (int r = 1; r < 2000 && result == STATUS_OK; r++) {
     fixture_fill(&f, &scene, point, 0, r, FIXTURE_FRAGMENTS);

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "engine/sph/flaws.h"
+#include "tests/grady_kipp.h"
 
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {
   struct sph_flaw_law law = {.weibull = {m, k}, .volume = 1e-5, .draw = draw, .seed = seed};
@@ -36,9 +36,9 @@ static void ranked_is_the_law(void **state) {
   qsort(all, flaws->count, sizeof *all, ascending);
   for (size_t j = 1; j <= flaws->count; j++) /* n(eps) V = k eps^m V = j at the j-th flaw; rounding of logs only */
     assert_true(fabs(exp(8.5 * all[j - 1] + log(5e34) + log(1e-5)) / (double)j - 1) < 1e-11);
-  assert_int_equal(sph_flaws_active(flaws, 7, HUGE_VAL), flaws->first[8] - flaws->first[7]);
-  assert_int_equal(sph_flaws_active(flaws, 7, -HUGE_VAL), 0);
-  assert_int_equal(sph_flaws_active(flaws, 7, flaws->log_strain[flaws->first[7]]), 1);
+  assert_int_equal(grady_kipp_open(flaws, 7, HUGE_VAL), flaws->first[8] - flaws->first[7]);
+  assert_int_equal(grady_kipp_open(flaws, 7, -HUGE_VAL), 0);
+  assert_int_equal(grady_kipp_open(flaws, 7, flaws->log_strain[flaws->first[7]]), 1);
   free(all);
   sph_flaws_free(flaws);
 }
@@ -119,7 +119,7 @@ static void draws_obey_the_law(void **state) {
       struct sph_flaws *flaws = make(m, k, SPH_FLAWS_POISSON, (uint64_t)s, N);
       double below = 0;
       for (size_t i = 0; i < N; i++) {
-        size_t active = sph_flaws_active(flaws, i, log_strain);
+        size_t active = grady_kipp_open(flaws, i, log_strain);
         below += (double)active;
         in_particle[i] += active;
         all += active;
@@ -142,7 +142,7 @@ static void draws_obey_the_law(void **state) {
   for (int e = 0; e < 4; e++) {
     size_t below = 0;
     for (size_t i = 0; i < N; i++)
-      below += sph_flaws_active(ranked, i, (log(want[e] + 0.5) - log(k) - log(1e-5)) / m);
+      below += grady_kipp_open(ranked, i, (log(want[e] + 0.5) - log(k) - log(1e-5)) / m);
     assert_int_equal(below, (size_t)want[e]);
   }
   sph_flaws_free(ranked);

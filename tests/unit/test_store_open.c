@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include "db/store/internal.h"
 #include "tests/store_fixture.h"
 
 static struct error error;
@@ -240,8 +241,8 @@ static void reader_refuses_to_write(void **state) {
   populated(fixture_path(path, "reader"));
   OK(store_open_reader(path, &store, &error));
   assert_int_equal(store_end_session(store, 1, "x", &error), STATUS_INTERNAL);
-  assert_int_equal(sqlite3_exec(store_handle(store), "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
-  assert_int_equal(sqlite3_exec(store_handle(store), "PRAGMA query_only = OFF; DELETE FROM run", NULL, NULL, NULL),
+  assert_int_equal(sqlite3_exec(store->db, "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
+  assert_int_equal(sqlite3_exec(store->db, "PRAGMA query_only = OFF; DELETE FROM run", NULL, NULL, NULL),
                    SQLITE_READONLY);
   OK(store_close(store, &error));
   OK(store_close(NULL, &error));

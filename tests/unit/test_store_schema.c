@@ -10,6 +10,7 @@
 #include <sqlite3.h>
 
 #include "analysis/estimates.h"
+#include "db/schema.h"
 #include "db/views.h"
 #include "tests/store_fixture.h"
 
@@ -34,7 +35,7 @@ static int integer(sqlite3 *db, const char *sql) {
 static void committed_text_is_the_schema(void **state) {
   (void)state;
   static const char path[] = CLAST_SOURCE_DIR "/schemas/results.sql";
-  char *made = store_schema_sql(&estimates_table);
+  char *made = schema_sql(&estimates_table);
   assert_non_null(made);
   if (getenv("CLAST_REGENERATE")) {
     FILE *out = fopen(path, "w");
@@ -59,7 +60,7 @@ static void text_makes_the_same_store(void **state) {
   (void)state;
   char path[64];
   struct store *store = NULL;
-  char *sql = store_schema_sql(&estimates_table);
+  char *sql = schema_sql(&estimates_table);
   sqlite3 *db = run_text(sql);
   assert_int_equal(store_open_writer(fixture_path(path, "schema"), &estimates_table, &store, NULL, 0, &error),
                    STATUS_OK);
@@ -81,7 +82,7 @@ static void text_makes_the_same_store(void **state) {
 
 static void every_column_is_documented(void **state) {
   (void)state;
-  char *sql = store_schema_sql(&estimates_table);
+  char *sql = schema_sql(&estimates_table);
   sqlite3 *db = run_text(sql);
   sqlite3_stmt *statement = NULL;
   sqlite3_prepare_v2(
@@ -113,7 +114,7 @@ static void every_column_is_documented(void **state) {
 
 static void every_table_is_strict(void **state) {
   (void)state;
-  char *sql = store_schema_sql(&estimates_table);
+  char *sql = schema_sql(&estimates_table);
   sqlite3 *db = run_text(sql);
   assert_int_equal(
       integer(db, "SELECT count(*) FROM pragma_table_list WHERE type = 'table' AND schema = 'main' AND name NOT "

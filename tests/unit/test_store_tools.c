@@ -8,6 +8,7 @@
 
 #include <sqlite3.h>
 
+#include "db/store/internal.h"
 #include "tests/store_fixture.h"
 
 static struct error error;
@@ -77,7 +78,7 @@ static void dumps_agree_whatever_the_order(void **state) {
   assert_string_equal(x, y);
   free(y);
   store = writer(b);
-  assert_int_equal(sqlite3_exec(store_handle(store),
+  assert_int_equal(sqlite3_exec(store->db,
                                 "UPDATE run SET largest_fraction = largest_fraction + 1e-16 WHERE run_id = 7", NULL,
                                 NULL, NULL),
                    SQLITE_OK);
@@ -208,7 +209,7 @@ static void export_is_whole_and_single(void **state) {
   OK(store_export(store, copy, &error));
   assert_int_equal(store_export(store, copy, &error), STATUS_IO);
   assert_int_equal(store_export(store, "no-such-folder/x.db", &error), STATUS_IO);
-  assert_int_equal(sqlite3_exec(store_handle(store), "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
+  assert_int_equal(sqlite3_exec(store->db, "DELETE FROM run", NULL, NULL, NULL), SQLITE_READONLY);
   store_close(store, NULL);
   char *x = dump(path), *y = dump(copy);
   assert_string_equal(x, y);

@@ -8,6 +8,7 @@
 
 #include <sqlite3.h>
 
+#include "db/store/internal.h"
 #include "engine/spectrum.h"
 #include "tests/store_fixture.h"
 
@@ -69,7 +70,7 @@ static void every_value_comes_back(void **state) {
 
   /* masses: little-endian float64, descending; motion: float32, position x second of the second fragment */
   sqlite3_stmt *statement;
-  sqlite3_prepare_v2(store_handle(store),
+  sqlite3_prepare_v2(store->db,
                      "SELECT masses, motion FROM fragment_mass JOIN fragment_motion USING (run_id)", -1, &statement,
                      NULL);
   assert_int_equal(sqlite3_step(statement), SQLITE_ROW);

@@ -42,7 +42,7 @@ struct momenta {
 
 static struct momenta momenta(const struct dem_system *s) {
   struct momenta m = {0};
-  for (uint32_t i = 0; i < dem_system_grains(s); ++i) {
+  for (uint32_t i = 0; i < s->count; ++i) {
     const struct dem_grain g = dem_system_grain(s, i);
     if (!g.present) continue;
     m.px += g.mass * g.vx;

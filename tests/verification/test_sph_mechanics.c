@@ -4,6 +4,7 @@
  * Homogeneous motions are made with held particles: everyone moves at a constant velocity linear in its place, and with the
  * gradient correction the velocity gradient is then exact at every particle, at the surfaces too. Internal energy is exact
  * where the support is full: at surfaces it balances the forces there (pairs.h), which the holds bear. */
+#include "tests/grady_kipp.h"
 #include "tests/sph_case.h"
 
 #include "engine/random.h"
@@ -251,7 +252,7 @@ static double strain_of(const struct sph_particles *p, size_t i, double young) {
   return (tension - p->pressure[i]) / young;
 }
 
-/* Peak of the mean stress, MPa, of 1000 particles with flaws of their own; D of every particle against fracture.c. At `turn` (s) the
+/* Peak of the mean stress, MPa, of 1000 particles with flaws of their own; D of every particle against grady_kipp.h. At `turn` (s) the
  * motion turns back: flaws close as the load goes, and nothing grows in compression. */
 static double stretch(int growth, int cap, bool compact, double damage_step, double turn, double *worst) {
   struct sph_particles *p = strained(10, 3600, 0, 0, 0);
@@ -283,11 +284,11 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
     for (size_t i = 0; i < p->n; i++)
       before[i] = strain_of(p, i, young);
     case_steps(s, 1);
-    for (size_t i = 0; i < p->n; i++) { /* the same law, by fracture.c and the flaws as drawn */
+    for (size_t i = 0; i < p->n; i++) { /* the same law, by grady_kipp.h and the flaws as drawn */
       const double strain = before[i];
       const size_t total = flaws->first[i + 1] - flaws->first[i];
-      const size_t open = strain > 0 ? sph_flaws_active(flaws, i, log(strain)) : 0;
-      d[i] = sph_fracture_grow(d[i], open, total, growth, cap, speed / radius, sph_system_last_step(s));
+      const size_t open = strain > 0 ? grady_kipp_open(flaws, i, log(strain)) : 0;
+      d[i] = grady_kipp_grow(d[i], open, total, growth, cap, speed / radius, sph_system_last_step(s));
       mean += young * strain * (1 - pow(p->damage_cbrt[i], 3)) / (double)p->n;
     }
     peak = fmax(peak, mean);
@@ -312,7 +313,7 @@ static void damage(void **state) {
       double worst, lists;
       const double exact = stretch(growth, cap, false, 0.2, HUGE_VAL, &worst);
       const double compact = stretch(growth, cap, true, 0.2, HUGE_VAL, &lists);
-      print_message("%s: peak %.3f MPa, worst difference of D^(1/3) to fracture.c %.1e; compact flaws: peak %.3f MPa (%+.2f %%)\n",
+      print_message("%s: peak %.3f MPa, worst difference of D^(1/3) to plain C %.1e; compact flaws: peak %.3f MPa (%+.2f %%)\n",
                     names[cap][growth], exact, worst, compact, 100 * (compact / exact - 1));
       /* a flaw whose threshold the strain of one step meets within rounding may open a step sooner: one step's growth */
       assert_true(worst < 3e-2);

@@ -13,6 +13,7 @@
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
 #include "engine/sph/flaw_places.h"
+#include "tests/grady_kipp.h"
 #include "tests/sph_solid.h"
 
 static const double radius = 0.01, length = 0.04;
@@ -167,7 +168,7 @@ static double particle_form(const struct sph_flaws *flaws, const unsigned char *
     for (size_t i = 0; i < flaws->particles; i++) {
       if (!in[i]) continue;
       d[i] =
-          sph_fracture_grow(d[i], sph_flaws_active(flaws, i, log(rate * (step + 0.5) * dt)),
+          grady_kipp_grow(d[i], grady_kipp_open(flaws, i, log(rate * (step + 0.5) * dt)),
                             flaws->first[i + 1] - flaws->first[i], SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, growth_rate, dt);
       sum += 1 - d[i] * d[i] * d[i];
       n++;
