@@ -13,7 +13,7 @@
 /* Bytes per particle of the moving system but its lists (sph_system_bytes of 10 000 particles; 100 less of 100 000), what the
  * gradient correction adds, lists at the usual h, and all that stands beside the system (particles as set up and as read back;
  * fragments at the end, when dust is many: what a whole process had at its peak, less the system). */
-enum { BYTES_SYSTEM = 730, BYTES_CORRECTION = 140, BYTES_LISTS = 108, BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
+enum { BYTES_SYSTEM = 690, BYTES_CORRECTION = 140, BYTES_LISTS = 108, BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 /* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2 to 3 GHz). */
 enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
 static const double pi = 3.14159265358979323846;

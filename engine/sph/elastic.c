@@ -13,6 +13,6 @@ const struct sph_module sph_elastic_module = {
     .source = "Benz & Asphaug 1995, eqs. 6-7, with the sign of the rotation terms that keeps a rigidly turning body's stress",
     .when = "a body with strength",
     .on = on,
-    .bytes = (5 + 5 + 6) * (int)sizeof(double),
+    .bytes = (5 + 5 + 1) * (int)sizeof(double),
     .hook = {[SPH_PREDICT] = offsetof(struct sph_ranges, elastic_predict), [SPH_RATES] = offsetof(struct sph_ranges, elastic_rates)},
 };

@@ -1,8 +1,8 @@
 /* Hooke's law in a turning frame, and what damage leaves of the stress.
  *
  * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in its own
- * frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged; the pair loop gets
- * (1-D) S, and (1-D) P where P < 0. */
+ * frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged; of it
+ * (1-D) S acts, and (1-D) P where P < 0. */
 #ifndef CLAST_ENGINE_SPH_ELASTIC_RANGE_H
 #define CLAST_ENGINE_SPH_ELASTIC_RANGE_H
 
@@ -22,18 +22,14 @@ RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *bo
 
 RANGE_INLINE void elastic_output(struct sph_system *s, struct sph_block *b, bool fracture) {
   const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
-  const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
-  const double *yz = s->c.stress[4];
-  double *term = s->c.pressure_term, *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2];
-  double *oyy = s->c.damaged[3], *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
+  double *term = s->c.pressure_term, *factor = s->c.stress_factor;
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++) {
     const double inverse = 1 / (density[i] * density[i]);
     const double left = fracture ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
     const double share = fracture ? left * inverse : inverse, p = pressure[i];
     term[i] = -p * (p < 0 ? share : inverse);
-    oxx[i] = share * xx[i], oxy[i] = share * xy[i], oxz[i] = share * xz[i];
-    oyy[i] = share * yy[i], oyz[i] = share * yz[i], ozz[i] = -(share * xx[i] + share * yy[i]);
+    factor[i] = share;
   }
 }
 
@@ -54,8 +50,7 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
   double *const *g = b->sums->gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7], *g8 = g[8];
   const double *density = s->c.density, *term = s->c.pressure_term, *heating = b->sums->heating, *power = b->sums->power;
-  const double *oxx = s->c.damaged[0], *oxy = s->c.damaged[1], *oxz = s->c.damaged[2], *oyy = s->c.damaged[3];
-  const double *oyz = s->c.damaged[4], *ozz = s->c.damaged[5];
+  const double *factor = s->c.stress_factor;
   double *energy = s->c.energy, *energy_rate = s->c.energy_rate;
   double *sxx = s->c.stress[0], *sxy = s->c.stress[1], *sxz = s->c.stress[2], *syy = s->c.stress[3], *syz = s->c.stress[4];
   double *rxx = s->c.stress_rate[0], *rxy = s->c.stress_rate[1], *rxz = s->c.stress_rate[2], *ryy = s->c.stress_rate[3];
@@ -68,12 +63,13 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
     const double exy = 0.5 * (g1[k] + g3[k]), exz = 0.5 * (g2[k] + g6[k]), eyz = 0.5 * (g5[k] + g7[k]);
     const double two_mu = pores ? solid_two_mu * f[i] / alpha[i] : solid_two_mu;
     const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
-    const double work = term[i] * divergence + oxx[i] * exx + oyy[i] * eyy + ozz[i] * ezz +
-                        2 * (oxy[i] * exy + oxz[i] * exz + oyz[i] * eyz);
+    const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
+    const double axx = factor[i] * xx, ayy = factor[i] * yy; /* what acts */
+    const double work = term[i] * divergence + axx * exx + ayy * eyy - (axx + ayy) * ezz +
+                        2 * (factor[i] * xy * exy + factor[i] * xz * exz + factor[i] * yz * eyz);
     const double heat = (power ? power[k] : density[i] * work) + heating[k];
     energy[i] += half * (heat - energy_rate[i]);
     energy_rate[i] = heat;
-    const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
     /* (R S - S R)_ab = sum_c R_ac S_cb + R_bc S_ca */
     const double txx = 2 * (wxy * xy + wxz * xz);
     const double tyy = 2 * (-wxy * xy + wyz * yz);

@@ -38,26 +38,34 @@ RANGE_HOOK void motion_predict(struct sph_system *s, const struct sph_solid *bod
   const double dt = s->dt, half = 0.5 * dt;
   double *const position[3] = {s->c.x, s->c.y, s->c.z}, *const velocity[3] = {s->c.vx, s->c.vy, s->c.vz};
   double *const acceleration[3] = {s->c.ax, s->c.ay, s->c.az};
+  const size_t low = b->low, n = b->high - low;
+  double way2[SPH_BLOCK] = {0}, growth[SPH_BLOCK];
   for (int k = 0; k < 3; k++) {
     double *x = position[k], *v = velocity[k];
     const double *a = acceleration[k];
     RANGE_LOOP
-    for (size_t i = b->low; i < b->high; i++) {
-      x[i] += dt * (v[i] + half * a[i]);
-      v[i] += dt * a[i];
+    for (size_t m = 0; m < n; m++) {
+      const double way = dt * (v[low + m] + half * a[low + m]);
+      x[low + m] += way;
+      v[low + m] += dt * a[low + m];
+      way2[m] += way * way;
     }
   }
   double *density = s->c.density, *energy = s->c.energy, *h = s->c.h;
   const double *density_rate = s->c.density_rate, *energy_rate = s->c.energy_rate;
-  const double *h0 = s->c.h_initial, low = s->p.h_lowest, high = s->p.h_highest;
+  const double *h0 = s->c.h_initial, h_low = s->p.h_lowest, h_high = s->p.h_highest;
   RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++) {
+  for (size_t m = 0; m < n; m++) {
+    const size_t i = low + m;
     const double change = dt * density_rate[i], now = density[i] + change;
     density[i] = now;
     energy[i] += dt * energy_rate[i];
     const double grown = h[i] * motion_cube_root(-change / now);
-    h[i] = range_smaller(range_larger(grown, low * h0[i]), high * h0[i]);
+    const double size = range_smaller(range_larger(grown, h_low * h0[i]), h_high * h0[i]);
+    growth[m] = range_larger(size - h[i], 0);
+    h[i] = size;
   }
+  b->slack -= sqrt(range_largest(way2, n)) + range_largest(growth, n);
   motion_clamp(s, body, b);
 }
 
@@ -147,7 +155,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const double h_low = s->p.h_lowest, h_high = s->p.h_highest;
   const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
   const double alpha = 0.6 * s->p.viscosity_alpha, beta = 0.6 * s->p.viscosity_beta, step = 2 * s->p.cfl;
-  double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK];
+  double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK], growth[SPH_BLOCK];
   int64_t lost = 0;
   RANGE_LOOP
   for (size_t k = 0; k < n; k++) {
@@ -158,6 +166,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     density[i] = now;
     const double grown = h[i] * motion_cube_root(-change / now);
     const double size = range_smaller(range_larger(grown, h_low * h0[i]), h_high * h0[i]);
+    growth[k] = range_larger(size - h[i], 0);
     h[i] = size;
     const double left = fracture ? 1 - d[i] * d[i] * d[i] : 1;
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
@@ -175,6 +184,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
             -(int64_t)!(fabs(now) + fabs(energy[i]) + courant[k] < 1e60);
   }
   motion_clamp(s, body, b);
+  b->slack -= range_largest(growth, n);
   b->worst[SPH_LIMIT_COURANT] = range_largest(courant, n) / s->p.cfl;
   b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->p.cfl;
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);

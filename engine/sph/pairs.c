@@ -137,18 +137,19 @@ static double image(double along, double length) {
   return isnan(length) ? along : along - length * nearbyint(along / length);
 }
 
-bool sph_pairs_worn(const struct sph_pairs *p, size_t low, size_t high, const double *x, const double *y, const double *z,
-                    const double *h) {
+double sph_pairs_slack(const struct sph_pairs *p, size_t low, size_t high, const double *x, const double *y, const double *z,
+                       const double *h) {
   const double *periodic = p->options.periodic;
   const bool open = isnan(periodic[0]) && isnan(periodic[1]) && isnan(periodic[2]);
-  bool worn = !p->lists.most_slots;
+  double least = p->lists.most_slots ? HUGE_VAL : -HUGE_VAL;
   for (size_t i = low; i < high; i++) { /* both partners of a pair within their slack: r_listed < h_i + h_j + both slacks */
     double dx = x[i] - p->listed[0][i], dy = y[i] - p->listed[1][i], dz = z[i] - p->listed[2][i];
     if (!open) dx = image(dx, periodic[0]), dy = image(dy, periodic[1]), dz = image(dz, periodic[2]);
     const double left = p->listed[4][i] - (h[i] - p->listed[3][i]);
-    worn |= !(left >= 0 && dx * dx + dy * dy + dz * dz <= left * left);
+    const double unused = left - sqrt(dx * dx + dy * dy + dz * dz);
+    if (!(unused >= least)) least = isnan(unused) ? -HUGE_VAL : unused;
   }
-  return worn;
+  return least;
 }
 
 double *const *sph_pairs_listed(struct sph_pairs *p) {
@@ -218,11 +219,12 @@ static struct sph_pair_source source_of(const struct sph_pairs *p, const struct 
   struct sph_pair_source s = {.column = {f->x, f->y, f->z, f->h, f->vx, f->vy, f->vz, f->mass},
                               .scale = {1, 1, 1, 0.5 / length, u->per_velocity, u->per_velocity, u->per_velocity, u->per_mass},
                               .pressure = f->pressure_term,
+                              .stress_factor = f->stress_factor,
                               .volume_weights = p->options.volume_weights};
   s.column[PAIR_SOUND] = f->sound_speed, s.scale[PAIR_SOUND] = u->per_velocity;
   s.column[PAIR_DENSITY] = f->density, s.scale[PAIR_DENSITY] = u->per_density;
   for (int k = 0; k < 6; k++) {
-    s.column[PAIR_XX + k] = p->options.strength ? f->stress[k] : NULL;
+    s.column[PAIR_XX + k] = p->options.strength && k < 5 ? f->stress[k] : NULL;
     s.column[PAIR_ARTIFICIAL + k] = p->opposed[k];
     s.scale[PAIR_XX + k] = s.scale[PAIR_ARTIFICIAL + k] = u->per_specific;
     s.correction[k] = p->options.gradient_correction ? f->correction[k] : NULL;
@@ -358,10 +360,10 @@ struct pass {
 /* Of `count` particles from `first` on, whose moments stand where their new corrections will. */
 static void correct(const struct sph_pairs *p, size_t first, size_t count, const struct sph_pair_fields *f, const struct sph_pair_sums *sums) {
   struct sph_pair_correction c = {.density = f->density + first, .pressure_term = f->pressure_term + first, .power = sums->power};
-  for (int k = 0; k < 6; k++) {
+  for (int k = 0; k < 6; k++)
     c.old[k] = f->correction[k] + first, c.correction[k] = sums->correction[k];
-    c.stress[k] = p->options.strength ? f->stress[k] + first : NULL;
-  }
+  for (int k = 0; k < 5 && p->options.strength; k++)
+    c.stress[k] = f->stress[k] + first, c.stress_factor = f->stress_factor + first;
   for (int k = 0; k < 9; k++)
     c.gradient[k] = sums->gradient[k];
   p->kernels->correct(&c, count);
@@ -448,7 +450,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     struct sph_chunk *c = &p->lists.chunk[k];
     atomic_init(&c->summed, false);
     atomic_init(&c->taken, false);
-    if (p->artificial) p->kernels->oppose(o->artificial_stress, f->stress, f->pressure_term, c->first, c->first + c->own, p->opposed);
+    if (p->artificial) p->kernels->oppose(o->artificial_stress, f->stress, f->stress_factor, f->pressure_term, c->first, c->first + c->own, p->opposed);
   }
   w.source = source_of(p, f);
 #ifdef _OPENMP

@@ -43,7 +43,8 @@ struct sph_pair_options {
 struct sph_pair_fields {
   const double *x, *y, *z, *h, *vx, *vy, *vz, *mass, *density, *sound_speed;
   const double *pressure_term; /* -P/rho^2 with the damaged bulk pressure */
-  const double *stress[6];     /* S/rho^2, damaged deviator; NULL without strength. sigma/rho^2 = stress + pressure_term I */
+  const double *stress[5];     /* S, undamaged deviator, Pa: xx xy xz yy yz, its trace is zero; NULL without strength */
+  const double *stress_factor; /* (1-D)/rho^2: sigma/rho^2 = stress_factor S + pressure_term I */
   const double *correction[6]; /* B of the pass before (at first: 1); only with gradient_correction */
 };
 
@@ -52,7 +53,7 @@ struct sph_pair_sums {
   double *ax, *ay, *az;    /* m/s^2 */
   double *gradient[9];     /* 1/s: xx xy xz yx ... with ab = dv_a/dx_b; corrected where that is on */
   double *heating;         /* J/kg/s: viscous, and the work of the artificial stress, which has either sign */
-  /* Only with gradient_correction, else NULL. The work of the forces' B, J/kg/s, rho_i (pressure_term tr(g) + stress : g) with g the
+  /* Only with gradient_correction, else NULL. The work of the forces' B, J/kg/s, rho_i (sigma/rho^2 : g) with g the
    * sum times that B: total energy is then conserved however much B changes between two passes. */
   double *power;
   double *correction[6]; /* the new B; NULL without */
@@ -69,10 +70,10 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
 void sph_pairs_free(struct sph_pairs *pairs); /* NULL is fine */
 size_t sph_pairs_bytes(const struct sph_pairs *pairs);
 
-/* Has one of the particles low .. high - 1 moved (or grown in h) by more than its slack, so that a list may miss a pair? Also when
- * there are no lists yet. */
-bool sph_pairs_worn(const struct sph_pairs *pairs, size_t low, size_t high, const double *x, const double *y, const double *z,
-                    const double *h);
+/* The least that one of the particles low .. high - 1 has left of its slack, m, of which it uses up how far it has moved and how much its
+ * h has grown. Below zero a list may miss a pair: then, where a particle is nowhere, and when there are no lists yet. */
+double sph_pairs_slack(const struct sph_pairs *pairs, size_t low, size_t high, const double *x, const double *y, const double *z,
+                       const double *h);
 /* New lists for particles in sorted order: pairs with r < h_i + h_j + slack_i + slack_j. `slack` (m) is how far each may go
  * before the lists are worn; fast particles are given more. Memory is bounded by n, whatever the spatial extent.
  * STATUS_MEMORY; STATUS_CONTENT when a periodic box is thinner than twice the reach of a pair. */

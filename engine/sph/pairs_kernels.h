@@ -44,9 +44,9 @@ struct sph_pair_chunk {
 
 /* What records are made of: arrays of all particles. */
 struct sph_pair_source {
-  const double *column[PAIR_WIDE]; /* by column; NULL: zero. The pressure term is added to XX, YY, ZZ, scaled as they are */
+  const double *column[PAIR_WIDE]; /* by column; NULL: zero. XX to YZ: of the deviator, which gives ZZ */
   double scale[PAIR_WIDE];         /* to the records' units; powers of two */
-  const double *pressure;
+  const double *stress_factor, *pressure; /* times the deviator; added to XX, YY, ZZ, scaled as they are */
   const double *correction[6];     /* B by which the stress is multiplied; NULL without */
   double per_quantum[3];           /* of float records' positions */
   bool volume_weights;             /* stresses are wanted as sigma, not as sigma/rho^2 */
@@ -64,7 +64,7 @@ struct sph_pair_sink {
 /* Arrays of the particles that are corrected. */
 struct sph_pair_correction {
   const double *old[6];                    /* B that the forces were made with */
-  const double *density, *pressure_term, *stress[6]; /* stress: NULL without strength */
+  const double *density, *pressure_term, *stress_factor, *stress[5]; /* the last two: NULL without strength */
   double *gradient[9];                     /* what was summed; after: times the new B */
   double *correction[6];                   /* moments; after: the new B */
   double *power;                           /* after: the work of the forces, J/kg/s */
@@ -118,10 +118,10 @@ struct sph_pair_kernels {
   void (*unpack_float)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const float *records);
   /* What moments make of the sums of `count` particles: pairs_kernels_correct.h. */
   void (*correct)(const struct sph_pair_correction *, size_t count);
-  /* The artificial stress R of the particles first..last-1, opposed to the tension in stress[] + pressure_term I (xx xy xz yy
+  /* The artificial stress R of the particles first..last-1, opposed to the tension in stress_factor S + pressure_term I (xx xy xz yy
    * yz zz): pairs_kernels_tension.h. */
-  void (*oppose)(double epsilon, const double *const stress[6], const double *pressure_term, size_t first, size_t last,
-                 double *const out[6]);
+  void (*oppose)(double epsilon, const double *const stress[5], const double *stress_factor, const double *pressure_term, size_t first,
+                 size_t last, double *const out[6]);
 };
 
 extern const struct sph_pair_kernels sph_pairs_kernels_baseline;

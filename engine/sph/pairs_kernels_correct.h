@@ -9,6 +9,14 @@ INLINE VECTOR NAME(load)(const double *from, size_t lanes) { /* zero in those th
   return v;
 }
 
+/* The stress that acts, xx xy xz yy yz zz, out of the deviator and its factor. */
+INLINE void NAME(acting)(const double *const stress[5], const double *factor, size_t i, size_t lanes, VECTOR out[6]) {
+  const VECTOR f = NAME(load)(factor + i, lanes);
+  UNROLL for (int k = 0; k < 5; k++)
+    out[k] = f * NAME(load)(stress[k] + i, lanes);
+  out[5] = -(out[0] + out[3]);
+}
+
 /* T = sigma B, of which the first six are xx xy xz yy yz zz, the others yx zx zy: it is not symmetric. */
 INLINE void NAME(turn)(const VECTOR s[6], const VECTOR b[6], VECTOR t[9]) {
   static const int place[3][3] = {{0, 1, 2}, {6, 3, 4}, {7, 8, 5}}, of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
@@ -62,8 +70,7 @@ INLINE void NAME(correct_some)(const struct sph_pair_correction *c, size_t i, co
   VECTOR power = NAME(load)(c->pressure_term + i, lanes) * (out[0] + out[4] + out[8]); /* rho (sigma/rho^2) : gradient */
   if (c->stress[0]) {
     VECTOR s[6];
-    UNROLL for (int k = 0; k < 6; k++)
-      s[k] = NAME(load)(c->stress[k] + i, lanes);
+    NAME(acting)(c->stress, c->stress_factor, i, lanes, s);
     power += s[0] * out[0] + s[3] * out[4] + s[5] * out[8] + s[1] * (out[1] + out[3]) + s[2] * (out[2] + out[6]) + s[4] * (out[5] + out[7]);
   }
   power *= NAME(load)(c->density + i, lanes);

@@ -61,6 +61,10 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
       UNROLL for (size_t c = 0; c < PAIR_NARROW; c++)
         its[c] = NAME(column)(source->column[c], source->scale[c], from, these);
       const double_vector pressure = NAME(column)(source->pressure, source->scale[PAIR_XX], from, these);
+      const double_vector factor = NAME(column)(source->stress_factor, 1, from, these);
+      UNROLL for (size_t c = PAIR_XX; c < PAIR_ZZ; c++)
+        its[c] *= factor;
+      its[PAIR_ZZ] = -(its[PAIR_XX] + its[PAIR_YY]);
       its[PAIR_XX] += pressure, its[PAIR_YY] += pressure, its[PAIR_ZZ] += pressure;
       const double_vector square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
       UNROLL for (size_t c = 0; c < 6; c++)

@@ -41,10 +41,10 @@ INLINE bool NAME(skew)(const VECTOR a[6], NAME(choice) pulled) {
   return NAME(any)(NAME(less)((REAL)1e-32 * on, off) & pulled);
 }
 
-/* R of the particles first..last-1, in units of the stress given: stress[] + pressure_term I, xx xy xz yy yz zz. Two registers of
+/* R of the particles first..last-1, in units of the stress given: stress_factor S + pressure_term I, xx xy xz yy yz zz. Two registers of
  * them in turn: a rotation is a chain of roots and inverses, and the one's fills the gaps of the other's. */
-static void NAME(oppose)(double epsilon, const double *const stress[6], const double *pressure_term, size_t first, size_t last,
-                         double *const out[6]) {
+static void NAME(oppose)(double epsilon, const double *const stress[5], const double *stress_factor, const double *pressure_term,
+                         size_t first, size_t last, double *const out[6]) {
   enum { BOTH = 2 };
   static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
   const VECTOR zero = {0}, one = zero + 1;
@@ -56,8 +56,9 @@ static void NAME(oppose)(double epsilon, const double *const stress[6], const do
       const size_t at = i + m * LANES < last ? i + m * LANES : last;
       left[m] = last - at < LANES ? last - at : LANES;
       const VECTOR pressure = NAME(load)(pressure_term + at, left[m]);
+      NAME(acting)(stress, stress_factor, at, left[m], a[m]);
       UNROLL for (int k = 0; k < 6; k++)
-        a[m][k] = NAME(load)(stress[k] + at, left[m]) + (row[k] == column[k] ? pressure : zero);
+        a[m][k] += row[k] == column[k] ? pressure : zero;
       UNROLL for (int k = 0; k < 9; k++)
         v[m][k / 3][k % 3] = k % 4 == 0 ? one : zero;
       /* pressed all round by Gershgorin's circles: no tension, exactly */

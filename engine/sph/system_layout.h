@@ -25,7 +25,7 @@ struct sph_columns {
   double *pressure, *sound_speed;   /* undamaged, bulk */
   double *pressure_term;            /* -P/rho^2, damaged: what the pair loop takes */
   double *stress[5], *stress_rate[5];
-  double *damaged[6];               /* damaged S/rho^2: what the pair loop takes; xx xy xz yy yz zz */
+  double *stress_factor;            /* (1-D)/rho^2: what the pair loop takes times the stress */
   double *damage, *damage_rate, *damage_cap; /* D^(1/3); the rate holds until the cap; */
   double *weakest;                  /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
   double *open_from, *open_below, *open_rate; /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
@@ -51,6 +51,7 @@ struct sph_block {
   double clamped;           /* J */
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
+  double slack;             /* m: so much of its slack each particle has left at least; below 0 nobody knows, until it is looked up */
   bool worn;                /* some particle has used up its slack */
   double swollen;           /* volume that lists reach, over that of the supports, beyond what the skin adds; summed */
   size_t lost;              /* place of a particle that is no longer finite, or n */

@@ -110,6 +110,8 @@ static bool list_anew(struct sph_system *s) {
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
     block->swollen = 0;
+    block->slack = -1; /* to be looked up */
+    block->worn = false;
     for (size_t i = block->low; i < block->high; i++) {
       const double h = c->h[i], most = fmin(ROOM * h, fmax(skin * h, reach - h));
       const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);

@@ -1,6 +1,6 @@
 /* The order of a step, and why: physics modules in modules.c; here what stands around them.
  *
- *   predict x v rho u h S D | pressure, yield, open flaws, damaged stress | one pair loop | rates, half the change of rates
+ *   predict x v rho u h S D | pressure, yield, open flaws, what damage leaves | one pair loop | rates, half the change of rates
  *
  * Everything happens block by block, so that the columns of a block are read once from memory before the pair loop and once
  * in it: rates follow as soon as a block's sums are complete. */
@@ -20,6 +20,14 @@ static void run(struct sph_system *s, struct sph_block *block, const sph_hook *h
     hook[m](s, &s->solid[block->body], block);
 }
 
+/* Looked up anew when all that the fastest moved, added up over the steps, may have used it up. A hundredth is more than positions are
+ * rounded by meanwhile. */
+static void look_up_slack(struct sph_system *s, struct sph_block *block) {
+  const double slack = sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
+  block->worn = slack < 0;
+  block->slack = 0.99 * slack;
+}
+
 static void before_pairs(struct sph_system *s) {
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
@@ -27,7 +35,7 @@ static void before_pairs(struct sph_system *s) {
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
     run(s, block, s->solid[block->body].before, s->solid[block->body].before_count);
-    block->worn = sph_pairs_worn(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
+    if (block->slack < 0) look_up_slack(s, block);
   }
 }
 
@@ -79,9 +87,12 @@ static void sum_pairs(struct sph_system *s) {
                                    .mass = c->mass,
                                    .density = c->density,
                                    .sound_speed = c->sound_speed,
-                                   .pressure_term = c->pressure_term};
+                                   .pressure_term = c->pressure_term,
+                                   .stress_factor = c->stress_factor};
   for (int k = 0; k < 6; k++)
-    fields.stress[k] = c->damaged[k], fields.correction[k] = c->correction[k];
+    fields.correction[k] = c->correction[k];
+  for (int k = 0; k < 5; k++)
+    fields.stress[k] = c->stress[k];
   sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
   s->now.neighbours = sph_pairs_neighbours(s->pairs);
 }

@@ -37,7 +37,7 @@ static double now(void) {
 
 struct cloud {
   size_t n;
-  double *column[COLUMNS], *sum[SUMS], *slack, *other[SUMS];
+  double *column[COLUMNS], *sum[SUMS], *slack, *other[SUMS], *acting[6]; /* acting: S/rho^2, what the reference takes */
   struct sph_pair_fields fields;
   struct sph_pair_sums sums;
 };
@@ -71,6 +71,8 @@ static void cloud_make(size_t wanted, struct cloud *c) {
   for (int k = 0; k < SUMS; k++)
     c->sum[k] = column(c->n), c->other[k] = column(c->n);
   c->slack = column(c->n);
+  for (int k = 0; k < 6; k++)
+    c->acting[k] = column(c->n);
   for (size_t i = 0; i < c->n; i++) {
     const size_t from = order[i];
     const double *const at[4] = {p->x, p->y, p->z, p->h};
@@ -79,13 +81,17 @@ static void cloud_make(size_t wanted, struct cloud *c) {
     for (int k = 4; k < 7; k++)
       c->column[k][i] = 10 * noise(&seed);
     c->column[7][i] = p->mass[from], c->column[8][i] = p->density[from], c->column[9][i] = 3100;
-    for (int k = 10; k < COLUMNS; k++)
-      c->column[k][i] = 1e8 / (2700.0 * 2700.0) * noise(&seed);
+    c->column[10][i] = 1e8 / (2700.0 * 2700.0) * noise(&seed);
+    for (int k = 0; k < 5; k++)
+      c->column[11 + k][i] = 1e8 * noise(&seed);
+    c->column[16][i] = 1 / (2700.0 * 2700.0);
+    for (int k = 0; k < 6; k++)
+      c->acting[k][i] = c->column[16][i] * (k < 5 ? c->column[11 + k][i] : -(c->column[11][i] + c->column[14][i]));
     c->slack[i] = 0.05 * p->h[from];
   }
   double **a = c->column, **s = c->sum;
-  c->fields = (struct sph_pair_fields){a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], {0}, {0}};
-  for (int k = 0; k < 6; k++)
+  c->fields = (struct sph_pair_fields){a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], {0}, a[16], {0}};
+  for (int k = 0; k < 5; k++)
     c->fields.stress[k] = a[11 + k];
   c->sums = (struct sph_pair_sums){.ax = s[0], .ay = s[1], .az = s[2], .heating = s[12], .signal = s[13]};
   for (int k = 0; k < 9; k++)
@@ -97,6 +103,8 @@ static void cloud_make(size_t wanted, struct cloud *c) {
 static void cloud_free(struct cloud *c) {
   for (int k = 0; k < COLUMNS; k++)
     free(c->column[k]);
+  for (int k = 0; k < 6; k++)
+    free(c->acting[k]);
   for (int k = 0; k < SUMS; k++)
     free(c->sum[k]), free(c->other[k]);
   free(c->slack);
@@ -146,7 +154,7 @@ static double reference(const struct cloud *c) {
     sums.gradient[k] = c->other[3 + k];
   for (int k = 0; k < 3; k++) {
     const double start = now();
-    reference_sph_sum(c->n, lists.start, lists.count, lists.j, &usual, &c->fields, NULL, &sums);
+    reference_sph_sum(c->n, lists.start, lists.count, lists.j, &usual, &c->fields, (const double *const *)c->acting, NULL, &sums);
     best = fmin(best, now() - start);
   }
   reference_sph_lists_free(&lists);

@@ -11,7 +11,7 @@ static double image(double along, double length) {
 }
 
 void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, const uint32_t *neighbour,
-                       const struct sph_pair_options *o, const struct sph_pair_fields *f, const double *const *artificial,
+                       const struct sph_pair_options *o, const struct sph_pair_fields *f, const double *const *stress, const double *const *artificial,
                        const struct sph_pair_sums *sums) {
   double *columns[] = {sums->ax, sums->ay, sums->az, sums->heating, sums->signal};
   for (size_t k = 0; k < sizeof columns / sizeof columns[0]; k++)
@@ -37,7 +37,7 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
       double along = si * f->pressure_term[i] + sj * f->pressure_term[j] - viscous, t[6] = {along, 0, 0, along, 0, along};
       double ratio = artificial ? sph_spline(r, h) / sph_spline(o->spacing_over_h * h, h) : 0, opposed[6] = {0}, work = 0;
       for (int c = 0; c < 6; c++) {
-        if (o->strength) t[c] += si * f->stress[c][i] + sj * f->stress[c][j];
+        if (o->strength) t[c] += si * stress[c][i] + sj * stress[c][j];
         if (artificial) opposed[c] = pow(ratio, 4) * (si * artificial[c][i] + sj * artificial[c][j]);
         t[c] += opposed[c];
       }

@@ -18,11 +18,11 @@ status reference_sph_lists_make(size_t n, size_t chunk, const double *const at[3
                                 int threads, struct reference_sph_lists *out, struct error *error);
 void reference_sph_lists_free(struct reference_sph_lists *lists);
 
-/* No correction of the gradient. `artificial` (six columns of
- * n) may be NULL. */
+/* No correction of the gradient. `stress` and `artificial` are six columns of n: what acts of the deviator, over rho^2 (read with strength
+ * only), and R, which may be NULL. */
 void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, const uint32_t *j,
                        const struct sph_pair_options *options, const struct sph_pair_fields *fields,
-                       const double *const *artificial, const struct sph_pair_sums *sums);
+                       const double *const *stress, const double *const *artificial, const struct sph_pair_sums *sums);
 
 /* Monaghan's artificial stress of one particle: -epsilon times the tensile part of a stress (xx xy xz yy yz zz). */
 void reference_sph_opposed(double epsilon, const double stress[6], double artificial[6]);

@@ -50,13 +50,13 @@ struct phases {
 
 static struct phases measure(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
-  struct sph_pair_fields f = {c->x, c->y, c->z, c->h, c->vx, c->vy, c->vz, c->mass, c->density, c->sound_speed, c->pressure_term, {0}, {0}};
-  for (int k = 0; k < 6; k++)
-    f.stress[k] = c->damaged[k];
+  struct sph_pair_fields f = {c->x, c->y, c->z, c->h, c->vx, c->vy, c->vz, c->mass, c->density, c->sound_speed, c->pressure_term, {0}, c->stress_factor, {0}};
+  for (int k = 0; k < 5; k++)
+    f.stress[k] = c->stress[k];
   const double start = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   sph_pairs_sum(s->pairs, s->n, &f, leave, NULL);
   const double summed = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  volatile bool stale = sph_pairs_worn(s->pairs, 0, s->n, c->x, c->y, c->z, c->h);
+  volatile bool stale = sph_pairs_slack(s->pairs, 0, s->n, c->x, c->y, c->z, c->h) < 0;
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   if (!sph_system_list_again(s)) fail(s->failure, NULL);
@@ -122,21 +122,21 @@ void sph_whole_runs_figures(const char *name, const char *particles) {
   printf("sph_float_error_of_undamaged_fraction_%s %.2e 1\n", name, f.undamaged - d.undamaged);
 }
 
-/* At least `least` steps on, to the end of one that made new lists. */
-static void to_listing(struct scene *scene, struct sph_run *run, uint64_t least) {
+/* To the end of the step that makes new lists for the `count`-th time from now on. */
+static void to_listing(struct scene *scene, struct sph_run *run, uint64_t count) {
   struct error error = {0};
   bool finished = false;
-  const uint64_t from = run->system->now.steps;
-  for (uint64_t before = 0; !finished && (run->system->now.listings == before || run->system->now.steps < from + least);) {
-    before = run->system->now.listings;
+  const uint64_t last = run->system->now.listings + count;
+  while (!finished && run->system->now.listings < last)
     if (scene->kind->step(run, 1, &finished, &error) != STATUS_OK) fail("step:", &error);
-  }
   if (finished) fail("a run ended early:", &error);
 }
 
-/* Seconds per particle-step over at least `steps` near the start, best of `tries`: from one listing to another, so that a step has
- * its share of them, and without the first, with its allocations. */
-static double steps_of(const char *particles, const struct setting *set, uint64_t steps, clockid_t clock, int tries, double *bytes) {
+enum { LISTINGS = 8 }; /* for one of so many particles are sorted: system_list.c */
+
+/* Seconds per particle-step near the start, best of `tries`: over so many listings that a step has its share of them and of the sorting,
+ * whatever the size; without the first one, with its allocations. */
+static double steps_of(const char *particles, const struct setting *set, clockid_t clock, int tries, double *bytes) {
   double best = INFINITY;
   for (int k = 0; k < tries; k++) {
     struct scene *scene;
@@ -145,7 +145,7 @@ static double steps_of(const char *particles, const struct setting *set, uint64_
     to_listing(scene, run, 2);
     const uint64_t first = run->system->now.steps;
     const double start = clock_of(clock);
-    to_listing(scene, run, steps);
+    to_listing(scene, run, LISTINGS);
     best = fmin(best, (clock_of(clock) - start) / (n * (double)(run->system->now.steps - first)));
     if (bytes) *bytes = (double)sph_system_bytes(run->system) / n;
     scene->kind->free(run);
@@ -157,13 +157,12 @@ static double steps_of(const char *particles, const struct setting *set, uint64_
 void sph_whole_runs_sizes(void) {
   static const struct {
     const char *particles;
-    uint64_t steps;
     int tries;
-  } size[] = {{"10000", 200, 3}, {"30000", 100, 3}, {"100000", 60, 2}, {"300000", 40, 1}, {"1000000", 30, 1}};
+  } size[] = {{"10000", 5}, {"30000", 5}, {"100000", 3}, {"300000", 2}, {"1000000", 2}};
   double least = INFINITY, most = 0;
   for (size_t k = 0; k < sizeof size / sizeof *size; k++) {
     double bytes = 0;
-    const double cost = steps_of(size[k].particles, NULL, size[k].steps, CLOCK_PROCESS_CPUTIME_ID, size[k].tries, &bytes);
+    const double cost = steps_of(size[k].particles, NULL, CLOCK_PROCESS_CPUTIME_ID, size[k].tries, &bytes);
     least = fmin(least, cost), most = fmax(most, cost);
     printf("sph_ns_per_particle_step_first_steps_%s %.1f ns\n", size[k].particles, 1e9 * cost);
     printf("sph_bytes_per_particle_first_steps_%s %.0f B\n", size[k].particles, bytes);
@@ -189,8 +188,8 @@ void sph_whole_runs_modules(void) {
                 {"float", shorter, none}};
   for (size_t k = 0; k < sizeof module / sizeof *module; k++) {
     double with_bytes, without_bytes;
-    const double with = steps_of("10000", module[k].with, 150, CLOCK_PROCESS_CPUTIME_ID, 3, &with_bytes);
-    const double without = steps_of("10000", module[k].without, 150, CLOCK_PROCESS_CPUTIME_ID, 3, &without_bytes);
+    const double with = steps_of("10000", module[k].with, CLOCK_PROCESS_CPUTIME_ID, 3, &with_bytes);
+    const double without = steps_of("10000", module[k].without, CLOCK_PROCESS_CPUTIME_ID, 3, &without_bytes);
     printf("sph_module_%s %+.1f ns/particle-step\n", module[k].name, 1e9 * (with - without));
     printf("sph_module_%s_memory %+.0f B/particle\n", module[k].name, with_bytes - without_bytes);
     fflush(stdout);
@@ -199,6 +198,6 @@ void sph_whole_runs_modules(void) {
 
 void sph_whole_runs_threads(void) {
   static const struct setting one[] = {{NULL, NULL}}, two[] = {{"fidelity.threads", "2"}, {NULL, NULL}};
-  const double alone = steps_of("100000", one, 60, CLOCK_MONOTONIC, 2, NULL);
-  printf("sph_threads_2_ratio_100000 %.3g 1\n", alone / steps_of("100000", two, 60, CLOCK_MONOTONIC, 2, NULL));
+  const double alone = steps_of("100000", one, CLOCK_MONOTONIC, 2, NULL);
+  printf("sph_threads_2_ratio_100000 %.3g 1\n", alone / steps_of("100000", two, CLOCK_MONOTONIC, 2, NULL));
 }

@@ -396,6 +396,8 @@ static void memory_that_runs_out_is_no_result(void **state) {
   run->system->p.h_highest = 1e3;
   for (size_t i = 0; i < run->system->n; i++)
     run->system->c.h[i] *= 10; /* nearly all pairs: some 30 MB of lists */
+  for (size_t k = 0; k < run->system->block_count; k++)
+    run->system->block[k].slack = -1; /* grown behind its back */
   getrlimit(RLIMIT_AS, &before);
   tight = before;
   tight.rlim_cur = address_space() + (1 << 20);
