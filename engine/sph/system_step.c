@@ -75,7 +75,7 @@ static void after_pairs(void *context, size_t first, size_t count, const struct 
   }
 }
 
-static void sum_pairs(struct sph_system *s) {
+struct sph_pair_fields sph_system_step_fields(const struct sph_system *s) {
   const struct sph_columns *c = &s->c;
   struct sph_pair_fields fields = {.x = c->x,
                                    .y = c->y,
@@ -93,6 +93,11 @@ static void sum_pairs(struct sph_system *s) {
     fields.correction[k] = c->correction[k];
   for (int k = 0; k < 5; k++)
     fields.stress[k] = c->stress[k];
+  return fields;
+}
+
+static void sum_pairs(struct sph_system *s) {
+  const struct sph_pair_fields fields = sph_system_step_fields(s);
   sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
   s->now.neighbours = sph_pairs_neighbours(s->pairs);
 }

@@ -7,8 +7,8 @@
 
 #include "engine/scene.h"
 #include "engine/sph/run.h"
-#include "engine/sph/system_layout.h"
 #include "engine/sph/system_list.h"
+#include "engine/sph/system_step.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");
@@ -49,14 +49,11 @@ struct phases {
 };
 
 static struct phases measure(struct sph_system *s) {
-  const struct sph_columns *c = &s->c;
-  struct sph_pair_fields f = {c->x, c->y, c->z, c->h, c->vx, c->vy, c->vz, c->mass, c->density, c->sound_speed, c->pressure_term, {0}, c->stress_factor, {0}};
-  for (int k = 0; k < 5; k++)
-    f.stress[k] = c->stress[k];
+  const struct sph_pair_fields f = sph_system_step_fields(s);
   const double start = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   sph_pairs_sum(s->pairs, s->n, &f, leave, NULL);
   const double summed = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  volatile bool stale = sph_pairs_slack(s->pairs, 0, s->n, c->x, c->y, c->z, c->h) < 0;
+  volatile bool stale = sph_pairs_slack(s->pairs, 0, s->n, f.x, f.y, f.z, f.h) < 0;
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
   if (!sph_system_list_again(s)) fail(s->failure, NULL);
