@@ -134,6 +134,17 @@ static bool set_stiffness(struct sph_palpha_law *law, double ratio, double elast
   return elastic_distention > 1 && law->stiffness_slope * (law->given.distention - 1) < 1;
 }
 
+/* Does the one step from 0 to P_e end where many small ones do, within a hundredth of the pores? It does not when h grows many times over
+ * on the way: then the step would close what the branch leaves open. (Above P_e the branch is stiffer.) */
+static bool followed(const struct sph_palpha_law *law) {
+  enum { STEPS = 256 };
+  const double first = law->given.distention, pressure = law->given.elastic_pressure;
+  double alpha = first;
+  for (int i = 0; i < STEPS; i++)
+    alpha = sph_palpha_elastic(law, alpha, pressure / STEPS);
+  return fabs(alpha - sph_palpha_elastic(law, first, pressure)) < 0.01 * (first - 1);
+}
+
 status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
                           struct error *error) {
   status code = check_curve(given, error);
@@ -147,22 +158,24 @@ status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_mater
     return status_fail(error, STATUS_CONTENT,
                        "porosity.sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s",
                        given->sound_speed, solid_speed);
-  const char *soft = "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed or a "
-                     "lower elastic_pressure";
+  const char *soft = "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, or "
+                     "a lower elastic_pressure";
   if (given->curve == SPH_CRUSH_TWO_POWER) {
     if (!set_stiffness(out, ratio, given->elastic_distention))
       return refuse(error, "distention", given->distention, "it is too far above elastic_distention for sound_speed");
-    if (sph_palpha_elastic(out, given->distention, given->elastic_pressure) > given->elastic_distention * (1 + 1e-6))
+    const double begin = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
+    if (begin > given->elastic_distention * (1 + 1e-6))
       return refuse(error, "distention", given->distention,
                     "it is above elastic_distention, where the crush curve begins: lower it or raise that");
-    return STATUS_OK;
+    return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
   }
   /* alpha_e <- elastic branch at P_e, from above: falls to the largest solution */
   double alpha_e = given->distention;
   for (int i = 0; i < 1000; i++) {
     if (!set_stiffness(out, ratio, alpha_e)) return refuse(error, "distention", given->distention, soft);
     double next = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
-    if (fabs(next - alpha_e) < 1e-14 * alpha_e) return STATUS_OK;
+    if (fabs(next - alpha_e) < 1e-14 * alpha_e)
+      return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
     alpha_e = next;
   }
   return refuse(error, "distention", given->distention, soft);
