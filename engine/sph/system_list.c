@@ -110,8 +110,6 @@ static bool list_anew(struct sph_system *s) {
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
     block->swollen = 0;
-    block->slack = -1; /* to be looked up */
-    block->worn = false;
     for (size_t i = block->low; i < block->high; i++) {
       const double h = c->h[i], most = fmin(ROOM * h, fmax(skin * h, reach - h));
       const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
@@ -125,6 +123,8 @@ static bool list_anew(struct sph_system *s) {
 
 bool sph_system_list_again(struct sph_system *s) {
   struct error error = {0};
+  for (size_t k = 0; k < s->block_count; k++)
+    s->block[k].slack = -1, s->block[k].worn = false; /* to be looked up */
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK) return true;
   s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
   snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
