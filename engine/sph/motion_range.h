@@ -78,15 +78,21 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid
     term[i] = -pressure[i] / (density[i] * density[i]);
 }
 
+/* The step damps what would grow from step to step where rate times dt is above 1 (v' = v - rate dt v*: the roots of its two time levels
+ * leave the unit circle there). */
+static const double MOTION_DAMPING_SHARE = 0.9;
+
 /* Held freedoms keep their velocity: the force that takes is the hold's, and its power is booked, half with the old and
  * half with the new acceleration, as the step itself uses them. Damping likewise. */
 RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   double *const a[3] = {b->sums->ax, b->sums->ay, b->sums->az};
   const double *const v[3] = {s->c.vx, s->c.vy, s->c.vz};
+  double fastest = 0;
   for (size_t i = b->low; s->c.damping && i < b->high; i++) {
     const double rate = s->c.damping[i];
     if (!(rate > 0)) continue;
+    fastest = range_larger(rate, fastest);
     double square = 0;
     for (int k = 0; k < 3; k++) {
       square += v[k][i] * v[k][i];
@@ -94,6 +100,7 @@ RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, 
     }
     b->damped += s->c.mass[i] * rate * square;
   }
+  b->worst[SPH_LIMIT_COURANT] = fastest / MOTION_DAMPING_SHARE;
   for (size_t i = b->low; s->held && i < b->high; i++) {
     if (!s->held[i]) continue;
     for (int k = 0; k < 3; k++)
@@ -126,7 +133,7 @@ enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             and h / (2 |v|): nobody leaps into another body
+ *             and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
  *   force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
@@ -185,7 +192,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   }
   motion_clamp(s, body, b);
   b->slack -= range_largest(growth, n);
-  b->worst[SPH_LIMIT_COURANT] = range_largest(courant, n) / s->p.cfl;
+  b->worst[SPH_LIMIT_COURANT] = range_larger(range_largest(courant, n) / s->p.cfl, b->worst[SPH_LIMIT_COURANT]); /* motion_hold's */
   b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->p.cfl;
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
