@@ -298,7 +298,7 @@ static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t 
     a += left <= right;
     b += right <= left;
   }
-  memcpy(list, w->joint, used * sizeof *list);
+  if (used) memcpy(list, w->joint, used * sizeof *list);
   *joined = used;
   return true;
 }

@@ -494,6 +494,7 @@ static void ends_of_the_ranges(void **state) {
   scene = file;
 #define NOTHING "impact.angle=0"
   extreme("impact.speed=0", NOTHING, NOTHING, NOTHING);
+  extreme("fidelity.precision=float", NOTHING, NOTHING, NOTHING); /* groups that share a list, and have none */
   extreme("impact.speed=1e-3", NOTHING, NOTHING, NOTHING);
   extreme("impact.speed=70 km/s", NOTHING, NOTHING, NOTHING);
   extreme("impact.speed=1e6 m/s", NOTHING, NOTHING, NOTHING);
