@@ -285,7 +285,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   clamped_share REAL, -- [1] energy.clamped over energy_input: booked apart, not credited in energy_error.
   density_held_share REAL, -- [1] Particle-steps at the lowest density allowed, over all: clamps that put in no energy.
   angular_momentum_error REAL, -- [1] Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats.
-  limited_courant REAL, -- [1] Share of the steps whose length the speed of sound and the viscosity set.
+  limited_courant REAL, -- [1] Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.
   limited_force REAL, -- [1] Share of the steps whose length the acceleration set.
   limited_damage REAL, -- [1] Share of the steps whose length the growth of damage set.
   limited_distention REAL, -- [1] Share of the steps whose length the closing of pores set.
@@ -910,7 +910,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of t
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M with the static pass and with the veneer.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 1);
 
@@ -1168,7 +1168,7 @@ INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M wi
 
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 0);
 

@@ -71,7 +71,7 @@ static const struct field rows[] = {
     REAL(angular_momentum_error, "1", 0,
          .doc = "Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) "
                 "times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats."),
-    SHARE(limited.courant, .doc = "Share of the steps whose length the speed of sound and the viscosity set."),
+    SHARE(limited.courant, .doc = "Share of the steps whose length the speed of sound and the viscosity, or a damped side, set."),
     SHARE(limited.force, .doc = "Share of the steps whose length the acceleration set."),
     SHARE(limited.damage, .doc = "Share of the steps whose length the growth of damage set."),
     SHARE(limited.distention, .doc = "Share of the steps whose length the closing of pores set."),
