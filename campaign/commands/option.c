@@ -173,13 +173,15 @@ static void print_wrapped(const char *text, size_t at, size_t indent, FILE *out)
 
 static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,
                       FILE *out) {
+  bool has_default = initial && *initial;
   char shown[160];
   char text[1024];
   char start[4] = "   ";
   if (letter)
     snprintf(start, sizeof start, "-%c,", letter);
   snprintf(shown, sizeof shown, "  %s --%s%s%s", start, name, argument ? " " : "", argument ? argument : "");
-  snprintf(text, sizeof text, "%s%s%s%s", doc, initial ? " (default " : "", initial ? initial : "", initial ? ")" : "");
+  snprintf(text, sizeof text, "%s%s%s%s", doc, has_default ? " (default " : "", has_default ? initial : "",
+           has_default ? ")" : "");
   size_t at = strlen(shown);
   fputs(shown, out);
   if (at + 2 > COLUMN + 4) {
@@ -187,6 +189,14 @@ static void print_row(char letter, const char *name, const char *argument, const
     at = 0;
   }
   print_wrapped(text, at, COLUMN + 4, out);
+}
+
+void option_lines(const char *line, FILE *out) {
+  while (*line) {
+    size_t length = strcspn(line, "\n");
+    fprintf(out, "  %.*s\n", (int)length, line);
+    line += length + (line[length] == '\n');
+  }
 }
 
 void option_help(const struct command *command, FILE *out) {
@@ -198,11 +208,7 @@ void option_help(const struct command *command, FILE *out) {
   }
   print_row('h', "help", NULL, "Print this text.", NULL, out);
   fputs("\nexamples:\n", out);
-  for (const char *line = command->examples; *line;) {
-    size_t length = strcspn(line, "\n");
-    fprintf(out, "  %.*s\n", (int)length, line);
-    line += length + (line[length] == '\n');
-  }
+  option_lines(command->examples, out);
   fputs("\nexit codes:\n", out);
   static const status always[] = {STATUS_OK, STATUS_FAILED_RUNS, STATUS_USAGE, STATUS_CONTENT, STATUS_MISSING,
                                   STATUS_INTERNAL, STATUS_MEMORY, STATUS_IO, STATUS_STOPPED};

@@ -1,5 +1,5 @@
 /* The command line as tables: one row per option, one record per command. From them come parsing, `--help`, the nearest
- * known name after a typing error, and bash completion; nothing else lists the same names.
+ * known name after a typing error, bash completion and the manual page; nothing else lists the same names.
  *
  * A command declares a plain struct for its options, rows with offsetof into it, and a function that runs. */
 #ifndef CLAST_CAMPAIGN_COMMANDS_OPTION_H
@@ -67,6 +67,9 @@ enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* no options struct is larger */
  * STATUS_USAGE names what is wrong and the nearest known option. */
 status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
                     char ***arguments, bool *help, struct error *error);
+
+/* The lines of `lines`, indented by two spaces. */
+void option_lines(const char *lines, FILE *out);
 
 void option_help(const struct command *command, FILE *out);
 
