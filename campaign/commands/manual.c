@@ -23,8 +23,8 @@ static const struct entry environment[] = {
 static const struct entry files[] = {
     {"CAMPAIGN.yaml", "What to vary, how many seeds, which store. `clast schema campaign` prints its JSON Schema."},
     {"SCENE.yaml", "One simulation, wherever a SCENE is asked for. `clast scenes NAME` prints one to start from."},
-    {"STORE.db", "Every result, an SQLite 3 file, made by `clast run`; while it is written, STORE.db-wal and\n"
-                 "STORE.db-shm are parts of it."},
+    {"STORE.db", "Every result, an SQLite 3 file, made by `clast run`; while it is written, `STORE.db-wal` and\n"
+                 "`STORE.db-shm` are parts of it."},
     {"STORE-fields/", "Fields (HDF5) of the runs that the campaign keeps them of."},
 };
 
@@ -35,18 +35,20 @@ enum text { PROSE, LITERAL };
 static void print_text(const char *text, enum text kind, FILE *out) {
   static const char *const escapes[128] = {['\\'] = "\\(rs", ['-'] = "\\-",   ['\''] = "\\(aq", ['"'] = "\\(dq",
                                            ['`'] = "\\(ga",  ['^'] = "\\(ha", ['~'] = "\\(ti"};
-  bool code = false, start = true;
+  bool code = false, indented = false;
   for (const char *c = text; *c; c++) {
-    bool inside = c > text && isalpha((unsigned char)c[-1]) && isalpha((unsigned char)c[1]);
-    if (start && *c == '.')
+    const char *escape = (unsigned char)*c < 128 ? escapes[(unsigned char)*c] : NULL;
+    bool literal = kind == LITERAL || code || indented;
+    bool within_word = c > text && isalpha((unsigned char)c[-1]) && isalpha((unsigned char)c[1]);
+    if (*c == '.' && (c == text || c[-1] == '\n'))
       fputs("\\&", out);
-    start = *c == '\n';
-    if (*c == '\n')
-      fputc(kind == LITERAL || c[1] == ' ' ? '\n' : ' ', out);
-    else if (*c == '`' && kind == PROSE)
+    if (*c == '\n') {
+      indented = c[1] == ' ';
+      fputc(kind == LITERAL || indented ? '\n' : ' ', out);
+    } else if (*c == '`' && kind == PROSE)
       fputs((code = !code) ? "\\fB" : "\\fR", out);
-    else if ((unsigned char)*c < 128 && escapes[(unsigned char)*c] && !(*c == '-' && kind == PROSE && !code && inside))
-      fputs(escapes[(unsigned char)*c], out);
+    else if (escape && (literal || !within_word || *c != '-'))
+      fputs(escape, out);
     else
       fputc(*c, out);
   }

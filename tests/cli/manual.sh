@@ -22,6 +22,7 @@ lines = open("clast.1").read().split("\n")
 example = False
 for number, line in enumerate(lines, 1):
     assert re.match(r"\.(\\\"|TH |SH |SS |TP 15$|nr HY 0$|ad l$|br$|PP$|PD( 0)?$|RS 4$|RE$|EX$|EE$)|[^.']|$", line), f"{number}: {line}"
+    assert not re.search(r"\\f[BI](?!.*\\fR)", line), f"{number}: the font stays changed: {line}"
     example = line == ".EX" or (example and line != ".EE")
     if not line.startswith((r".\"", ".TH")):
         rest = re.sub(r"\\(-|&|f[BRI]|\((rs|aq|dq|ga|ha|ti))", " ", line)
