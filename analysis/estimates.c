@@ -108,6 +108,8 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
   *method = (enum exponent_method)ESTIMATES_HEADLINE_METHOD;
   *window = (enum estimates_window)ESTIMATES_HEADLINE_WINDOW;
   if (!*is || strcmp(name, "beta") == 0) return STATUS_OK;
+  char all[512];
+  size_t used = 0;
   for (int m = EXPONENT_LEAST_SQUARES; m <= EXPONENT_MASSES; m++)
     for (int w = 0; w < ESTIMATES_WINDOWS; w++) {
       char known[64];
@@ -115,8 +117,7 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
       *method = (enum exponent_method)m;
       *window = (enum estimates_window)w;
       if (strcmp(name, known) == 0) return STATUS_OK;
+      if (used < sizeof all) used += (size_t)snprintf(all + used, sizeof all - used, ", %s", known);
     }
-  return status_fail(error, STATUS_USAGE,
-                     "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW with method least_squares, binned or masses "
-                     "and window from_2, from_5 or from_10", name);
+  return status_fail(error, STATUS_USAGE, "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW, which is one of%s", name, all + 1);
 }

@@ -25,6 +25,7 @@
 
 #include "engine/sph/bodies.h"
 #include "engine/sph/system.h"
+#include "engine/sph/tillotson.h"
 
 #define UNUSED __attribute__((unused))
 
@@ -67,6 +68,28 @@ UNUSED static double solid_young(const struct sph_material *m) {
 }
 UNUSED static double solid_poisson(const struct sph_material *m) {
   return (3 * m->tillotson.A - 2 * m->shear_modulus) / (2 * (3 * m->tillotson.A + m->shear_modulus));
+}
+
+struct solid_jump {
+  double shock, density, pressure, energy;
+};
+
+/* Behind a shock that brings matter at rest to the velocity up: rho0 Us = rho (Us - up), P = rho0 Us up, u = up^2/2. Us
+ * between the bulk sound speed and 5 up + c by bisection. */
+UNUSED static struct solid_jump solid_hugoniot(const struct sph_material *m, double up) {
+  double low = up * (1 + 1e-9), high = 5 * up + sqrt(m->tillotson.A / m->density);
+  struct solid_jump j = {0};
+  for (int it = 0; it < 200; it++) {
+    j.shock = (low + high) / 2;
+    j.density = m->density * j.shock / (j.shock - up);
+    j.energy = up * up / 2;
+    j.pressure = m->density * j.shock * up;
+    if (sph_tillotson(&m->tillotson, m->density, j.density, j.energy).pressure > j.pressure)
+      low = j.shock; /* too much squeezed: the shock runs faster */
+    else
+      high = j.shock;
+  }
+  return j;
 }
 
 UNUSED static bool solid_full(void) {

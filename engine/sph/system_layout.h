@@ -51,8 +51,7 @@ struct sph_block {
   double clamped;           /* J */
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
-  double slack;             /* m: so much of its slack each particle has left at least; below 0 nobody knows, until it is looked up */
-  bool worn;                /* some particle has used up its slack */
+  double slack;             /* m: so much of its slack each particle has left at least; below 0 one may have none left, once looked up has none */
   double swollen;           /* volume that lists reach, over that of the supports, beyond what the skin adds; summed */
   size_t lost;              /* place of a particle that is no longer finite, or n */
 };

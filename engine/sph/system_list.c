@@ -124,7 +124,7 @@ static bool list_anew(struct sph_system *s) {
 bool sph_system_list_again(struct sph_system *s) {
   struct error error = {0};
   for (size_t k = 0; k < s->block_count; k++)
-    s->block[k].slack = -1, s->block[k].worn = false; /* to be looked up */
+    s->block[k].slack = -1; /* to be looked up */
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK) return true;
   s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
   snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
@@ -148,7 +148,7 @@ static void lengthen(struct sph_system *s) {
 bool sph_system_list(struct sph_system *s) {
   bool worn = s->now.listings == 0;
   for (size_t k = 0; k < s->block_count; k++)
-    worn |= s->block[k].worn;
+    worn |= s->block[k].slack < 0; /* looked up in this step */
   if (!worn) return true;
   wrap(s);
   if (s->now.listings++ % LISTINGS_PER_SORT == 0) {

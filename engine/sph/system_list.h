@@ -4,7 +4,7 @@
 
 #include "engine/sph/system_layout.h"
 
-/* New lists when the old ones may miss a pair (blocks are worn); now and then the particles are sorted first, by the count of
+/* New lists when the old ones may miss a pair (a block has no slack left); now and then the particles are sorted first, by the count of
  * listings alone. False (see failure): as sph_system_step. */
 bool sph_system_list(struct sph_system *system);
 /* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */

@@ -23,9 +23,7 @@ static void run(struct sph_system *s, struct sph_block *block, const sph_hook *h
 /* Looked up anew when all that the fastest moved, added up over the steps, may have used it up. A hundredth is more than positions are
  * rounded by meanwhile. */
 static void look_up_slack(struct sph_system *s, struct sph_block *block) {
-  const double slack = sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
-  block->worn = slack < 0;
-  block->slack = 0.99 * slack;
+  block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
 }
 
 static void before_pairs(struct sph_system *s) {

@@ -16,6 +16,7 @@
 #include "engine/sph/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/bench/sph_whole_runs.h"
+#include "tests/noise.h"
 #include "tests/pair_sums.h"
 
 enum { COLUMNS = 17, SUMS = 14, FLOPS = 139 }; /* per pair, counted in pairs_kernels_sum.h: an inverse or a root is 1 */
@@ -41,13 +42,6 @@ struct cloud {
   struct sph_pair_fields fields;
   struct sph_pair_sums sums;
 };
-
-static double noise(uint64_t *state) { /* splitmix64, -1/2..1/2 */
-  uint64_t z = *state += 0x9e3779b97f4a7c15u;
-  z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-  return (double)((z ^ z >> 31) >> 11) * 0x1p-53 - 0.5;
-}
 
 static double *column(size_t n) {
   double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads that far */

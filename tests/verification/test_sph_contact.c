@@ -1,7 +1,6 @@
 /* One material runs into another: plane nylon on plane basalt at 3.2 km/s, without strength, against the exact answer. Between the two
  * shocks there is one pressure and one velocity, where both materials' Hugoniots meet (impedance matching); so much momentum goes over
  * per area and time. Densities stand 1 : 2.3: the case for `volume_weights`. */
-#include "engine/sph/tillotson.h"
 #include "tests/sph_solid.h"
 
 static struct sph_material nylon(void) { /* engine/sph/materials/nylon.yaml */
@@ -12,26 +11,6 @@ static struct sph_material nylon(void) { /* engine/sph/materials/nylon.yaml */
                                .weibull = {NAN, NAN}};
 }
 
-struct jump {
-  double shock, pressure, density;
-};
-
-/* rho0 Us = rho (Us - up), P = rho0 Us up, u = up^2/2, by bisection. */
-static struct jump hugoniot(const struct sph_material *m, double up) {
-  double low = up * (1 + 1e-9), high = 5 * up + 2 * sqrt(m->tillotson.A / m->density);
-  struct jump j = {0};
-  for (int it = 0; it < 200; it++) {
-    j.shock = (low + high) / 2;
-    j.density = m->density * j.shock / (j.shock - up);
-    j.pressure = m->density * j.shock * up;
-    if (sph_tillotson(&m->tillotson, m->density, j.density, up * up / 2).pressure > j.pressure)
-      low = j.shock;
-    else
-      high = j.shock;
-  }
-  return j;
-}
-
 static void nylon_on_basalt(void **state) {
   (void)state;
   const double speed = 3200, spacing = 1e-4, length = 90 * spacing, thickness = 60 * spacing;
@@ -39,12 +18,12 @@ static void nylon_on_basalt(void **state) {
   double low = 0, high = speed;
   for (int it = 0; it < 100; it++) {
     const double v = (low + high) / 2;
-    if (hugoniot(&target, v).pressure < hugoniot(&projectile, speed - v).pressure)
+    if (solid_hugoniot(&target, v).pressure < solid_hugoniot(&projectile, speed - v).pressure)
       low = v;
     else
       high = v;
   }
-  const double velocity = low, pressure = hugoniot(&target, low).pressure;
+  const double velocity = low, pressure = solid_hugoniot(&target, low).pressure;
   print_message("exact: the contact moves at %.1f m/s under %.3f GPa\n", velocity, pressure / 1e9);
   for (int form = 0; form < (SOLID_SLOW ? 1 : 6); form++) {
     const bool cubic = form < 4;
@@ -61,7 +40,7 @@ static void nylon_on_basalt(void **state) {
     solid_start(&c);
     const struct sph_ledger start = sph_system_ledger(c.system);
     const double area = c.body[0].shape.side[1] * c.body[0].shape.side[2];
-    const double end = 0.8 * fmin(length / hugoniot(&target, velocity).shock, thickness / hugoniot(&projectile, speed - velocity).shock);
+    const double end = 0.8 * fmin(length / solid_hugoniot(&target, velocity).shock, thickness / solid_hugoniot(&projectile, speed - velocity).shock);
     enum { SAMPLES = 20 };
     double st = 0, sy = 0, stt = 0, sty = 0, mean[2][3] = {{0}};
     for (int sample = 0; sample < SAMPLES; sample++) {

@@ -13,41 +13,19 @@
  * And a slow uniaxial compression through yield: slopes K + 4 mu/3, then K.
  *
  * CLAST_FULL=1: twice the length in particles. */
-#include "engine/sph/tillotson.h"
 #include "tests/sph_solid.h"
-
-struct jump {
-  double shock, density, pressure, energy;
-};
-
-/* Us between the bulk sound speed and 5 up + c by bisection. */
-static struct jump hugoniot(const struct sph_material *m, double up) {
-  double low = up * (1 + 1e-9), high = 5 * up + sqrt(m->tillotson.A / m->density);
-  struct jump j = {0};
-  for (int it = 0; it < 200; it++) {
-    j.shock = (low + high) / 2;
-    j.density = m->density * j.shock / (j.shock - up);
-    j.energy = up * up / 2;
-    j.pressure = m->density * j.shock * up;
-    if (sph_tillotson(&m->tillotson, m->density, j.density, j.energy).pressure > j.pressure)
-      low = j.shock; /* too much squeezed: the shock runs faster */
-    else
-      high = j.shock;
-  }
-  return j;
-}
 
 static void jump_conditions(void **state) {
   (void)state;
   struct sph_material al = solid_aluminium(), basalt = solid_basalt();
-  struct jump a = hugoniot(&al, 1000), b = hugoniot(&basalt, 1000);
+  struct solid_jump a = solid_hugoniot(&al, 1000), b = solid_hugoniot(&basalt, 1000);
   print_message("Hugoniot at 1000 m/s: aluminium Us %.2f m/s, P %.4f GPa; basalt Us %.2f, P %.4f\n", a.shock,
                 a.pressure / 1e9, b.shock, b.pressure / 1e9);
   /* the figures known beforehand, to their last digit */
   assert_true(fabs(a.shock - 6753.5) < 0.06 && fabs(a.pressure / 1e9 - 18.234) < 0.0006);
   assert_true(fabs(b.shock - 4683.9) < 0.06 && fabs(b.pressure / 1e9 - 12.646) < 0.0006);
   /* weak shocks run at the sound speed */
-  assert_true(fabs(hugoniot(&al, 1e-3).shock / sqrt(7.52e10 / 2700) - 1) < 1e-6);
+  assert_true(fabs(solid_hugoniot(&al, 1e-3).shock / sqrt(7.52e10 / 2700) - 1) < 1e-6);
 }
 
 struct column { /* sums over a layer of the bar, by place at rest */
@@ -57,7 +35,7 @@ enum { COLUMNS = 400 };
 
 struct shock {
   double speed, velocity;
-  struct jump plateau;
+  struct solid_jump plateau;
   double scatter;      /* of the pressure of single particles about the plateau's mean, relative */
   double energy_error; /* of the energy put in */
   uint64_t steps;
@@ -88,7 +66,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   memcpy(first, p->vx, p->n * sizeof *first);
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
-  const double guess = hugoniot(m, up).shock, end = 0.8 * (half - slab) / guess;
+  const double guess = solid_hugoniot(m, up).shock, end = 0.8 * (half - slab) / guess;
   double st = 0, sx = 0, stt = 0, stx = 0;
   struct column column[COLUMNS];
   const size_t columns = (size_t)(half / width) + 1;
@@ -165,7 +143,7 @@ static void shocks(void **state) {
       if (!solid_full() && (forms[f].full || (k ? forms[f].aluminium_only : forms[f].basalt_only))) continue;
       const struct shock s =
           drive(&material[k], 1000, spacings, forms[f].lattice, forms[f].piston, forms[f].correction);
-      const struct jump want = hugoniot(&material[k], 1000);
+      const struct solid_jump want = solid_hugoniot(&material[k], 1000);
       const double speed = s.speed / want.shock - 1, pressure = s.plateau.pressure / want.pressure - 1;
       const double density = s.plateau.density / want.density - 1, energy = s.plateau.energy / want.energy - 1;
       print_message("%-9s %-32s n %5zu, %4llu steps: up %6.1f; Us %.1f (%+.2f %%), P %.3f GPa (%+.2f %%, scatter %.1f "
@@ -194,7 +172,7 @@ static void strong(void **state) {
   const struct sph_material m = solid_aluminium();
   for (int k = 0; k < 3; k++) {
     const struct shock s = drive(&m, cases[k].up, SOLID_SLOW ? 70 : 110, SPH_LATTICE_CUBIC, false, true);
-    const struct jump want = hugoniot(&m, cases[k].up);
+    const struct solid_jump want = solid_hugoniot(&m, cases[k].up);
     const double speed = s.speed / want.shock - 1, pressure = s.plateau.pressure / want.pressure - 1;
     print_message("aluminium squeezed %.2f-fold: Us %+.2f %%, P %+.2f %%, rho %+.2f %%, u %+.2f %%; energy error %.1e\n",
                   want.density / m.density, 100 * speed, 100 * pressure, 100 * (s.plateau.density / want.density - 1),
