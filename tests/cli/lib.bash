@@ -5,7 +5,9 @@ set -euo pipefail
 build=$1 source=$2
 clast=$build/clast
 work=$(mktemp -d "$build/cli-$(basename "$0" .sh)-XXXXXX")
-trap 'rm -rf "$work"' EXIT
+# Only the script itself clears up: what it starts with & is a copy of it for a moment, and a signal that comes before the
+# copy has become the command runs this trap there.
+trap '[ "$BASHPID" != $$ ] || rm -rf "$work"' EXIT
 cd "$work"
 export NO_COLOR=1 TERM=dumb
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
