@@ -13,6 +13,10 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   struct store *store = NULL;
+  if (strncmp(options->quantity, "beta", 4) == 0)
+    return status_fail(error, STATUS_USAGE,
+                       "%s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, `clast plot` "
+                       "and `clast map` draw them with -q beta", options->quantity, line->arguments[0]);
   status code = table_choose(&options->table, &format, error);
   if (!code)
     code = store_open_reader(line->arguments[0], &store, error);

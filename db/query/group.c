@@ -6,6 +6,7 @@
 #include "db/query.h"
 #include "db/store/internal.h"
 #include "db/views.h"
+#include "schemas/near.h"
 
 enum { NAMES = 32, NAME = 128 };
 
@@ -25,22 +26,32 @@ static bool ends_in(const char *column, const char *wanted) {
 struct choice { /* what a word may stand for */
   const char *wanted;
   char found[NAME];
-  size_t matches;
+  size_t matches, distance; /* of the nearest one */
   bool exact;
-  char known[768];
+  char near[NAME], known[4096], matching[1024];
 };
+
+static void append(char *list, size_t size, const char *name) {
+  const size_t used = strlen(list);
+  snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
+}
 
 static status consider(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)error;
   struct choice *choice = context;
-  const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL;
-  size_t used = strlen(choice->known);
-  snprintf(choice->known + used, sizeof choice->known - used, "%s%s", used ? ", " : "", path ? path : column);
+  const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
+  const size_t distance = near_distance(choice->wanted, strlen(choice->wanted), name);
+  if (distance < choice->distance) {
+    choice->distance = distance;
+    snprintf(choice->near, sizeof choice->near, "%s", name);
+  }
+  append(choice->known, sizeof choice->known, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
   if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted))))
     return STATUS_OK;
   choice->matches = exact ? 1 : choice->matches + 1;
   choice->exact = exact;
+  append(choice->matching, sizeof choice->matching, name);
   snprintf(choice->found, sizeof choice->found, "%s", column);
   return STATUS_OK;
 }
@@ -56,14 +67,16 @@ static status resolve(struct store *store, const char *list, const char *what, c
     for (size_t n = strlen(from); n > 0 && from[n - 1] == ' '; n--)
       from[n - 1] = '\0';
     if (!*from) continue;
-    struct choice choice = {.wanted = from};
+    struct choice choice = {.wanted = from, .distance = near_limit(strlen(from)) + 1};
     const struct query_sink sink = {.context = &choice, .row = consider};
     status result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
     if (result != STATUS_OK) return result;
-    if (choice.matches != 1)
-      return status_fail(error, STATUS_USAGE, "%s '%s' is %s. Known are: %s.", what, from,
-                         choice.matches ? "ambiguous: more than one ends like that" : "unknown",
-                         choice.known[0] ? choice.known : "none");
+    if (choice.matches > 1)
+      return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, from, choice.matching);
+    if (choice.matches == 0 && choice.near[0])
+      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, from, choice.near);
+    if (choice.matches == 0)
+      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, from, choice.known[0] ? choice.known : "none");
     if (out->count == NAMES) return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
     snprintf(out->name[out->count++], NAME, "%s", choice.found);
   }

@@ -53,12 +53,6 @@ static status make_system(struct sph_run *run, struct error *error) {
   struct sph_parameters parameters = sph_describe_parameters(in);
   parameters.spacing_over_h = run->range[0].nearest / run->range[0].h;
   memcpy(parameters.periodic, run->periodic, sizeof parameters.periodic);
-  for (int b = 0; b < run->body_count; b++)
-    for (int k = 0; k < 3; k++)
-      if (run->periodic[k] > 0) { /* nobody meets its own image, however far matter expands */
-        const double most = 0.2499 * run->periodic[k] / (run->range[b].h * (1 + parameters.skin));
-        parameters.h_highest = fmax(1, fmin(parameters.h_highest, most));
-      }
   return sph_system_create(run->start, (size_t)run->body_count, physics, &parameters, &run->system, error);
 }
 

@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 
 #include "engine/sph/ranges.h"
+#include "engine/sph/system_list.h"
 #include "engine/sph/system_step.h"
 #include "engine/sph/tillotson.h"
 
@@ -252,6 +253,13 @@ static status make_pairs(struct sph_system *s, struct error *error) {
   return sph_pairs_create(s->n, &o, &s->pairs, error);
 }
 
+/* However far matter expands, h stays within what a thin periodic box allows. */
+static void bound_h(struct sph_system *s, const struct sph_particles *p) {
+  const double most = sph_system_list_reach(&s->p);
+  for (size_t i = 0; i < p->n; i++)
+    s->p.h_highest = fmax(1, fmin(s->p.h_highest, most / (p->h[i] * (1 + s->p.skin))));
+}
+
 static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
                     struct error *error) {
   for (size_t i = 0; i < p->n; i++) {
@@ -274,6 +282,7 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
   if (done == STATUS_OK) done = make_blocks(s, error);
   if (done == STATUS_OK) done = make_pairs(s, error);
   if (done != STATUS_OK) return done;
+  bound_h(s, p);
   fill(s, p);
   if (!sph_system_step_begin(s))
     return status_fail(error, s->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT, "at the start: %s", s->failure);

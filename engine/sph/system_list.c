@@ -94,16 +94,21 @@ static double cube(double x) {
   return x * x * x;
 }
 
+double sph_system_list_reach(const struct sph_parameters *p) {
+  double thinnest = INFINITY;
+  for (int d = 0; d < 3; d++)
+    if (p->periodic[d] < thinnest) thinnest = p->periodic[d];
+  return 0.2499 * thinnest; /* twice that of a pair, 2 (h + slack), must fit */
+}
+
 /* Lists for the positions as they are. How far each particle may go before they are worn: fast ones have more room, so that a
  * spray of debris does not make new lists all the time, and slow ones have little, so that their lists are short. A thin periodic
  * box bounds the reach. */
 static bool list_anew(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
   const double skin = s->p.skin, horizon = (double)s->now.horizon * s->dt;
-  double thinnest = INFINITY, *const *listed = sph_pairs_listed(s->pairs);
-  for (int d = 0; d < 3; d++)
-    if (s->p.periodic[d] < thinnest) thinnest = s->p.periodic[d];
-  const double reach = 0.2499 * thinnest; /* twice a pair's reach must fit */
+  const double reach = sph_system_list_reach(&s->p);
+  double *const *listed = sph_pairs_listed(s->pairs);
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
 #endif

@@ -9,5 +9,7 @@
 bool sph_system_list(struct sph_system *system);
 /* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */
 bool sph_system_list_again(struct sph_system *system);
+/* m: what h with its slack may be at most, so that no particle meets its own image in a thin periodic box; infinite in the open. */
+double sph_system_list_reach(const struct sph_parameters *parameters);
 
 #endif

@@ -136,7 +136,9 @@ says "nonsense"
 expect 64 "$clast" query tiny.db --named elephant
 expect 64 "$clast" stats tiny.db --by elephant
 says "threshold.strain"
+expect 64 "$clast" stats tiny.db --quantity beta
+says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 51
+done_after 52

@@ -195,6 +195,9 @@ static void groups_pool_runs_not_means(void **state) {
   assert_non_null(strstr(error.message, "material.m"));
   assert_int_equal(query_group(store, "m", "fraction", &sink, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "ambiguous"));
+  assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
+  assert_int_equal(query_group(store, "m", "largest_fracton", &sink, &error), STATUS_USAGE);
+  assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
   store_close(store, NULL);
 }
 
