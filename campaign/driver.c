@@ -239,7 +239,7 @@ static status store_result(struct driver *driver, const struct flight *flight, c
   if (writes_fields(driver, flight) && result->outcome.state != OUTCOME_INVALID)
     fields_path(driver, flight->identity, false, path, sizeof path);
   replicate->surplus = flight->replicate >= point->prefix;
-  replicate->fields = path[0] != '\0';
+  replicate->fields = path[0] != '\0' || result->outcome.state == OUTCOME_INVALID;
   driver->summary.fields_written += path[0] != '\0';
   driver->summary.runs_surplus += replicate->surplus;
   struct store_run run = {

@@ -63,7 +63,7 @@ static void take_stored(void *context, const struct store_point_run *run) {
   bool usable = run->state == OUTCOME_COMPLETED || run->state == OUTCOME_END_TIME;
   point_finish_replicate(point, r, POINT_DONE, usable ? run->value : DRIVER_NOTHING);
   point->replicates[r].surplus = run->surplus;
-  point->replicates[r].fields = run->fields_path != NULL;
+  point->replicates[r].fields = run->fields_path != NULL || run->state == OUTCOME_INVALID;
   cost_learn(&driver->cost, &point->cost, run->wall_s);
   driver->summary.runs_reused++;
   driver->summary.runs_surplus += run->surplus;

@@ -13,7 +13,7 @@ struct point_replicate {
   unsigned char state;   /* enum point_state */
   bool counted;          /* stored, and not surplus */
   bool surplus;          /* stored with surplus = 1 */
-  bool fields;           /* its HDF5 file is there */
+  bool fields;           /* its HDF5 file is there, or nothing is to be written: a state invalid has no body */
   bool replay, replaying; /* its HDF5 file is wanted, and under way */
 };
 

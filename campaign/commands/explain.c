@@ -6,6 +6,7 @@
 #include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
+#include "campaign/commands/results.h"
 #include "campaign/commands/table.h"
 #include "engine/scene.h"
 #include "schemas/near.h"
@@ -124,10 +125,32 @@ static void explain_inputs(const struct scene *scene, FILE *out) {
   }
 }
 
-static status explain_scene(struct scene *scene, struct error *error) {
+/* The same for programs. */
+static status list_inputs(const struct scene *scene, enum table_format format, struct error *error) {
+  const struct field_table *inputs = scene->kind->inputs;
+  struct table *table = table_new(format, stdout);
+  table_column(table, "path", NULL);
+  table_column(table, "value", NULL);
+  table_column(table, "unit", NULL);
+  table_column(table, "meaning", NULL);
+  for (size_t i = 0; i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    char doc[FIELD_TEXT_SIZE];
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
+    table_text(table, row->path);
+    results_value(table, row, scene->inputs);
+    table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
+    explain_sentence(row->doc, doc, sizeof doc);
+    table_text(table, doc);
+  }
+  return table_end(table, error);
+}
+
+static status explain_scene(struct scene *scene, enum table_format format, struct error *error) {
   status code = scene_check(scene, error);
-  if (code)
-    return code;
+  if (code || format != TABLE_TEXT)
+    return code ? code : list_inputs(scene, format, error);
   char *description = scene->kind->describe(scene->inputs);
   if (!description)
     return status_fail(error, STATUS_MEMORY, "out of memory");
@@ -146,14 +169,17 @@ static status run(const struct command_line *line, struct error *error) {
   const char *ending = strrchr(name, '.');
   bool file = strchr(name, '/') || (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0 ||
                                                strcmp(ending, ".json") == 0));
-  if (!file && !scene_builtin_text(name) && options->set.count == 0)
-    return explain_path(name, error);
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  if (!code && !file && !scene_builtin_text(name) && options->set.count == 0)
+    return (code = table_text_only(&options->table, "the explanation of a path", error)) ? code : explain_path(name, error);
   struct scene *scene = NULL;
-  status code = scene_load(name, NULL, &scene, error);
+  if (!code)
+    code = scene_load(name, NULL, &scene, error);
   for (size_t i = 0; !code && i < options->set.count; i++)
     code = explain_override(scene, options->set.items[i], error);
   if (!code)
-    code = explain_scene(scene, error);
+    code = explain_scene(scene, format, error);
   scene_free(scene);
   return code;
 }
@@ -179,7 +205,8 @@ const struct command explain_command = {
     .summary = "what an input or result means; what a scene models and what it costs",
     .doc = "Of a PATH (threshold.strain, or strain where that is unique; contact for a whole section): meaning, unit,\n"
            "range, default and source. Of a SCENE (a built-in name or a file): what is modelled and why, the expected\n"
-           "cost, and every input with its value. Without argument: a table of all inputs and results.",
+           "cost, and every input with its value (--json and --csv: these alone). Without argument: a table of all inputs and\n"
+           "results.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
     .options = rows,

@@ -51,6 +51,8 @@ static status run(const struct command_line *line, struct error *error) {
   if (code || line->count == 0)
     return code ? code : list(format, error);
   struct sph_material material;
+  if ((code = table_text_only(&options->table, "a material's document", error)))
+    return code;
   code = sph_materials_load(line->arguments[0], &material, error); /* names the nearest one */
   if (!code)
     fputs(sph_materials_text(line->arguments[0]), stdout);

@@ -7,6 +7,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/rows.h"
 #include "campaign/run.h"
+#include "engine/whole_file.h"
 
 struct options {
   const char *fields;
@@ -161,6 +162,9 @@ static status replay(struct store *store, const char *run_id, const struct optio
                        "bits differ on purpose; replay it with the program of that version (table session has its commit)",
                        run_id, origin.results_version, scene->kind->name, scene->kind->results_version);
   if (!code) {
+    code = options->fields ? whole_file_try(options->fields, "fields file", error) : STATUS_OK;
+  }
+  if (!code) {
     struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)origin.seed,
                                   .fields_path = options->fields};
     code = run_simulate(&request, NULL, NULL, 0, &result, error);
@@ -185,6 +189,8 @@ static status replay(struct store *store, const char *run_id, const struct optio
   else if (!code)
     fprintf(stderr, "run %s: %zu results and %zu fragment masses agree to the last bit\n", run_id, comparison.compared - 1,
             result.fragment_count);
+  if (!code && options->fields && result.outcome.state == OUTCOME_INVALID)
+    fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
   free(comparison.names);
   free(origin.scene);
   run_result_clear(&result);

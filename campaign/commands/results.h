@@ -5,6 +5,9 @@
 #include "campaign/commands/table.h"
 #include "campaign/run.h"
 
+/* The object's value of that row, as a cell; off and NaN are missing. */
+void results_value(struct table *table, const struct field *row, const void *object);
+
 status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
                      enum table_format format, struct error *error);
 

@@ -21,6 +21,8 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
+  if (!code && line->count == 1)
+    code = table_text_only(&options->table, "a scene's document", error);
   if (code)
     return code;
   if (line->count == 1) {

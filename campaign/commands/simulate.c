@@ -80,7 +80,7 @@ static status simulate(const struct scene *scene, const struct options *options,
     code = run_simulate(&request, look, &watch, BLOCK, &result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
-  if (!code && options->picture) {
+  if (!code && options->picture && result.outcome.state != OUTCOME_INVALID) { /* which has no body, and writes no fields */
     char caption[FIELD_TEXT_SIZE + 64];
     snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
     code = picture_draw(fields, options->picture, caption, error);

@@ -367,3 +367,9 @@ status table_choose(const struct table_options *options, enum table_format *form
   *format = options->json ? TABLE_JSON : options->csv ? TABLE_CSV : TABLE_TEXT;
   return STATUS_OK;
 }
+
+status table_text_only(const struct table_options *options, const char *what, struct error *error) {
+  if (options->json || options->csv)
+    return status_fail(error, STATUS_USAGE, "%s is text, not a table: leave --%s out", what, options->json ? "json" : "csv");
+  return STATUS_OK;
+}

@@ -58,5 +58,7 @@ struct table_options {
    "Print CSV with a header line, SI units."}
 /* clang-format on */
 status table_choose(const struct table_options *options, enum table_format *format, struct error *error);
+/* For what is text whatever is asked for: STATUS_USAGE when a format was. */
+status table_text_only(const struct table_options *options, const char *what, struct error *error);
 
 #endif

@@ -24,6 +24,16 @@ expect 0 "$clast" explain --json
 python -c "import json; assert len(json.load(open('out'))) > 60"
 expect 0 "$clast" explain disc-explosion --set threshold.strain=5%
 prints "0.05"
+expect 0 "$clast" explain disc-explosion --set threshold.strain=5% --json # its inputs, for programs
+python -c "
+import json
+rows = {r['path']: r for r in json.load(open('out'))}
+assert rows['threshold.strain']['value'] == 0.05 and rows['threshold.angle']['unit'] == 'rad', rows
+assert all(r['meaning'] for r in rows.values()) and len(rows) > 20, rows"
+for text in "explain threshold.strain" "scenes disc-explosion" "materials basalt"; do # text whatever is asked for
+  expect 64 "$clast" $text --json
+  silent out
+done
 
 small=(--set "body.diameter=8 cm" --set "charge.energy=2 kJ/m" --set "stop.end_time=1 ms")
 expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --json
@@ -59,4 +69,4 @@ for what in scene campaign; do
   python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
 done
 expect 64 "$clast" schema elephant
-done_after $((21 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((25 + 3 * $(echo "$scenes" | wc -w)))

@@ -58,4 +58,32 @@ expect 0 "$clast" run ab.yaml
 expect 0 "$clast" query ab.db "select count(distinct point_id) as n from point_input where path = 'target.material.tillotson.a'" --csv
 prints 4
 expect 0 "$clast" check ab.db
-done_after 25
+
+# Inputs that only prove impossible when bodies are made (so few particles cannot be graded so far): a run of state invalid, which
+# has no body to draw or to keep. The reason is told, and not the picture's; a file that stands there from before is not taken for
+# the run's; a campaign that keeps fields does not miss any.
+echo "of before" >graded.hdf
+for leave in --picture=graded.png --fields=graded.hdf; do
+  expect 1 "$clast" simulate gabbro-crater --set fidelity.particles=1500 "$leave" --json
+  prints '"invalid"'; says "not 1500"; one_error
+done
+expect 1 "$clast" simulate gabbro-crater --set fidelity.particles=1500 --fields graded.hdf --picture graded.png
+says "not 1500"; one_error
+same "$(cat graded.hdf)" "of before" "a file of before"
+[ -z "$(ls | grep -F graded.png)" ] || fail "a picture of nothing, or its leavings"
+cat >graded.yaml <<'Y'
+name: graded
+scene: gabbro-crater
+set: {fidelity.particles: 1500}
+seeds: {per_point: 2}
+keep: {fields: all}
+store: graded.db
+Y
+for time in first again; do
+  expect 1 "$clast" run graded.yaml
+  expect 0 "$clast" check graded.db
+done
+same "$("$clast" query graded.db "select count(*) from run where fields_path is not null" --csv | tail -n 1 | tr -d '\r')" 0 "fields of invalid runs"
+expect 0 "$clast" replay graded.db 1 --fields graded.h5
+says "has no fields"
+done_after 35
