@@ -60,7 +60,8 @@ static struct scene *create(const struct engine_kind *kind) {
   scene->kind = kind;
   scene->inputs = calloc(1, kind->inputs->size);
   scene->given = calloc(kind->inputs->count + 1, sizeof *scene->given);
-  if (!scene->inputs || !scene->given) {
+  scene->overridden = calloc(kind->inputs->count + 1, sizeof *scene->overridden);
+  if (!scene->inputs || !scene->given || !scene->overridden) {
     scene_free(scene);
     return NULL;
   }
@@ -155,6 +156,7 @@ struct scene *scene_copy(const struct scene *scene) {
   if (!copy) return NULL;
   memcpy(copy->inputs, scene->inputs, scene->kind->inputs->size);
   memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
+  memcpy(copy->overridden, scene->overridden, scene->kind->inputs->count * sizeof *scene->overridden);
   memcpy(copy->name, scene->name, sizeof copy->name);
   return copy;
 }
@@ -163,6 +165,7 @@ void scene_free(struct scene *scene) {
   if (!scene) return;
   free(scene->inputs);
   free(scene->given);
+  free(scene->overridden);
   free(scene);
 }
 
@@ -174,7 +177,7 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   if (!row) return STATUS_CONTENT;
   status code = field_set(row, scene->inputs, value, error);
   if (code) return code;
-  scene->given[row - table->rows] = true;
+  scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
   if (scene->kind->complete) scene->kind->complete(scene->inputs, scene->given);
   return STATUS_OK;
 }
@@ -187,18 +190,36 @@ status scene_set_text(struct scene *scene, const char *path, const char *text, s
   return code ? code : scene_set(scene, row->path, &value, error);
 }
 
-status scene_check(const struct scene *scene, struct error *error) {
+/* A line of the document that overrides left without effect: its row is as if it had not been given. */
+static status take_back(struct scene *scene, size_t row, struct error *error) {
+  const struct field_table *table = scene->kind->inputs;
+  void *untouched = calloc(1, table->size);
+  if (!untouched) return status_fail(error, STATUS_MEMORY, "no memory for a scene");
+  struct field_value value;
+  field_defaults(table, untouched);
+  field_get(&table->rows[row], untouched, &value);
+  field_set_unchecked(&table->rows[row], scene->inputs, &value);
+  scene->given[row] = false;
+  free(untouched);
+  if (scene->kind->complete) scene->kind->complete(scene->inputs, scene->given);
+  return STATUS_OK;
+}
+
+status scene_check(struct scene *scene, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     if (field_is_active(table, row, scene->inputs)) {
       if (row->flags & FIELD_REQUIRED && !scene->given[i])
         return status_fail(error, STATUS_CONTENT, "%s: is missing and has no default; %s", row->path, row->doc);
-    } else if (scene->given[i]) {
+    } else if (scene->overridden[i]) {
       char why[600];
       field_describe_inactive(table, row, scene->inputs, why, sizeof why);
       return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
                          row->path, why);
+    } else if (scene->given[i]) {
+      const status code = take_back(scene, i, error);
+      if (code) return code;
     }
   }
   return scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;

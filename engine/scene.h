@@ -8,7 +8,8 @@
 struct scene {
   const struct engine_kind *kind;
   void *inputs; /* kind->inputs->size bytes, SI, defaults filled */
-  bool *given;  /* per input row: set by the document or an override (an inactive input that was given is refused) */
+  bool *given;  /* per input row: set by the document or an override */
+  bool *overridden; /* per input row: set by an override */
   char name[FIELD_TEXT_SIZE]; /* built-in name, or the document's own `name:` */
 };
 
@@ -28,8 +29,9 @@ void scene_free(struct scene *scene);
  * follows anew. Not checked across fields. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
-/* After the last override: inactive inputs that were set are refused, cross-field conditions checked. */
-status scene_check(const struct scene *scene, struct error *error);
+/* After the last override: what the document gave and overrides left without effect is as if it had not been given; overrides
+ * without effect are refused, cross-field conditions checked. */
+status scene_check(struct scene *scene, struct error *error);
 
 /* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */
 void scene_schema(const struct engine_kind *kind, FILE *out);

@@ -33,8 +33,8 @@ static struct sph_run *prepare(const char *particles, const struct setting *set,
     fail("scene:", &error);
   for (; set && set->path; set++)
     if (scene_set_text(*scene, set->path, set->text, &error) != STATUS_OK) fail("scene:", &error);
-  /* scene_check would refuse what the document gives for fracture where that is taken away */
-  if ((*scene)->kind->prepare((*scene)->inputs, 1, &run, &error) != STATUS_OK) fail("prepare:", &error);
+  if (scene_check(*scene, &error) != STATUS_OK || (*scene)->kind->prepare((*scene)->inputs, 1, &run, &error) != STATUS_OK)
+    fail("prepare:", &error);
   return run;
 }
 

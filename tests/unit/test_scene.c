@@ -142,7 +142,19 @@ static void overrides_are_checked(void **state) {
   scene_free(copy);
   copy = scene_copy(scene);
   assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
-  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* ball.size was given and has no effect now */
+  assert_int_equal(scene_check(copy, &error), STATUS_OK); /* the document's ball.size has no effect now: as if it had not been there */
+  struct scene *block = parsed("engine: tiny\nkind: block\n");
+  uint8_t one[16], two[16];
+  scene_identity(copy, 1, one);
+  scene_identity(block, 1, two);
+  assert_memory_equal(one, two, 16);
+  assert_memory_equal(copy->inputs, block->inputs, sizeof(struct tiny));
+  scene_free(block);
+  scene_free(copy);
+  copy = scene_copy(scene);
+  assert_int_equal(scene_set_text(copy, "ball.size", "4 cm", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
+  assert_int_equal(scene_check(copy, &error), STATUS_CONTENT); /* who overrides it means it */
   assert_string_equal(
       error.message,
       "ball.size: has no effect: it is used only when kind is ball; here it is block; remove one or change the other");
