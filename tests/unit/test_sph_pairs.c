@@ -1,5 +1,5 @@
-/* The pair loop: lists against brute force, kernels of every CPU class and precision against plain C, conservation, and
- * fields whose gradient is known. */
+/* The sums of the pair loop: kernels of every CPU class and precision against plain C, conservation, and fields whose gradient is
+ * known. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,40 +13,10 @@
 #include "engine/sph/pairs.h"
 #include "engine/sph/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
-#include "tests/noise.h"
+#include "tests/pair_cloud.h"
 #include "tests/pair_sums.h"
 
-enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11, SUMS = 14 }; /* three chunks, twelve */
-
-struct cloud {
-  double a[COLUMNS][MOST], stress[5][MOST], factor[MOST], slack[MOST]; /* a: x y z h vx vy vz m rho c p */
-  size_t n;
-};
-
-static const char *const classes[] = {"baseline", "v3", "v4"};
-
-/* A jittered cubic lattice of `spacing` with all fields drawn; when `mixed` every 50th particle is up to 10 times
- * larger. */
-static struct cloud *cloud_make(int side, double spacing, bool mixed, uint64_t seed) {
-  struct cloud *c = calloc(1, sizeof *c);
-  assert_non_null(c);
-  for (int i = 0; i < side * side * side; i++, c->n++) {
-    const int at[3] = {i % side, i / side % side, i / side / side};
-    for (int d = 0; d < 3; d++)
-      c->a[d][i] = spacing * (at[d] + 0.5 + 0.2 * noise(&seed));
-    c->a[3][i] = 1.2 * spacing * (mixed && i % 50 == 0 ? 5.5 + 9 * noise(&seed) : 1);
-    for (int k = 4; k < 7; k++)
-      c->a[k][i] = noise(&seed);
-    c->a[7][i] = pow(spacing, 3) * (1 + noise(&seed)), c->a[8][i] = 1 + 0.1 * noise(&seed),
-    c->a[9][i] = 1 + 0.2 * noise(&seed);
-    c->a[10][i] = noise(&seed);
-    for (int k = 0; k < 5; k++)
-      c->stress[k][i] = 1e9 * noise(&seed);
-    c->factor[i] = i % 9 == 0 ? 0 : 1e-9 * (1 + noise(&seed));
-    c->slack[i] = 0.05 * c->a[3][i];
-  }
-  return c;
-}
+enum { SUMS = 14 };
 
 struct summed {
   double a[SUMS][MOST]; /* ax ay az, gradient, heating, signal */
@@ -77,10 +47,6 @@ static struct sph_pair_sums sums_of(struct summed *s) {
   return out;
 }
 
-static double slack_of(const struct cloud *c, const struct sph_pairs *pairs) {
-  return sph_pairs_slack(pairs, 0, c->n, c->a[0], c->a[1], c->a[2], c->a[3]);
-}
-
 static struct summed *sum(const struct cloud *c, const struct sph_pair_options *options) {
   struct sph_pairs *pairs;
   struct error error = {0};
@@ -103,13 +69,6 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
   sph_pairs_free(pairs);
   return s;
 }
-
-static const struct sph_pair_options usual = {.viscosity_alpha = 1.5,
-                                              .viscosity_beta = 3,
-                                              .strength = true,
-                                              .spacing_over_h = 0.9,
-                                              .periodic = {NAN, NAN, NAN},
-                                              .threads = 1};
 
 /* Largest difference over the largest value of each kind: acceleration, gradient, heating, signal. */
 static void compare(const struct cloud *c, const struct summed *s, const struct summed *t, double worst[4]) {
@@ -407,28 +366,6 @@ static void viscosity_of_two_by_hand(void **state) {
   free(s), free(apart), free(c);
 }
 
-/* Bounded by n and by pairs, whatever the extent: the cloud, and the same with every third particle flung over 1e12 m.
- */
-static void memory_does_not_grow_with_the_extent(void **state) {
-  (void)state;
-  struct cloud *c = cloud_make(SIDE, 1, false, 12);
-  size_t bytes[2];
-  for (int flung = 0; flung < 2; flung++) {
-    struct sph_pairs *pairs;
-    struct error error = {0};
-    for (size_t i = 0; flung && i < c->n; i += 3)
-      for (int k = 0; k < 3; k++)
-        c->a[k][i] *= 1e11;
-    assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
-    assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
-    bytes[flung] = sph_pairs_bytes(pairs) / c->n;
-    sph_pairs_free(pairs);
-  }
-  assert_in_range(bytes[0], 100, 1000);
-  assert_true(bytes[1] <= bytes[0]);
-  free(c);
-}
-
 /* What is not finite neither crashes nor hangs a search or a sum, and lists are stale at once. */
 static void not_finite_does_no_harm(void **state) {
   (void)state;
@@ -542,227 +479,6 @@ static void bits_do_not_depend_on_threads(void **state) {
   }
   free(c);
 }
-
-static void swap_particles(struct cloud *c, size_t i, size_t j) {
-  for (int k = 0; k < 4; k++) {
-    const double kept = c->a[k][i];
-    c->a[k][i] = c->a[k][j];
-    c->a[k][j] = kept;
-  }
-}
-
-/* Every pair within reach and no other, once, ascending: in open and periodic boxes, in every CPU class, cut into
- * chunks of any size, sorted in space or not at all, reaches 10:1, and with particles far off, nowhere, without reach
- * and upon each other. */
-static void lists_equal_brute_force(void **state) {
-  (void)state;
-  static const size_t chunks[] = {4096, 256, 100};
-  for (int variant = 0; variant < 24; variant++) {
-    const bool periodic = variant & 1, shuffled = variant & 2, odd = variant & 4;
-    struct cloud *c = cloud_make(12, 1, true, 4);
-    double length[3] = {periodic ? 12 : (double)NAN, NAN, periodic ? 15 : (double)NAN};
-    for (size_t i = 0; i < c->n; i++)
-      c->a[3][i] = periodic ? fmin(c->a[3][i], 3) : c->a[3][i];
-    uint64_t seed = 5;
-    for (size_t i = c->n; shuffled && i-- > 1;)
-      swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
-    c->a[1][17] = 1e9, c->a[1][20] = -1e15;
-    if (odd) {
-      c->a[1][25] = NAN, c->a[0][300] = INFINITY, c->a[2][301] = -INFINITY, c->a[1][1000] = 1e200, c->a[3][700] = 0;
-      for (int k = 0; k < 3; k++)
-        c->a[k][40] = c->a[k][41], c->a[k][1200] = c->a[k][3];
-    }
-    struct reference_sph_lists lists;
-    struct error error = {0};
-    const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
-    setenv("CLAST_CPU", classes[variant % 3], 1);
-    assert_int_equal(reference_sph_lists_make(c->n, chunks[variant / 2 % 3], place, c->a[3], length, 1 + variant / 12,
-                                              &lists, &error),
-                     STATUS_OK);
-    for (size_t i = 0; i < c->n; i++) {
-      const uint32_t *j = lists.j + lists.start[i];
-      size_t at = 0;
-      for (size_t k = i + 1; k < c->n; k++) {
-        double square = 0, reach = c->a[3][i] + c->a[3][k];
-        for (int d = 0; d < 3; d++) {
-          double along = c->a[d][i] - c->a[d][k];
-          if (!isnan(length[d])) along -= length[d] * nearbyint(along / length[d]);
-          square += along * along;
-        }
-        if (!(square < reach * reach)) continue;
-        assert_true(at < lists.count[i]);
-        assert_int_equal(j[at++], k);
-      }
-      assert_int_equal(lists.count[i], at);
-    }
-    reference_sph_lists_free(&lists);
-    free(c);
-  }
-  unsetenv("CLAST_CPU");
-}
-
-/* A list for several particles is theirs together: sorted in space or not, with members far apart. */
-static void shared_lists_join_those_of_their_members(void **state) {
-  (void)state;
-  enum { CHUNK = 240 };
-  for (int variant = 0; variant < 8; variant++) {
-    const size_t share = variant & 1 ? 4 : 2;
-    struct cloud *c = cloud_make(10, 1, variant & 4, 4);
-    uint64_t seed = 5;
-    for (size_t i = c->n; variant & 2 && i-- > 1;)
-      swap_particles(c, i, (size_t)((noise(&seed) + 0.5) * (double)i));
-    c->a[1][11] = 1e9, c->a[1][26] = -1e9, c->a[0][27] = 1e15, c->a[0][500] = NAN, c->n -= 1;
-    struct reference_sph_lists single;
-    struct error error = {0};
-    const double *const place[3] = {c->a[0], c->a[1], c->a[2]};
-    assert_int_equal(reference_sph_lists_make(c->n, CHUNK, place, c->a[3], usual.periodic, 1, &single, &error),
-                     STATUS_OK);
-    struct sph_neighbours *neighbours = sph_neighbours_create(c->n, CHUNK, share, sph_pairs_kernels_choose());
-    uint32_t start[CHUNK + 1], count[CHUNK];
-    struct sph_neighbour_lists lists = {.start = start, .count = count};
-    assert_int_equal(
-        sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1, &error),
-        STATUS_OK);
-    for (size_t chunk = 0; chunk * CHUNK < c->n; chunk++) {
-      const size_t base = chunk * CHUNK, own = c->n - base < CHUNK ? c->n - base : CHUNK;
-      assert_true(sph_neighbours_list(neighbours, chunk, &lists));
-      for (size_t g = 0; g * share < own; g++) {
-        const size_t first = g * share, last = first + share < own ? first + share : own;
-        char met[1000] = {0}, is_there[1000] = {0};
-        for (size_t i = first; i < last; i++)
-          for (size_t k = 0; k < single.count[base + i]; k++)
-            met[single.j[single.start[base + i] + k]] = 1;
-        assert_true(start[g] % SPH_LIST_ALIGN == 0 && start[g + 1] >= start[g] + count[g]);
-        for (size_t k = 0; k < count[g]; k++) {
-          const uint32_t j = lists.j[start[g] + k] & SPH_NUMBER, whose = lists.j[start[g] + k] >> SPH_TAGS;
-          assert_true(j > first && (k == 0 || j > (lists.j[start[g] + k - 1] & SPH_NUMBER)));
-          assert_true(met[base + j] || j < last);
-          for (size_t i = first; i < last && j >= last; i++) {
-            bool its = false;
-            for (size_t m = 0; m < single.count[base + i]; m++)
-              its |= single.j[single.start[base + i] + m] == base + j;
-            assert_int_equal(whose >> (i - first) & 1, its);
-          }
-          is_there[base + j] = 1;
-        }
-        for (size_t k = count[g]; k < start[g + 1] - start[g]; k++)
-          assert_int_equal(lists.j[start[g] + k], first);
-        for (size_t j = 0; j < c->n; j++)
-          assert_true(is_there[j] || !met[j]);
-      }
-    }
-    free(lists.j);
-    sph_neighbours_free(neighbours);
-    reference_sph_lists_free(&single);
-    free(c);
-  }
-}
-
-static void thin_periodic_boxes_are_refused(void **state) {
-  (void)state;
-  struct cloud *c = cloud_make(4, 1, false, 4);
-  struct reference_sph_lists lists;
-  struct error error = {0};
-  const double length[3] = {NAN, 4, NAN}, *const place[3] = {c->a[0], c->a[1], c->a[2]};
-  assert_int_equal(reference_sph_lists_make(c->n, 64, place, c->a[3], length, 1, &lists, &error), STATUS_CONTENT);
-  assert_non_null(strstr(error.message, "too thin"));
-  free(c);
-}
-
-/* Stale exactly when a pair could be missed: each particle may use up its slack, by moving or by growing. */
-static void lists_wear_out_with_the_slack(void **state) {
-  (void)state;
-  struct cloud *c = cloud_make(6, 1, false, 5);
-  struct sph_pairs *pairs;
-  struct error error = {0};
-  assert_int_equal(sph_pairs_create(c->n, &usual, &pairs, &error), STATUS_OK);
-  assert_int_equal(sph_pairs_list(pairs, c->n, c->a[0], c->a[1], c->a[2], c->a[3], c->slack, &error), STATUS_OK);
-  const double x = c->a[0][7], h = c->a[3][7];
-  c->a[0][7] = x + 0.9 * c->slack[7];
-  assert_true(fabs(slack_of(c, pairs) - 0.1 * c->slack[7]) < 1e-14);
-  c->a[0][7] = x - 1.1 * c->slack[7];
-  assert_true(slack_of(c, pairs) < 0);
-  c->a[0][7] = x, c->a[3][7] = h + 1.1 * c->slack[7];
-  assert_true(slack_of(c, pairs) < 0);
-  c->a[0][7] = x + 0.6 * c->slack[7], c->a[3][7] = h + 0.6 * c->slack[7];
-  assert_true(slack_of(c, pairs) < 0);
-  sph_pairs_free(pairs);
-  free(c);
-}
-
-/* Entries of shared lists have bits for a number, and bits for whose it is. */
-static void float_takes_so_many_particles(void **state) {
-  (void)state;
-  struct sph_pair_options options = usual;
-  struct sph_pairs *pairs;
-  struct error error = {0};
-  options.precision = SPH_FLOAT;
-  assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
-  assert_null(pairs);
-  assert_non_null(strstr(error.message, "268435455"));
-}
-
-/* R is minus epsilon times the tensile part: along the axes of a turned tensor of known principal values. */
-static void artificial_stress_opposes_tension_only(void **state) {
-  (void)state;
-  const double principal[3] = {3, -2, 0.5}, c = cos(0.7), s = sin(0.7),
-               axis[3][3] = {{c, s, 0}, {-s * 0.6, c * 0.6, 0.8}, {s * 0.8, -c * 0.8, 0.6}};
-  static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-  double stress[6] = {0}, expected[6] = {0}, r[6];
-  for (int k = 0; k < 6; k++)
-    for (int a = 0; a < 3; a++) {
-      stress[k] += principal[a] * axis[a][row[k]] * axis[a][column[k]];
-      expected[k] -= 0.3 * fmax(principal[a], 0) * axis[a][row[k]] * axis[a][column[k]];
-    }
-  reference_sph_opposed(0.3, stress, r);
-  for (int k = 0; k < 6; k++)
-    assert_true(fabs(r[k] - expected[k]) < 1e-14);
-}
-
-/* The fast form, in every class: any stress, spheres and axes of it, none, and what is pressed all round, which has exactly no R.
- * A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here are below 10. */
-static void opposed_stress_equals_plain_c(void **state) {
-  (void)state;
-  enum { COUNT = 203, FIRST = 3 };
-  static double stress[5][COUNT], factor[COUNT], pressure[COUNT], r[6][COUNT];
-  double *out[6];
-  const double *in[5];
-  uint64_t seed = 77;
-  for (int i = 0; i < COUNT; i++) {
-    pressure[i] = i % 3 == 0 ? 0 : i % 3 == 1 ? -8 : 4 * noise(&seed);
-    factor[i] = 0.5 + 0.25 * (i % 4);
-    for (int k = 0; k < 5; k++)
-      stress[k][i] = i % 7 == 0 || (i % 5 == 0 && (k == 1 || k == 2 || k == 4)) || (i % 11 == 0 && k != 1) ? 0 : 3 * noise(&seed);
-    if (i % 13 == 0) stress[0][i] = stress[3][i] = 1;
-  }
-  for (int k = 0; k < 6; k++)
-    out[k] = r[k];
-  for (int k = 0; k < 5; k++)
-    in[k] = stress[k];
-  for (int which = 0; which < 3; which++) {
-    assert_int_equal(setenv("CLAST_CPU", classes[which], 1), 0);
-    int opposed = 0, none = 0;
-    r[0][FIRST - 1] = r[0][COUNT - 1] = 99;
-    sph_pairs_kernels_choose()->oppose(0.3, in, factor, pressure, FIRST, COUNT - 1, out);
-    for (int i = FIRST; i < COUNT - 1; i++) {
-      double sigma[6], exact[6];
-      for (int k = 0; k < 6; k++)
-        sigma[k] = factor[i] * (k < 5 ? stress[k][i] : -(stress[0][i] + stress[3][i])) + (k == 0 || k == 3 || k == 5 ? pressure[i] : 0);
-      reference_sph_opposed(0.3, sigma, exact);
-      for (int k = 0; k < 6; k++)
-        if (!(fabs(r[k][i] - exact[k]) < 1e-14)) fail_msg("class %s, particle %d: %g, %g", classes[which], i, r[k][i], exact[k]);
-      const bool pressed = i % 3 == 1;
-      if (pressed)
-        for (int k = 0; k < 6; k++)
-          assert_true(r[k][i] == 0);
-      none += pressed, opposed += exact[0] < 0;
-    }
-    assert_true(r[0][FIRST - 1] == 99 && r[0][COUNT - 1] == 99);
-    assert_true(opposed > 50 && none > 50);
-  }
-  unsetenv("CLAST_CPU");
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(kernels_equal_plain_c),
@@ -774,20 +490,12 @@ int main(void) {
       cmocka_unit_test(one_stress_over_a_cut),
       cmocka_unit_test(debris_is_not_corrected),
       cmocka_unit_test(viscosity_of_two_by_hand),
-      cmocka_unit_test(memory_does_not_grow_with_the_extent),
       cmocka_unit_test(not_finite_does_no_harm),
       cmocka_unit_test(tiny_numbers_stay_the_callers),
       cmocka_unit_test(coincident_particles_do_no_harm),
       cmocka_unit_test(float_is_as_good_far_away),
       cmocka_unit_test(float_holds_sizes_far_apart),
       cmocka_unit_test(bits_do_not_depend_on_threads),
-      cmocka_unit_test(lists_equal_brute_force),
-      cmocka_unit_test(shared_lists_join_those_of_their_members),
-      cmocka_unit_test(thin_periodic_boxes_are_refused),
-      cmocka_unit_test(lists_wear_out_with_the_slack),
-      cmocka_unit_test(float_takes_so_many_particles),
-      cmocka_unit_test(artificial_stress_opposes_tension_only),
-      cmocka_unit_test(opposed_stress_equals_plain_c),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
