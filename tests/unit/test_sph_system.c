@@ -1,7 +1,6 @@
 /* The moving solid: conservation over a collision that breaks, ledger, limits and rates by hand, what is absent. */
 #include "tests/sph_collision.h"
 
-#include "engine/sph/bodies.h"
 #include "engine/sph/ranges.h"
 
 static void conserved(void **state) {
