@@ -176,6 +176,8 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
   case SPH_COLLISION:
     if ((code = check_cylinder(in, "collision", error)))
       return code;
+    if (in->target.turned)
+      REFUSE("a turned lattice cannot repeat along the axis: set target.turned: false");
     if (in->collision.gap / in->collision.speed >= in->stop.end_time)
       REFUSE("the bodies need %.4g s over collision.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or lower the gap",
              in->collision.gap / in->collision.speed, in->collision.gap, in->stop.end_time);
@@ -186,6 +188,21 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
     return check_piston(in, error);
   }
   return STATUS_OK;
+}
+
+const char *sph_inputs_fewer(const struct sph_inputs *in) {
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    return "lower fidelity.particles, or raise fidelity.projectile_spacing";
+  case SPH_COLLISION:
+    return "lower fidelity.particles or target.length";
+  case SPH_PISTON:
+    return "lower fidelity.points, or target.depth and target.height";
+  case SPH_STRETCH:
+  case SPH_VIBRATION:
+    break;
+  }
+  return "lower fidelity.particles";
 }
 
 status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
@@ -207,7 +224,7 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side", in->sides.depth);
   double particles = sph_scale_particles(in);
   if (!(particles <= 2e9))
-    REFUSE("%.3g particles are too many (at most 2e9): lower fidelity.particles or raise fidelity.projectile_spacing", particles);
+    REFUSE("%.3g particles are too many (at most 2e9): %s", particles, sph_inputs_fewer(in));
   if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
     REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
   double step = in->fidelity.cfl * sph_scale_smallest_spacing(in) / sph_scale_wave_speed(&in->target);

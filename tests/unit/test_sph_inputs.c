@@ -188,6 +188,8 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("{kind: piston, target: {shape: box, strength: false}, sides: {far: damped}}", "sides.far: free");
   refused("{kind: piston, target: {shape: box, strength: false, turned: true}}", "target.turned: false");
   accepted("{kind: piston, target: {shape: box, strength: false}}");
+  refused("{kind: collision, target: {shape: cylinder, radius: 1 cm, turned: true}}", "target.turned: false");
+  accepted("{kind: collision, target: {shape: cylinder, radius: 1 cm}}");
   refused("impact: {projectile: mass, mass: 1e-12 kg}", "fidelity.projectile_spacing");
   refused("impact: {projectile: specific-energy, speed: 0}", "impact.speed 0");
   refused("impact: {speed: 1 km/s, gap: 1 m}\nstop: {end_time: 1 us}", "impact.gap");
@@ -197,6 +199,9 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
   refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}", "stretch.grip");
   refused("fidelity: {projectile_spacing: 0.001}", "too many");
+  refused("fidelity: {projectile_spacing: 0.001}", "raise fidelity.projectile_spacing"); /* a remedy that this protocol has */
+  refused("{kind: piston, target: {shape: box, strength: false}, fidelity: {points: 10000}}", "lower fidelity.points");
+  refused("{kind: collision, target: {shape: cylinder, radius: 1 cm}, fidelity: {particles: 2e9}}", "lower fidelity.particles or target.length");
   refused("fidelity: {graded: true, fine_spacing: 1 cm}", "fine_spacing");
   accepted("impact: {speed: 0}");
   accepted("impact: {speed: 70 km/s}");
