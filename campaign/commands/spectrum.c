@@ -35,12 +35,13 @@ enum { POINTS_MAXIMUM = 8, WIDTH = 900, COLUMNS = 100 }; /* more curves in one p
 
 struct chosen {
   int64_t points[POINTS_MAXIMUM];
-  size_t count;
+  size_t count, there;
 };
 
 static status take_point(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
   struct chosen *chosen = context;
+  chosen->there++;
   if (chosen->count < POINTS_MAXIMUM)
     chosen->points[chosen->count++] = values[0].integer;
   return STATUS_OK;
@@ -133,6 +134,8 @@ static status draw(struct store *store, const struct options *options, struct er
     text_plot_spectrum(stdout, COLUMNS, !options->ascii, "kg", &series[i]);
     print_rivals(&rivals[i]);
   }
+  if (!code && chosen.there > chosen.count)
+    fprintf(stderr, "clast: the first %zu of %zu points are drawn; --point N draws one\n", chosen.count, chosen.there);
   for (size_t i = 0; i < chosen.count; i++)
     point_curve_release(&curves[i]);
   return code;

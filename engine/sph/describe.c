@@ -85,7 +85,7 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
   double spacing = sph_scale_spacing(in);
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
-    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal (as in Benz & Asphaug 1995)\n", in->impact.speed,
+    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal\n", in->impact.speed,
             in->impact.angle * 180 / pi);
     break;
   case SPH_STRETCH:

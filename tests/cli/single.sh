@@ -56,6 +56,9 @@ data = open('end.png', 'rb').read()
 assert data[:8] == b'\x89PNG\r\n\x1a\n' and len(data) > 5000, len(data)
 PY
 ok "snapshots, fields and picture"
+sleep 1 # HDF5 knows seconds
+expect 0 "$clast" simulate disc-explosion --seed 7 "${small[@]}" --fields later.h5
+cmp -s end.h5 later.h5 || fail "the fields of the same run differ from one second to the next"
 expect 0 "$clast" picture end.h5 again.png --caption "disc-explosion, seed 7"
 cmp -s end.png again.png || fail "the picture of the same fields differs"
 expect 66 "$clast" picture missing.h5 x.png
@@ -69,4 +72,4 @@ for what in scene campaign; do
   python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
 done
 expect 64 "$clast" schema elephant
-done_after $((25 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((26 + 3 * $(echo "$scenes" | wc -w)))
