@@ -92,6 +92,6 @@ void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
 /* What makes fewer particles of these inputs: "lower fidelity.particles". */
-const char *sph_inputs_fewer(const struct sph_inputs *inputs);
+const char *sph_inputs_check_fewer(const struct sph_inputs *inputs);
 
 #endif

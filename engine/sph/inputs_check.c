@@ -190,7 +190,7 @@ static status check_protocol(const struct sph_inputs *in, struct error *error) {
   return STATUS_OK;
 }
 
-const char *sph_inputs_fewer(const struct sph_inputs *in) {
+const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
     return "lower fidelity.particles, or raise fidelity.projectile_spacing";
@@ -224,7 +224,7 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side", in->sides.depth);
   double particles = sph_scale_particles(in);
   if (!(particles <= 2e9))
-    REFUSE("%.3g particles are too many (at most 2e9): %s", particles, sph_inputs_fewer(in));
+    REFUSE("%.3g particles are too many (at most 2e9): %s", particles, sph_inputs_check_fewer(in));
   if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
     REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
   double step = in->fidelity.cfl * sph_scale_smallest_spacing(in) / sph_scale_wave_speed(&in->target);

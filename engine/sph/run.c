@@ -62,7 +62,7 @@ static status check_memory(const struct sph_inputs *in, struct error *error) {
     return STATUS_OK;
   return status_fail(error, STATUS_MEMORY,
                      "%.4g particles need about %.3g GB of memory, and there are %.3g GB: %s",
-                     sph_scale_particles(in), needed / 1e9, there / 1e9, sph_inputs_fewer(in));
+                     sph_scale_particles(in), needed / 1e9, there / 1e9, sph_inputs_check_fewer(in));
 }
 
 static void begin(struct sph_run *run) {
