@@ -171,8 +171,7 @@ void sph_whole_runs_sizes(void) {
 void sph_whole_runs_modules(void) {
   static const struct setting none[] = {{NULL, NULL}}, compact[] = {{"fidelity.flaws", "compact"}, {NULL, NULL}},
                               whole_body[] = {{"target.fracture", "off"}, {NULL, NULL}},
-                              fluid[] = {{"target.fracture", "off"}, {"target.strength", "false"}, {"projectile.strength", "false"},
-                                         {NULL, NULL}},
+                              fluid[] = {{"target.strength", "false"}, {"projectile.strength", "false"}, {NULL, NULL}},
                               corrected[] = {{"method.gradient_correction", "true"}, {NULL, NULL}},
                               volumes[] = {{"method.volume_weights", "true"}, {NULL, NULL}},
                               opposed[] = {{"target.fracture", "off"}, {"method.artificial_stress", "0.3"}, {NULL, NULL}},
