@@ -1,4 +1,5 @@
 /* `clast cite SCENE`: the papers behind what is switched on, from the sources of the field tables. */
+#include <math.h>
 #include <string.h>
 
 #include "campaign/commands/commands.h"
@@ -14,6 +15,24 @@ static void cite_row(struct table *table, const struct field *row) {
     return;
   table_text(table, row->path);
   table_text(table, row->source);
+}
+
+/* A switch that is off, a law that is `none`, a coefficient of 0: nobody's paper is behind what is not there. */
+static bool absent(const struct field *row, const void *inputs) {
+  struct field_value value;
+  field_get(row, inputs, &value);
+  switch (row->kind) {
+  case FIELD_REAL:
+    return isnan(value.number) || value.number == 0;
+  case FIELD_BOOLEAN:
+    return value.number == 0;
+  case FIELD_CHOICE:
+    return strcmp(value.text, "none") == 0 || strcmp(value.text, "off") == 0;
+  case FIELD_INTEGER:
+  case FIELD_TEXT:
+    break;
+  }
+  return false;
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -37,7 +56,8 @@ static status run(const struct command_line *line, struct error *error) {
   table_text(table, scene->kind->name);
   table_text(table, scene->kind->doc);
   for (size_t i = 0; i < scene->kind->inputs->count; i++)
-    if (field_is_active(scene->kind->inputs, &scene->kind->inputs->rows[i], scene->inputs))
+    if (field_is_active(scene->kind->inputs, &scene->kind->inputs->rows[i], scene->inputs) &&
+        !absent(&scene->kind->inputs->rows[i], scene->inputs))
       cite_row(table, &scene->kind->inputs->rows[i]);
   for (size_t i = 0; i < scene->kind->results->count; i++)
     cite_row(table, &scene->kind->results->rows[i]);
@@ -55,8 +75,9 @@ const struct command cite_command = {
     .group = "scenes and inputs",
     .arguments = "SCENE",
     .summary = "the papers behind what a scene switches on",
-    .doc = "Prints the sources of the engine and of every active input and result of the scene (a built-in name or a\n"
-           "file), so that a paper can name what it really used.",
+    .doc = "Prints the sources of the engine and of the scene's inputs (a built-in name or a file), but for what is off\n"
+           "or zero, and of the engine's results, so that a paper can name what it really used; `clast explain SCENE`\n"
+           "has the sources of the modules that are on.",
     .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -12,6 +12,10 @@ for scene in $scenes; do
   expect 0 "$clast" cite "$scene"
   grep -qE "K99|Benz & Asphaug|Gray" out || fail "$scene cites nobody"
 done
+expect 0 "$clast" cite basalt-sphere
+! grep -qE "gradient_correction|artificial_stress" out || fail "what is off is cited"
+expect 0 "$clast" cite basalt-sphere --set method.gradient_correction=true
+prints "method.gradient_correction"
 expect 66 "$clast" scenes disc-explosoin
 says "disc-explosion"
 expect 0 "$clast" explain threshold.strain
@@ -72,4 +76,4 @@ for what in scene campaign; do
   python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
 done
 expect 64 "$clast" schema elephant
-done_after $((26 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((28 + 3 * $(echo "$scenes" | wc -w)))
