@@ -111,6 +111,7 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
   campaign->scene->kind = &play_kind;
   campaign->scene->inputs = calloc(1, dem_inputs.size);
   campaign->scene->given = calloc(dem_inputs.count, sizeof *campaign->scene->given);
+  campaign->scene->overridden = calloc(dem_inputs.count, sizeof *campaign->scene->overridden);
   field_defaults(&dem_inputs, campaign->scene->inputs);
   campaign->axis_count = 2;
   campaign->axes = calloc(2, sizeof *campaign->axes);
