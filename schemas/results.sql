@@ -295,7 +295,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   peak_stress REAL, -- [Pa] Stretch: largest mean axial stress between the grips.
   peak_strain REAL, -- [1] Stretch: strain rate times time, then.
   peak_time REAL, -- [s] Stretch: that time.
-  cracks REAL, -- [1] Stretch: pieces of more than 1 % of the rod, less one (without the veneer).
+  cracks REAL, -- [1] Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
   rebound REAL, -- [1] Collision: speed at which the bodies part over the speed of approach.
   shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.
@@ -862,7 +862,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Distance 
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Volume that the target''s retained matter has lost by closing pores; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 1);
 
@@ -1080,7 +1080,7 @@ INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistic
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without the veneer).', 0);
+INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 0);
 

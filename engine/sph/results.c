@@ -81,7 +81,8 @@ static const struct field rows[] = {
     REAL(peak.stress, "Pa", -HUGE_VAL, .doc = "Stretch: largest mean axial stress between the grips."),
     REAL(peak.strain, "1", 0, .doc = "Stretch: strain rate times time, then."),
     REAL(peak.time, "s", 0, .doc = "Stretch: that time."),
-    REAL(cracks, "1", 0, .doc = "Stretch: pieces of more than 1 % of the rod, less one (without the veneer)."),
+    REAL(cracks, "1", 0, .doc = "Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with "
+                            "bridges of broken rock between them, part nothing, although the rod bears no load."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed at which the bodies part over the speed of approach."),
     REAL(shock.speed, "m/s", 0,
