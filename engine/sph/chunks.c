@@ -142,7 +142,7 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
     c->lists.start = s->start + 2 * c->first + k;
     c->lists.count = c->lists.start + c->own + 1;
     enough = sph_neighbours_list(s->neighbours, k, &c->lists) &&
-             (s->share == 1 || sph_exchange(c->own, &c->lists)) &&
+             sph_exchange(c->own, s->share, &c->lists) &&
              find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
   }
   if (!enough || !find_shares(s)) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);

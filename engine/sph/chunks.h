@@ -20,7 +20,7 @@ struct sph_chunk_share {
 struct sph_chunk {
   size_t first, own, others;        /* others: how many foreign ones, */
   uint32_t *other;                  /* their numbers: ascending, all above the chunk's own */
-  struct sph_neighbour_lists lists; /* of slots; shared ones are whole batches (exchange.h) */
+  struct sph_neighbour_lists lists; /* of slots; whole batches (exchange.h) */
   size_t others_before;             /* others of all chunks before it */
   size_t shares;                    /* which particles of this chunk are others of which chunks, in the order of chunks: how many, */
   const struct sph_chunk_share *share;

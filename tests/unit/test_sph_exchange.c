@@ -41,15 +41,14 @@ static bool is_near(const struct cloud *c, const double periodic[3], size_t i, s
 }
 
 /* Lists of one chunk whose own particles are those from `first` on, `own` of them; returns how many lanes are idle, over all. */
-static double check(const struct cloud *c, const double periodic[3], const struct sph_neighbours *neighbours, size_t chunk, size_t first,
-                    size_t own) {
+static double check(const struct cloud *c, const double periodic[3], const struct sph_neighbours *neighbours, size_t share, size_t chunk,
+                    size_t first, size_t own) {
   static char met[MOST][MOST];
   static uint32_t start[MOST + 1], count[MOST];
   struct sph_neighbour_lists lists = {.start = start, .count = count};
-  const size_t share = PAIR_GROUP_FLOAT;
   size_t filled = 0, handed = 0;
   memset(met, 0, sizeof met);
-  assert_true(sph_neighbours_list(neighbours, chunk, &lists) && sph_exchange(own, &lists));
+  assert_true(sph_neighbours_list(neighbours, chunk, &lists) && sph_exchange(own, share, &lists));
   for (size_t g = 0; g * share < own; g++) {
     bool foreign = false;
     assert_true(start[g] % SPH_LIST_ALIGN == 0 && start[g + 1] >= start[g] + count[g]);
@@ -79,19 +78,20 @@ static double check(const struct cloud *c, const double periodic[3], const struc
 static void every_pair_is_met_once_and_batches_are_whole(void **state) {
   static const char *const classes[] = {"baseline", "v3", "v4"};
   (void)state;
-  for (int variant = 0; variant < 24; variant++) {
+  for (int variant = 0; variant < 48; variant++) {
+    const size_t share = variant < 24 ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE;
     const bool odd = variant & 1, periodic = variant & 2;
     const size_t size = variant & 4 ? 400 : MOST + 1;
     const double periods[3] = {periodic && !odd ? SIDE : (double)NAN, NAN, periodic ? 4 * 3.6 : (double)NAN};
     struct cloud *c = cloud_make(odd);
     struct error error = {0};
-    assert_int_equal(setenv("CLAST_CPU", classes[variant / 8], 1), 0);
-    struct sph_neighbours *n = sph_neighbours_create(MOST, size, PAIR_GROUP_FLOAT, sph_pairs_kernels_choose());
+    assert_int_equal(setenv("CLAST_CPU", classes[variant / 8 % 3], 1), 0);
+    struct sph_neighbours *n = sph_neighbours_create(MOST, size, share, sph_pairs_kernels_choose());
     assert_int_equal(sph_neighbours_find(n, MOST, c->x, c->y, c->z, c->reach, periods, 1, &error), STATUS_OK);
     for (size_t chunk = 0; chunk * size < MOST; chunk++) {
       const size_t first = chunk * size, own = MOST - first < size ? MOST - first : size;
-      const double idle = check(c, periods, n, chunk, first, own);
-      /* a sixth without; what is left is of the last lists, that have nobody to hand to, and of those without the right number */
+      const double idle = check(c, periods, n, share, chunk, first, own);
+      /* a sixth and more without; what is left is of the last lists, that have nobody to hand to, and of those without the right number */
       if (size > MOST) assert_true(idle < 0.04);
     }
     sph_neighbours_free(n);
