@@ -12,6 +12,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/help.h"
 #include "campaign/commands/table.h"
+#include "engine/cpu_class.h"
 
 static bool colour(void) {
   const char *no_colour = getenv("NO_COLOR"), *terminal = getenv("TERM");
@@ -57,6 +58,9 @@ static status run_command_line(int argc, char **argv, struct error *error) {
     option_help(command, stdout);
     return STATUS_OK;
   }
+  const char *class = getenv("CLAST_CPU");
+  if (class && *class && !cpu_class_known(class))
+    return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4", class);
   return command->run(&line, error);
 }
 

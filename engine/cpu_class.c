@@ -1,6 +1,5 @@
 #include "engine/cpu_class.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,6 +17,10 @@ enum cpu_class cpu_class_choose(void) {
   if (v3 && limit >= 3) return CPU_V3;
 #endif
   return CPU_BASELINE;
+}
+
+bool cpu_class_known(const char *name) {
+  return !strcmp(name, "baseline") || !strcmp(name, "v3") || !strcmp(name, "v4");
 }
 
 const char *cpu_class_name(enum cpu_class class) {

@@ -5,9 +5,12 @@
 #ifndef CLAST_ENGINE_CPU_CLASS_H
 #define CLAST_ENGINE_CPU_CLASS_H
 
+#include <stdbool.h>
+
 enum cpu_class { CPU_BASELINE = 1, CPU_V3 = 3 /* AVX2, FMA */, CPU_V4 = 4 /* AVX-512 */ };
 
 enum cpu_class cpu_class_choose(void);
+bool cpu_class_known(const char *name);           /* whether CLAST_CPU may be that */
 const char *cpu_class_name(enum cpu_class class); /* "baseline", "v3", "v4" */
 
 #endif

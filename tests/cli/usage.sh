@@ -31,6 +31,9 @@ expect 64 "$clast" explain a b
 says "does not know what to do with \"b\""
 expect 64 "$clast" scenes --json --csv
 says "exclude each other"
+expect 64 env CLAST_CPU=v9 "$clast" scenes # a class misspelt would be another class's bits
+says "baseline, v3 or v4"
+expect 0 env CLAST_CPU=v3 "$clast" scenes
 expect 64 "$clast" query
 expect 64 "$clast" completion zsh
 expect 64 "$clast" simulate
@@ -67,4 +70,4 @@ one_error
 expect 74 bash -c "'$clast' explain --json >/dev/full"
 expect 74 bash -c "'$clast' help >/dev/full"
 expect 0 bash -c "'$clast' help >&-"
-done_after 28
+done_after 30
