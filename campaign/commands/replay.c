@@ -7,6 +7,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/rows.h"
 #include "campaign/run.h"
+#include "engine/cpu_class.h"
 #include "engine/whole_file.h"
 
 struct options {
@@ -17,16 +18,19 @@ struct options {
 struct origin { /* what the store says of the run */
   char *scene;
   int64_t seed, results_version;
+  char cpu_class[16]; /* whose bits they are; empty when the session does not say */
   bool found;
 };
 
 static status take_origin(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct origin *origin = context;
-  if (count != 3 || values[0].kind != QUERY_TEXT)
+  if (count != 4 || values[0].kind != QUERY_TEXT)
     return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
   origin->scene = strdup(values[0].text);
   origin->seed = values[1].integer;
   origin->results_version = values[2].integer;
+  if (values[3].kind == QUERY_TEXT)
+    snprintf(origin->cpu_class, sizeof origin->cpu_class, "%s", values[3].text);
   origin->found = true;
   return origin->scene ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
 }
@@ -149,8 +153,8 @@ static status replay(struct store *store, const char *run_id, const struct optio
   struct scene *scene = NULL;
   struct run_result result = {0};
   struct comparison comparison = {.result = &result};
-  status code = query_run(store, "select scene, seed, results_version from run join point using (point_id) where run_id = :run",
-                          1, &run, 0, &sink, error);
+  status code = query_run(store, "select scene, seed, results_version, json_extract(facts, '$.cpu_class') from run join point using (point_id)"
+                          " left join session using (session_id) where run_id = :run", 1, &run, 0, &sink, error);
   if (!code && !origin.found)
     code = status_fail(error, STATUS_USAGE, "there is no run %s; `clast query STORE \"select run_id from run\"` lists them",
                        run_id);
@@ -183,9 +187,14 @@ static status replay(struct store *store, const char *run_id, const struct optio
       table_drop(comparison.table);
     code = code ? code : ended;
   }
+  char class[160] = "";
+  const char *here = cpu_class_name(cpu_class_choose());
+  if (*origin.cpu_class && strcmp(origin.cpu_class, here) != 0)
+    snprintf(class, sizeof class, "; they are of CPU class %s and these of %s, and bits are promised within a class: replay with CLAST_CPU=%s",
+             origin.cpu_class, here, origin.cpu_class);
   if (!code && comparison.different)
-    code = status_fail(error, STATUS_CONTENT, "run %s: %zu of %zu results differ", run_id, comparison.different,
-                       comparison.compared);
+    code = status_fail(error, STATUS_CONTENT, "run %s: %zu of %zu results differ%s", run_id, comparison.different, comparison.compared,
+                       class);
   else if (!code)
     fprintf(stderr, "run %s: %zu results and %zu fragment masses agree to the last bit\n", run_id, comparison.compared - 1,
             result.fragment_count);

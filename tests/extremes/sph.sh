@@ -59,6 +59,16 @@ expect 0 "$clast" query ab.db "select count(distinct point_id) as n from point_i
 prints 4
 expect 0 "$clast" check ab.db
 
+# Bits are those of a class of CPU: replayed on another one they differ, and replay says why.
+class=$("$clast" query ab.db "select json_extract(facts, '$.cpu_class') from session" --csv | tail -n 1 | tr -d '\r')
+expect 0 "$clast" replay ab.db 1
+if [ "$class" = baseline ]; then
+  ok "no other class of CPU here"
+else
+  expect 65 env CLAST_CPU=baseline "$clast" replay ab.db 1
+  says "CLAST_CPU=$class"
+fi
+
 # Inputs that only prove impossible when bodies are made (so few particles cannot be graded so far): a run of state invalid, which
 # has no body to draw or to keep. The reason is told, and not the picture's; a file that stands there from before is not taken for
 # the run's; a campaign that keeps fields does not miss any.
@@ -86,4 +96,4 @@ done
 same "$("$clast" query graded.db "select count(*) from run where fields_path is not null" --csv | tail -n 1 | tr -d '\r')" 0 "fields of invalid runs"
 expect 0 "$clast" replay graded.db 1 --fields graded.h5
 says "has no fields"
-done_after 35
+done_after 37
