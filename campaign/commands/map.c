@@ -5,7 +5,7 @@
 
 #include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "db/query.h"
+#include "campaign/commands/rows.h"
 
 enum { WIDTH = 900, MOST_GROUPS = 10000, MEAN_COLUMN = 7 }; /* x, y, engine, results_version, n, failed, censored, mean */
 
@@ -86,7 +86,11 @@ static status run(const struct command_line *line, struct error *error) {
     snprintf(sql, sizeof sql, "select distinct \"%s\", \"%s\", point_id from points", map.name[0], map.name[1]);
     code = query_run(map.store, sql, 0, NULL, 0, &points, error);
   }
-  snprintf(title, sizeof title, map.exponent ? "exponent %s, pooled over seeds" : "%s, mean over seeds", options->quantity);
+  bool pool = false;
+  if (!code)
+    code = rows_pool(map.store, map.name[0], map.name[1], &pool, error);
+  snprintf(title, sizeof title, "%s%s, %s over seeds%s", map.exponent ? "exponent " : "", options->quantity,
+           map.exponent ? "pooled" : "mean", pool && !map.exponent ? " and other inputs" : "");
   if (!code)
     code = picture_map_points(line->arguments[1], WIDTH, title, options->quantity, map.name[0], map.name[1], map.count, (const double(*)[3])map.points, error);
   free(map.points);

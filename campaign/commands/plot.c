@@ -6,7 +6,7 @@
 
 #include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "db/query.h"
+#include "campaign/commands/rows.h"
 
 /* Columns of query_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF = 8, COLUMNS = 9 };
@@ -166,10 +166,14 @@ static status run(const struct command_line *line, struct error *error) {
     snprintf(plot.name[2], sizeof plot.name[2], "%s", options->quantity);
     code = fit_points(&plot, error);
   }
+  bool pool = false;
+  if (!code)
+    code = rows_pool(plot.store, plot.name[0], plot.axes == 2 ? plot.name[1] : NULL, &pool, error);
   if (!code && !(code = label_axis(plot.store, plot.name[0], x_label, error)) && !(code = label_axis(plot.store, plot.name[1], by_label, error)) &&
       !(code = label_axis(plot.store, plot.name[2], y_label, error))) {
     finish(&plot, by_label);
-    snprintf(title, sizeof title, "%s, %s over seeds with 95 %% interval", plot.name[2], plot.exponent ? "pooled" : "mean");
+    snprintf(title, sizeof title, "%s, %s over seeds%s with 95 %% interval", plot.name[2], plot.exponent ? "pooled" : "mean",
+             pool && !plot.exponent ? " and other inputs" : "");
     code = picture_curves(line->arguments[1], WIDTH, title, x_label, y_label, plot.count, plot.curve, error);
   }
   for (size_t c = 0; c < plot.count; c++)
@@ -192,9 +196,10 @@ const struct command plot_command = {
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over one varied input as lines with error bars",
     .doc = "Draws the mean over seeds of a result against a varied input, with the 95 % interval of the mean (Student t) where\n"
-           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same numbers. Of\n"
-           "an exponent (`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An\n"
-           "axis over a factor of 20 and more is logarithmic. The ending chooses the format, .png or .svg.",
+           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same numbers.\n"
+           "Where other inputs differ, too, it is a mean over them as well, and the title says so. Of an exponent\n"
+           "(`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An axis over a\n"
+           "factor of 20 and more is logarithmic. The ending chooses the format, .png or .svg.",
     .examples = "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

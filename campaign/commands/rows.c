@@ -107,6 +107,24 @@ status rows_end(struct rows *rows, status code, struct error *error) {
   return table_end(rows->table, error);
 }
 
+static status take_count(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  *(int64_t *)context = values[0].integer;
+  return STATUS_OK;
+}
+
+status rows_pool(struct store *store, const char *x, const char *y, bool *pool, struct error *error) {
+  int64_t most = 0;
+  const struct query_sink sink = {&most, NULL, take_count};
+  char sql[1000];
+  snprintf(sql, sizeof sql,
+           "select coalesce(max(n), 0) from (select count(distinct point_id) as n from points where n > 0 group by \"%s\"%s%s%s)", x,
+           y ? ", \"" : "", y ? y : "", y ? "\"" : "");
+  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  *pool = most > 1;
+  return code;
+}
+
 status rows_print(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,
                   enum table_format format, FILE *out, struct error *error) {
   struct rows rows;

@@ -19,6 +19,10 @@ struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_f
 /* Ends the table, whatever `code` says; returns code, or what writing said. A reader that went away is fine. */
 status rows_end(struct rows *rows, status code, struct error *error);
 
+/* Whether several points share one value of column `x` (and of `y`, unless it is NULL): what is averaged by these is so over other
+ * inputs, too. */
+status rows_pool(struct store *store, const char *x, const char *y, bool *pool, struct error *error);
+
 /* One SELECT, printed. */
 status rows_print(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,
                   enum table_format format, FILE *out, struct error *error);

@@ -27,6 +27,14 @@ expect 0 "$clast" plot small.db lines.png -x strain --by angle
 is_png lines.png
 expect 0 "$clast" plot small.db dust.svg -x strain -q dust_fraction
 is_svg dust.svg
+expect 0 "$clast" plot small.db apart.svg -x strain --by angle -q dust_fraction
+python - <<'PY'
+import re
+def title(name): # its letters: the highest line of text
+    ys = [float(y) for y in re.findall(r'<use[^>]* y="([0-9.]+)"', open(name).read())]
+    return ys.count(min(ys))
+assert title('dust.svg') - title('apart.svg') == len(' and other inputs'), 'a mean over angles, too, does not say so'
+PY
 expect 0 "$clast" plot small.db beta.svg -x strain --by angle -q beta_masses_from_2
 expect 0 "$clast" estimates small.db --json --resamples 1000
 # The lines of the picture stand as high as the numbers of the table: all on one scale.
@@ -86,4 +94,4 @@ head -c 3000 disc.h5 >cut.h5
 expect 65 "$clast" picture cut.h5 none.png
 [ ! -e none.png ] || fail "a picture was left behind"
 [ -z "$(find . -name '*.part')" ] || fail "a .part file was left behind"
-done_after 39
+done_after 40
