@@ -127,23 +127,45 @@ static bool find_shares(struct sph_chunks *s) {
   return true;
 }
 
+/* Lists are made in `room`, which chunks share, and kept in no more memory than they take. */
+static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sph_neighbour_lists *room) {
+  struct sph_chunk *c = &s->chunk[k];
+  c->first = k * SPH_CHUNK;
+  c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
+  room->start = c->lists.start = s->start + 2 * c->first + k;
+  room->count = c->lists.count = c->lists.start + c->own + 1;
+  if (!sph_neighbours_list(s->neighbours, k, room) || !sph_exchange(c->own, s->share, room)) return false;
+  const size_t lists = (c->own + s->share - 1) / s->share, used = room->start[lists];
+  if (!c->lists.j || c->lists.capacity < used || c->lists.capacity > used + used / 4) {
+    free(c->lists.j);
+    c->lists.capacity = used + used / 16 / SPH_LIST_ALIGN * SPH_LIST_ALIGN;
+    c->lists.j = aligned_alloc(64, c->lists.capacity * sizeof *c->lists.j + 64);
+    if (!c->lists.j) {
+      c->lists.capacity = 0;
+      return false;
+    }
+  }
+  memcpy(c->lists.j, room->j, used * sizeof *room->j);
+  c->lists.pairs = room->pairs;
+  return find_others(c, lists, n);
+}
+
 status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const double *y, const double *z, const double *reach,
                        const double periodic[3], int threads, struct error *error) {
   const status code = sph_neighbours_find(s->neighbours, n, x, y, z, reach, periodic, threads, error);
   bool enough = true;
   if (code) return code;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1) reduction(&& : enough)
+#pragma omp parallel num_threads(threads) if (threads > 1) reduction(&& : enough)
 #endif
-  for (size_t k = 0; k < s->count; k++) {
-    struct sph_chunk *c = &s->chunk[k];
-    c->first = k * SPH_CHUNK;
-    c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
-    c->lists.start = s->start + 2 * c->first + k;
-    c->lists.count = c->lists.start + c->own + 1;
-    enough = sph_neighbours_list(s->neighbours, k, &c->lists) &&
-             sph_exchange(c->own, s->share, &c->lists) &&
-             find_others(c, (c->own + s->share - 1) / s->share, n) && enough;
+  {
+    struct sph_neighbour_lists room = {0};
+#ifdef _OPENMP
+#pragma omp for schedule(dynamic, 1)
+#endif
+    for (size_t k = 0; k < s->count; k++)
+      enough = list_chunk(s, k, n, &room) && enough;
+    free(room.j);
   }
   if (!enough || !find_shares(s)) return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);
   s->others = s->most_slots = 0;

@@ -97,14 +97,12 @@ bool sph_exchange(size_t own, size_t share, struct sph_neighbour_lists *lists) {
     for (; used % BATCH; used++)
       fresh[used] = (uint32_t)(list * share);
   }
-  if (enough) lists->start[count] = used;
-  if (enough && used > lists->capacity) {
+  if (enough) {
+    lists->start[count] = used;
     free(lists->j);
     lists->j = fresh;
     lists->capacity = room;
     fresh = NULL;
-  } else if (enough) {
-    memcpy(lists->j, fresh, used * sizeof *fresh);
   }
   free(fresh);
   free(h.first);

@@ -351,14 +351,6 @@ bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sp
                list_group(s, EIGHT * eight + lane, first, at, candidates, &w, lists, &used);
     }
   }
-  const size_t fair = used + used / 2 + 16384; /* the widest lists ever made are not kept room for */
-  uint32_t *less = enough && lists->capacity > fair ? aligned_alloc(LINE, (used * sizeof *less + LINE - 1) / LINE * LINE) : NULL;
-  if (less) {
-    memcpy(less, lists->j, used * sizeof *less);
-    free(lists->j);
-    lists->j = less;
-    lists->capacity = used;
-  }
   free(w.eight[0]);
   free(w.eight[1]);
   free(w.group);

@@ -25,7 +25,7 @@ enum { SPH_TAGS = 28, SPH_NUMBER = (1 << SPH_TAGS) - 1 };
  * .. j[start[g] + count[g] - 1]; start[g] is a multiple of SPH_LIST_ALIGN, and what lies between lists is their first particle. */
 struct sph_neighbour_lists {
   uint32_t *start, *count; /* the caller's: one for each list, one more of start */
-  uint32_t *j;             /* grown (aligned to 64 bytes); the caller frees it */
+  uint32_t *j;             /* grown as needed (aligned to 64 bytes) from what it is; the caller frees it */
   size_t capacity;
   size_t pairs;            /* how many there are, whoever shares a list */
 };
