@@ -116,7 +116,7 @@ static void speed_of_waves(void **state) {
     assert_true(fabs(three.damage[s] - cube.damage[s]) < 0.05);
   assert_true(cube.mean > three.mean + 0.08); /* spalls near the edges: 0.16 of the cube at either number of particles */
 
-  if (!run_case_full()) return; /* fewer particles have none in the projectile */
+  if (!run_case_full()) return; /* with fewer particles there would be none in the projectile: it is one here */
   const char *asked = getenv("CLAST_EVEN");
   const struct cratered even = crater("3", "1.39e18", "damped", asked ? asked : "80000");
   assert_true(even.halfway > 0.048 && even.halfway < 0.056); /* 5.2 cm; 4.8 with 160 000; seeds within 0.1 */
