@@ -146,11 +146,16 @@ static void look_at_energy(struct sph_run *run) {
   double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound;
   if (!isfinite(closed))
     end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s", sph_system_time(run->system));
-  else if (!field_is_off(bound) && input > 0 && drift > bound * input)
+  else if (!field_is_off(bound) && input > 0 && drift > bound * input) {
+    char clamped[120] = "";
+    if (fabs(ledger.clamped) > drift / 2)
+      snprintf(clamped, sizeof clamped, "; %.3g of it is energy.clamped, of cold matter held at u = 0: if that stays, raise the bound",
+               ledger.clamped / input);
     end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
-                "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g: lower "
-                "fidelity.cfl, or take more particles",
-                sph_system_time(run->system), drift / input, bound);
+        "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g: lower "
+        "fidelity.cfl, or take more particles%s",
+        sph_system_time(run->system), drift / input, bound, clamped);
+  }
 }
 
 static void look_at_end(struct sph_run *run) {

@@ -246,6 +246,13 @@ static void stop_rules(void **state) {
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "fidelity.energy_bound"));
+  assert_null(strstr(ran.outcome.message, "energy.clamped"));
+  free(ran.fragments);
+
+  inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "fidelity.energy_bound=1e-3"); /* cold rubber */
+  ran = run_case_run(&sph_engine, &inputs, 1);
+  assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
+  assert_non_null(strstr(ran.outcome.message, "energy.clamped"));
   free(ran.fragments);
 }
 
