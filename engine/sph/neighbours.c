@@ -307,7 +307,8 @@ static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t 
 static bool list_group(const struct sph_neighbours *s, size_t group, size_t first, double *const at[4], size_t candidates,
                        struct search *w, struct sph_neighbour_lists *lists, size_t *used) {
   const size_t size = s->group_size[group], base = s->group_first[group] - first, room = candidates + 2 * SPH_LIST_ALIGN;
-  if (!grow((void **)&lists->j, &lists->capacity, *used + (size + 1) * room, *used, sizeof *lists->j)) return false;
+  const size_t needed = *used + (size + 1) * room;
+  if (needed > lists->capacity && !grow((void **)&lists->j, &lists->capacity, 2 * needed, *used, sizeof *lists->j)) return false;
   double own[GROUP][4];
   for (size_t k = 0; k < size; k++)
     for (int d = 0; d < 4; d++)
