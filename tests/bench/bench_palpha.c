@@ -53,15 +53,24 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   return s;
 }
 
-/* The loop that pores add (or replace: Tillotson's) alone, on the state that the run has come to; it changes nothing there. */
+/* The loop that pores add (or replace: Tillotson's) alone, on the state that the run has come to, standing still; it changes nothing
+ * there. */
 static double loop(struct sph_system *s, sph_hook hook) {
+  static double none[SPH_BLOCK];
+  struct sph_pair_sums still = {0};
   double best = HUGE_VAL;
+  for (int k = 0; k < 9; k++)
+    still.gradient[k] = none;
+  for (size_t k = 0; k < s->block_count; k++)
+    s->block[k].sums = &still;
   for (int round = 0; round < 20; round++) {
     double start = now();
     for (size_t k = 0; k < s->block_count; k++)
       hook(s, &s->solid[s->block[k].body], &s->block[k]);
     best = fmin(best, now() - start);
   }
+  for (size_t k = 0; k < s->block_count; k++)
+    s->block[k].sums = NULL;
   return best / (double)s->n;
 }
 

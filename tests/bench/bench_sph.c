@@ -10,6 +10,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "engine/cpu_class.h"
 #include "engine/sph/bodies.h"
 #include "engine/sph/order.h"
 #include "engine/sph/pairs.h"
@@ -234,7 +235,7 @@ static void pairs(const char *name, size_t n) {
 
 int main(int argc, char **argv) {
   const char *only = argc > 1 ? argv[1] : "";
-  printf("sph_cpu_class %s 1\n", sph_pairs_kernels_choose()->name);
+  printf("sph_cpu_class %d 1\n", (int)cpu_class_choose()); /* 1 baseline, 3 AVX2, 4 AVX-512 */
   if (!*only || !strcmp(only, "pairs")) {
     pairs("10000", 10000);
     pairs("100000", 100000);

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# The short benchmarks run to their end, and all that they print is `name value unit`; what the times are is nobody's business here.
+. "$(dirname "$0")/lib.bash"
+
+figures() { # figures LEAST PROGRAM [ARGUMENT...]: it prints at least so many
+  local least=$1
+  shift
+  expect 0 "$@"
+  grep -Evq '^[a-z0-9_]+ [+-]?[0-9.]+(e[+-]?[0-9]+)? [^ ]+$' out && fail "a line that is no figure: $(grep -Ev '^[a-z0-9_]+ [+-]?[0-9.]+(e[+-]?[0-9]+)? [^ ]+$' out | head -1)"
+  [ "$(wc -l <out)" -ge "$least" ] || fail "$(wc -l <out) figures, expected $least at least"
+}
+figures 9 "$build/tests/bench/bench_palpha_program"
+figures 11 "$build/tests/bench/bench_analysis_program"
+figures 3 "$build/tests/bench/bench_campaign_program"
+if [ "$sanitized" -eq 0 ]; then
+  figures 18 "$build/tests/bench/bench_dem_program"
+  figures 3 "$build/tests/bench/bench_sph_pieces_program"
+  figures 20 "$build/tests/bench/bench_sph_program" 10000
+else # minutes of what the tests have run already
+  ok "(bench_dem not run)"; ok "(nor bench_sph_pieces)"; ok "(nor bench_sph)"
+fi
+done_after 6
