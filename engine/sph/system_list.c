@@ -12,11 +12,14 @@
 
 enum {
   LISTINGS_PER_SORT = 8,
-  HORIZON = 20, /* steps that lists are made for, at most */
-  LEAST_HORIZON = 2,
+  LEAST_HORIZON = 2, /* steps that lists are made for */
   ROOM = 4,     /* most slack, in h */
-  LISTING = 50, /* neighbours whose sums take as long as making lists (bench_sph pairs) */
 };
+
+/* By precision: steps that lists are made for, at most; neighbours whose sums take as long as making lists (bench_sph pairs). In float
+ * a sum takes half the time and making lists as long as in double, so that longer ones pay. */
+static const uint64_t horizon_most[] = {[SPH_DOUBLE] = 20, [SPH_FLOAT] = 30};
+static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
 
 /* What stands at order[i] comes to i. */
 static bool permute(struct sph_system *s) {
@@ -137,7 +140,7 @@ bool sph_system_list_again(struct sph_system *s) {
 }
 
 /* What is lost, until the lists are worn, on pairs beyond the support that only the room of fast particles brings in: much where many fly
- * fast and close together. In neighbours, like LISTING. By counting, not by the clock: bits depend on it. */
+ * fast and close together. In neighbours, like `listing`. By counting, not by the clock: bits depend on it. */
 static double lost_on_room(const struct sph_system *s) {
   double swollen = 0;
   for (size_t k = 0; k < s->block_count; k++)
@@ -147,7 +150,8 @@ static double lost_on_room(const struct sph_system *s) {
 }
 
 static void lengthen(struct sph_system *s) {
-  s->now.horizon = s->now.horizon && s->now.horizon < HORIZON / 2 ? 2 * s->now.horizon : HORIZON;
+  const uint64_t most = horizon_most[s->p.precision];
+  s->now.horizon = s->now.horizon && s->now.horizon < most / 2 ? 2 * s->now.horizon : most;
 }
 
 bool sph_system_list(struct sph_system *s) {
@@ -162,10 +166,10 @@ bool sph_system_list(struct sph_system *s) {
   }
   if (!list_anew(s)) return false;
   /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some eight times the loss */
-  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * LISTING) {
+  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * listing[s->p.precision]) {
     s->now.horizon /= 2;
     if (!list_anew(s)) return false;
   }
-  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * LISTING) lengthen(s); /* the next ones */
+  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->p.precision]) lengthen(s); /* the next ones */
   return true;
 }
