@@ -45,7 +45,8 @@ static size_t shorten(const uint32_t *from, uint32_t *to, size_t count, size_t o
 
 /* `excess` of the neighbours, or fewer, go to later lists; with all that stand in one list with them, for a pair of lists is on one
  * side as a whole. Returns how many others there are, in order, at `to`, which may be `from`. */
-static inline size_t shed(const size_t share, const uint32_t *from, uint32_t *to, size_t count, size_t own, size_t low, size_t excess, struct handed *h) {
+static inline size_t shed(const size_t share, const uint32_t *from, uint32_t *to, size_t count, size_t own, size_t low, size_t excess,
+                          struct handed *h) {
   size_t kept = 0, k = 0;
   uint32_t handed = h->count;
   for (size_t size; k < count && excess && (from[k] & SPH_NUMBER) < own; k += size) { /* foreign ones stand at the end */

@@ -13,7 +13,7 @@
 enum {
   LISTINGS_PER_SORT = 8,
   LEAST_HORIZON = 2, /* steps that lists are made for */
-  ROOM = 4,     /* most slack, in h */
+  ROOM = 4,          /* most slack, in h */
 };
 
 /* By precision: steps that lists are made for, at most; neighbours whose sums take as long as making lists (bench_sph pairs). In float
@@ -165,7 +165,8 @@ bool sph_system_list(struct sph_system *s) {
     lengthen(s);
   }
   if (!list_anew(s)) return false;
-  /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some eight times the loss */
+  /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some eight times
+   * the loss */
   while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * listing[s->p.precision]) {
     s->now.horizon /= 2;
     if (!list_anew(s)) return false;
