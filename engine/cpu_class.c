@@ -3,26 +3,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const struct {
+  const char *name;
+  enum cpu_class class;
+} classes[] = {{"baseline", CPU_BASELINE}, {"v3", CPU_V3}, {"v4", CPU_V4}};
+enum { CLASSES = sizeof classes / sizeof classes[0] };
+
+static int find(const char *name) {
+  for (int k = 0; k < CLASSES; k++)
+    if (strcmp(name, classes[k].name) == 0) return k;
+  return CLASSES;
+}
+
 enum cpu_class cpu_class_choose(void) {
 #ifdef __x86_64__
   const char *wanted = getenv("CLAST_CPU");
-  const int limit = !wanted ? 4 : !strcmp(wanted, "baseline") ? 1 : !strcmp(wanted, "v3") ? 3 : 4;
+  const enum cpu_class limit = wanted && cpu_class_known(wanted) ? classes[find(wanted)].class : CPU_V4;
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2") &&
                   __builtin_cpu_supports("bmi");
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl");
-  if (v4 && limit >= 4) return CPU_V4;
-  if (v3 && limit >= 3) return CPU_V3;
+  if (v4 && limit >= CPU_V4) return CPU_V4;
+  if (v3 && limit >= CPU_V3) return CPU_V3;
 #endif
   return CPU_BASELINE;
 }
 
 bool cpu_class_known(const char *name) {
-  return !strcmp(name, "baseline") || !strcmp(name, "v3") || !strcmp(name, "v4");
+  return find(name) < CLASSES;
 }
 
 const char *cpu_class_name(enum cpu_class class) {
-  return class == CPU_V4 ? "v4" : class == CPU_V3 ? "v3" : "baseline";
+  int k = 0;
+  while (classes[k].class != class)
+    k++;
+  return classes[k].name;
 }

@@ -133,17 +133,9 @@ static status list_inputs(const struct scene *scene, enum table_format format, s
   table_column(table, "value", NULL);
   table_column(table, "unit", NULL);
   table_column(table, "meaning", NULL);
-  for (size_t i = 0; i < inputs->count; i++) {
-    const struct field *row = &inputs->rows[i];
-    char doc[FIELD_TEXT_SIZE];
-    if (!field_is_active(inputs, row, scene->inputs))
-      continue;
-    table_text(table, row->path);
-    results_value(table, row, scene->inputs);
-    table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
-    explain_sentence(row->doc, doc, sizeof doc);
-    table_text(table, doc);
-  }
+  for (size_t i = 0; i < inputs->count; i++)
+    if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      results_row(table, &inputs->rows[i], scene->inputs);
   return table_end(table, error);
 }
 

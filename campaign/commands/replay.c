@@ -165,9 +165,8 @@ static status replay(struct store *store, const char *run_id, const struct optio
                        "run %s was made by results version %" PRId64 " of engine %s, this program makes version %d: its "
                        "bits differ on purpose; replay it with the program of that version (table session has its commit)",
                        run_id, origin.results_version, scene->kind->name, scene->kind->results_version);
-  if (!code) {
-    code = options->fields ? whole_file_try(options->fields, "fields file", error) : STATUS_OK;
-  }
+  if (!code && options->fields)
+    code = whole_file_try(options->fields, "fields file", error);
   if (!code) {
     struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)origin.seed,
                                   .fields_path = options->fields};

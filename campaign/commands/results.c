@@ -6,7 +6,7 @@
 #include "analysis/estimates.h"
 #include "campaign/commands/explain.h"
 
-void results_value(struct table *table, const struct field *row, const void *object) {
+static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
   field_get(row, object, &value);
   switch (row->kind) {
@@ -32,17 +32,20 @@ static bool empty(const struct field *row, const void *object) {
   return row->kind == FIELD_REAL && isnan(value.number);
 }
 
+void results_row(struct table *table, const struct field *row, const void *object) {
+  char meaning[FIELD_TEXT_SIZE];
+  explain_sentence(row->doc, meaning, sizeof meaning);
+  table_text(table, row->path);
+  value_cell(table, row, object);
+  table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
+  table_text(table, meaning);
+}
+
 static void list(struct table *table, const struct field_table *fields, const void *object) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
-    if (empty(row, object) || row->kind == FIELD_TEXT) /* does not apply to this scene; the message goes to stderr */
-      continue;
-    table_text(table, row->path);
-    results_value(table, row, object);
-    table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");
-    char meaning[FIELD_TEXT_SIZE];
-    explain_sentence(row->doc, meaning, sizeof meaning);
-    table_text(table, meaning);
+    if (!empty(row, object) && row->kind != FIELD_TEXT) /* else: does not apply to this scene; the message goes to stderr */
+      results_row(table, row, object);
   }
 }
 
@@ -79,7 +82,7 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   table_integer(table, seed);
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
-      results_value(table, &tables[t]->rows[i], objects[t]);
+      value_cell(table, &tables[t]->rows[i], objects[t]);
   for (size_t i = 0; i < result->estimate_count; i++) {
     table_real(table, result->estimates[i].fit.beta);
     table_real(table, result->estimates[i].fit.standard_error);

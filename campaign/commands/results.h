@@ -5,8 +5,8 @@
 #include "campaign/commands/table.h"
 #include "campaign/run.h"
 
-/* The object's value of that row, as a cell; off and NaN are missing. */
-void results_value(struct table *table, const struct field *row, const void *object);
+/* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */
+void results_row(struct table *table, const struct field *row, const void *object);
 
 status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
                      enum table_format format, struct error *error);

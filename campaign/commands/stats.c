@@ -1,6 +1,7 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
 #include <string.h>
 
+#include "analysis/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/rows.h"
 
@@ -9,15 +10,31 @@ struct options {
   struct table_options table;
 };
 
+/* Exponents are no results of single runs. */
+static status refuse_exponents(const char *names, const char *store, struct error *error) {
+  for (const char *name = names; *name; name += strcspn(name, ","), name += *name == ',') {
+    enum exponent_method method;
+    enum estimates_window window;
+    struct error ignored;
+    bool is;
+    name += strspn(name, " ");
+    (void)estimates_named(name, &is, &method, &window, &ignored);
+    if (is)
+      return status_fail(error, STATUS_USAGE,
+                         "%.*s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
+                         "`clast plot` and `clast map` draw them with -q beta",
+                         (int)strcspn(name, ", "), name, store);
+  }
+  return STATUS_OK;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   struct store *store = NULL;
-  if (strncmp(options->quantity, "beta", 4) == 0)
-    return status_fail(error, STATUS_USAGE,
-                       "%s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, `clast plot` "
-                       "and `clast map` draw them with -q beta", options->quantity, line->arguments[0]);
   status code = table_choose(&options->table, &format, error);
+  if (!code)
+    code = refuse_exponents(options->quantity, line->arguments[0], error);
   if (!code)
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)

@@ -224,6 +224,7 @@ static void pairs(const char *name, size_t n) {
   const double shorter = pass(&c, &options, CLOCK_PROCESS_CPUTIME_ID, &listing, &neighbours, &bytes);
   printf("sph_pairs_ns_per_particle_%s_float %.1f ns\n", name, 1e9 * shorter / real);
   printf("sph_pairs_ratio_float_%s %.3g 1\n", name, spent / shorter);
+  printf("sph_pairs_listing_ns_per_particle_%s_float %.1f ns\n", name, 1e9 * listing / real);
   printf("sph_pairs_bytes_per_particle_%s_float %.0f B\n", name, (double)bytes / real);
   printf("sph_pairs_difference_%s_float %.2e 1\n", name, difference(&c));
   options.precision = SPH_DOUBLE;

@@ -136,7 +136,7 @@ says "nonsense"
 expect 64 "$clast" query tiny.db --named elephant
 expect 64 "$clast" stats tiny.db --by elephant
 says "threshold.strain"
-expect 64 "$clast" stats tiny.db --quantity beta
+expect 64 "$clast" stats tiny.db --quantity largest_fraction,beta
 says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
