@@ -1,4 +1,5 @@
-/* Once per process, before any other call of analysis/: the libraries' error handlers print and abort; ours are statuses. */
+/* Once per process, before any other call of analysis/: the libraries' error handlers print and abort; ours are
+ * statuses. */
 #ifndef CLAST_ANALYSIS_ANALYSIS_H
 #define CLAST_ANALYSIS_ANALYSIS_H
 

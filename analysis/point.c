@@ -19,24 +19,28 @@ static status take_run(void *context, size_t count, const struct query_value *va
   struct growing *growing = context;
   struct point_data *point = growing->point;
   if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
-    return status_fail(error, STATUS_CONTENT, "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
+    return status_fail(error, STATUS_CONTENT,
+                       "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
                        (long long)point->point_id);
   size_t n = values[0].size / sizeof(double), have = point->first[point->runs.count];
   if (have + n > growing->mass_capacity) {
     size_t capacity = 2 * (have + n);
     double *grown = realloc(point->masses, capacity * sizeof *grown);
-    if (!grown) return status_fail(error, STATUS_MEMORY, "no memory for the masses of point %lld", (long long)point->point_id);
+    if (!grown)
+      return status_fail(error, STATUS_MEMORY, "no memory for the masses of point %lld", (long long)point->point_id);
     point->masses = grown;
     growing->mass_capacity = capacity;
   }
   if (point->runs.count + 2 > growing->run_capacity) {
     size_t capacity = 2 * growing->run_capacity;
     size_t *grown = realloc(point->first, capacity * sizeof *grown);
-    if (!grown) return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
+    if (!grown)
+      return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
     point->first = grown;
     growing->run_capacity = capacity;
   }
-  if (n > 0) memcpy(point->masses + have, values[0].blob, n * sizeof(double));
+  if (n > 0)
+    memcpy(point->masses + have, values[0].blob, n * sizeof(double));
   point->first[++point->runs.count] = have + n;
   return STATUS_OK;
 }
@@ -50,15 +54,17 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
   status code = STATUS_OK;
   if (results_version == 0) {
     double newest = NAN;
-    code = query_number(store, "SELECT max(results_version) FROM run WHERE point_id = :point AND counts = 1", 1, parameters,
-                        &newest, error);
-    if (code) return code;
+    code = query_number(store, "SELECT max(results_version) FROM run WHERE point_id = :point AND counts = 1", 1,
+                        parameters, &newest, error);
+    if (code)
+      return code;
     out->results_version = isnan(newest) ? 0 : (int64_t)newest;
   }
   snprintf(version, sizeof version, "%lld", (long long)out->results_version);
   struct growing growing = {.point = out, .run_capacity = 32};
   out->first = calloc(growing.run_capacity, sizeof *out->first);
-  if (!out->first) return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point_id);
+  if (!out->first)
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point_id);
   struct query_sink sink = {.context = &growing, .row = take_run};
   code = query_run(store,
                    "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
@@ -66,10 +72,11 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
                    2, parameters, 0, &sink, error);
   /* Every run's window from_2 begins at so many of its mean element masses. */
   if (!code)
-    code = query_number(store,
-                        "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
-                        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
-                        2, parameters, &out->element_mass, error);
+    code = query_number(
+        store,
+        "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
+        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
+        2, parameters, &out->element_mass, error);
   out->element_mass /= estimates_window_elements(ESTIMATES_FROM_2);
   if (code) {
     point_release(out);
@@ -92,11 +99,13 @@ double point_window(const struct point_data *point, enum estimates_window window
   return estimates_window_elements(window) * point->element_mass;
 }
 
-static status estimate(const struct point_data *point, enum exponent_method method, enum estimates_window window, size_t resamples,
-                       double level, struct pooled_exponent *out, struct error *error) {
+static status estimate(const struct point_data *point, enum exponent_method method, enum estimates_window window,
+                       size_t resamples, double level, struct pooled_exponent *out, struct error *error) {
   const double lower = point_window(point, window);
-  if (lower > 0) return pooled_exponent(&point->runs, method, lower, resamples, level, RESAMPLE_SEED, out, error);
-  *out = (struct pooled_exponent){.fit = {.method = (int)method}, .interval = {NAN, NAN, NAN, NAN, 0}}; /* no runs, or none with estimates */
+  if (lower > 0)
+    return pooled_exponent(&point->runs, method, lower, resamples, level, RESAMPLE_SEED, out, error);
+  *out = (struct pooled_exponent){.fit = {.method = (int)method},
+                                  .interval = {NAN, NAN, NAN, NAN, 0}}; /* no runs, or none with estimates */
   out->fit.lower = out->fit.upper = out->fit.beta = out->fit.standard_error = NAN;
   out->fit.cutoff_mass = out->fit.ks_distance = out->fit.log_likelihood = NAN;
   return STATUS_OK;
@@ -107,7 +116,8 @@ status point_exponent(struct store *store, int64_t point_id, int64_t results_ver
                       struct error *error) {
   struct point_data point;
   status code = point_read(store, point_id, results_version, &point, error);
-  if (code) return code;
+  if (code)
+    return code;
   code = estimate(&point, method, window, resamples, level, out, error);
   point_release(&point);
   return code;
@@ -124,13 +134,17 @@ status point_estimates(const struct point_data *point, size_t resamples, double 
   return code;
 }
 
-status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out, struct error *error) {
+status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out,
+                        struct error *error) {
   *out = (struct point_curve){.runs = point->runs.count, .fit = {.beta = NAN}};
-  if (label) snprintf(out->label, sizeof out->label, "%s", label);
-  else snprintf(out->label, sizeof out->label, "point %lld, %zu runs", (long long)point->point_id, out->runs);
+  if (label)
+    snprintf(out->label, sizeof out->label, "%s", label);
+  else
+    snprintf(out->label, sizeof out->label, "point %lld, %zu runs", (long long)point->point_id, out->runs);
   status code = pooled_spectrum(&point->runs, true, 1, &out->bins, &out->count, error);
   double lower = point_window(point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
-  if (code || !(lower > 0)) return code;
+  if (code || !(lower > 0))
+    return code;
   struct pooled_exponent headline;
   code = pooled_exponent(&point->runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, RESAMPLE_SEED,
                          &headline, error);
@@ -138,7 +152,8 @@ status point_curve_make(const struct point_data *point, const char *label, struc
     point_curve_release(out);
     return code;
   }
-  if (!isfinite(headline.fit.beta)) return STATUS_OK;
+  if (!isfinite(headline.fit.beta))
+    return STATUS_OK;
   snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f \xc2\xb1 %.2f", headline.fit.beta,
            headline.interval.standard_error);
   out->fit = (struct picture_fit){NULL, headline.fit.beta, headline.fit.lower, headline.fit.upper,
@@ -154,6 +169,9 @@ void point_curve_release(struct point_curve *curve) {
 
 struct picture_series point_curve_series(struct point_curve *curve) {
   curve->fit.label = curve->fit_label;
-  return (struct picture_series){.label = curve->label, .count = curve->count, .bins = curve->bins,
-                                 .fits = isfinite(curve->fit.beta) ? 1u : 0u, .fit = &curve->fit};
+  return (struct picture_series){.label = curve->label,
+                                 .count = curve->count,
+                                 .bins = curve->bins,
+                                 .fits = isfinite(curve->fit.beta) ? 1u : 0u,
+                                 .fit = &curve->fit};
 }

@@ -2,8 +2,8 @@
 #ifndef CLAST_ANALYSIS_POINT_H
 #define CLAST_ANALYSIS_POINT_H
 
-#include "analysis/estimates.h"
-#include "analysis/picture.h"
+#include "analysis/pictures/picture.h"
+#include "analysis/statistics/estimates.h"
 #include "db/store.h"
 
 struct point_data {
@@ -28,8 +28,8 @@ struct point_estimate {
   struct pooled_exponent exponent;
 };
 enum { POINT_ESTIMATES = 3 * ESTIMATES_WINDOWS }; /* least_squares, binned, masses in each window, in that order */
-/* Pooled estimates, intervals from `resamples` resamples of runs (1000 for final numbers: some 50 ms for 200 runs). Same
- * store, same numbers. */
+/* Pooled estimates, intervals from `resamples` resamples of runs (1000 for final numbers: some 50 ms for 200 runs).
+ * Same store, same numbers. */
 status point_estimates(const struct point_data *point, size_t resamples, double level,
                        struct point_estimate rows[POINT_ESTIMATES], struct error *error);
 
@@ -43,11 +43,12 @@ struct point_curve {
   char label[128], fit_label[96];
   struct pooled_bin *bins; /* owned */
   size_t count, runs;
-  struct picture_fit fit;  /* its label is filled in by point_curve_series; beta = NaN: no fit */
+  struct picture_fit fit; /* its label is filled in by point_curve_series; beta = NaN: no fit */
 };
 /* label: NULL for "point 3, 40 runs". */
-status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out, struct error *error);
-void point_curve_release(struct point_curve *curve);               /* a zeroed one is fine */
+status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out,
+                        struct error *error);
+void point_curve_release(struct point_curve *curve);                 /* a zeroed one is fine */
 struct picture_series point_curve_series(struct point_curve *curve); /* borrows the curve, which must not move */
 
 #endif

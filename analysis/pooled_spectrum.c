@@ -12,9 +12,12 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
   size_t fragments = runs->count ? runs->first[runs->count] : 0;
   for (size_t i = 0; i < fragments; i++) {
     int bin = spectrum_bin(runs->masses[i]);
-    if (bin == SPECTRUM_NO_BIN) continue;
-    if (bin < low) low = bin;
-    if (bin > high) high = bin;
+    if (bin == SPECTRUM_NO_BIN)
+      continue;
+    if (bin < low)
+      low = bin;
+    if (bin > high)
+      high = bin;
   }
   size_t span = low <= high ? (size_t)(high - low) + 1 : 0;
   struct pooled_bin *found = calloc(span + 1, sizeof *found);
@@ -27,10 +30,12 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
     return status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span);
   }
   for (size_t r = 0; r < runs->count; r++) {
-    for (size_t j = 0; j < span; j++) mine[j] = 0;
+    for (size_t j = 0; j < span; j++)
+      mine[j] = 0;
     for (size_t i = runs->first[r] + (with_largest ? 0 : 1); i < runs->first[r + 1]; i++) {
       int bin = spectrum_bin(runs->masses[i]);
-      if (bin != SPECTRUM_NO_BIN) mine[bin - low]++;
+      if (bin != SPECTRUM_NO_BIN)
+        mine[bin - low]++;
     }
     for (size_t j = 0; j < span; j++) {
       found[j].count += mine[j];
@@ -39,7 +44,8 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
   }
   double n = (double)runs->count;
   for (size_t j = 0; j < span; j++) {
-    if (!found[j].count) continue;
+    if (!found[j].count)
+      continue;
     struct pooled_bin bin = {.bin = low + (int)j, .count = found[j].count};
     bin.lower = spectrum_edge(bin.bin);
     bin.upper = spectrum_edge(bin.bin + 1);
@@ -47,7 +53,8 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
     bin.density = total / (n * width);
     /* variance of the mean count: (sum c^2 - (sum c)^2/n) / (n (n-1)) */
     bin.standard_error = NAN;
-    if (runs->count > 1) bin.standard_error = sqrt(fmax(squares[j] - total * total / n, 0) / (n * (n - 1))) / width;
+    if (runs->count > 1)
+      bin.standard_error = sqrt(fmax(squares[j] - total * total / n, 0) / (n * (n - 1))) / width;
     found[(*count)++] = bin;
   }
   *bins = found;

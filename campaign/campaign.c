@@ -10,7 +10,7 @@
 #include "schemas/document.h"
 
 #define ROW(path_, member_, kind_, unit_, ...)                                                                         \
-  {.path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__}
+  { .path = path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct campaign, member_), __VA_ARGS__ }
 #define TEXT(path_, member_, ...) ROW(path_, member_, FIELD_TEXT, NULL, __VA_ARGS__)
 #define COUNT(path_, member_, default_, low, high, ...)                                                                \
   ROW(path_, member_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
@@ -20,12 +20,15 @@ static const struct field rows[] = {
     TEXT("scene", scene_reference, .flags = FIELD_REQUIRED,
          .doc = "What is run: a built-in scene (`clast scenes`) or a file, relative to this document's folder."),
     TEXT("quantity", quantity, .text = "largest_fraction",
-         .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: extremes}`. Any "
+         .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: "
+                "extremes}`. Any "
                 "number that a run reports (`clast explain results`)."),
     TEXT("store", store, .text = "",
          .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
-    COUNT("seeds.first", first_seed, 1, 0, 0x1p62,
-          .doc = "Seed of replicate 0; replicate r of every point has first + r, so that points share their random bodies."),
+    COUNT(
+        "seeds.first", first_seed, 1, 0, 0x1p62,
+        .doc =
+            "Seed of replicate 0; replicate r of every point has first + r, so that points share their random bodies."),
     ROW("seeds.independent", independent, FIELD_BOOLEAN, NULL, .maximum = 1,
         .doc = "Every point gets seeds of its own, derived from its inputs and the replicate."),
     COUNT("seeds.per_point", per_point, 20, 1, 0x1p40, .doc = "Replicates (seeds) of every point."),
@@ -34,44 +37,63 @@ static const struct field rows[] = {
          .doc = "The quantity whose mean must be known well enough. Default: the main quantity."),
     ROW("seeds.until.half_width", until_half_width, FIELD_REAL, "1", .number = 0.01, .minimum = 0, .maximum = HUGE_VAL,
         .flags = FIELD_ABOVE_MINIMUM,
-        .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this, in the SI "
+        .doc = "A point is finished when the confidence interval of the mean is narrower than plus or minus this, in "
+               "the SI "
                "unit of the quantity. Judged on fixed prefixes of replicate numbers.",
         .source = "Chow & Robbins 1965"),
     ROW("seeds.until.level", until_level, FIELD_REAL, "1", .number = 0.95, .minimum = 0.5, .maximum = 1,
         .flags = FIELD_BELOW_MAXIMUM, .doc = "Confidence level of that interval."),
     COUNT("seeds.until.minimum", until_minimum, 30, 2, 0x1p40,
-          .doc = "Replicates before the first decision: with fewer, intervals of skew or two-humped quantities are too narrow "
+          .doc = "Replicates before the first decision: with fewer, intervals of skew or two-humped quantities are too "
+                 "narrow "
                  "far too often."),
     COUNT("seeds.until.batch", until_batch, 10, 1, 0x1p40, .doc = "Replicates between two decisions."),
     ROW("limits.time", time_limit, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e9,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM, .doc = "Wall time of one attempt at a run; off: none."),
     ROW("limits.memory", memory_limit, FIELD_REAL, "B", .number = NAN, .minimum = 1048576, .maximum = 0x1p60,
         .flags = FIELD_MAY_BE_OFF, .doc = "Memory of one attempt at a run; off: none."),
-    COUNT("limits.attempts", attempts, 2, 1, 1000, .doc = "Attempts at one run, in all, before it is given up as failed."),
+    COUNT("limits.attempts", attempts, 2, 1, 1000,
+          .doc = "Attempts at one run, in all, before it is given up as failed."),
     COUNT("limits.failures", failures, 20, 0, 50,
           .doc = "The campaign stops when this many of its first 50 runs have failed; 0: it goes on whatever happens."),
 };
-const struct field_table campaign_table =
-    FIELD_TABLE(rows, struct campaign, "campaign", "Many runs of one scene: what is varied, how often, within which limits.");
+const struct field_table
+    campaign_table = FIELD_TABLE(rows, struct campaign, "campaign",
+                                 "Many runs of one scene: what is varied, how often, within which limits.");
 
 static const char *const kinds[] = {"grid", "list", "random", "latin_hypercube", "sobol", NULL};
 static const struct field design_rows[] = {
-    {.path = "kind", .kind = FIELD_CHOICE, .offset = offsetof(struct campaign_design_keys, kind), .choices = kinds,
+    {.path = "kind",
+     .kind = FIELD_CHOICE,
+     .offset = offsetof(struct campaign_design_keys, kind),
+     .choices = kinds,
      .choice_docs = "every combination of the varied inputs' values\n"
                     "the i-th value of every varied input makes point i\n"
                     "independent draws\n"
                     "each input's range is cut into as many strata as there are points, one point in each\n"
                     "Sobol numbers, digitally shifted: the most even of the three samplings",
      .doc = "How points are made from the varied inputs."},
-    {.path = "points", .kind = FIELD_INTEGER, .unit = "1", .offset = offsetof(struct campaign_design_keys, points),
-     .minimum = 1, .maximum = 0x1p53, .number = 0, .when = "kind=random|latin_hypercube|sobol",
+    {.path = "points",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     .offset = offsetof(struct campaign_design_keys, points),
+     .minimum = 1,
+     .maximum = 0x1p53,
+     .number = 0,
+     .when = "kind=random|latin_hypercube|sobol",
      .doc = "How many points are sampled."},
-    {.path = "seed", .kind = FIELD_INTEGER, .unit = "1", .offset = offsetof(struct campaign_design_keys, seed),
-     .minimum = 0, .maximum = 0x1p62, .number = 1, .when = "kind=random|latin_hypercube|sobol",
+    {.path = "seed",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     .offset = offsetof(struct campaign_design_keys, seed),
+     .minimum = 0,
+     .maximum = 0x1p62,
+     .number = 1,
+     .when = "kind=random|latin_hypercube|sobol",
      .doc = "Of the draws, permutations and shifts; the runs' seeds are another matter (`seeds`)."},
 };
-const struct field_table campaign_design_table =
-    FIELD_TABLE(design_rows, struct campaign_design_keys, "design", "How points are made from the varied inputs.");
+const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
+                                                             "How points are made from the varied inputs.");
 
 bool campaign_usable(const struct outcome *outcome) {
   return outcome->state == OUTCOME_COMPLETED || outcome->state == OUTCOME_END_TIME;
@@ -88,9 +110,10 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
     const char *nearest = field_nearest(&outcome_table, path);
     if (!nearest)
       nearest = field_nearest(kind->results, path);
-    status_fail(error, STATUS_CONTENT, "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "
-                "mean_fragment_mass and more (`clast explain results`)", path, nearest ? ": did you mean '" : "",
-                nearest ? nearest : "", nearest ? "'?" : "", kind->name);
+    status_fail(error, STATUS_CONTENT,
+                "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "
+                "mean_fragment_mass and more (`clast explain results`)",
+                path, nearest ? ": did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "", kind->name);
     return NULL;
   }
   if (row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) {
@@ -189,7 +212,8 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   document_node *seeds = key_of(root, "seeds");
   document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
   if (until && per_point)
-    document_report(per_point, "seeds.per_point", "a fixed number and `until` exclude each other; leave one of them out");
+    document_report(per_point, "seeds.per_point",
+                    "a fixed number and `until` exclude each other; leave one of them out");
   if (max && !until)
     document_report(max, "seeds.max", "only `until` has a maximum; a fixed number is per_point");
   if (!until)
@@ -200,8 +224,10 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
   if (!key_of(until, "half_width"))
     document_report(until, "seeds.until", "'half_width' is missing: how narrow must the interval be?");
   if (campaign->until_minimum > campaign->maximum)
-    document_report(max ? max : until, "seeds.max", "%lld replicates at most, but the first decision comes after %lld; raise max "
-                    "or lower until.minimum", (long long)campaign->maximum, (long long)campaign->until_minimum);
+    document_report(max ? max : until, "seeds.max",
+                    "%lld replicates at most, but the first decision comes after %lld; raise max "
+                    "or lower until.minimum",
+                    (long long)campaign->maximum, (long long)campaign->until_minimum);
 }
 
 static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
@@ -211,7 +237,8 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report(node, path, "%s", error.message);
 }
 
-/* Every point is tried when there are few; else the first ones. Whoever samples a million points gets the rest as notes. */
+/* Every point is tried when there are few; else the first ones. Whoever samples a million points gets the rest as
+ * notes. */
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
   struct error error = {0};
@@ -219,9 +246,9 @@ static void check_points(document_node *root, struct campaign *campaign) {
   document_node *vary = document_key(root, "vary"), *where = document_key(root, "design");
   document_node *node = vary ? vary : root;
   struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
-  if (!values || design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                               (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) !=
-                     STATUS_OK) {
+  if (!values ||
+      design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) != STATUS_OK) {
     document_report(where ? where : node, "design", "%s", values ? error.message : "no memory");
     free(values);
     return;
@@ -248,8 +275,8 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   read_keep(document_key(root, "keep"), campaign);
   read_design(document_key(root, "design"), campaign);
   check_seeds(root, campaign);
-  if (!campaign->store[0] && snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >=
-                                 (int)sizeof campaign->store)
+  if (!campaign->store[0] &&
+      snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
   if (!scene || !campaign->scene_reference[0])
     return; /* said by document_read; nothing more can be read without it */
@@ -332,7 +359,8 @@ int64_t campaign_replicates_most(const struct campaign *campaign) {
   return campaign->per_point ? campaign->per_point : campaign->maximum;
 }
 
-struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values, struct error *error) {
+struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values,
+                                   struct error *error) {
   struct scene *scene = scene_copy(campaign->scene);
   if (!scene) {
     status_fail(error, STATUS_MEMORY, "no memory for a point");
@@ -353,8 +381,8 @@ struct scene *campaign_point_scene(const struct campaign *campaign, const struct
 uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate) {
   if (!campaign->independent)
     return (uint64_t)campaign->first_seed + (uint64_t)replicate;
-  /* A property of the point, not of its place in the design: a design that grows keeps its seeds. 63 bits, because SQL's
-   * integers have a sign. */
+  /* A property of the point, not of its place in the design: a design that grows keeps its seeds. 63 bits, because
+   * SQL's integers have a sign. */
   uint8_t identity[16];
   uint64_t item = 0, bits[4];
   scene_identity(point, 0, identity);

@@ -1,6 +1,6 @@
-/* A campaign: many runs of one scene. The document (`clast run campaign.yaml`) is read here into a plain struct; the plain
- * keys are rows of campaign_table, the few keys that are unions (vary, set, design, keep) are read by hand and their JSON
- * Schema fragments stand in campaign_schema.c.
+/* A campaign: many runs of one scene. The document (`clast run campaign.yaml`) is read here into a plain struct; the
+ * plain keys are rows of campaign_table, the few keys that are unions (vary, set, design, keep) are read by hand and
+ * their JSON Schema fragments stand in campaign_schema.c.
  *
  *     name: thresholds
  *     scene: disc-explosion             # built-in name, or a file relative to the campaign's folder
@@ -24,9 +24,9 @@ enum campaign_design { CAMPAIGN_GRID, CAMPAIGN_LIST, CAMPAIGN_RANDOM, CAMPAIGN_L
 enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREMES, CAMPAIGN_KEEP_FIRST };
 
 struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */
-  int kind;       /* enum campaign_design */
-  int64_t points; /* of the sampling kinds; 0 for grid and list, whose axes say it */
-  int64_t seed;   /* of the sampling kinds: shift, permutations, draws */
+  int kind;                   /* enum campaign_design */
+  int64_t points;             /* of the sampling kinds; 0 for grid and list, whose axes say it */
+  int64_t seed;               /* of the sampling kinds: shift, permutations, draws */
 };
 
 struct campaign {
@@ -35,25 +35,25 @@ struct campaign {
   char quantity[FIELD_TEXT_SIZE]; /* the main quantity: shown while running, judged by `extremes` */
   char store[FIELD_TEXT_SIZE];    /* path, relative to the current folder */
   int64_t first_seed;
-  bool independent;               /* seeds derive from point and replicate instead of first_seed + r */
-  int64_t per_point;              /* replicates of every point; 0 when `until` decides */
-  int64_t maximum;                /* of replicates when `until` decides */
+  bool independent;  /* seeds derive from point and replicate instead of first_seed + r */
+  int64_t per_point; /* replicates of every point; 0 when `until` decides */
+  int64_t maximum;   /* of replicates when `until` decides */
   char until_quantity[FIELD_TEXT_SIZE];
-  double until_half_width;        /* of the confidence interval of the mean, SI of the quantity */
-  double until_level;             /* 0.95 */
+  double until_half_width; /* of the confidence interval of the mean, SI of the quantity */
+  double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
-  double time_limit;              /* s per attempt, NaN = off */
-  double memory_limit;            /* bytes per attempt, NaN = off */
-  int64_t attempts;               /* of one run, in all */
-  int64_t failures;               /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
+  double time_limit;   /* s per attempt, NaN = off */
+  double memory_limit; /* bytes per attempt, NaN = off */
+  int64_t attempts;    /* of one run, in all */
+  int64_t failures;    /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
   struct campaign_design_keys design;
-  int keep;                       /* enum campaign_keep */
-  int64_t keep_first;             /* of CAMPAIGN_KEEP_FIRST */
+  int keep;           /* enum campaign_keep */
+  int64_t keep_first; /* of CAMPAIGN_KEEP_FIRST */
 
-  struct design_axis *axes;       /* owned */
+  struct design_axis *axes; /* owned */
   size_t axis_count;
-  struct scene *scene;            /* owned: the scene with `set` applied; axes are applied to copies of it */
-  char *text;                     /* owned: the document as read, for the store */
+  struct scene *scene; /* owned: the scene with `set` applied; axes are applied to copies of it */
+  char *text;          /* owned: the document as read, for the store */
 };
 enum { CAMPAIGN_FIRST_RUNS = 50 };
 
@@ -74,11 +74,14 @@ int64_t campaign_replicates_most(const struct campaign *campaign);
 
 /* The scene of a design point from its row of axis values (design_next). NULL with *error when the values cannot be run
  * together (cross-field check). Owned by the caller. */
-struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values, struct error *error);
-/* Seed of replicate r: first_seed + r, the same for every point; with independent seeds derived from the point's inputs. */
+struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values,
+                                   struct error *error);
+/* Seed of replicate r: first_seed + r, the same for every point; with independent seeds derived from the point's
+ * inputs. */
 uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate);
 
-/* A quantity of a run by its path or unique suffix: a row of outcome_table or of the engine's results. NULL + *error. */
+/* A quantity of a run by its path or unique suffix: a row of outcome_table or of the engine's results. NULL + *error.
+ */
 const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,
                                       struct error *error);
 /* Its value in a finished run: NaN when the run failed (outcome states other than completed and end_time). */

@@ -19,7 +19,8 @@ static bool wrong(struct reading *r, document_node *node, const char *text) {
 }
 
 /* A row like the axis' own but with other limits: a mean may lie where no value may. */
-static struct field number_row(const struct reading *r, const char *unit, double minimum, double maximum, unsigned flags) {
+static struct field number_row(const struct reading *r, const char *unit, double minimum, double maximum,
+                               unsigned flags) {
   struct field row = *r->axis->row;
   row.path = r->path;
   row.kind = FIELD_REAL;
@@ -55,7 +56,9 @@ static bool read_own(struct reading *r, document_node *node, double *x) {
   return true;
 }
 
-static bool is_number(const struct field *row) { return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER; }
+static bool is_number(const struct field *row) {
+  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+}
 
 static bool read_pair(struct reading *r, document_node *node, bool positive, double *a, double *b) {
   if (document_kind(node) != DOCUMENT_SEQUENCE || document_count(node) != 2)
@@ -122,15 +125,15 @@ static bool read_truncation(struct reading *r, bool positive) {
   /* Position in standard deviations from the middle of the law. */
   struct design_axis *axis = r->axis;
   const struct field *row = axis->row;
-#define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x) - axis->a) / axis->b)
+#define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x)-axis->a) / axis->b)
   double from = DEVIATIONS(axis->lower), to = DEVIATIONS(axis->upper);
   double least = DEVIATIONS(row->minimum), most = DEVIATIONS(row->maximum);
 #undef DEVIATIONS
   /* Beyond 37 standard deviations a normal law's mass is no double any more. */
   if (from > 37 || to < -37)
     return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
-  /* What the law reaches must be within what the input can take. Six deviations away (one draw in 1e9) it is cut without a
-   * word. */
+  /* What the law reaches must be within what the input can take. Six deviations away (one draw in 1e9) it is cut
+   * without a word. */
   if ((from < least && least > -6) || (to > most && most < 6)) {
     document_report(r->node, r->path,
                     "the law reaches values that this input cannot take (%g to %g); cut it: {..., truncated: [a, b]}",
@@ -204,9 +207,12 @@ static bool read_linked(struct reading *r, document_node *node) {
 /* The forms that are mappings: the key that stands in it says which. */
 static bool read_form(struct reading *r) {
   static const char *const forms[] = {"from", "log", "uniform", "log_uniform", "normal", "lognormal", "linked", NULL};
-  static const char *const keys[][4] = {{"from", "to", "n", NULL}, {"log", "n", NULL},
-                                        {"uniform", NULL},         {"log_uniform", NULL},
-                                        {"normal", "truncated", NULL}, {"lognormal", "truncated", NULL},
+  static const char *const keys[][4] = {{"from", "to", "n", NULL},
+                                        {"log", "n", NULL},
+                                        {"uniform", NULL},
+                                        {"log_uniform", NULL},
+                                        {"normal", "truncated", NULL},
+                                        {"lognormal", "truncated", NULL},
                                         {"linked", "factor", "offset", "values"}};
   int form = -1, found = 0;
   document_node *node = NULL;
@@ -238,29 +244,22 @@ static bool read_form(struct reading *r) {
       return wrong(r, NULL, "'to' is missing");
     return read_own(r, node, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
   }
-  case 1:
-    return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
+  case 1: return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
   case 2:
   case 3:
     r->axis->kind = form == 2 ? DESIGN_AXIS_UNIFORM : DESIGN_AXIS_LOG_UNIFORM;
     return read_pair(r, node, form == 3, &r->axis->a, &r->axis->b);
-  case 4:
-    return read_normal(r, node);
-  case 5:
-    return read_lognormal(r, node);
-  default:
-    return read_linked(r, node);
+  case 4: return read_normal(r, node);
+  case 5: return read_lognormal(r, node);
+  default: return read_linked(r, node);
   }
 }
 
 static bool read_axis(struct reading *r) {
   switch (document_kind(r->node)) {
-  case DOCUMENT_SEQUENCE:
-    return read_values(r, r->node);
-  case DOCUMENT_MAPPING:
-    return read_form(r);
-  default:
-    return wrong(r, NULL, "expected a list of values or a range; a single value belongs in `set`");
+  case DOCUMENT_SEQUENCE: return read_values(r, r->node);
+  case DOCUMENT_MAPPING: return read_form(r);
+  default: return wrong(r, NULL, "expected a list of values or a range; a single value belongs in `set`");
   }
 }
 

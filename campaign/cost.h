@@ -1,11 +1,12 @@
-/* What a run will cost, learnt from those that finished: the engine's a-priori work times a fitted rate, corrected by the
- * point's own mean. Orders the runs (dearest first, against stragglers) and gives the time left. Never part of a result. */
+/* What a run will cost, learnt from those that finished: the engine's a-priori work times a fitted rate, corrected by
+ * the point's own mean. Orders the runs (dearest first, against stragglers) and gives the time left. Never part of a
+ * result. */
 #ifndef CLAST_CAMPAIGN_COST_H
 #define CLAST_CAMPAIGN_COST_H
 
 #include <stdint.h>
 
-struct cost_model { /* zero-initialised */
+struct cost_model {     /* zero-initialised */
   double seconds, work; /* sums over finished runs: the rate is their ratio */
   int64_t runs;
 };
@@ -15,7 +16,8 @@ struct cost_point { /* one point's own record; `work` set by the caller, the res
 };
 
 void cost_learn(struct cost_model *model, struct cost_point *point, double wall_s);
-/* Seconds of the point's next run. Before anything has finished: its work, in the engine's unit, which orders as well. */
+/* Seconds of the point's next run. Before anything has finished: its work, in the engine's unit, which orders as well.
+ */
 double cost_predict(const struct cost_model *model, const struct cost_point *point);
 
 #endif

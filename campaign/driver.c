@@ -54,7 +54,8 @@ status driver_open(const struct campaign *campaign, struct store *store, const s
     code = store_begin_session(store, options->facts ? options->facts : "{}", &driver->summary.session_id, error);
   if (code == STATUS_OK) {
     char plan[256];
-    snprintf(plan, sizeof plan, "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld}",
+    snprintf(plan, sizeof plan,
+             "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld}",
              campaign->design.kind, (unsigned long long)design_points(driver->design),
              (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
     code = store_add_campaign(store, campaign->name, campaign->text, plan, &driver->summary.campaign_id, error);
@@ -116,7 +117,8 @@ static struct point *choose_replay(struct driver *driver, int64_t *replicate) {
   return NULL;
 }
 
-/* "results.db" -> "results-fields/<identity>.h5", relative to the store's folder; with `folder` the store's own in front. */
+/* "results.db" -> "results-fields/<identity>.h5", relative to the store's folder; with `folder` the store's own in
+ * front. */
 static void fields_path(const struct driver *driver, const uint8_t identity[16], bool folder, char *path, size_t size) {
   const char *store = driver->options.store_path ? driver->options.store_path : driver->campaign->store;
   const char *slash = strrchr(store, '/'), *base = slash ? slash + 1 : store;
@@ -158,7 +160,8 @@ static void give_up(struct driver *driver, struct point *point, int64_t r) {
 static struct point *next_run(struct driver *driver, struct flight *flight, status *code) {
   double deadline = now_s() + DRIVER_FILL_S;
   while (*code == STATUS_OK) {
-    while (*code == STATUS_OK && driver->point_count < DRIVER_WINDOW && now_s() < deadline && driver_window_expand(driver, code, &driver->error))
+    while (*code == STATUS_OK && driver->point_count < DRIVER_WINDOW && now_s() < deadline &&
+           driver_window_expand(driver, code, &driver->error))
       ;
     if (*code != STATUS_OK)
       return NULL;
@@ -269,9 +272,12 @@ static status store_result(struct driver *driver, const struct flight *flight, c
 
 static status store_failure(struct driver *driver, const struct flight *flight, const struct farm_report *report,
                             struct error *error) {
-  static const char *const reasons[] = {[FARM_DONE] = "exit",          [FARM_FAILED] = "exit",
-                                        [FARM_TIME_LIMIT] = "time_limit", [FARM_MEMORY_LIMIT] = "memory_limit",
-                                        [FARM_CRASHED] = "crash",      [FARM_LOST] = "lost"};
+  static const char *const reasons[] = {[FARM_DONE] = "exit",
+                                        [FARM_FAILED] = "exit",
+                                        [FARM_TIME_LIMIT] = "time_limit",
+                                        [FARM_MEMORY_LIMIT] = "memory_limit",
+                                        [FARM_CRASHED] = "crash",
+                                        [FARM_LOST] = "lost"};
   struct farm_options limits = {0};
   driver_farm_options(driver->campaign, &limits);
   driver->summary.attempts_failed++;
@@ -305,11 +311,12 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
   driver->first_failed += failed;
   if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
     return STATUS_OK;
-  return status_fail(error, STATUS_FAILED_RUNS,
-                     "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s --named failures. "
-                     "Mend the campaign, or set limits.failures: 0 to go on regardless",
-                     (long long)driver->first_failed, (long long)driver->first_done,
-                     driver->options.store_path ? driver->options.store_path : driver->campaign->store);
+  return status_fail(
+      error, STATUS_FAILED_RUNS,
+      "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s --named failures. "
+      "Mend the campaign, or set limits.failures: 0 to go on regardless",
+      (long long)driver->first_failed, (long long)driver->first_done,
+      driver->options.store_path ? driver->options.store_path : driver->campaign->store);
 }
 
 static status finish_run(struct driver *driver, const struct flight *flight, const struct farm_report *report,
@@ -355,8 +362,8 @@ static status finish_replay(struct driver *driver, const struct flight *flight, 
   replicate->replaying = false;
   fields_path(driver, flight->identity, false, path, sizeof path);
   if (report->ending != FARM_DONE) {
-    snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)flight->seed, path,
-             report->message && report->message[0] ? report->message : "the replay did not end well");
+    snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)flight->seed,
+             path, report->message && report->message[0] ? report->message : "the replay did not end well");
     driver_note(driver, text);
     return STATUS_OK;
   }
@@ -372,15 +379,19 @@ static status report(void *context, const struct farm_report *report, struct err
   struct flight flight = driver->flights[report->id];
   driver->flights[report->id].point = NULL;
   flight.point->out--;
-  status code = flight.replay ? finish_replay(driver, &flight, report, error) : finish_run(driver, &flight, report, error);
+  status code = flight.replay ? finish_replay(driver, &flight, report, error)
+                              : finish_run(driver, &flight, report, error);
   driver->started_done += !flight.replay;
-  status judged = code == STATUS_OK || code == STATUS_FAILED_RUNS ? driver_window_judge(driver, flight.point, code ? NULL : error) : code;
+  status judged = code == STATUS_OK || code == STATUS_FAILED_RUNS
+                      ? driver_window_judge(driver, flight.point, code ? NULL : error)
+                      : code;
   if (point_over(flight.point))
     driver_window_drop(driver, flight.point);
   return code != STATUS_OK ? code : judged;
 }
 
-/* Seconds left on all slots, from what is missing in the points met and the mean of the rest. Once a second is enough. */
+/* Seconds left on all slots, from what is missing in the points met and the mean of the rest. Once a second is enough.
+ */
 static double time_left(struct driver *driver, double now) {
   if (now - driver->last_left < 1 && !isnan(driver->seconds_left))
     return driver->seconds_left;
@@ -405,8 +416,11 @@ static void show(struct driver *driver, int running, bool last) {
       .failed = driver->summary.runs_failed,
       .running = running,
       .total = driver->wanted + (int64_t)unmet * campaign_replicates_least(driver->campaign),
-      .total_is_minimum = driver->campaign->per_point == 0 && driver->summary.points_done < driver->summary.points,
-      .rate = elapsed > 0 && driver->started_done > 0 ? (double)driver->started_done / elapsed : DRIVER_NOTHING,
+      .total_is_minimum = driver->campaign->per_point == 0 &&
+                                  driver->summary.points_done<driver->summary.points, .rate = elapsed> 0 &&
+                                  driver->started_done > 0
+                              ? (double)driver->started_done / elapsed
+                              : DRIVER_NOTHING,
       .seconds_left = last ? DRIVER_NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
       .mean = driver->counted > 0 ? driver->mean : DRIVER_NOTHING,
@@ -450,4 +464,6 @@ status driver_end(struct driver *driver, struct error *error) {
   return driver->error.status;
 }
 
-void driver_summarise(const struct driver *driver, struct driver_summary *summary) { *summary = driver->summary; }
+void driver_summarise(const struct driver *driver, struct driver_summary *summary) {
+  *summary = driver->summary;
+}

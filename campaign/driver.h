@@ -7,47 +7,47 @@
  *     driver_run(campaign, farm, &options, &summary, &error); // every rank; only rank 0 opens the store
  *     farm_stop(farm, &error);
  *
- * A point's statistics use a fixed prefix of replicate numbers 0..n-1. With `seeds: until` the prefix grows batch by batch
- * and the decision looks at complete prefixes only, never at "the first n that finished" (which is biased towards quick
- * runs). Slots that would idle compute ahead; such runs are stored with surplus = 1 and counted only if the prefix comes
- * to cover them. */
+ * A point's statistics use a fixed prefix of replicate numbers 0..n-1. With `seeds: until` the prefix grows batch by
+ * batch and the decision looks at complete prefixes only, never at "the first n that finished" (which is biased towards
+ * quick runs). Slots that would idle compute ahead; such runs are stored with surplus = 1 and counted only if the
+ * prefix comes to cover them. */
 #ifndef CLAST_CAMPAIGN_DRIVER_H
 #define CLAST_CAMPAIGN_DRIVER_H
 
 #include "campaign/campaign.h"
 #include "campaign/farm/farm.h"
-#include "campaign/progress.h"
+#include "campaign/terminal/progress.h"
 #include "db/store.h"
 
 struct driver_options {
-  const char *store_path;    /* NULL: the campaign's */
-  const char *facts;         /* JSON of provenance_json() */
-  struct progress *progress; /* NULL: silent. Borrowed */
+  const char *store_path;                        /* NULL: the campaign's */
+  const char *facts;                             /* JSON of provenance_json() */
+  struct progress *progress;                     /* NULL: silent. Borrowed */
   void (*note)(void *context, const char *text); /* warnings and notes for a person, one line each; may be NULL */
   void *note_context;
-  int slots;                 /* for the time left; driver_run asks the farm */
+  int slots; /* for the time left; driver_run asks the farm */
 };
 
 struct driver_summary {
   int64_t campaign_id, session_id;
-  uint64_t points, points_done;      /* different ones; those whose replicates are complete */
-  uint64_t points_invalid;           /* whose values cannot be run together: no runs, counted as failures */
-  int64_t runs_reused, runs_done;    /* found in the store; computed now */
-  int64_t runs_failed;               /* gave up after their attempts, or ended in a failed state; reused ones included */
-  int64_t runs_censored;             /* ended at the hard end time: usable, but fragments may still be breaking */
-  int64_t runs_surplus;              /* of the points met, in the store and left out of statistics */
-  int64_t fields_written;            /* HDF5 files kept */
-  int64_t attempts_failed;           /* of this invocation */
+  uint64_t points, points_done;   /* different ones; those whose replicates are complete */
+  uint64_t points_invalid;        /* whose values cannot be run together: no runs, counted as failures */
+  int64_t runs_reused, runs_done; /* found in the store; computed now */
+  int64_t runs_failed;            /* gave up after their attempts, or ended in a failed state; reused ones included */
+  int64_t runs_censored;          /* ended at the hard end time: usable, but fragments may still be breaking */
+  int64_t runs_surplus;           /* of the points met, in the store and left out of statistics */
+  int64_t fields_written;         /* HDF5 files kept */
+  int64_t attempts_failed;        /* of this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
-  double cpu_s;                      /* of the runs computed now */
+  double cpu_s;                                     /* of the runs computed now */
 };
 
 /* time and memory limits of the document into *options; the rest is left alone. */
 void driver_farm_options(const struct campaign *campaign, struct farm_options *options);
 
-/* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed; STATUS_STOPPED:
- * signal, the same command resumes; STATUS_IO and STATUS_CONTENT from the store. *summary is filled in every case.
- * On ranks other than 0: serves, returns the manager's status, *summary zero. */
+/* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed;
+ * STATUS_STOPPED: signal, the same command resumes; STATUS_IO and STATUS_CONTENT from the store. *summary is filled in
+ * every case. On ranks other than 0: serves, returns the manager's status, *summary zero. */
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error);
 

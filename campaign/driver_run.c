@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/pooling.h"
 
 static status verdict(const struct driver_summary *summary, status code, struct error *error) {
@@ -12,7 +12,8 @@ static status verdict(const struct driver_summary *summary, status code, struct 
   if (summary->points_invalid)
     snprintf(points, sizeof points, " and %llu point%s could not be run", (unsigned long long)summary->points_invalid,
              summary->points_invalid == 1 ? "" : "s");
-  return status_fail(error, STATUS_FAILED_RUNS, "finished, but %lld run%s failed%s; `clast query STORE --named failures` says why",
+  return status_fail(error, STATUS_FAILED_RUNS,
+                     "finished, but %lld run%s failed%s; `clast query STORE --named failures` says why",
                      (long long)summary->runs_failed, summary->runs_failed == 1 ? "" : "s", points);
 }
 

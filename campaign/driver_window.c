@@ -72,8 +72,8 @@ static void take_stored(void *context, const struct store_point_run *run) {
   driver_window_count(driver, usable ? run->value : DRIVER_NOTHING);
 }
 
-/* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out again,
- * so that a point shared with another campaign keeps what that one decided. */
+/* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out
+ * again, so that a point shared with another campaign keeps what that one decided. */
 static status admit(struct driver *driver, struct point *point, struct error *error) {
   bool any = false;
   int64_t prefix = point->prefix;
@@ -122,8 +122,8 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
     return true;
   }
   int64_t id = 0;
-  *code = store_add_point(driver->store, driver->summary.campaign_id, scene, driver->campaign->axis_count, driver->paths,
-                          &id, error);
+  *code = store_add_point(driver->store, driver->summary.campaign_id, scene, driver->campaign->axis_count,
+                          driver->paths, &id, error);
   if (*code != STATUS_OK || !remember(driver, id)) {
     scene_free(scene);
     return *code == STATUS_OK;

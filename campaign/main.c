@@ -10,8 +10,8 @@
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/help.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/help.h"
+#include "campaign/terminal/table.h"
 #include "engine/cpu_class.h"
 
 static bool colour(void) {
@@ -45,7 +45,8 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   if (strcmp(argv[0], "--version") == 0 || strcmp(argv[0], "-V") == 0)
     argv[0] = version;
   if (argv[0][0] == '-')
-    return status_fail(error, STATUS_USAGE, "expected a command before the option %.64s; `clast help` lists them", argv[0]);
+    return status_fail(error, STATUS_USAGE, "expected a command before the option %.64s; `clast help` lists them",
+                       argv[0]);
   const struct command *command = commands_find(argv[0], error);
   if (!command)
     return STATUS_USAGE;
@@ -60,11 +61,13 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   }
   const char *class = getenv("CLAST_CPU");
   if (class && *class && !cpu_class_known(class))
-    return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4", class);
+    return status_fail(error, STATUS_USAGE, "CLAST_CPU=%.64s is in the environment: expected baseline, v3 or v4",
+                       class);
   return command->run(&line, error);
 }
 
-/* With stdin, stdout or stderr closed, the first file opened (the store!) would get their number and be printed into. */
+/* With stdin, stdout or stderr closed, the first file opened (the store!) would get their number and be printed into.
+ */
 static void keep_standard_files(void) {
   int file = open("/dev/null", O_RDWR);
   while (file >= 0 && file <= STDERR_FILENO)

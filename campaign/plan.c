@@ -6,17 +6,17 @@
 #include <time.h>
 
 #include "campaign/design/design.h"
-#include "campaign/progress.h"
 #include "campaign/run.h"
+#include "campaign/terminal/progress.h"
 #include "db/query.h"
 #include "db/store.h"
 
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
 #define NOTHING ((double)NAN)
 
-/* Bytes of a run's rows beyond its masses: run and result row, eleven estimates, some twenty bins of its spectrum; measured
- * on stores of thousands of runs, and meant to a factor of 1.5. */
-#define BYTES_PER_RUN 3500.0
+/* Bytes of a run's rows beyond its masses: run and result row, eleven estimates, some twenty bins of its spectrum;
+ * measured on stores of thousands of runs, and meant to a factor of 1.5. */
+#define BYTES_PER_RUN      3500.0
 #define BYTES_PER_FRAGMENT 8.0
 
 static double now_s(void) {
@@ -32,7 +32,8 @@ struct looking {
 };
 
 /* Is the store asked for this point's runs, and how many are there? */
-static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store, struct looking *looking) {
+static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store,
+                struct looking *looking) {
   for (int64_t r = 0; store && r < campaign_replicates_least(campaign) && looking->asked < ASKED; r++) {
     uint8_t identity[16];
     scene_identity(scene, campaign_seed(campaign, scene, r), identity);
@@ -81,8 +82,8 @@ cleanup:
   return code;
 }
 
-/* Steps the dearest point for a few seconds; on a whole run the answer is a measurement, else it is extrapolated over the
- * simulated time to the hard end, which a run usually need not reach. */
+/* Steps the dearest point for a few seconds; on a whole run the answer is a measurement, else it is extrapolated over
+ * the simulated time to the hard end, which a run usually need not reach. */
 static status try_run(const struct scene *scene, uint64_t seed, double seconds, struct plan *plan, size_t *fragments,
                       struct error *error) {
   const struct engine_kind *kind = scene->kind;
@@ -128,14 +129,10 @@ cleanup:
 static double kept_runs(const struct campaign *campaign, const struct plan *plan) {
   double per_point = (double)campaign_replicates_most(campaign);
   switch (campaign->keep) {
-  case CAMPAIGN_KEEP_ALL:
-    return (double)plan->runs_most;
-  case CAMPAIGN_KEEP_EXTREMES:
-    return (double)plan->points * fmin(per_point, 2);
-  case CAMPAIGN_KEEP_FIRST:
-    return (double)plan->points * fmin(per_point, (double)campaign->keep_first);
-  default:
-    return 0;
+  case CAMPAIGN_KEEP_ALL: return (double)plan->runs_most;
+  case CAMPAIGN_KEEP_EXTREMES: return (double)plan->points * fmin(per_point, 2);
+  case CAMPAIGN_KEEP_FIRST: return (double)plan->points * fmin(per_point, (double)campaign->keep_first);
+  default: return 0;
   }
 }
 
@@ -147,7 +144,8 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   plan->runs_most = plan->points * (uint64_t)campaign_replicates_most(campaign);
   plan->runs_there = (uint64_t)llround(share * (double)plan->runs_least);
   if (plan->trial_made) {
-    plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most : plan->run_s_most;
+    plan->run_s_mean = looking->work_most > 0 ? plan->run_s_most * looking->work / looked / looking->work_most
+                                              : plan->run_s_most;
     plan->disk_bytes = (double)plan->runs_most * (BYTES_PER_RUN + BYTES_PER_FRAGMENT * (double)fragments);
   }
   plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * plan->run_s_mean;
@@ -175,8 +173,8 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   if (code == STATUS_OK)
     code = look(campaign, store, plan, &looking, error);
   if (code == STATUS_OK && !options->no_trial)
-    code = try_run(looking.dearest, campaign_seed(campaign, looking.dearest, 0), options->trial_s > 0 ? options->trial_s : 5,
-                   plan, &fragments, error);
+    code = try_run(looking.dearest, campaign_seed(campaign, looking.dearest, 0),
+                   options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK && options->no_trial && store) {
     query_number(store, "select avg(wall_time) from run", 0, NULL, &plan->run_s_mean, &ignored);
     query_number(store, "select max(wall_time) from run", 0, NULL, &plan->run_s_most, &ignored);
@@ -225,7 +223,8 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
           plan->store_exists ? "" : " (there is none yet)");
   progress_duration(plan->run_s_mean, a, sizeof a);
   progress_duration(plan->run_s_most, b, sizeof b);
-  fprintf(out, "a run     %s%s on the mean, %s the dearest%s\n", plan->trial_made && !plan->trial_finished ? "at most " : "", a, b,
+  fprintf(out, "a run     %s%s on the mean, %s the dearest%s\n",
+          plan->trial_made && !plan->trial_finished ? "at most " : "", a, b,
           !plan->trial_made      ? isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)"
           : plan->trial_finished ? " (one whole run timed)"
                                  : " (extrapolated to the hard end; runs stop earlier when fracture has ceased)");
@@ -267,12 +266,14 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   field_json_string(campaign->scene_reference, out);
   fputs(", \"store\": ", out);
   field_json_string(campaign->store, out);
-  fprintf(out, ", \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": %llu",
-          (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at, (unsigned long long)plan->runs_least,
-          (unsigned long long)plan->runs_most, (unsigned long long)plan->runs_there);
+  fprintf(
+      out,
+      ", \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": %llu",
+      (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at,
+      (unsigned long long)plan->runs_least, (unsigned long long)plan->runs_most, (unsigned long long)plan->runs_there);
   fprintf(out, ", \"store_exists\": %s, \"trial_made\": %s, \"trial_finished\": %s, \"slots\": %d",
-          plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false", plan->trial_finished ? "true" : "false",
-          slots);
+          plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false",
+          plan->trial_finished ? "true" : "false", slots);
   number(out, "run_s_mean", plan->run_s_mean);
   number(out, "run_s_most", plan->run_s_most);
   number(out, "cpu_s_least", plan->cpu_s_least);

@@ -8,8 +8,8 @@
 struct plan_options {
   const char *store_path; /* NULL: the campaign's */
   bool no_trial;
-  double trial_s;         /* 0 = 5 s */
-  int slots;              /* for the wall time */
+  double trial_s; /* 0 = 5 s */
+  int slots;      /* for the wall time */
 };
 
 struct plan {
@@ -17,15 +17,16 @@ struct plan {
   uint64_t runs_least, runs_most;    /* differ with `until` */
   uint64_t runs_there;               /* of the points looked at, already in the store */
   bool store_exists;
-  bool trial_made, trial_finished;   /* finished: the trial is a whole run, not an extrapolation */
+  bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
   double trial_s, trial_progress;
-  double run_s_mean, run_s_most;     /* per run; NaN without trial and without finished runs. An upper bound unless finished */
-  double cpu_s_least, cpu_s_most;    /* of what is still to do */
-  double wall_s_least, wall_s_most;  /* the same over the slots */
-  double memory_most;                /* bytes of one run, the largest */
-  double disk_bytes;                 /* store growth for runs_most; NaN without trial */
-  double fields_bytes;               /* HDF5 files to keep; NaN when not known */
-  char *model;                       /* owned: kind->describe() of the point looked at */
+  double run_s_mean,
+      run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */
+  double cpu_s_least, cpu_s_most;   /* of what is still to do */
+  double wall_s_least, wall_s_most; /* the same over the slots */
+  double memory_most;               /* bytes of one run, the largest */
+  double disk_bytes;                /* store growth for runs_most; NaN without trial */
+  double fields_bytes;              /* HDF5 files to keep; NaN when not known */
+  char *model;                      /* owned: kind->describe() of the point looked at */
 };
 
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,

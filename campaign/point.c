@@ -68,7 +68,8 @@ void point_want_again(struct point *point, int64_t replicate) {
 }
 
 static bool is_complete(const struct point *point, int64_t r) {
-  return r < point->capacity && (point->replicates[r].state == POINT_DONE || point->replicates[r].state == POINT_FAILED);
+  return r < point->capacity &&
+         (point->replicates[r].state == POINT_DONE || point->replicates[r].state == POINT_FAILED);
 }
 
 bool point_judge(struct point *point) {
@@ -132,12 +133,13 @@ void point_want_fields(struct point *point, const struct campaign *campaign) {
       want(point, most);
     }
     break;
-  default:
-    break;
+  default: break;
   }
 }
 
-bool point_over(const struct point *point) { return point->decided && point->out == 0 && point->replays == 0; }
+bool point_over(const struct point *point) {
+  return point->decided && point->out == 0 && point->replays == 0;
+}
 
 int64_t point_missing(const struct point *point) {
   int64_t missing = 0;

@@ -10,10 +10,10 @@
 enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED };
 
 struct point_replicate {
-  unsigned char state;   /* enum point_state */
-  bool counted;          /* stored, and not surplus */
-  bool surplus;          /* stored with surplus = 1 */
-  bool fields;           /* its HDF5 file is there, or nothing is to be written: a state invalid has no body */
+  unsigned char state;    /* enum point_state */
+  bool counted;           /* stored, and not surplus */
+  bool surplus;           /* stored with surplus = 1 */
+  bool fields;            /* its HDF5 file is there, or nothing is to be written: a state invalid has no body */
   bool replay, replaying; /* its HDF5 file is wanted, and under way */
 };
 
@@ -26,11 +26,11 @@ struct point {
   int64_t wanted_from; /* none below this is wanted */
   bool decided;
   enum design_verdict verdict;
-  int64_t capacity;    /* of the arrays */
+  int64_t capacity; /* of the arrays */
   struct point_replicate *replicates;
-  double *values;      /* main quantity; NaN = failed or not there */
-  int64_t out;         /* runs and replays on slots */
-  int64_t replays;     /* wanted and not under way */
+  double *values;  /* main quantity; NaN = failed or not there */
+  int64_t out;     /* runs and replays on slots */
+  int64_t replays; /* wanted and not under way */
   struct cost_point cost;
 };
 

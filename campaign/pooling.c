@@ -20,7 +20,8 @@ static status collect(void *context, size_t count, const struct query_value *val
   if (missing->count == missing->capacity) {
     size_t capacity = missing->capacity ? 2 * missing->capacity : 64;
     struct missing_point *points = realloc(missing->points, capacity * sizeof *points);
-    if (!points) return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
+    if (!points)
+      return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
     missing->points = points;
     missing->capacity = capacity;
   }
@@ -33,7 +34,8 @@ static status pool(struct store *store, const struct missing_point *which, struc
   struct point_estimate fits[POINT_ESTIMATES];
   struct estimate rows[POINT_ESTIMATES];
   status code = point_read(store, which->point_id, which->results_version, &point, error);
-  if (!code) code = point_estimates(&point, POOLING_RESAMPLES, 0.95, fits, error);
+  if (!code)
+    code = point_estimates(&point, POOLING_RESAMPLES, 0.95, fits, error);
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct estimate){.window = fits[i].window, .fit = fits[i].exponent.fit};
     rows[i].fit.standard_error = fits[i].exponent.interval.standard_error;
@@ -58,10 +60,12 @@ status pooling_store(struct store *store, int64_t campaign_id, struct error *err
   struct missing missing = {0};
   const struct query_sink sink = {&missing, NULL, collect};
   status code = store_flush(store, error); /* the sums of the open batch */
-  if (!code) code = query_run(store, sql, 1, &parameter, 0, &sink, error);
+  if (!code)
+    code = query_run(store, sql, 1, &parameter, 0, &sink, error);
   for (size_t i = 0; i < missing.count && !code; i++)
     code = pool(store, &missing.points[i], error);
-  if (!code) code = store_flush(store, error);
+  if (!code)
+    code = store_flush(store, error);
   free(missing.points);
   return code;
 }

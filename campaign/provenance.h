@@ -1,5 +1,6 @@
-/* Facts about this program and machine, kept with every session of a store: version, commit (with its dirty flag), compiler,
- * flags, libraries, cpu model and class (bits are promised for one binary on one class), host, ranks, slots, command line. Provenance, not identity. */
+/* Facts about this program and machine, kept with every session of a store: version, commit (with its dirty flag),
+ * compiler, flags, libraries, cpu model and class (bits are promised for one binary on one class), host, ranks, slots,
+ * command line. Provenance, not identity. */
 #ifndef CLAST_CAMPAIGN_PROVENANCE_H
 #define CLAST_CAMPAIGN_PROVENANCE_H
 

@@ -8,9 +8,9 @@
 
 #include "engine/restart.h"
 
-/* Both encodings begin so. All ranks of a farm run one binary, so arrays of structs go as they lie in memory; the mark, the
- * sizes and the tables' own hashes catch anything else. */
-#define TASK_MARK "clast task 1"
+/* Both encodings begin so. All ranks of a farm run one binary, so arrays of structs go as they lie in memory; the mark,
+ * the sizes and the tables' own hashes catch anything else. */
+#define TASK_MARK   "clast task 1"
 #define RESULT_MARK "clast result 1"
 
 void run_result_clear(struct run_result *result) {
@@ -20,18 +20,19 @@ void run_result_clear(struct run_result *result) {
 }
 
 /* The folder of a fields file is made by whoever writes first. */
-static status write_fields(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
+static status write_snapshot(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const char *slash = strrchr(path, '/');
   if (slash && slash != path) {
     char *folder = strndup(path, (size_t)(slash - path));
     int failed = !folder || (mkdir(folder, 0777) != 0 && errno != EEXIST);
     if (failed)
-      status_fail(error, STATUS_IO, "cannot make the folder '%s' for fields: %s", folder ? folder : "", strerror(errno));
+      status_fail(error, STATUS_IO, "cannot make the folder '%s' for fields: %s", folder ? folder : "",
+                  strerror(errno));
     free(folder);
     if (failed)
       return STATUS_IO;
   }
-  return kind->write_fields(run, path, error);
+  return kind->write_snapshot(run, path, error);
 }
 
 static status invalid(const struct engine_kind *kind, struct run_result *result, const struct error *why,
@@ -54,8 +55,10 @@ static status resume(const struct run_request *request, void **run, struct error
   if (code == STATUS_MISSING)
     return STATUS_OK;
   if (code == STATUS_OK && seed != request->seed)
-    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is of seed %llu, not %llu: ask for seed %llu, or name another file",
-                       request->restart_path, (unsigned long long)seed, (unsigned long long)request->seed, (unsigned long long)seed);
+    code = status_fail(error, STATUS_CONTENT,
+                       "the restart file '%s' is of seed %llu, not %llu: ask for seed %llu, or name another file",
+                       request->restart_path, (unsigned long long)seed, (unsigned long long)request->seed,
+                       (unsigned long long)seed);
   return code ? code : request->kind->restore(request->inputs, request->restart_path, run, error);
 }
 
@@ -96,7 +99,7 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
   }
   const bool whole = code == STATUS_OK;
   if (whole && request->fields_path)
-    code = write_fields(kind, run, request->fields_path, error);
+    code = write_snapshot(kind, run, request->fields_path, error);
   if (!whole)
     run_result_clear(result);
 cleanup:
@@ -114,7 +117,9 @@ static void put(struct writer *writer, const void *data, size_t size) {
     memcpy(writer->bytes + writer->size, data, size);
   writer->size += size;
 }
-static void put_count(struct writer *writer, uint64_t count) { put(writer, &count, sizeof count); }
+static void put_count(struct writer *writer, uint64_t count) {
+  put(writer, &count, sizeof count);
+}
 static void put_text(struct writer *writer, const char *text) {
   put_count(writer, strlen(text));
   put(writer, text, strlen(text));

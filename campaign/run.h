@@ -1,35 +1,36 @@
-/* One run from bytes to bytes: what a slot of the farm does with a task, the same code in process, in children, over MPI
- * and in `clast simulate`. A task names the engine, its encoded inputs, the seed and what to keep; the answer is one
- * versioned encoding of outcome, engine results, fragments and estimates, made from the field tables. */
+/* One run from bytes to bytes: what a slot of the farm does with a task, the same code in process, in children, over
+ * MPI and in `clast simulate`. A task names the engine, its encoded inputs, the seed and what to keep; the answer is
+ * one versioned encoding of outcome, engine results, fragments and estimates, made from the field tables. */
 #ifndef CLAST_CAMPAIGN_RUN_H
 #define CLAST_CAMPAIGN_RUN_H
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "engine/scene.h"
 
 struct run_request {
   const struct engine_kind *kind;
-  const void *inputs;      /* kind->inputs->size bytes */
+  const void *inputs; /* kind->inputs->size bytes */
   uint64_t seed;
-  const char *fields_path; /* HDF5 file to write at the end, or NULL */
+  const char *fields_path;  /* HDF5 file to write at the end, or NULL */
   const char *restart_path; /* in process only: where it is there, the run goes on from this file; or NULL */
 };
 
 struct run_result {
   struct outcome outcome;
-  void *result;            /* owned: kind->results->size bytes */
+  void *result;               /* owned: kind->results->size bytes */
   struct fragment *fragments; /* owned: by descending mass */
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
-  size_t estimate_count;   /* 0 for a run without fragments */
+  size_t estimate_count; /* 0 for a run without fragments */
 };
 
-/* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends the run with it. */
+/* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends
+ * the run with it. */
 typedef status (*run_watch)(void *context, const struct engine_kind *kind, void *run, struct error *error);
 
-/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that the
- * engine cannot run together (STATUS_CONTENT of prepare) are a result, OUTCOME_INVALID, not an error: the same seed would
- * fail the same way again. main() has called analysis_init(). On an error *result is empty, but for a fields file
+/* prepare, step to the end, finish, estimates. `watch` may be NULL; else it is called every `block` steps. Inputs that
+ * the engine cannot run together (STATUS_CONTENT of prepare) are a result, OUTCOME_INVALID, not an error: the same seed
+ * would fail the same way again. main() has called analysis_init(). On an error *result is empty, but for a fields file
  * that could not be written: the results are there then (result->result is not NULL) and to be cleared. */
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
                     struct run_result *result, struct error *error);

@@ -19,6 +19,7 @@ status bins_cover(sqlite3 *db, int lowest, int highest, struct error *error) {
 status bins_cover_spectrum(sqlite3 *db, struct error *error) {
   int64_t lowest, highest;
   status result = sql_integer(db, "SELECT min(bin) FROM spectrum", 0, &lowest, error);
-  if (result == STATUS_OK) result = sql_integer(db, "SELECT max(bin) FROM spectrum", -1, &highest, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT max(bin) FROM spectrum", -1, &highest, error);
   return result == STATUS_OK ? bins_cover(db, (int)lowest, (int)highest, error) : result;
 }

@@ -17,9 +17,11 @@ static size_t place(const struct identities_entry *slots, size_t capacity, const
 static bool grow(struct identities *set) {
   size_t capacity = set->capacity ? 2 * set->capacity : 1024;
   struct identities_entry *slots = calloc(capacity, sizeof *slots);
-  if (!slots) return false;
+  if (!slots)
+    return false;
   for (size_t i = 0; i < set->capacity; i++)
-    if (set->slots[i].used) slots[place(slots, capacity, set->slots[i].identity)] = set->slots[i];
+    if (set->slots[i].used)
+      slots[place(slots, capacity, set->slots[i].identity)] = set->slots[i];
   free(set->slots);
   set->slots = slots;
   set->capacity = capacity;
@@ -27,7 +29,8 @@ static bool grow(struct identities *set) {
 }
 
 struct identities_entry *identities_add(struct identities *set, const uint8_t identity[16]) {
-  if (4 * (set->count + 1) > 3 * set->capacity && !grow(set)) return NULL;
+  if (4 * (set->count + 1) > 3 * set->capacity && !grow(set))
+    return NULL;
   struct identities_entry *entry = &set->slots[place(set->slots, set->capacity, identity)];
   if (!entry->used) {
     memcpy(entry->identity, identity, 16);
@@ -38,7 +41,8 @@ struct identities_entry *identities_add(struct identities *set, const uint8_t id
 }
 
 struct identities_entry *identities_find(const struct identities *set, const uint8_t identity[16]) {
-  if (set->capacity == 0) return NULL;
+  if (set->capacity == 0)
+    return NULL;
   struct identities_entry *entry = &set->slots[place(set->slots, set->capacity, identity)];
   return entry->used ? entry : NULL;
 }

@@ -24,7 +24,8 @@ status lock_take(const char *path, int *descriptor, bool *held, struct error *er
                        remedy);
   }
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
-  if (fcntl(*descriptor, F_OFD_SETLK, &lock) == 0) return STATUS_OK;
+  if (fcntl(*descriptor, F_OFD_SETLK, &lock) == 0)
+    return STATUS_OK;
   *held = errno == EACCES || errno == EAGAIN;
   status result = *held ? status_fail(error, STATUS_IO, "%s: another process is writing this store.", path)
                         : status_fail(error, STATUS_IO, "%s: cannot lock the store: %s. Put it on a local disk.", path,
@@ -36,29 +37,20 @@ status lock_take(const char *path, int *descriptor, bool *held, struct error *er
 
 const char *lock_network_file_system(int descriptor) {
   struct statfs file_system;
-  if (fstatfs(descriptor, &file_system) != 0) return NULL;
+  if (fstatfs(descriptor, &file_system) != 0)
+    return NULL;
   switch ((unsigned long)file_system.f_type & 0xffffffff) { /* man 2 statfs */
-  case 0x6969:
-    return "NFS";
+  case 0x6969: return "NFS";
   case 0x517b:
   case 0xff534d42:
-  case 0xfe534d42:
-    return "SMB/CIFS";
-  case 0x0bd00bd0:
-    return "Lustre";
-  case 0x47504653:
-    return "GPFS";
-  case 0x00c36400:
-    return "CephFS";
-  case 0x65735546:
-    return "FUSE";
-  case 0x5346414f:
-    return "AFS";
-  case 0x01021997:
-    return "9p";
-  case 0x19830326:
-    return "BeeGFS";
-  default:
-    return NULL;
+  case 0xfe534d42: return "SMB/CIFS";
+  case 0x0bd00bd0: return "Lustre";
+  case 0x47504653: return "GPFS";
+  case 0x00c36400: return "CephFS";
+  case 0x65735546: return "FUSE";
+  case 0x5346414f: return "AFS";
+  case 0x01021997: return "9p";
+  case 0x19830326: return "BeeGFS";
+  default: return NULL;
   }
 }

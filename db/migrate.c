@@ -10,8 +10,10 @@
 status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error) {
   int64_t application, user_version, things;
   status result = sql_integer(db, "PRAGMA application_id", 0, &application, error);
-  if (result == STATUS_OK) result = sql_integer(db, "PRAGMA user_version", 0, &user_version, error);
-  if (result == STATUS_OK) result = sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &things, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "PRAGMA user_version", 0, &user_version, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &things, error);
   if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
     return status_fail(error, STATUS_CONTENT,
                        "%s is no SQLite database, so no store of clast. Name another file; this one was left alone.",
@@ -22,7 +24,8 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
         "%s is damaged, perhaps cut short: %s. Restore a copy, or save what can be saved with `sqlite3 FILE "
         ".recover`.",
         path, sqlite3_errmsg(db));
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   if (application == 0 && user_version == 0 && things == 0) {
     *version = -1;
     return STATUS_OK;
@@ -56,8 +59,10 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
   for (int i = 0; i < 100; i++) { /* an earlier try that failed may have left one */
     sqlite3_free(copy);
     copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
-    if (!copy) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-    if (access(copy, F_OK) != 0) break;
+    if (!copy)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+    if (access(copy, F_OK) != 0)
+      break;
   }
   status result = sql_executef(db, "keeping a copy before bringing the store forward", error, "VACUUM INTO %Q", copy);
   sqlite3_free(copy);
@@ -67,17 +72,21 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
 status migrate_bring_forward(sqlite3 *db, const char *path, int version, const struct field_table *estimate_table,
                              struct error *error) {
   status result = version >= 0 && version < SCHEMA_VERSION ? back_up(db, path, version, error) : STATUS_OK;
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = schema_complete_all(db, estimate_table, error);
   for (int i = version; version >= 0 && result == STATUS_OK && i < SCHEMA_VERSION; i++)
     result = steps[i](db, error);
-  if (result == STATUS_OK) result = views_regenerate(db, error);
   if (result == STATUS_OK)
-    result =
-        sql_executef(db, "opening for writing", error, "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT",
-                     SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
-  if (result != STATUS_OK) sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+    result = views_regenerate(db, error);
+  if (result == STATUS_OK)
+    result = sql_executef(db, "opening for writing", error,
+                          "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT", SCHEMA_APPLICATION_ID,
+                          SCHEMA_VERSION);
+  if (result != STATUS_OK)
+    sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
   return result;
 }

@@ -41,20 +41,21 @@ static int authorize(void *context, int action, const char *first, const char *s
   switch (action) {
   case SQLITE_SELECT:
   case SQLITE_READ:
-  case SQLITE_RECURSIVE:
-    return SQLITE_OK;
+  case SQLITE_RECURSIVE: return SQLITE_OK;
   case SQLITE_UPDATE: /* how SQLite declares json_each and the like; a real one is refused as not read-only */
-    if (first && strcmp(first, "sqlite_master") == 0) return SQLITE_OK;
+    if (first && strcmp(first, "sqlite_master") == 0)
+      return SQLITE_OK;
     break;
   case SQLITE_FUNCTION:
-    if (second && strcmp(second, "load_extension") == 0) break;
+    if (second && strcmp(second, "load_extension") == 0)
+      break;
     return SQLITE_OK;
   case SQLITE_PRAGMA:
     for (size_t i = 0; first && i < sizeof describing / sizeof describing[0]; i++)
-      if (strcmp(first, describing[i]) == 0 && (strcmp(first, "journal_mode") != 0 || !second)) return SQLITE_OK;
+      if (strcmp(first, describing[i]) == 0 && (strcmp(first, "journal_mode") != 0 || !second))
+        return SQLITE_OK;
     break;
-  default:
-    break;
+  default: break;
   }
   watch->writes = true;
   return SQLITE_DENY;
@@ -68,7 +69,8 @@ static bool only_space_and_comments(const char *text) {
       text += strcspn(text, "\n");
     else if (strncmp(text, "/*", 2) == 0) {
       const char *end = strstr(text + 2, "*/");
-      if (!end) return true;
+      if (!end)
+        return true;
       text = end + 2;
     } else
       return false;
@@ -79,7 +81,8 @@ static bool only_space_and_comments(const char *text) {
 static status prepare(struct store *store, const char *sql, struct watch *watch, sqlite3_stmt **statement,
                       struct error *error) {
   const char *tail = NULL;
-  if (only_space_and_comments(sql)) return status_fail(error, STATUS_USAGE, "The query is empty: give one SELECT.");
+  if (only_space_and_comments(sql))
+    return status_fail(error, STATUS_USAGE, "The query is empty: give one SELECT.");
   int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
   if (code == SQLITE_AUTH || watch->writes || (code == SQLITE_OK && *statement && !sqlite3_stmt_readonly(*statement)))
     return status_fail(error, STATUS_USAGE,
@@ -90,7 +93,8 @@ static status prepare(struct store *store, const char *sql, struct watch *watch,
       return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.40s", sqlite3_errmsg(store->db), sql + offset);
     return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(store->db));
   }
-  if (code != SQLITE_OK) return sql_fail(store->db, code, "the query", error);
+  if (code != SQLITE_OK)
+    return sql_fail(store->db, code, "the query", error);
   if (tail && !only_space_and_comments(tail))
     return status_fail(error, STATUS_USAGE, "A query is one statement; a second one begins at: %.40s", tail);
   return STATUS_OK;
@@ -133,7 +137,8 @@ static status bind(sqlite3_stmt *statement, size_t count, const struct query_par
       const char *name = sqlite3_bind_parameter_name(statement, i);
       used = used || (name && strcmp(parameters[k].name, name + 1) == 0);
     }
-    if (!used) return status_fail(error, STATUS_USAGE, "The query has no parameter :%s.", parameters[k].name);
+    if (!used)
+      return status_fail(error, STATUS_USAGE, "The query has no parameter :%s.", parameters[k].name);
   }
   return STATUS_OK;
 }
@@ -158,10 +163,10 @@ static struct query_value value_of(sqlite3_stmt *statement, int i) {
     value.kind = QUERY_BLOB;
     value.blob = sqlite3_column_blob(statement, i);
     break;
-  default:
-    break;
+  default: break;
   }
-  if (value.kind == QUERY_TEXT || value.kind == QUERY_BLOB) value.size = (size_t)sqlite3_column_bytes(statement, i);
+  if (value.kind == QUERY_TEXT || value.kind == QUERY_BLOB)
+    value.size = (size_t)sqlite3_column_bytes(statement, i);
   return value;
 }
 
@@ -171,14 +176,17 @@ static status give_rows(sqlite3_stmt *statement, const struct query_sink *sink, 
   status result = STATUS_OK;
   const char **names = calloc((size_t)columns + 1, sizeof *names);
   struct query_value *values = calloc((size_t)columns + 1, sizeof *values);
-  if (!names || !values) result = status_fail(error, STATUS_MEMORY, "the query: memory ran out");
+  if (!names || !values)
+    result = status_fail(error, STATUS_MEMORY, "the query: memory ran out");
   for (int i = 0; result == STATUS_OK && i < columns; i++)
     names[i] = sqlite3_column_name(statement, i);
-  if (result == STATUS_OK && sink->columns) result = sink->columns(sink->context, (size_t)columns, names, error);
+  if (result == STATUS_OK && sink->columns)
+    result = sink->columns(sink->context, (size_t)columns, names, error);
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
     for (int i = 0; i < columns; i++)
       values[i] = value_of(statement, i);
-    if (sink->row) result = sink->row(sink->context, (size_t)columns, values, error);
+    if (sink->row)
+      result = sink->row(sink->context, (size_t)columns, values, error);
   }
   if (result == STATUS_OK && code != SQLITE_DONE) {
     sqlite3 *db = sqlite3_db_handle(statement);
@@ -203,8 +211,10 @@ status query_run(struct store *store, const char *sql, size_t parameter_count, c
   sqlite3_set_authorizer(store->db, authorize, &watch);
   sqlite3_progress_handler(store->db, STEPS_BETWEEN_LOOKS, time_limit_s > 0 ? look : NULL, &watch);
   status result = prepare(store, sql, &watch, &statement, error);
-  if (result == STATUS_OK) result = bind(statement, parameter_count, parameters, error);
-  if (result == STATUS_OK) result = give_rows(statement, sink, &watch, error);
+  if (result == STATUS_OK)
+    result = bind(statement, parameter_count, parameters, error);
+  if (result == STATUS_OK)
+    result = give_rows(statement, sink, &watch, error);
   sqlite3_finalize(statement);
   sqlite3_progress_handler(store->db, 0, NULL, NULL);
   sqlite3_set_authorizer(store->db, NULL, NULL);
@@ -214,7 +224,8 @@ status query_run(struct store *store, const char *sql, size_t parameter_count, c
 static status keep_first(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)error;
   struct query_value *first = context;
-  if (first->kind == QUERY_NULL && count > 0 && isnan(first->real)) *first = values[0];
+  if (first->kind == QUERY_NULL && count > 0 && isnan(first->real))
+    *first = values[0];
   return STATUS_OK;
 }
 

@@ -22,9 +22,11 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
 
 /* The tables in the order in which they must be created: engines' results last. */
 static struct schema_table table_at(size_t index, const struct field_table *estimate_table) {
-  if (index >= schema_tables_count) return schema_result_table(engine_at(index - schema_tables_count));
+  if (index >= schema_tables_count)
+    return schema_result_table(engine_at(index - schema_tables_count));
   struct schema_table table = schema_tables[index];
-  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0) table.fields = estimate_table;
+  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0)
+    table.fields = estimate_table;
   return table;
 }
 
@@ -58,7 +60,8 @@ static void write_table(const struct schema_table *table, FILE *out) {
     write_meaning(row, out);
     fputc('\n', out);
   }
-  if (table->tail) fprintf(out, "  %s\n", table->tail);
+  if (table->tail)
+    fprintf(out, "  %s\n", table->tail);
   fprintf(out, ") %s;\n", table->options);
 }
 
@@ -71,7 +74,8 @@ static status has_column(sqlite3 *db, const char *table, const char *column, boo
     sqlite3_bind_text(statement, 2, column, -1, SQLITE_STATIC);
     int code = sqlite3_step(statement);
     *has = code == SQLITE_ROW;
-    if (code != SQLITE_ROW && code != SQLITE_DONE) result = sql_fail(db, code, "reading the schema", error);
+    if (code != SQLITE_ROW && code != SQLITE_DONE)
+      result = sql_fail(db, code, "reading the schema", error);
   }
   sqlite3_finalize(statement);
   return result;
@@ -90,7 +94,8 @@ static status write_docs(sqlite3 *db, const struct schema_table *table, struct e
     size_t size = 0;
     sql_column_name(row->path, name, sizeof name);
     FILE *text = open_memstream(&meaning, &size);
-    if (!text) return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
+    if (!text)
+      return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
     write_meaning(row, text);
     fclose(text);
     result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning,
@@ -104,10 +109,12 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   char *sql = NULL;
   size_t size = 0;
   FILE *text = open_memstream(&sql, &size);
-  if (!text) return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
   write_table(table, text);
   for (size_t i = 0; i < schema_tables_indexes_count; i++)
-    if (strcmp(schema_tables_indexes[i][0], table->name) == 0) fprintf(text, "%s\n", schema_tables_indexes[i][1]);
+    if (strcmp(schema_tables_indexes[i][0], table->name) == 0)
+      fprintf(text, "%s\n", schema_tables_indexes[i][1]);
   fclose(text);
   status result = sql ? sql_execute(db, sql, "creating tables", error)
                       : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
@@ -118,7 +125,8 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
   bool has = false;
   status result = has_column(db, table->name, "", &has, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   if (!has) {
     result = create(db, table, error);
     return result == STATUS_OK ? write_docs(db, table, error) : result;
@@ -131,7 +139,8 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
     if (result == STATUS_OK && !has)
       result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name, name,
                             sql_type(&table->fields->rows[i]));
-    if (result != STATUS_OK) return result;
+    if (result != STATUS_OK)
+      return result;
     grown = grown || !has;
   }
   return grown ? write_docs(db, table, error) : STATUS_OK;
@@ -150,7 +159,8 @@ status schema_complete_all(sqlite3 *db, const struct field_table *estimate_table
 static status write_sql(sqlite3 *db, const struct field_table *estimate_table, FILE *out, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = schema_complete_all(db, estimate_table, error);
-  if (result == STATUS_OK) result = views_regenerate(db, error);
+  if (result == STATUS_OK)
+    result = views_regenerate(db, error);
   if (result == STATUS_OK)
     result = sql_prepare(db,
                          "SELECT sql || ';' FROM sqlite_schema WHERE sql IS NOT NULL UNION ALL SELECT * FROM (SELECT "
@@ -175,8 +185,10 @@ char *schema_sql(const struct field_table *estimate_table) {
   sqlite3 *db = NULL;
   status result = STATUS_INTERNAL;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return NULL;
-  if (sqlite3_open(":memory:", &db) == SQLITE_OK) result = write_sql(db, estimate_table, out, NULL);
+  if (!out)
+    return NULL;
+  if (sqlite3_open(":memory:", &db) == SQLITE_OK)
+    result = write_sql(db, estimate_table, out, NULL);
   sqlite3_close(db);
   fclose(out);
   if (result != STATUS_OK) {

@@ -31,9 +31,9 @@ struct schema_table {
 
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
 
-/* Everything as one SQL text: pragmas, tables, indexes, column docs, the views of a store in which nothing is varied; what
- * schemas/results.sql must equal. estimate_table NULL (here and below): the tables of estimates have their fixed columns only.
- * malloc'd, NULL when out of memory. */
+/* Everything as one SQL text: pragmas, tables, indexes, column docs, the views of a store in which nothing is varied;
+ * what schemas/results.sql must equal. estimate_table NULL (here and below): the tables of estimates have their fixed
+ * columns only. malloc'd, NULL when out of memory. */
 char *schema_sql(const struct field_table *estimate_table);
 
 /* Create what the database lacks of this table: the table, or columns that its field table has gained (NULL in old

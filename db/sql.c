@@ -14,8 +14,7 @@ static const char *remedy(int code) {
   case SQLITE_READONLY:
     return "The file or its folder cannot be written. Give yourself write permission, or copy the store elsewhere.";
   case SQLITE_PERM:
-  case SQLITE_AUTH:
-    return "Permission was refused. Look at the owner and the permissions of the file and its folder.";
+  case SQLITE_AUTH: return "Permission was refused. Look at the owner and the permissions of the file and its folder.";
   case SQLITE_CANTOPEN:
     return "It cannot be opened. Look whether its folder exists and may be written, and at the file's permissions.";
   case SQLITE_BUSY:
@@ -28,12 +27,9 @@ static const char *remedy(int code) {
            "What was committed is safe; mend that and give the same command again.";
   case SQLITE_CORRUPT:
     return "The file is damaged. Restore a copy, or save what can be saved with `sqlite3 FILE .recover`.";
-  case SQLITE_NOTADB:
-    return "It is no SQLite database.";
-  case SQLITE_NOMEM:
-    return "Memory ran out.";
-  default:
-    return "This is a bug in clast, or another program has changed the store's tables.";
+  case SQLITE_NOTADB: return "It is no SQLite database.";
+  case SQLITE_NOMEM: return "Memory ran out.";
+  default: return "This is a bug in clast, or another program has changed the store's tables.";
   }
 }
 
@@ -46,15 +42,11 @@ static status status_of(int code) {
   case SQLITE_CANTOPEN:
   case SQLITE_BUSY:
   case SQLITE_LOCKED:
-  case SQLITE_IOERR:
-    return STATUS_IO;
+  case SQLITE_IOERR: return STATUS_IO;
   case SQLITE_CORRUPT:
-  case SQLITE_NOTADB:
-    return STATUS_CONTENT;
-  case SQLITE_NOMEM:
-    return STATUS_MEMORY;
-  default:
-    return STATUS_INTERNAL;
+  case SQLITE_NOTADB: return STATUS_CONTENT;
+  case SQLITE_NOMEM: return STATUS_MEMORY;
+  default: return STATUS_INTERNAL;
   }
 }
 
@@ -77,7 +69,8 @@ status sql_executef(sqlite3 *db, const char *doing, struct error *error, const c
   va_start(arguments, format);
   char *sql = sqlite3_vmprintf(format, arguments);
   va_end(arguments);
-  if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_execute(db, sql, doing, error);
   sqlite3_free(sql);
   return result;
@@ -148,22 +141,17 @@ void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row,
     sqlite3_bind_text(statement, index, row->choices[value], -1, SQLITE_STATIC);
     break;
   }
-  case FIELD_TEXT:
-    sqlite3_bind_text(statement, index, place, -1, SQLITE_STATIC);
-    break;
+  case FIELD_TEXT: sqlite3_bind_text(statement, index, place, -1, SQLITE_STATIC); break;
   }
 }
 
 const char *sql_type(const struct field *row) {
   switch (row->kind) {
-  case FIELD_REAL:
-    return "REAL";
+  case FIELD_REAL: return "REAL";
   case FIELD_INTEGER:
-  case FIELD_BOOLEAN:
-    return "INTEGER";
+  case FIELD_BOOLEAN: return "INTEGER";
   case FIELD_CHOICE:
-  case FIELD_TEXT:
-    break;
+  case FIELD_TEXT: break;
   }
   return "TEXT";
 }

@@ -21,10 +21,12 @@ static size_t place(const struct sums_row *slots, size_t capacity, int64_t point
 static bool grow(struct sums *sums) {
   size_t capacity = sums->capacity ? 2 * sums->capacity : 4096;
   struct sums_row *slots = calloc(capacity, sizeof *slots);
-  if (!slots) return false;
+  if (!slots)
+    return false;
   for (size_t i = 0; i < sums->capacity; i++) {
     const struct sums_row *row = &sums->slots[i];
-    if (row->used) slots[place(slots, capacity, row->point_id, row->results_version, row->bin)] = *row;
+    if (row->used)
+      slots[place(slots, capacity, row->point_id, row->results_version, row->bin)] = *row;
   }
   free(sums->slots);
   sums->slots = slots;
@@ -33,7 +35,8 @@ static bool grow(struct sums *sums) {
 }
 
 struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin) {
-  if (2 * (sums->count + 1) > sums->capacity && !grow(sums)) return NULL;
+  if (2 * (sums->count + 1) > sums->capacity && !grow(sums))
+    return NULL;
   struct sums_row *row = &sums->slots[place(sums->slots, sums->capacity, point_id, results_version, bin)];
   if (!row->used) {
     *row = (struct sums_row){.point_id = point_id, .results_version = results_version, .bin = bin, .used = true};
@@ -44,13 +47,16 @@ struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_versio
 
 static int by_key(const void *a, const void *b) {
   const struct sums_row *x = a, *y = b;
-  if (x->point_id != y->point_id) return x->point_id < y->point_id ? -1 : 1;
-  if (x->results_version != y->results_version) return x->results_version < y->results_version ? -1 : 1;
+  if (x->point_id != y->point_id)
+    return x->point_id < y->point_id ? -1 : 1;
+  if (x->results_version != y->results_version)
+    return x->results_version < y->results_version ? -1 : 1;
   return x->bin < y->bin ? -1 : x->bin > y->bin;
 }
 
 static status prepare(struct sums *sums, sqlite3 *db, struct error *error) {
-  if (sums->bin) return STATUS_OK;
+  if (sums->bin)
+    return STATUS_OK;
   status result = sql_prepare(db,
                               "INSERT INTO point_total (point_id, results_version, runs, censored, failed, surplus, "
                               "fragments, mass) VALUES (?1, "
@@ -95,10 +101,12 @@ static sqlite3_stmt *bind(struct sums *sums, const struct sums_row *row) {
 }
 
 status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
-  if (sums->count == 0) return STATUS_OK;
+  if (sums->count == 0)
+    return STATUS_OK;
   status result = prepare(sums, db, error);
   for (size_t i = 0, used = 0; i < sums->capacity; i++) /* the table is not searched again before it is emptied */
-    if (sums->slots[i].used) sums->slots[used++] = sums->slots[i];
+    if (sums->slots[i].used)
+      sums->slots[used++] = sums->slots[i];
   qsort(sums->slots, sums->count, sizeof *sums->slots, by_key);
   for (size_t i = 0; result == STATUS_OK && i < sums->count; i++) {
     const struct sums_row *row = &sums->slots[i];
@@ -114,7 +122,8 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
 }
 
 void sums_forget(struct sums *sums) {
-  if (sums->slots) memset(sums->slots, 0, sums->capacity * sizeof *sums->slots);
+  if (sums->slots)
+    memset(sums->slots, 0, sums->capacity * sizeof *sums->slots);
   sums->count = 0;
 }
 
@@ -163,7 +172,8 @@ status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
       "(point_id, results_version, bin) WHERE (a.runs, a.count, a.count_squared) IS NOT (b.runs, b.count, "
       "b.count_squared) OR abs(a.mass - b.mass) > 1e-10 * a.mass)",
       "", "");
-  if (!sql) return status_fail(error, STATUS_MEMORY, "checking running sums: memory ran out");
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "checking running sums: memory ran out");
   status result = sql_integer(db, sql, 0, count, error);
   sqlite3_free(sql);
   return result;

@@ -1,5 +1,6 @@
-/* Running sums of points: point_total and point_spectrum; a point whose sums change loses its pooled estimates. A batch gathers them in memory and writes each changed row
- * once, in the transaction that adds the runs; rebuilding from the rows gives the same. */
+/* Running sums of points: point_total and point_spectrum; a point whose sums change loses its pooled estimates. A batch
+ * gathers them in memory and writes each changed row once, in the transaction that adds the runs; rebuilding from the
+ * rows gives the same. */
 #ifndef CLAST_DB_SUMS_H
 #define CLAST_DB_SUMS_H
 

@@ -27,7 +27,8 @@ static status each_row(sqlite3 *db, const char *sql, void (*write)(FILE *out, sq
   int code = SQLITE_DONE;
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
     write(out, statement);
-  if (result == STATUS_OK && code != SQLITE_DONE) result = sql_fail(db, code, "making the views", error);
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(db, code, "making the views", error);
   sqlite3_finalize(statement);
   return result;
 }
@@ -132,18 +133,21 @@ static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
 }
 
 static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
-  static const char fields[] =
-      "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'";
+  static const char
+      fields[] = "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'";
   fprintf(out, "CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
                "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
   fprintf(out, "  ");
-  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
   fprintf(out, "e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ");
-  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
   fprintf(out, "r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
                "  SELECT point_id, NULL, NULL, NULL, NULL, ");
-  if (result == STATUS_OK) result = each_row(db, fields, write_text, out, error);
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
   fprintf(out, "results_version FROM point_estimate\n) e JOIN point p ON p.point_id = e.point_id;\n");
   return result;
 }
@@ -194,7 +198,8 @@ status views_regenerate(sqlite3 *db, struct error *error) {
   char *sql = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&sql, &size);
-  if (!out) return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
   fputs("DROP VIEW IF EXISTS runs; DROP VIEW IF EXISTS points; DROP VIEW IF EXISTS spectra; DROP VIEW IF EXISTS "
         "estimates;\n",
         out);
@@ -205,7 +210,8 @@ status views_regenerate(sqlite3 *db, struct error *error) {
   if (result == STATUS_OK)
     result = sql ? sql_execute(db, sql, "making the views", error)
                  : status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-  if (result == STATUS_OK) result = document(db, error);
+  if (result == STATUS_OK)
+    result = document(db, error);
   free(sql);
   return result;
 }
@@ -219,7 +225,8 @@ status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size,
                               "pragma_table_info(v.column1) c WHERE c.name = ?1 UNION ALL SELECT 1 FROM axis WHERE "
                               "column_name = ?1",
                               &statement, "making the views", error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   sqlite3_bind_text(statement, 1, plain, -1, SQLITE_STATIC);
   bool taken = sqlite3_step(statement) == SQLITE_ROW;
   snprintf(name, size, "%s%s", taken ? "input_" : "", plain);

@@ -37,7 +37,8 @@ static void compress(uint32_t h[8], const uint8_t block[64], uint64_t count, int
   memcpy(v + 8, initial, sizeof initial);
   v[12] ^= (uint32_t)count;
   v[13] ^= (uint32_t)(count >> 32);
-  if (last) v[14] = ~v[14];
+  if (last)
+    v[14] = ~v[14];
   for (int round = 0; round < 10; round++) {
     const uint8_t *s = schedule[round];
     for (int i = 0; i < 4; i++)
@@ -58,7 +59,8 @@ void blake2s(const void *bytes, size_t size, uint8_t digest[16]) {
   for (; size - done > 64; done += 64)
     compress(h, at + done, done + 64, 0);
   uint8_t block[64] = {0};
-  if (size > done) memcpy(block, at + done, size - done);
+  if (size > done)
+    memcpy(block, at + done, size - done);
   compress(h, block, size, 1);
   for (int i = 0; i < 16; i++)
     digest[i] = (uint8_t)(h[i / 4] >> (8 * (i % 4)));

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/fields_read.h"
+#include "engine/snapshot_read.h"
 
 struct raw {
   size_t points, cells, offsets, ids, fragments, grains, beams, alive;
@@ -14,8 +14,8 @@ struct raw {
 };
 
 static bool take_cells(const struct raw *raw, struct body *body) {
-  if (!raw->point || !raw->offset || !raw->id || !raw->fragment || raw->offsets < 2 || raw->offsets != raw->fragments + 1 ||
-      raw->offset[0] != 0 || raw->offset[raw->offsets - 1] != (int64_t)raw->ids)
+  if (!raw->point || !raw->offset || !raw->id || !raw->fragment || raw->offsets < 2 ||
+      raw->offsets != raw->fragments + 1 || raw->offset[0] != 0 || raw->offset[raw->offsets - 1] != (int64_t)raw->ids)
     return false;
   size_t cells = raw->fragments;
   body->first_vertex = malloc((cells + 1) * sizeof *body->first_vertex);
@@ -79,15 +79,15 @@ static bool take_cracks(const struct raw *raw, struct body *body) {
   return true;
 }
 
-static bool read_file(struct fields_read *file, struct body *body) {
+static bool read_file(struct snapshot_read *file, struct body *body) {
   struct raw raw = {0};
-  raw.point = fields_read_rows(file, "/VTKHDF/Points", 3, FIELDS_READ_REAL, &raw.points);
-  raw.id = fields_read_rows(file, "/VTKHDF/Connectivity", 0, FIELDS_READ_INTEGER, &raw.ids);
-  raw.offset = fields_read_rows(file, "/VTKHDF/Offsets", 0, FIELDS_READ_INTEGER, &raw.offsets);
-  raw.fragment = fields_read_rows(file, "/VTKHDF/CellData/fragment", 0, FIELDS_READ_INTEGER, &raw.fragments);
-  raw.grain = fields_read_rows(file, "/VTKHDF/CellData/grain", 0, FIELDS_READ_INTEGER, &raw.grains);
-  raw.beam = fields_read_rows(file, "/beams/grains", 2, FIELDS_READ_REAL, &raw.beams);
-  raw.alive_value = fields_read_rows(file, "/beams/alive", 0, FIELDS_READ_REAL, &raw.alive);
+  raw.point = snapshot_read_rows(file, "/VTKHDF/Points", 3, FIELDS_READ_REAL, &raw.points);
+  raw.id = snapshot_read_rows(file, "/VTKHDF/Connectivity", 0, FIELDS_READ_INTEGER, &raw.ids);
+  raw.offset = snapshot_read_rows(file, "/VTKHDF/Offsets", 0, FIELDS_READ_INTEGER, &raw.offsets);
+  raw.fragment = snapshot_read_rows(file, "/VTKHDF/CellData/fragment", 0, FIELDS_READ_INTEGER, &raw.fragments);
+  raw.grain = snapshot_read_rows(file, "/VTKHDF/CellData/grain", 0, FIELDS_READ_INTEGER, &raw.grains);
+  raw.beam = snapshot_read_rows(file, "/beams/grains", 2, FIELDS_READ_REAL, &raw.beams);
+  raw.alive_value = snapshot_read_rows(file, "/beams/alive", 0, FIELDS_READ_REAL, &raw.alive);
   bool good = take_cells(&raw, body) && take_cracks(&raw, body);
   free(raw.point);
   free(raw.id);
@@ -101,17 +101,19 @@ static bool read_file(struct fields_read *file, struct body *body) {
 
 status body_read(const char *path, struct body *body, struct error *error) {
   *body = (struct body){0};
-  struct fields_read *file;
-  status code = fields_read_open(path, &file, error);
+  struct snapshot_read *file;
+  status code = snapshot_read_open(path, &file, error);
   if (code)
     return code;
   bool good = read_file(file, body);
-  fields_read_close(file);
+  snapshot_read_close(file);
   if (good)
     return STATUS_OK;
   body_clear(body);
-  return status_fail(error, STATUS_CONTENT, "%s is no fields file of clast, or it is damaged; `clast simulate --fields` and "
-                                            "`clast replay --fields` write such files", path);
+  return status_fail(error, STATUS_CONTENT,
+                     "%s is no fields file of clast, or it is damaged; `clast simulate --fields` and "
+                     "`clast replay --fields` write such files",
+                     path);
 }
 
 void body_clear(struct body *body) {

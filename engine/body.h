@@ -1,5 +1,5 @@
-/* A body in pieces, read back from a fields file (HDF5, VTKHDF group) of any engine whose cells are polygons: what pictures
- * are drawn from. The file may come from anywhere: every size and index is checked. */
+/* A body in pieces, read back from a fields file (HDF5, VTKHDF group) of any engine whose cells are polygons: what
+ * pictures are drawn from. The file may come from anywhere: every size and index is checked. */
 #ifndef CLAST_ENGINE_BODY_H
 #define CLAST_ENGINE_BODY_H
 

@@ -1,12 +1,13 @@
 /* Documents that are compiled into the program, written by engine/embed_documents.cmake at build time: the scenes of
- * engine/<engine>/scenes/ and the materials of engine/<engine>/materials/. */
+ * engine/<engine>/scene/builtin/ and the materials of engine/<engine>/material/builtin/. */
 #ifndef CLAST_ENGINE_BUILTIN_H
 #define CLAST_ENGINE_BUILTIN_H
 
 struct builtin_document {
   const char *name, *text;
 };
-/* Sorted by name, closed by NULL; of materials the names alone, too (choices of a field table), with `custom` at the end. */
+/* Sorted by name, closed by NULL; of materials the names alone, too (choices of a field table), with `custom` at the
+ * end. */
 extern const struct builtin_document builtin_scene_list[], builtin_material_list[];
 extern const char *const builtin_material_names[];
 

@@ -5,35 +5,36 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/fields_read.h"
+#include "engine/snapshot_read.h"
 
 #define POINTS "VTKHDF/Points"
 #define COLUMN "VTKHDF/PointData/"
 
-static const char *const columns[] = {"damage", "pressure", "density", "energy", "distention", "rest_distention", "smoothing_length", "flaws", "mass"};
+static const char *const columns[] = {"damage",          "pressure",         "density", "energy", "distention",
+                                      "rest_distention", "smoothing_length", "flaws",   "mass"};
 
 static status damaged(const char *path, const char *what, struct error *error) {
   return status_fail(error, STATUS_CONTENT, "%s is no fields file of particles, or it is damaged: %s", path, what);
 }
 
 bool cloud_in_file(const char *path) {
-  struct fields_read *file;
-  if (fields_read_open(path, &file, NULL))
+  struct snapshot_read *file;
+  if (snapshot_read_open(path, &file, NULL))
     return false;
-  bool found = fields_read_has(file, "VTKHDF") && fields_read_has(file, "VTKHDF/PointData") &&
-               fields_read_has(file, COLUMN "smoothing_length");
-  fields_read_close(file);
+  bool found = snapshot_read_has(file, "VTKHDF") && snapshot_read_has(file, "VTKHDF/PointData") &&
+               snapshot_read_has(file, COLUMN "smoothing_length");
+  snapshot_read_close(file);
   return found;
 }
 
-static const char *take(struct fields_read *file, struct cloud *cloud) {
+static const char *take(struct snapshot_read *file, struct cloud *cloud) {
   size_t points, masses, densities, fragments, parts;
-  double *density = fields_read_rows(file, COLUMN "density", 0, FIELDS_READ_REAL, &densities);
+  double *density = snapshot_read_rows(file, COLUMN "density", 0, FIELDS_READ_REAL, &densities);
   const char *why = NULL;
-  cloud->position = fields_read_rows(file, POINTS, 3, FIELDS_READ_REAL, &points);
-  cloud->mass = fields_read_rows(file, COLUMN "mass", 0, FIELDS_READ_REAL, &masses);
-  cloud->fragment = fields_read_rows(file, COLUMN "fragment", 0, FIELDS_READ_INTEGER, &fragments);
-  cloud->part = fields_read_rows(file, COLUMN "part", 0, FIELDS_READ_INTEGER, &parts);
+  cloud->position = snapshot_read_rows(file, POINTS, 3, FIELDS_READ_REAL, &points);
+  cloud->mass = snapshot_read_rows(file, COLUMN "mass", 0, FIELDS_READ_REAL, &masses);
+  cloud->fragment = snapshot_read_rows(file, COLUMN "fragment", 0, FIELDS_READ_INTEGER, &fragments);
+  cloud->part = snapshot_read_rows(file, COLUMN "part", 0, FIELDS_READ_INTEGER, &parts);
   cloud->size = calloc(points + 1, sizeof *cloud->size);
   cloud->n = points;
   if (!density || !cloud->position || !cloud->mass || !cloud->fragment || !cloud->part || !cloud->size)
@@ -58,16 +59,16 @@ static const char *take(struct fields_read *file, struct cloud *cloud) {
 
 status cloud_read(const char *path, struct cloud *cloud, struct error *error) {
   *cloud = (struct cloud){.time = NAN};
-  struct fields_read *file;
-  status code = fields_read_open(path, &file, error);
+  struct snapshot_read *file;
+  status code = snapshot_read_open(path, &file, error);
   if (code)
     return code;
   const char *why = take(file, cloud);
-  fields_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine);
-  fields_read_integer(file, "run", "seed", &cloud->seed);
-  if (!fields_read_real(file, "run", "time", &cloud->time))
+  snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine);
+  snapshot_read_integer(file, "run", "seed", &cloud->seed);
+  if (!snapshot_read_real(file, "run", "time", &cloud->time))
     cloud->time = NAN;
-  fields_read_close(file);
+  snapshot_read_close(file);
   if (!why)
     return STATUS_OK;
   cloud_clear(cloud);
@@ -76,50 +77,53 @@ status cloud_read(const char *path, struct cloud *cloud, struct error *error) {
 
 status cloud_read_column(const char *path, const struct cloud *cloud, const char *name, double **values, char unit[32],
                          char meaning[128], struct error *error) {
-  struct fields_read *file;
+  struct snapshot_read *file;
   char at[96], known[256] = "";
   size_t rows = 0;
   *values = NULL;
-  status code = fields_read_open(path, &file, error);
+  status code = snapshot_read_open(path, &file, error);
   if (code)
     return code;
   snprintf(at, sizeof at, COLUMN "%s", name);
-  if (strlen(name) < 40 && !strchr(name, '/') && !strchr(name, '.') && fields_read_has(file, "VTKHDF") &&
-      fields_read_has(file, "VTKHDF/PointData"))
-    *values = fields_read_rows(file, at, 0, FIELDS_READ_REAL, &rows);
+  if (strlen(name) < 40 && !strchr(name, '/') && !strchr(name, '.') && snapshot_read_has(file, "VTKHDF") &&
+      snapshot_read_has(file, "VTKHDF/PointData"))
+    *values = snapshot_read_rows(file, at, 0, FIELDS_READ_REAL, &rows);
   if (!*values || rows != cloud->n) {
     for (size_t k = 0; k < sizeof columns / sizeof *columns; k++) {
       snprintf(at, sizeof at, COLUMN "%s", columns[k]);
-      if (fields_read_has(file, at))
+      if (snapshot_read_has(file, at))
         snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", *known ? ", " : "", columns[k]);
     }
     free(*values);
     *values = NULL;
     code = status_fail(error, STATUS_CONTENT, "%s has no '%s' for each particle; it has %s", path, name, known);
   } else {
-    fields_read_text(file, at, "units", unit, 32);
-    fields_read_text(file, at, "long_name", meaning, 128);
+    snapshot_read_text(file, at, "units", unit, 32);
+    snapshot_read_text(file, at, "long_name", meaning, 128);
   }
-  fields_read_close(file);
+  snapshot_read_close(file);
   return code;
 }
 
-status cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32], struct error *error) {
-  struct fields_read *file;
+status cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],
+                       struct error *error) {
+  struct snapshot_read *file;
   char at[96];
   *values = NULL;
   *rows = 0;
-  status code = fields_read_open(path, &file, error);
+  status code = snapshot_read_open(path, &file, error);
   if (code)
     return code;
   snprintf(at, sizeof at, "axis/%.40s", name);
-  if (!fields_read_has(file, "axis"))
+  if (!snapshot_read_has(file, "axis"))
     code = status_fail(error, STATUS_CONTENT, "%s has no profile: runs with an impact or a piston keep one", path);
-  else if (strchr(name, '/') || strchr(name, '.') || !(*values = fields_read_rows(file, at, 0, FIELDS_READ_REAL, rows)))
-    code = status_fail(error, STATUS_CONTENT, "%s has no '%s' along the axis; it has distention, damage, pressure, velocity", path, name);
+  else if (strchr(name, '/') || strchr(name, '.') ||
+           !(*values = snapshot_read_rows(file, at, 0, FIELDS_READ_REAL, rows)))
+    code = status_fail(error, STATUS_CONTENT,
+                       "%s has no '%s' along the axis; it has distention, damage, pressure, velocity", path, name);
   else
-    fields_read_text(file, at, "units", unit, 32);
-  fields_read_close(file);
+    snapshot_read_text(file, at, "units", unit, 32);
+  snapshot_read_close(file);
   return code;
 }
 

@@ -11,7 +11,8 @@ enum { CLASSES = sizeof classes / sizeof classes[0] };
 
 static int find(const char *name) {
   for (int k = 0; k < CLASSES; k++)
-    if (strcmp(name, classes[k].name) == 0) return k;
+    if (strcmp(name, classes[k].name) == 0)
+      return k;
   return CLASSES;
 }
 
@@ -25,8 +26,10 @@ enum cpu_class cpu_class_choose(void) {
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
                   __builtin_cpu_supports("avx512vl");
-  if (v4 && limit >= CPU_V4) return CPU_V4;
-  if (v3 && limit >= CPU_V3) return CPU_V3;
+  if (v4 && limit >= CPU_V4)
+    return CPU_V4;
+  if (v3 && limit >= CPU_V3)
+    return CPU_V3;
 #endif
   return CPU_BASELINE;
 }

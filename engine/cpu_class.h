@@ -1,7 +1,9 @@
-/* Which of the x86-64 microarchitecture levels the hot loops run on: they are compiled for each, and chosen at run time.
+/* Which of the x86-64 microarchitecture levels the hot loops run on: they are compiled for each, and chosen at run
+ * time.
  *
  * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run. The environment
- * variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine does not have is not used, the best one is. */
+ * variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine does not have is not used, the best one is.
+ */
 #ifndef CLAST_ENGINE_CPU_CLASS_H
 #define CLAST_ENGINE_CPU_CLASS_H
 

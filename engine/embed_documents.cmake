@@ -1,6 +1,6 @@
 # cmake -DFOLDER=engine -DKIND=scene -DOUTPUT=builtin_scene.c -P embed_documents.cmake
-# (-DALSO=custom: the names alone, too, with one more behind theirs.) Writes the documents engine/*/<KIND>s/*.yaml as C arrays of bytes (a string literal has a limit of length), sorted by name.
-file(GLOB documents ${FOLDER}/*/${KIND}s/*.yaml)
+# (-DALSO=custom: the names alone, too, with one more behind theirs.) Writes the documents engine/*/<KIND>/builtin/*.yaml as C arrays of bytes (a string literal has a limit of length), sorted by name.
+file(GLOB documents ${FOLDER}/*/${KIND}/builtin/*.yaml)
 set(arrays "")
 set(named "")
 foreach(document ${documents})

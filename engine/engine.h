@@ -8,40 +8,41 @@
 #include "schemas/field.h"
 
 struct engine_kind {
-  const char *name;    /* "dem" */
-  const char *doc;     /* what it models, with sources */
-  int results_version; /* part of a run's identity: raised by hand when result bits change on purpose */
+  const char *name;                  /* "dem" */
+  const char *doc;                   /* what it models, with sources */
+  int results_version;               /* part of a run's identity: raised by hand when result bits change on purpose */
   const struct field_table *inputs;  /* the typed scene; includes a `fidelity.` section */
   const struct field_table *results; /* what this engine reports beyond struct outcome; table result_<engine> */
 
-  /* Fills inputs that were not given (one flag per input row) and follow from others: values of a named material, a time
-   * that scales with a size. A pure function of the given ones, called again after every change. NULL: there are none. */
+  /* Fills inputs that were not given (one flag per input row) and follow from others: values of a named material, a
+   * time that scales with a size. A pure function of the given ones, called again after every change. NULL: there are
+   * none. */
   void (*complete)(void *inputs, const bool *given);
   /* Conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
-  size_t (*memory)(const void *inputs);  /* bytes a run will need, before anything is allocated */
-  double (*work)(const void *inputs);    /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
+  size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
+  double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
 
   /* Build the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
   /* Advance by at most max_steps; *finished when the scene's stop rule, its end or a failure came. A numerical failure
-   * (NaN, collapse) is no error status: the run is finished and says so in its outcome. STATUS_MEMORY is one: the machine's, not
-   * the run's, so that no result is made of it. */
+   * (NaN, collapse) is no error status: the run is finished and says so in its outcome. STATUS_MEMORY is one: the
+   * machine's, not the run's, so that no result is made of it. */
   status (*step)(void *run, uint64_t max_steps, bool *finished, struct error *error);
   double (*progress)(const void *run); /* 0..1, simulated time over the hard end */
   double (*time)(const void *run);     /* s simulated so far: what snapshots are labelled by */
   /* Results: *outcome, the engine's own *result (results->size bytes), and the fragments by descending mass (malloc'd,
    * owned by the caller from then on). May be called before the run is finished (a snapshot of results). */
-  status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments, size_t *fragment_count,
-                   struct error *error);
-  /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary name and
-   * renamed. Also what pictures are drawn from. */
-  status (*write_fields)(void *run, const char *path, struct error *error);
-  status (*save)(void *run, const char *path, struct error *error);                            /* restart file */
-  status (*restore)(const void *inputs, const char *path, void **run, struct error *error);   /* same bits after it */
-  void (*free)(void *run); /* NULL is fine */
+  status (*finish)(void *run, struct outcome *outcome, void *result, struct fragment **fragments,
+                   size_t *fragment_count, struct error *error);
+  /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
+   * name and renamed. Also what pictures are drawn from. */
+  status (*write_snapshot)(void *run, const char *path, struct error *error);
+  status (*save)(void *run, const char *path, struct error *error);                         /* restart file */
+  status (*restore)(const void *inputs, const char *path, void **run, struct error *error); /* same bits after it */
+  void (*free)(void *run);                                                                  /* NULL is fine */
 };
 
 size_t engine_count(void);

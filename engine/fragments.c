@@ -168,7 +168,9 @@ static void rotate(double a[3][3], double axis[3][3], int p, int q) {
 }
 
 void fragments_principal(const double tensor[6], double value[3], double axis[3][3]) {
-  double a[3][3] = {{tensor[0], tensor[1], tensor[2]}, {tensor[1], tensor[3], tensor[4]}, {tensor[2], tensor[4], tensor[5]}};
+  double a[3][3] = {{tensor[0], tensor[1], tensor[2]},
+                    {tensor[1], tensor[3], tensor[4]},
+                    {tensor[2], tensor[4], tensor[5]}};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       axis[i][j] = i == j;

@@ -20,8 +20,8 @@ struct fragment {
   uint32_t first;           /* its lowest member index */
 };
 
-/* Union-find over `links` (pairs of indices below n). label[i] = fragment number, fragments numbered by descending mass,
- * ties by lowest member index. Returns the number of fragments. `label` has n entries, owned by the caller. */
+/* Union-find over `links` (pairs of indices below n). label[i] = fragment number, fragments numbered by descending
+ * mass, ties by lowest member index. Returns the number of fragments. `label` has n entries, owned by the caller. */
 size_t fragments_label(size_t n, const double *mass, size_t link_count, const uint32_t (*links)[2], uint32_t *label);
 
 /* What a fragment is made of: grains, or particles. */
@@ -39,14 +39,14 @@ status fragments_find_plane(size_t n, const struct fragment_member *members, siz
                             struct error *error);
 
 /* The same in space. Spin is I^-1 L with the whole inertia tensor I about the centre of mass, so that a rigidly turning
- * piece of any shape gives its own angular velocity; about axes without inertia (one particle, particles in a line) it is
- * 0. moment_of_inertia is trace(I)/3. Members' own moments count as spheres', their own spins about z. */
+ * piece of any shape gives its own angular velocity; about axes without inertia (one particle, particles in a line) it
+ * is 0. moment_of_inertia is trace(I)/3. Members' own moments count as spheres', their own spins about z. */
 status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
                             struct error *error);
 
-/* Principal axes of a symmetric tensor xx xy xz yy yz zz: values ascending, axis[k] the unit vector of value[k]. Jacobi's
- * rotations: good to rounding for any tensor of finite numbers. */
+/* Principal axes of a symmetric tensor xx xy xz yy yz zz: values ascending, axis[k] the unit vector of value[k].
+ * Jacobi's rotations: good to rounding for any tensor of finite numbers. */
 void fragments_principal(const double tensor[6], double value[3], double axis[3][3]);
 
 /* Union-find by hand: parent[i] = i at first. The root is the lowest index of the set. */

@@ -4,9 +4,10 @@
 
 static const char *const states[] = {"completed", "end-time", "not-finite", "time-step", "energy", "invalid", NULL};
 
-#define ROW(path_, kind_, unit_, ...) {.path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__}
+#define ROW(path_, kind_, unit_, ...)                                                                                  \
+  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__ }
 #define REAL(path_, unit_, low, ...) ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, __VA_ARGS__)
-#define COUNT(path_, ...) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, __VA_ARGS__)
+#define COUNT(path_, ...)            ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, __VA_ARGS__)
 
 static const struct field rows[] = {
     ROW(state, FIELD_CHOICE, NULL, .choices = states,
@@ -29,16 +30,18 @@ static const struct field rows[] = {
     COUNT(fragment_count, .doc = "Fragments of any size, single grains (dust) included."),
     COUNT(single_count, .doc = "Fragments of one grain or particle: below the model's resolution."),
     ROW(dust_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass share of single grains."),
-    ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass of the largest fragment over the total mass, M_1/M."),
-    ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
+    ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1,
+        .doc = "Mass of the largest fragment over the total mass, M_1/M."),
+    ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1,
+        .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
     REAL(mean_fragment_mass, "kg", 0, .doc = "Second moment over first of all fragment masses (not M_2/M_1)."),
     REAL(mean_fragment_mass_rest, "kg", 0, .doc = "The same without the largest fragment."),
     REAL(kinetic_energy_share, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
          .doc = "Translation energy of the fragments over the energy put in."),
 };
 
-const struct field_table outcome_table =
-    FIELD_TABLE(rows, struct outcome, "outcome", "What every engine reports of a finished run.");
+const struct field_table outcome_table = FIELD_TABLE(rows, struct outcome, "outcome",
+                                                     "What every engine reports of a finished run.");
 
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments) {
   double mass = 0, square = 0, dust = 0;

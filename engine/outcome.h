@@ -16,22 +16,22 @@ enum outcome_state {
 };
 
 struct outcome {
-  int state;                 /* enum outcome_state, a FIELD_CHOICE */
+  int state;                     /* enum outcome_state, a FIELD_CHOICE */
   char message[FIELD_TEXT_SIZE]; /* diagnostics for a person; empty when all is well */
   int64_t steps;
-  double time;               /* s simulated */
-  double time_step;          /* s, the smallest used */
-  double total_mass;         /* kg or kg/m */
-  double energy_error;       /* ledger: |closed sum - initial| / energy put in */
-  double momentum_error;     /* |sum p - initial - external impulse| / sum |p| */
-  int64_t fragment_count;    /* all, single grains (dust) included */
-  int64_t single_count;      /* fragments of one grain: unresolved */
-  double dust_fraction;      /* mass share of single grains */
-  double largest_fraction;   /* M_1 / M */
-  double second_fraction;    /* M_2 / M */
-  double mean_fragment_mass; /* second moment over first of all fragment masses, kg */
+  double time;                    /* s simulated */
+  double time_step;               /* s, the smallest used */
+  double total_mass;              /* kg or kg/m */
+  double energy_error;            /* ledger: |closed sum - initial| / energy put in */
+  double momentum_error;          /* |sum p - initial - external impulse| / sum |p| */
+  int64_t fragment_count;         /* all, single grains (dust) included */
+  int64_t single_count;           /* fragments of one grain: unresolved */
+  double dust_fraction;           /* mass share of single grains */
+  double largest_fraction;        /* M_1 / M */
+  double second_fraction;         /* M_2 / M */
+  double mean_fragment_mass;      /* second moment over first of all fragment masses, kg */
   double mean_fragment_mass_rest; /* the same without the largest fragment */
-  double kinetic_energy_share; /* fragments' translation energy over the energy put in */
+  double kinetic_energy_share;    /* fragments' translation energy over the energy put in */
 };
 
 extern const struct field_table outcome_table;

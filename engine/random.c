@@ -17,7 +17,9 @@ void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, 
     bits[i] = out.v[i];
 }
 
-double random_uniform(uint64_t bits) { return (double)(bits >> 11) * 0x1p-53; }
+double random_uniform(uint64_t bits) {
+  return (double)(bits >> 11) * 0x1p-53;
+}
 
 double random_draw(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw) {
   uint64_t bits[4];

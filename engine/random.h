@@ -6,13 +6,13 @@
 #include <stdint.h>
 
 enum random_purpose { /* pinned: they are part of what a seed means */
-  RANDOM_LATTICE = 1,
-  RANDOM_THRESHOLD = 2,
-  RANDOM_FLAW_STRENGTH = 3,
-  RANDOM_FLAW_PLACE = 4,
-  RANDOM_DESIGN = 5,
-  RANDOM_SEED = 6,
-  RANDOM_RESAMPLE = 7,
+                      RANDOM_LATTICE = 1,
+                      RANDOM_THRESHOLD = 2,
+                      RANDOM_FLAW_STRENGTH = 3,
+                      RANDOM_FLAW_PLACE = 4,
+                      RANDOM_DESIGN = 5,
+                      RANDOM_SEED = 6,
+                      RANDOM_RESAMPLE = 7,
 };
 
 void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, uint64_t bits[4]);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
-#include "engine/whole_file.h"
 
 static const char magic[8] = "CLASTRUN";
 enum { VERSION = 2, PARTS = 8 };
@@ -43,7 +43,9 @@ static void put(struct bytes *b, const void *from, size_t size) {
     memcpy(b->at + b->used, from, size);
   b->used += size;
 }
-static void put_number(struct bytes *b, uint64_t number) { put(b, &number, sizeof number); }
+static void put_number(struct bytes *b, uint64_t number) {
+  put(b, &number, sizeof number);
+}
 
 static bool get(struct bytes *b, void *to, size_t size) {
   if (b->size - b->used < size)
@@ -80,7 +82,7 @@ status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t
     put(&b, parts[k].at, parts[k].size);
   }
   put_number(&b, checksum(b.at, b.used));
-  status code = whole_file_write(path, "restart file", b.at, b.used, error);
+  status code = atomic_file_write(path, "restart file", b.at, b.used, error);
   free(b.at);
   free(text);
   return code;
@@ -108,50 +110,54 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
   } head;
   FILE *file = fopen(path, "rb");
   if (!file)
-    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read the restart file '%s': %s", path,
-                       strerror(errno));
+    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read the restart file '%s': %s",
+                       path, strerror(errno));
   size_t got = fread(&head, sizeof head, 1, file);
   fclose(file);
   if (got != 1 || memcmp(head.magic, magic, sizeof magic) != 0)
-    return status_fail(error, STATUS_CONTENT, "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
+    return status_fail(error, STATUS_CONTENT,
+                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
   *seed = head.seed;
   return STATUS_OK;
 }
 
-status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path, struct restart **out,
-                    struct error *error) {
+status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path,
+                    struct restart **out, struct error *error) {
   *out = NULL;
   struct bytes b = {0};
   char *text = identity(kind, inputs), head[sizeof magic];
   struct restart *restart = calloc(1, sizeof *restart);
   uint64_t length, sum, class;
-  status code = text && restart ? whole_file_read(path, "restart file", &b.at, &b.size, error)
+  status code = text && restart ? atomic_file_read(path, "restart file", &b.at, &b.size, error)
                                 : status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
   if (code)
     goto cleanup;
   if (b.size < sizeof magic + 8 || !get(&b, head, sizeof head) || memcmp(head, magic, sizeof magic) != 0) {
-    code = status_fail(error, STATUS_CONTENT, "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
+    code = status_fail(error, STATUS_CONTENT,
+                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
     goto cleanup;
   }
   memcpy(&sum, b.at + b.size - 8, 8);
   if (sum != checksum(b.at, b.size - 8)) {
-    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh", path);
+    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
+                       path);
     goto cleanup;
   }
   const bool known = get_exactly(&b, VERSION) && get(&b, &restart->seed, 8) && get(&b, &class, 8);
   if (known && class != (uint64_t)cpu_class_choose()) {
-    const char *name = cpu_class_name((enum cpu_class)class);
-    code = status_fail(error, STATUS_CONTENT,
-                       "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
-                       "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
-                       path, name, cpu_class_name(cpu_class_choose()), name);
+    const char *name = cpu_class_name((enum cpu_class) class);
+    code = status_fail(
+        error, STATUS_CONTENT,
+        "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
+        "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
+        path, name, cpu_class_name(cpu_class_choose()), name);
     goto cleanup;
   }
-  if (!known || !get(&b, &length, 8) || length != strlen(text) ||
-      b.size - b.used < length || memcmp(b.at + b.used, text, length) != 0) {
-    code = status_fail(error, STATUS_CONTENT,
-                       "the restart file '%s' belongs to another scene or another version of clast: start the run afresh",
-                       path);
+  if (!known || !get(&b, &length, 8) || length != strlen(text) || b.size - b.used < length ||
+      memcmp(b.at + b.used, text, length) != 0) {
+    code = status_fail(
+        error, STATUS_CONTENT,
+        "the restart file '%s' belongs to another scene or another version of clast: start the run afresh", path);
     goto cleanup;
   }
   b.used += length;
@@ -175,9 +181,13 @@ status restart_refuse(const char *path, struct error *error) {
                      "the restart file '%s' was written by another build of clast: start the run afresh", path);
 }
 
-uint64_t restart_seed(const struct restart *restart) { return restart->seed; }
+uint64_t restart_seed(const struct restart *restart) {
+  return restart->seed;
+}
 
-struct restart_part restart_part(const struct restart *restart, size_t index) { return restart->part[index]; }
+struct restart_part restart_part(const struct restart *restart, size_t index) {
+  return restart->part[index];
+}
 
 bool restart_copy(const struct restart *restart, size_t index, void *to, size_t size) {
   if (restart->part[index].size != size)

@@ -6,7 +6,7 @@
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
 #include "schemas/document.h"
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 /* ---- built-in scenes ---- */
 
@@ -23,7 +23,8 @@ const char *scene_builtin_name(size_t index) {
 
 const char *scene_builtin_text(const char *name) {
   for (size_t i = 0; builtin_scene_list[i].name; i++)
-    if (strcmp(builtin_scene_list[i].name, name) == 0) return builtin_scene_list[i].text;
+    if (strcmp(builtin_scene_list[i].name, name) == 0)
+      return builtin_scene_list[i].text;
   return NULL;
 }
 
@@ -31,8 +32,9 @@ static status unknown_builtin(const char *name, struct error *error) {
   const char *near = NULL;
   size_t best = strlen(name) / 2 + 1;
   for (size_t i = 0; builtin_scene_list[i].name; i++) {
-    size_t d = near_distance(name, strlen(name), builtin_scene_list[i].name);
-    if (d < best) best = d, near = builtin_scene_list[i].name;
+    size_t d = edit_distance(name, strlen(name), builtin_scene_list[i].name);
+    if (d < best)
+      best = d, near = builtin_scene_list[i].name;
   }
   if (near)
     return status_fail(error, STATUS_MISSING,
@@ -56,7 +58,8 @@ static const struct field head_rows[] = {
 
 static struct scene *create(const struct engine_kind *kind) {
   struct scene *scene = calloc(1, sizeof *scene);
-  if (!scene) return NULL;
+  if (!scene)
+    return NULL;
   scene->kind = kind;
   scene->inputs = calloc(1, kind->inputs->size);
   scene->given = calloc(kind->inputs->count + 1, sizeof *scene->given);
@@ -86,7 +89,8 @@ static status read_document(struct document *document, const char *fallback, str
   struct field_value name = {.kind = FIELD_TEXT}, ignored;
   for (size_t i = 0; i < 2; i++) {
     document_node *node = document_key(root, head_rows[i].path);
-    if (node) document_value(node, &head_rows[i], i == 0 ? &name : &ignored);
+    if (node)
+      document_value(node, &head_rows[i], i == 0 ? &name : &ignored);
   }
   if (kind) {
     scene = create(kind);
@@ -98,7 +102,8 @@ static status read_document(struct document *document, const char *fallback, str
     snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
   }
   code = document_finish(document, &report);
-  if (code) status_fail(error, code, "%s", report);
+  if (code)
+    status_fail(error, code, "%s", report);
 cleanup:
   document_free(document);
   if (code) {
@@ -121,7 +126,8 @@ status scene_load(const char *reference, const char *folder, struct scene **out,
   status code;
   if (!is_path(reference)) {
     const char *text = scene_builtin_text(reference);
-    if (!text) return unknown_builtin(reference, error);
+    if (!text)
+      return unknown_builtin(reference, error);
     return scene_parse(reference, text, out, error);
   }
   bool absolute = reference[0] == '/' || !folder || !*folder;
@@ -135,9 +141,11 @@ status scene_load(const char *reference, const char *folder, struct scene **out,
   }
   snprintf(path, size, "%s%s%s", absolute ? "" : folder, absolute ? "" : "/", reference);
   char *dot = strrchr(stem, '.');
-  if (dot && dot != stem) *dot = 0;
+  if (dot && dot != stem)
+    *dot = 0;
   code = document_open(path, &document, error);
-  if (!code) code = read_document(document, stem, out, error);
+  if (!code)
+    code = read_document(document, stem, out, error);
 cleanup:
   free(path);
   free(stem);
@@ -153,7 +161,8 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
 
 struct scene *scene_copy(const struct scene *scene) {
   struct scene *copy = create(scene->kind);
-  if (!copy) return NULL;
+  if (!copy)
+    return NULL;
   memcpy(copy->inputs, scene->inputs, scene->kind->inputs->size);
   memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
   memcpy(copy->overridden, scene->overridden, scene->kind->inputs->count * sizeof *scene->overridden);
@@ -162,7 +171,8 @@ struct scene *scene_copy(const struct scene *scene) {
 }
 
 void scene_free(struct scene *scene) {
-  if (!scene) return;
+  if (!scene)
+    return;
   free(scene->inputs);
   free(scene->given);
   free(scene->overridden);
@@ -174,18 +184,22 @@ void scene_free(struct scene *scene) {
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   const struct field *row = field_find(table, path, error);
-  if (!row) return STATUS_CONTENT;
+  if (!row)
+    return STATUS_CONTENT;
   status code = field_set(row, scene->inputs, value, error);
-  if (code) return code;
+  if (code)
+    return code;
   scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;
-  if (scene->kind->complete) scene->kind->complete(scene->inputs, scene->given);
+  if (scene->kind->complete)
+    scene->kind->complete(scene->inputs, scene->given);
   return STATUS_OK;
 }
 
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error) {
   struct field_value value;
   const struct field *row = field_find(scene->kind->inputs, path, error);
-  if (!row) return STATUS_CONTENT;
+  if (!row)
+    return STATUS_CONTENT;
   status code = field_parse(row, text, &value, error);
   return code ? code : scene_set(scene, row->path, &value, error);
 }
@@ -194,14 +208,16 @@ status scene_set_text(struct scene *scene, const char *path, const char *text, s
 static status take_back(struct scene *scene, size_t row, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   void *untouched = calloc(1, table->size);
-  if (!untouched) return status_fail(error, STATUS_MEMORY, "no memory for a scene");
+  if (!untouched)
+    return status_fail(error, STATUS_MEMORY, "no memory for a scene");
   struct field_value value;
   field_defaults(table, untouched);
   field_get(&table->rows[row], untouched, &value);
   field_set_unchecked(&table->rows[row], scene->inputs, &value);
   scene->given[row] = false;
   free(untouched);
-  if (scene->kind->complete) scene->kind->complete(scene->inputs, scene->given);
+  if (scene->kind->complete)
+    scene->kind->complete(scene->inputs, scene->given);
   return STATUS_OK;
 }
 
@@ -219,7 +235,8 @@ status scene_check(struct scene *scene, struct error *error) {
                          row->path, why);
     } else if (scene->given[i]) {
       const status code = take_back(scene, i, error);
-      if (code) return code;
+      if (code)
+        return code;
     }
   }
   return scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
@@ -231,7 +248,8 @@ char *scene_json(const struct scene *scene) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return NULL;
+  if (!out)
+    return NULL;
   fputs("{\"engine\":", out);
   field_json_string(scene->kind->name, out);
   fputs(",\"name\":", out);
@@ -257,7 +275,8 @@ void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[1
   }
   fprintf(out, "engine=%s\nresults_version=%d\nseed=%llu\n%s", scene->kind->name, scene->kind->results_version,
           (unsigned long long)seed, inputs);
-  if (fclose(out) == 0) blake2s(text, size, identity);
+  if (fclose(out) == 0)
+    blake2s(text, size, identity);
   free(text);
   free(inputs);
 }

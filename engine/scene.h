@@ -1,5 +1,6 @@
 /* A scene: which engine, and its typed inputs. Built-in scenes are documents with their sources, kept in
- * engine/<engine>/scenes/ and compiled into the program; `clast scenes NAME` prints one as a start for one's own. */
+ * engine/<engine>/scene/builtin/ and compiled into the program; `clast scenes NAME` prints one as a start for one's
+ * own. */
 #ifndef CLAST_ENGINE_SCENE_H
 #define CLAST_ENGINE_SCENE_H
 
@@ -7,9 +8,9 @@
 
 struct scene {
   const struct engine_kind *kind;
-  void *inputs; /* kind->inputs->size bytes, SI, defaults filled */
-  bool *given;  /* per input row: set by the document or an override */
-  bool *overridden; /* per input row: set by an override */
+  void *inputs;               /* kind->inputs->size bytes, SI, defaults filled */
+  bool *given;                /* per input row: set by the document or an override */
+  bool *overridden;           /* per input row: set by an override */
   char name[FIELD_TEXT_SIZE]; /* built-in name, or the document's own `name:` */
 };
 
@@ -25,12 +26,12 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
 
-/* Override one input by path or unique suffix, from text ("5 km/s") or as a value; what follows from it and was not given
- * follows anew. Not checked across fields. */
+/* Override one input by path or unique suffix, from text ("5 km/s") or as a value; what follows from it and was not
+ * given follows anew. Not checked across fields. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
-/* After the last override: what the document gave and overrides left without effect is as if it had not been given; overrides
- * without effect are refused, cross-field conditions checked. */
+/* After the last override: what the document gave and overrides left without effect is as if it had not been given;
+ * overrides without effect are refused, cross-field conditions checked. */
 status scene_check(struct scene *scene, struct error *error);
 
 /* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */

@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* 10^(j/10), and the powers of ten that a double holds exactly; a quotient of two exact numbers is correctly rounded. */
+/* 10^(j/10), and the powers of ten that a double holds exactly; a quotient of two exact numbers is correctly rounded.
+ */
 static const double tenth[SPECTRUM_BINS_PER_DECADE] = {
     1.0,
     1.2589254117941673,
@@ -26,20 +27,27 @@ double spectrum_edge(int bin) {
     part += SPECTRUM_BINS_PER_DECADE;
     decade--;
   }
-  if (decade > LARGEST_DECADE) return HUGE_VAL;
-  if (decade < -LARGEST_DECADE) return 0;
+  if (decade > LARGEST_DECADE)
+    return HUGE_VAL;
+  if (decade < -LARGEST_DECADE)
+    return 0;
   double edge = tenth[part];
-  for (; decade > LARGEST_EXACT_POWER; decade -= LARGEST_EXACT_POWER) edge *= exact_power[LARGEST_EXACT_POWER];
-  for (; decade < -LARGEST_EXACT_POWER; decade += LARGEST_EXACT_POWER) edge /= exact_power[LARGEST_EXACT_POWER];
+  for (; decade > LARGEST_EXACT_POWER; decade -= LARGEST_EXACT_POWER)
+    edge *= exact_power[LARGEST_EXACT_POWER];
+  for (; decade < -LARGEST_EXACT_POWER; decade += LARGEST_EXACT_POWER)
+    edge /= exact_power[LARGEST_EXACT_POWER];
   return decade < 0 ? edge / exact_power[-decade] : edge * exact_power[decade];
 }
 
 int spectrum_bin(double mass) {
-  if (!(mass > 0) || !isfinite(mass)) return SPECTRUM_NO_BIN;
+  if (!(mass > 0) || !isfinite(mass))
+    return SPECTRUM_NO_BIN;
   /* The logarithm is right to a few units in the last place, so the guess is off by one bin at most, beside an edge. */
   int bin = (int)floor(log10(mass) * SPECTRUM_BINS_PER_DECADE);
-  while (mass < spectrum_edge(bin)) bin--;
-  while (mass >= spectrum_edge(bin + 1)) bin++;
+  while (mass < spectrum_edge(bin))
+    bin--;
+  while (mass >= spectrum_edge(bin + 1))
+    bin++;
   return bin;
 }
 
@@ -50,23 +58,29 @@ static size_t count_bins(size_t n, const double *masses) {
     next = INT32_MAX;
     for (size_t i = 0; i < n; i++) {
       int bin = spectrum_bin(masses[i]);
-      if (bin > last && bin < next) next = bin;
+      if (bin > last && bin < next)
+        next = bin;
     }
-    if (next == INT32_MAX) return count;
+    if (next == INT32_MAX)
+      return count;
   }
 }
 
-/* Rows stay sorted while they fill. Fragments come by descending mass, so the row wanted is nearly always the one touched
- * last or a new one below it. */
+/* Rows stay sorted while they fill. Fragments come by descending mass, so the row wanted is nearly always the one
+ * touched last or a new one below it. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity) {
   size_t count = 0, at = 0;
   for (size_t i = 0; i < n; i++) {
     int bin = spectrum_bin(masses[i]);
-    if (bin == SPECTRUM_NO_BIN) continue;
-    while (at < count && rows[at].bin < bin) at++;
-    while (at > 0 && rows[at - 1].bin >= bin) at--;
+    if (bin == SPECTRUM_NO_BIN)
+      continue;
+    while (at < count && rows[at].bin < bin)
+      at++;
+    while (at > 0 && rows[at - 1].bin >= bin)
+      at--;
     if (at == count || rows[at].bin != bin) {
-      if (count == capacity) return count_bins(n, masses);
+      if (count == capacity)
+        return count_bins(n, masses);
       memmove(rows + at + 1, rows + at, (count - at) * sizeof *rows);
       rows[at] = (struct spectrum_bin_row){.bin = bin};
       count++;

@@ -11,8 +11,8 @@
 
 enum { SPECTRUM_BINS_PER_DECADE = 10, SPECTRUM_NO_BIN = INT32_MIN };
 
-/* The bin whose [edge, next edge) holds the mass: exact against spectrum_edge() for every double (1e-3 kg is in bin -30,
- * the double before it in bin -31). SPECTRUM_NO_BIN for zero, negative, infinite and NaN masses. */
+/* The bin whose [edge, next edge) holds the mass: exact against spectrum_edge() for every double (1e-3 kg is in bin
+ * -30, the double before it in bin -31). SPECTRUM_NO_BIN for zero, negative, infinite and NaN masses. */
 int spectrum_bin(double mass);
 
 /* Lower edge of a bin, kg. Whole decades from 1e-22 to 1e22 are the doubles nearest to the powers of ten. */
@@ -25,8 +25,8 @@ struct spectrum_bin_row {
 };
 
 /* Non-empty bins in ascending order; masses in any order (descending is fastest), those without a bin are left out.
- * Returns how many there are; when that is more than `capacity`, the rows are not filled: call again with that much room.
- * The order of summation is the order of `masses`. */
+ * Returns how many there are; when that is more than `capacity`, the rows are not filled: call again with that much
+ * room. The order of summation is the order of `masses`. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity);
 
 #endif

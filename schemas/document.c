@@ -14,7 +14,8 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   if (size > DOCUMENT_LARGEST)
     return status_fail(error, STATUS_CONTENT, "%s: error: larger than %d MiB, which no input of clast is", name,
                        DOCUMENT_LARGEST >> 20);
-  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) text += 3, size -= 3; /* byte order mark */
+  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
+    text += 3, size -= 3; /* byte order mark */
   struct document *document = calloc(1, sizeof *document);
   if (document) {
     document->name = strdup(name);
@@ -28,9 +29,11 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   memcpy(document->text, text, size);
   document->text[size] = 0;
   status code = document_guard(document) ? document_build(document) : STATUS_CONTENT;
-  if (code == STATUS_OK) return *out = document, STATUS_OK;
+  if (code == STATUS_OK)
+    return *out = document, STATUS_OK;
   const char *report = NULL;
-  if (code == STATUS_CONTENT) document_finish(document, &report);
+  if (code == STATUS_CONTENT)
+    document_finish(document, &report);
   status_fail(error, code, "%s", report ? report : "no memory to read a document");
   document_free(document);
   return code;
@@ -59,12 +62,14 @@ status document_open(const char *path, struct document **out, struct error *erro
   size_t size = 0;
   while (size <= DOCUMENT_LARGEST) {
     ssize_t got = read(file, text + size, DOCUMENT_LARGEST + 1 - size);
-    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && errno == EINTR)
+      continue;
     if (got < 0) {
       status_fail(error, STATUS_IO, "%s: cannot be read: %s", path, strerror(errno));
       goto cleanup;
     }
-    if (got == 0) break;
+    if (got == 0)
+      break;
     size += (size_t)got;
   }
   code = document_parse(path, text, size, out, error);
@@ -75,7 +80,8 @@ cleanup:
 }
 
 void document_free(struct document *document) {
-  if (!document) return;
+  if (!document)
+    return;
   for (document_node *node = document->nodes, *next; node; node = next) {
     next = node->next;
     free(node->pairs);
@@ -91,7 +97,8 @@ void document_free(struct document *document) {
 
 status document_finish(struct document *document, const char **report) {
   *report = NULL;
-  if (document->error_count == 0) return STATUS_OK;
+  if (document->error_count == 0)
+    return STATUS_OK;
   free(document->report);
   document->report = document_report_text(document);
   *report = document->report ? document->report : "no memory for the report of errors";
@@ -116,10 +123,12 @@ const char *document_scalar(document_node *node) {
 }
 
 document_node *document_key(document_node *mapping, const char *key) {
-  if (mapping->kind != DOCUMENT_MAPPING) return NULL;
+  if (mapping->kind != DOCUMENT_MAPPING)
+    return NULL;
   for (size_t i = 0; i < mapping->count; i++) {
     struct document_pair *pair = &mapping->pairs[i];
-    if (pair->key->faulty || strcmp(pair->key->text, key) != 0) continue;
+    if (pair->key->faulty || strcmp(pair->key->text, key) != 0)
+      continue;
     pair->seen = true;
     return pair->value;
   }
@@ -127,7 +136,9 @@ document_node *document_key(document_node *mapping, const char *key) {
 }
 
 document_node *document_item(document_node *node, size_t index, const char **key) {
-  if (index >= node->count) return NULL;
-  if (key) *key = node->pairs[index].key ? node->pairs[index].key->text : NULL;
+  if (index >= node->count)
+    return NULL;
+  if (key)
+    *key = node->pairs[index].key ? node->pairs[index].key->text : NULL;
   return node->pairs[index].value;
 }

@@ -12,8 +12,8 @@
 
 #include "schemas/field.h"
 
-struct document;                              /* owns the text and the tree */
-typedef struct document_node document_node;   /* borrowed from its document */
+struct document;                            /* owns the text and the tree */
+typedef struct document_node document_node; /* borrowed from its document */
 
 /* STATUS_MISSING when there is no such file, STATUS_IO when unreadable (a directory, permission), STATUS_CONTENT when
  * it is no YAML mapping: *error holds the located report. */
@@ -27,10 +27,11 @@ enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };
 
 document_node *document_root(struct document *document);
 enum document_kind document_kind(const document_node *node);
-const char *document_scalar(document_node *node);           /* NULL unless a scalar; plain or quoted text */
+const char *document_scalar(document_node *node);                     /* NULL unless a scalar; plain or quoted text */
 document_node *document_key(document_node *mapping, const char *key); /* NULL when absent; marks the key as seen */
-size_t document_count(const document_node *node);            /* items of a sequence, pairs of a mapping */
-document_node *document_item(document_node *node, size_t index, const char **key); /* key set for mappings (may be NULL) */
+size_t document_count(const document_node *node);                     /* items of a sequence, pairs of a mapping */
+document_node *document_item(document_node *node, size_t index,
+                             const char **key); /* key set for mappings (may be NULL) */
 
 /* Read one scalar node through a row (unit, range, choice). False: the error was reported. */
 bool document_value(document_node *node, const struct field *row, struct field_value *value);
@@ -39,15 +40,16 @@ bool document_value(document_node *node, const struct field *row, struct field_v
  * (NULL-terminated, may be NULL) belong to the caller and are left alone; every other unknown key is reported.
  * `when` conditions are judged after all keys are read. Returns false when anything was reported. */
 bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object);
-/* The same, and tells which rows the document gives, good or bad (`given`, one per row; NULL is fine). `complete` (NULL is
- * fine) is called when all keys are read and before conditions are judged: it fills in what was not given and follows from
- * what was. */
+/* The same, and tells which rows the document gives, good or bad (`given`, one per row; NULL is fine). `complete` (NULL
+ * is fine) is called when all keys are read and before conditions are judged: it fills in what was not given and
+ * follows from what was. */
 typedef void (*document_complete)(void *object, const bool *given);
 bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
                          bool *given, document_complete complete);
 
 /* Add a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
-void document_report(document_node *node, const char *path, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void document_report(document_node *node, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* Report every key of the mapping that is not among `known` (NULL-terminated, may be NULL) and that no call above has
  * marked as seen. */
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);

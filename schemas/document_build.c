@@ -41,7 +41,8 @@ static document_node *create(struct builder *b, enum document_kind kind, const c
   node->kind = kind;
   node->start = start;
   node->end = kind == DOCUMENT_SCALAR && end > start ? end : start + 1;
-  if (length) memcpy(node->text, text, length);
+  if (length)
+    memcpy(node->text, text, length);
   node->next = document->nodes;
   document->nodes = node;
   document->node_count++;
@@ -81,7 +82,8 @@ static const char *where(const struct builder *b, char path[PATH_SIZE]) {
 
 /* Put a finished node where it belongs: root, item, key or value. */
 static void attach(struct builder *b, document_node *node) {
-  if (!node) return;
+  if (!node)
+    return;
   if (b->depth == 0) {
     b->document->root = node;
     return;
@@ -113,23 +115,27 @@ static document_node *copy(struct builder *b, const document_node *from, size_t 
     return NULL;
   }
   document_node *node = create(b, from->kind, from->text, strlen(from->text), from->start, from->end);
-  if (!node) return NULL;
+  if (!node)
+    return NULL;
   node->plain = from->plain;
   node->faulty = from->faulty;
   for (size_t i = 0; i < from->count && !b->failed; i++) {
     document_node *key = from->pairs[i].key ? copy(b, from->pairs[i].key, depth + 1) : NULL;
     document_node *value = copy(b, from->pairs[i].value, depth + 1);
-    if (value && (key || !from->pairs[i].key)) append(b, node, key, value);
+    if (value && (key || !from->pairs[i].key))
+      append(b, node, key, value);
   }
   return node;
 }
 
 static void remember(struct builder *b, struct fy_token *token, document_node *node) {
-  if (!token || !node) return;
+  if (!token || !node)
+    return;
   size_t length = 0;
   const char *name = fy_token_get_text(token, &length);
   const struct fy_mark *mark = fy_token_start_mark(token);
-  if (!name) return;
+  if (!name)
+    return;
   if (b->anchor_count == DOCUMENT_MOST_ANCHORS) {
     document_report_at(b->document, mark ? mark->input_pos : 0, 0, NULL, "more than %d anchors", DOCUMENT_MOST_ANCHORS);
     b->failed = true;
@@ -150,11 +156,13 @@ static document_node *alias(struct builder *b, struct fy_token *token, size_t st
   const char *name = fy_token_get_text(token, &length);
   const document_node *target = NULL;
   for (size_t i = b->anchor_count; name && i-- > 0 && !target;)
-    if (b->anchors[i].length == length && memcmp(b->anchors[i].name, name, length) == 0) target = b->anchors[i].node;
+    if (b->anchors[i].length == length && memcmp(b->anchors[i].name, name, length) == 0)
+      target = b->anchors[i].node;
   bool open = false;
   for (size_t i = 0; i < b->depth; i++)
     open = open || b->open[i] == target;
-  if (target && !open) return copy(b, target, b->depth);
+  if (target && !open)
+    return copy(b, target, b->depth);
   char path[PATH_SIZE];
   int shown = length < 60 ? (int)length : 60;
   if (target)
@@ -164,17 +172,20 @@ static document_node *alias(struct builder *b, struct fy_token *token, size_t st
     document_report_at(b->document, start, end, where(b, path), "alias '*%.*s' has no anchor '&%.*s' before it", shown,
                        name ? name : "", shown, name ? name : "");
   document_node *node = create(b, DOCUMENT_SCALAR, "", 0, start, end);
-  if (node) node->faulty = true;
+  if (node)
+    node->faulty = true;
   return node;
 }
 
 static document_node *scalar(struct builder *b, struct fy_token *token, size_t start, size_t end) {
   size_t length = 0;
   const char *text = token ? fy_token_get_text(token, &length) : "";
-  if (!text) text = "", length = 0;
+  if (!text)
+    text = "", length = 0;
   size_t bad = document_guard_text(text, length);
   document_node *node = create(b, DOCUMENT_SCALAR, text, bad, start, end);
-  if (!node) return NULL;
+  if (!node)
+    return NULL;
   node->plain = !token || fy_token_scalar_style(token) == FYSS_PLAIN;
   if (bad < length) {
     document_report(node, where(b, (char[PATH_SIZE]){0}), "text with an escaped control character (0x%02x); remove it",
@@ -187,7 +198,8 @@ static document_node *scalar(struct builder *b, struct fy_token *token, size_t s
 static int by_text(const void *a, const void *b) {
   const document_node *const *left = a, *const *right = b;
   int order = strcmp((*left)->text, (*right)->text);
-  if (order) return order;
+  if (order)
+    return order;
   return (*left)->start < (*right)->start ? -1 : (*left)->start > (*right)->start;
 }
 
@@ -217,7 +229,8 @@ static void report_duplicates(struct builder *b, document_node *mapping) {
 }
 
 static void open_collection(struct builder *b, document_node *node) {
-  if (!node) return;
+  if (!node)
+    return;
   if (b->depth == DOCUMENT_DEEPEST) {
     document_report(node, NULL, "nested more than %d deep", DOCUMENT_DEEPEST);
     b->failed = true;
@@ -228,17 +241,21 @@ static void open_collection(struct builder *b, document_node *node) {
 }
 
 static void close_collection(struct builder *b, size_t end) {
-  if (b->depth == 0) return;
+  if (b->depth == 0)
+    return;
   document_node *node = b->open[--b->depth];
   char first = b->document->text[node->start];
-  if (end > node->start && (first == '{' || first == '[')) node->end = end; /* others: their first character will do */
-  if (node->kind == DOCUMENT_MAPPING && node->count > 1) report_duplicates(b, node);
+  if (end > node->start && (first == '{' || first == '['))
+    node->end = end; /* others: their first character will do */
+  if (node->kind == DOCUMENT_MAPPING && node->count > 1)
+    report_duplicates(b, node);
   attach(b, node);
 }
 
 static void report_tag(struct builder *b, document_node *node) {
   char path[PATH_SIZE];
-  if (node) document_report(node, where(b, path), "a tag; write the value without '!'");
+  if (node)
+    document_report(node, where(b, path), "a tag; write the value without '!'");
 }
 
 /* One event into the tree. False: the document's end. */
@@ -249,10 +266,10 @@ static bool take(struct builder *b, struct fy_event *event, size_t *documents) {
   if (start && end >= start && end < b->document->size && (text[start - 1] == '"' || text[start - 1] == '\'') &&
       text[end] == text[start - 1] && event->type == FYET_SCALAR)
     start--, end++; /* libfyaml's marks leave out the quotes, and the star of an alias */
-  if (event->type == FYET_ALIAS && start && text[start - 1] == '*') start--;
+  if (event->type == FYET_ALIAS && start && text[start - 1] == '*')
+    start--;
   switch (event->type) {
-  case FYET_STREAM_END:
-    return false;
+  case FYET_STREAM_END: return false;
   case FYET_DOCUMENT_START:
     if (++*documents > 1) {
       document_report_at(b->document, start, end, NULL, "a second document starts here; one file holds one document");
@@ -271,14 +288,13 @@ static bool take(struct builder *b, struct fy_event *event, size_t *documents) {
     bool mapping = event->type == FYET_MAPPING_START;
     document_node *node = create(b, mapping ? DOCUMENT_MAPPING : DOCUMENT_SEQUENCE, "", 0, start, end);
     remember(b, mapping ? event->mapping_start.anchor : event->sequence_start.anchor, node);
-    if (mapping ? event->mapping_start.tag : event->sequence_start.tag) report_tag(b, node);
+    if (mapping ? event->mapping_start.tag : event->sequence_start.tag)
+      report_tag(b, node);
     open_collection(b, node);
     return true;
   }
   case FYET_MAPPING_END:
-  case FYET_SEQUENCE_END:
-    close_collection(b, end);
-    return true;
+  case FYET_SEQUENCE_END: close_collection(b, end); return true;
   case FYET_SCALAR: {
     document_node *node = scalar(b, event->scalar.value, start, end);
     remember(b, event->scalar.anchor, node);
@@ -289,11 +305,8 @@ static bool take(struct builder *b, struct fy_event *event, size_t *documents) {
     attach(b, node);
     return true;
   }
-  case FYET_ALIAS:
-    attach(b, alias(b, event->alias.anchor, start, end));
-    return true;
-  default:
-    return true;
+  case FYET_ALIAS: attach(b, alias(b, event->alias.anchor, start, end)); return true;
+  default: return true;
   }
   return true;
 }
@@ -332,8 +345,9 @@ status document_build(struct document *document) {
   b.anchors = calloc(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
   if (diag) {
     fy_diag_set_collect_errors(diag, true);
-    parser = fy_parser_create(&(struct fy_parse_cfg){
-        .flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_1_2, .diag = diag});
+    parser = fy_parser_create(
+        &(struct fy_parse_cfg){.flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_1_2,
+                               .diag = diag});
   }
   if (!parser || !b.anchors || fy_parser_set_string(parser, document->text, document->size) != 0) {
     code = STATUS_MEMORY;
@@ -351,7 +365,8 @@ status document_build(struct document *document) {
     fy_parser_event_free(parser, event);
   }
   if (b.failed) {
-    if (document->error_count == 0) code = STATUS_MEMORY;
+    if (document->error_count == 0)
+      code = STATUS_MEMORY;
     goto cleanup;
   }
   const document_node *root = document->root;

@@ -6,9 +6,11 @@
 static size_t sequence(const unsigned char *text, size_t left) {
   unsigned char a = text[0];
   size_t length = a < 0x80 ? 1 : a >= 0xC2 && a < 0xE0 ? 2 : a >= 0xE0 && a < 0xF0 ? 3 : a >= 0xF0 && a < 0xF5 ? 4 : 0;
-  if (length == 0 || length > left) return 0;
+  if (length == 0 || length > left)
+    return 0;
   for (size_t i = 1; i < length; i++)
-    if ((text[i] & 0xC0) != 0x80) return 0;
+    if ((text[i] & 0xC0) != 0x80)
+      return 0;
   if ((a == 0xE0 && text[1] < 0xA0) || (a == 0xED && text[1] > 0x9F) || (a == 0xF0 && text[1] < 0x90) ||
       (a == 0xF4 && text[1] > 0x8F))
     return 0;
@@ -18,8 +20,10 @@ static size_t sequence(const unsigned char *text, size_t left) {
 /* YAML 1.2.2, 5.1: what is not printable there is refused here too, and so are the line ends of YAML 1.1 (U+0085,
  * U+2028, U+2029) and byte order marks in the middle, which tools disagree about. */
 static bool control(const unsigned char *text, size_t length) {
-  if (length == 1) return (text[0] < 0x20 && text[0] != '\t' && text[0] != '\n' && text[0] != '\r') || text[0] == 0x7F;
-  if (length == 2) return text[0] == 0xC2 && text[1] < 0xA0;
+  if (length == 1)
+    return (text[0] < 0x20 && text[0] != '\t' && text[0] != '\n' && text[0] != '\r') || text[0] == 0x7F;
+  if (length == 2)
+    return text[0] == 0xC2 && text[1] < 0xA0;
   if (length == 3)
     return (text[0] == 0xE2 && text[1] == 0x80 && (text[2] == 0xA8 || text[2] == 0xA9)) ||
            (text[0] == 0xEF && text[1] == 0xBB && text[2] == 0xBF) ||
@@ -32,7 +36,8 @@ size_t document_guard_text(const char *text, size_t size) {
   size_t i = 0;
   while (i < size) {
     size_t length = sequence(bytes + i, size - i);
-    if (length == 0 || control(bytes + i, length)) return i;
+    if (length == 0 || control(bytes + i, length))
+      return i;
     i += length;
   }
   return size;

@@ -18,7 +18,8 @@ struct reading {
 
 static bool listed(const char *word, const char *const *words) {
   for (; words && *words; words++)
-    if (strcmp(word, *words) == 0) return true;
+    if (strcmp(word, *words) == 0)
+      return true;
   return false;
 }
 
@@ -28,10 +29,12 @@ static char **siblings(const struct reading *r, const char *prefix) {
   while (r->also && r->also[extra])
     extra++;
   char **words = calloc(r->table->count + extra + 1, sizeof *words);
-  if (!words) return NULL;
+  if (!words)
+    return NULL;
   for (size_t i = 0; i < r->table->count; i++) {
     const char *path = r->table->rows[i].path;
-    if (strncmp(path, prefix, length) != 0) continue;
+    if (strncmp(path, prefix, length) != 0)
+      continue;
     char *word = strndup(path + length, strcspn(path + length, "."));
     bool known = !word;
     for (size_t j = 0; j < count && !known; j++)
@@ -42,7 +45,8 @@ static char **siblings(const struct reading *r, const char *prefix) {
       words[count++] = word;
   }
   for (size_t i = 0; i < extra && length == 0; i++)
-    if ((words[count] = strdup(r->also[i])) != NULL) count++;
+    if ((words[count] = strdup(r->also[i])) != NULL)
+      count++;
   return words;
 }
 
@@ -64,25 +68,29 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
   const struct field_table *table = r->table;
   for (size_t i = 0; i < mapping->count; i++) {
     document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
-    if (key->faulty || (!*prefix && listed(key->text, r->also))) continue;
+    if (key->faulty || (!*prefix && listed(key->text, r->also)))
+      continue;
     mapping->pairs[i].seen = true;
     char path[PATH_SIZE];
     int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
     bool fits = length > 0 && length < PATH_SIZE - 2 && !strchr(key->text, '.'), section = false;
     const struct field *row = NULL;
     for (size_t k = 0; fits && k < table->count && !row; k++) {
-      if (strcmp(table->rows[k].path, path) == 0) row = &table->rows[k];
-      section =
-          section || (strncmp(table->rows[k].path, path, (size_t)length) == 0 && table->rows[k].path[length] == '.');
+      if (strcmp(table->rows[k].path, path) == 0)
+        row = &table->rows[k];
+      section = section ||
+                (strncmp(table->rows[k].path, path, (size_t)length) == 0 && table->rows[k].path[length] == '.');
     }
     if (row) {
       struct place *place = &r->places[row - table->rows];
       struct field_value value;
-      if (place->key) continue; /* a duplicate: reported already, the first one counts */
+      if (place->key)
+        continue; /* a duplicate: reported already, the first one counts */
       place->key = key;
       place->value = node;
       place->good = document_value(node, row, &value);
-      if (place->good) field_set_unchecked(row, r->object, &value);
+      if (place->good)
+        field_set_unchecked(row, r->object, &value);
     } else if (section && node->kind == DOCUMENT_MAPPING) {
       path[length] = '.';
       path[length + 1] = 0;
@@ -104,7 +112,8 @@ static document_node *holder(document_node *mapping, const char *path) {
     for (size_t i = 0; path[length] && i < mapping->count && !next; i++)
       if (strncmp(mapping->pairs[i].key->text, path, length) == 0 && !mapping->pairs[i].key->text[length])
         next = mapping->pairs[i].value;
-    if (!next || next->kind != DOCUMENT_MAPPING) return mapping;
+    if (!next || next->kind != DOCUMENT_MAPPING)
+      return mapping;
     mapping = next;
     path += length + 1;
   }
@@ -118,7 +127,8 @@ static bool judgeable(const struct reading *r, const struct field *row) {
     for (size_t i = 0; i < r->table->count && !other; i++)
       if (strncmp(r->table->rows[i].path, row->when, length) == 0 && !r->table->rows[i].path[length])
         other = &r->table->rows[i];
-    if (other && r->places[other - r->table->rows].key && !r->places[other - r->table->rows].good) return false;
+    if (other && r->places[other - r->table->rows].key && !r->places[other - r->table->rows].good)
+      return false;
     row = other;
   }
   return true;
@@ -130,11 +140,14 @@ bool document_read(document_node *node, const struct field_table *table, const c
 
 static bool complete_object(const struct reading *r, bool *given, document_complete complete) {
   bool *mine = given ? given : calloc(r->table->count + 1, sizeof *mine);
-  if (!mine) return false;
+  if (!mine)
+    return false;
   for (size_t i = 0; i < r->table->count; i++)
     mine[i] = r->places[i].key != NULL;
-  if (complete) complete(r->object, mine);
-  if (!given) free(mine);
+  if (complete)
+    complete(r->object, mine);
+  if (!given)
+    free(mine);
   return true;
 }
 
@@ -142,27 +155,33 @@ bool document_read_given(document_node *node, const struct field_table *table, c
                          bool *given, document_complete complete) {
   struct document *document = node->document;
   size_t before = document->error_count;
-  if (node->faulty) return false;
+  if (node->faulty)
+    return false;
   if (node->kind != DOCUMENT_MAPPING) {
     char path[PATH_SIZE];
     document_report(node, document_value_path(node, path, sizeof path), "expected keys and values, got %s",
                     document_value_is_null(node) ? "nothing" : document_value_what(node));
     return false;
   }
-  struct reading r = {
-      .table = table, .also = also, .object = object, .places = calloc(table->count + 1, sizeof *r.places)};
+  struct reading r = {.table = table,
+                      .also = also,
+                      .object = object,
+                      .places = calloc(table->count + 1, sizeof *r.places)};
   if (!r.places) {
     document_report(node, NULL, "no memory to read it");
     return false;
   }
   walk(&r, node, "");
-  if (!complete_object(&r, given, complete)) document_report(node, NULL, "no memory to read it");
+  if (!complete_object(&r, given, complete))
+    document_report(node, NULL, "no memory to read it");
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char why[600], path[PATH_SIZE], whole[2 * PATH_SIZE];
-    if (!judgeable(&r, row)) continue;
+    if (!judgeable(&r, row))
+      continue;
     if (field_is_active(table, row, object)) {
-      if (!(row->flags & FIELD_REQUIRED) || r.places[i].key) continue;
+      if (!(row->flags & FIELD_REQUIRED) || r.places[i].key)
+        continue;
       size_t at = holder(node, row->path)->start;
       document_value_path(node, path, sizeof path);
       snprintf(whole, sizeof whole, "%s%s%s", path, *path ? "." : "", row->path);

@@ -9,7 +9,8 @@ enum { SHOWN = 120, BEFORE = 70 }; /* bytes of a long line that are shown, and o
 static void add(struct document *document, size_t start, size_t end, const char *path, const char *format,
                 va_list arguments) {
   size_t order = document->error_count++;
-  if (order >= DOCUMENT_MOST_ERRORS) return;
+  if (order >= DOCUMENT_MOST_ERRORS)
+    return;
   char message[1024];
   int used = path && *path ? snprintf(message, sizeof message, "%.200s: ", path) : 0;
   vsnprintf(message + used, sizeof message - (size_t)used, format, arguments);
@@ -17,7 +18,8 @@ static void add(struct document *document, size_t start, size_t end, const char 
   for (size_t bad; (bad = document_guard_text(message, strlen(message))) < strlen(message);)
     message[bad] = '?';
   for (char *at = message; *at; at++)
-    if (*at == '\n' || *at == '\r') *at = ' ';
+    if (*at == '\n' || *at == '\r')
+      *at = ' ';
   document->errors[order] = (struct document_error){start, end, order, strdup(message)};
 }
 
@@ -32,7 +34,8 @@ void document_report_at(struct document *document, size_t start, size_t end, con
 void document_report(document_node *node, const char *path, const char *format, ...) {
   va_list arguments;
   va_start(arguments, format);
-  if (!node->faulty) add(node->document, node->start, node->end, path, format, arguments);
+  if (!node->faulty)
+    add(node->document, node->start, node->end, path, format, arguments);
   va_end(arguments);
 }
 
@@ -62,14 +65,17 @@ static void write_error(const struct document *document, const struct document_e
           error->message ? error->message : "(no memory for the message)");
   size_t from = begin, to = finish;
   if (finish - begin > SHOWN) {
-    if (start - begin > BEFORE) from = start - BEFORE;
-    if (to - from > SHOWN) to = from + SHOWN;
+    if (start - begin > BEFORE)
+      from = start - BEFORE;
+    if (to - from > SHOWN)
+      to = from + SHOWN;
     while (from < start && continues(text[from]))
       from++;
     while (to > start && to < finish && continues(text[to]))
       to--;
   }
-  if (from == to) return;
+  if (from == to)
+    return;
   /* A line that is no UTF-8 may hold anything: its bytes beyond ASCII are shown as '?', one column each. */
   bool readable = document_guard_text(text + from, to - from) == to - from;
   fprintf(out, "  %s", from > begin ? "..." : "");
@@ -79,17 +85,20 @@ static void write_error(const struct document *document, const struct document_e
   }
   fprintf(out, "%s\n  %s", to < finish ? "..." : "", from > begin ? "   " : "");
   for (size_t i = from; i < start; i++)
-    if (!readable || !continues(text[i])) fputc(text[i] == '\t' ? '\t' : ' ', out);
+    if (!readable || !continues(text[i]))
+      fputc(text[i] == '\t' ? '\t' : ' ', out);
   fputc('^', out);
   size_t end = error->end < to ? error->end : to;
   for (size_t i = start + 1; i < end; i++)
-    if (!readable || !continues(text[i])) fputc('~', out);
+    if (!readable || !continues(text[i]))
+      fputc('~', out);
   fputc('\n', out);
 }
 
 static int by_place(const void *a, const void *b) {
   const struct document_error *left = a, *right = b;
-  if (left->start != right->start) return left->start < right->start ? -1 : 1;
+  if (left->start != right->start)
+    return left->start < right->start ? -1 : 1;
   return left->order < right->order ? -1 : left->order > right->order;
 }
 
@@ -101,19 +110,23 @@ char *document_report_text(struct document *document) {
   char *text = NULL;
   size_t size = 0, shown = 0;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return NULL;
+  if (!out)
+    return NULL;
   for (; shown < kept; shown++) {
     char *one = NULL;
     size_t one_size = 0;
     FILE *line = open_memstream(&one, &one_size);
-    if (!line) break;
+    if (!line)
+      break;
     write_error(document, &document->errors[shown], line);
     bool whole = fclose(line) == 0;
     fflush(out);
     bool fits = whole && size + one_size <= ROOM;
-    if (fits) fwrite(one, 1, one_size, out);
+    if (fits)
+      fwrite(one, 1, one_size, out);
     free(one);
-    if (!fits) break;
+    if (!fits)
+      break;
   }
   if (shown < document->error_count)
     fprintf(out, "%.60s: error: and %zu more; correct the ones above first\n", document->name,
@@ -123,6 +136,7 @@ char *document_report_text(struct document *document) {
     free(text);
     return NULL;
   }
-  if (size && text[size - 1] == '\n') text[size - 1] = 0; /* messages end without a line end */
+  if (size && text[size - 1] == '\n')
+    text[size - 1] = 0; /* messages end without a line end */
   return text;
 }

@@ -20,7 +20,7 @@ struct document_pair {
 
 struct document_node {
   struct document *document;
-  struct document_node *next; /* all nodes, for freeing */
+  struct document_node *next;  /* all nodes, for freeing */
   document_node *parent, *key; /* where it stands: NULL at the root, key NULL in a list */
   enum document_kind kind;
   bool plain;        /* scalar without quotes: the core schema gives it a type */

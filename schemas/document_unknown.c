@@ -1,12 +1,13 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
 void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere) {
-  if (key->faulty) return;
+  if (key->faulty)
+    return;
   struct document *document = key->document;
   if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: do not search for what nobody will see */
     document->error_count++;
@@ -15,16 +16,18 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
   char whole[PATH_SIZE], list[LIST_SIZE] = "";
   snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
   const char *near = NULL;
-  size_t length = strlen(key->text), best = 1 + near_limit(length), used = 0;
+  size_t length = strlen(key->text), best = 1 + edit_distance_limit(length), used = 0;
   for (size_t i = 0; known && known[i]; i++) {
-    size_t d = near_distance(key->text, length, known[i]);
-    if (d < best && d < strlen(known[i])) best = d, near = known[i];
+    size_t d = edit_distance(key->text, length, known[i]);
+    if (d < best && d < strlen(known[i]))
+      best = d, near = known[i];
     if (used < sizeof list) {
       int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);
       used += n > 0 ? (size_t)n : 0;
     }
   }
-  if (used >= sizeof list) memcpy(list + sizeof list - 4, "...", 4);
+  if (used >= sizeof list)
+    memcpy(list + sizeof list - 4, "...", 4);
   if (strcmp(key->text, "<<") == 0)
     document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
   else if (near)
@@ -45,6 +48,7 @@ void document_unknown_keys(document_node *mapping, const char *path, const char 
     bool listed = mapping->pairs[i].seen;
     for (size_t k = 0; known && known[k] && !listed; k++)
       listed = strcmp(known[k], mapping->pairs[i].key->text) == 0;
-    if (!listed) document_unknown_key(mapping->pairs[i].key, path, known, NULL);
+    if (!listed)
+      document_unknown_key(mapping->pairs[i].key, path, known, NULL);
   }
 }

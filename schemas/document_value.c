@@ -6,19 +6,17 @@ enum { LIST_SIZE = 400, PATH_SIZE = 256 };
 
 const char *document_value_what(const document_node *node) {
   switch (node->kind) {
-  case DOCUMENT_SCALAR:
-    return node->plain && !node->text[0] ? "nothing" : "a single value";
-  case DOCUMENT_SEQUENCE:
-    return "a list";
-  case DOCUMENT_MAPPING:
-    return "keys and values";
+  case DOCUMENT_SCALAR: return node->plain && !node->text[0] ? "nothing" : "a single value";
+  case DOCUMENT_SEQUENCE: return "a list";
+  case DOCUMENT_MAPPING: return "keys and values";
   }
   return "something else";
 }
 
 static bool any_of(const char *text, const char *const *words) {
   for (; *words; words++)
-    if (strcmp(text, *words) == 0) return true;
+    if (strcmp(text, *words) == 0)
+      return true;
   return false;
 }
 
@@ -31,12 +29,8 @@ bool document_value_is_null(const document_node *node) {
 static void describe(const struct field *row, char *text, size_t size) {
   switch (row->kind) {
   case FIELD_REAL:
-  case FIELD_INTEGER:
-    field_describe_range(row, text, size);
-    break;
-  case FIELD_BOOLEAN:
-    snprintf(text, size, "true or false");
-    break;
+  case FIELD_INTEGER: field_describe_range(row, text, size); break;
+  case FIELD_BOOLEAN: snprintf(text, size, "true or false"); break;
   case FIELD_CHOICE: {
     size_t used = 0;
     for (size_t i = 0; row->choices[i] && used < size; i++) {
@@ -49,9 +43,7 @@ static void describe(const struct field *row, char *text, size_t size) {
     }
     break;
   }
-  case FIELD_TEXT:
-    snprintf(text, size, "text");
-    break;
+  case FIELD_TEXT: snprintf(text, size, "text"); break;
   }
 }
 
@@ -77,14 +69,17 @@ const char *document_value_path(const document_node *node, char *path, size_t si
 static void report(document_node *node, const struct field *row, const char *message) {
   char path[PATH_SIZE] = "";
   size_t length = strlen(row->path);
-  if (strncmp(message, row->path, length) == 0 && strncmp(message + length, ": ", 2) == 0) message += length + 2;
-  if (node->document->error_count < DOCUMENT_MOST_ERRORS) document_value_path(node, path, sizeof path);
+  if (strncmp(message, row->path, length) == 0 && strncmp(message + length, ": ", 2) == 0)
+    message += length + 2;
+  if (node->document->error_count < DOCUMENT_MOST_ERRORS)
+    document_value_path(node, path, sizeof path);
   document_report(node, *path ? path : row->path, "%s", message);
 }
 
 bool document_value(document_node *node, const struct field *row, struct field_value *value) {
   struct error error;
-  if (node->faulty) return false;
+  if (node->faulty)
+    return false;
   bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
   if (node->kind != DOCUMENT_SCALAR || document_value_is_null(node)) {
     char expected[LIST_SIZE];
@@ -97,9 +92,12 @@ bool document_value(document_node *node, const struct field *row, struct field_v
   } else {
     static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
     const char *text = node->text;
-    if (row->kind == FIELD_BOOLEAN && any_of(text, yes)) text = "true";
-    if (row->kind == FIELD_BOOLEAN && any_of(text, no)) text = "false";
-    if (field_parse(row, text, value, &error) == STATUS_OK) return true;
+    if (row->kind == FIELD_BOOLEAN && any_of(text, yes))
+      text = "true";
+    if (row->kind == FIELD_BOOLEAN && any_of(text, no))
+      text = "false";
+    if (field_parse(row, text, value, &error) == STATUS_OK)
+      return true;
   }
   report(node, row, error.message);
   return false;

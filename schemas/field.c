@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 enum { QUOTE = 60 };
 
@@ -18,22 +18,25 @@ bool field_is_off(double value) {
 /* `suffix` is a whole number of trailing words of `path`. */
 static bool ends_with(const char *path, const char *suffix) {
   size_t path_length = strlen(path), length = strlen(suffix);
-  if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0) return false;
+  if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0)
+    return false;
   return length == path_length || path[path_length - length - 1] == '.';
 }
 
 const char *field_nearest(const struct field_table *table, const char *path) {
   /* Compared with every suffix of each path, so that "young_modulos" finds "grain.young_modulus"; a suffix costs a
    * little, so that a whole path wins over one. */
-  size_t best = SIZE_MAX, length = strlen(path), limit = near_limit(length);
+  size_t best = SIZE_MAX, length = strlen(path), limit = edit_distance_limit(length);
   const char *found = NULL;
   for (size_t i = 0; i < table->count; i++) {
     for (const char *tail = table->rows[i].path; tail; tail = strchr(tail, '.')) {
       tail += *tail == '.';
-      size_t d = near_distance(path, length, tail);
-      if (d > limit || d >= strlen(tail)) continue;
+      size_t d = edit_distance(path, length, tail);
+      if (d > limit || d >= strlen(tail))
+        continue;
       d = 2 * d + (tail != table->rows[i].path);
-      if (d < best) best = d, found = table->rows[i].path;
+      if (d < best)
+        best = d, found = table->rows[i].path;
     }
   }
   return found;
@@ -44,8 +47,10 @@ const struct field *field_find(const struct field_table *table, const char *path
   size_t candidates = 0, used = 0;
   char names[600] = "";
   for (size_t i = 0; i < table->count; i++) {
-    if (strcmp(table->rows[i].path, path) == 0) return &table->rows[i];
-    if (!ends_with(table->rows[i].path, path)) continue;
+    if (strcmp(table->rows[i].path, path) == 0)
+      return &table->rows[i];
+    if (!ends_with(table->rows[i].path, path))
+      continue;
     found = &table->rows[i];
     candidates++;
     int n = snprintf(names + used, sizeof names - used, "%s'%s'", candidates > 1 ? ", " : "", found->path);
@@ -54,7 +59,8 @@ const struct field *field_find(const struct field_table *table, const char *path
     else
       names[used] = 0;
   }
-  if (candidates == 1) return found;
+  if (candidates == 1)
+    return found;
   if (candidates > 1) {
     status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
     return NULL;
@@ -62,8 +68,8 @@ const struct field *field_find(const struct field_table *table, const char *path
   const size_t length = strlen(path);
   for (size_t i = 0; i < table->count; i++)
     if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == '.') {
-      status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path, table->name,
-                  table->rows[i].path);
+      status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path,
+                  table->name, table->rows[i].path);
       return NULL;
     }
   const char *near = field_nearest(table, path);
@@ -89,7 +95,8 @@ size_t field_choice_count(const struct field *row) {
 
 static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
   memset(to, 0, FIELD_TEXT_SIZE); /* whole: structs are compared and hashed by some */
-  if (from) memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
+  if (from)
+    memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
 }
 
 void field_get(const struct field *row, const void *object, struct field_value *value) {
@@ -97,12 +104,8 @@ void field_get(const struct field *row, const void *object, struct field_value *
   memset(value, 0, sizeof *value);
   value->kind = row->kind;
   switch (row->kind) {
-  case FIELD_REAL:
-    memcpy(&value->number, from, sizeof value->number);
-    break;
-  case FIELD_INTEGER:
-    memcpy(&value->integer, from, sizeof value->integer);
-    break;
+  case FIELD_REAL: memcpy(&value->number, from, sizeof value->number); break;
+  case FIELD_INTEGER: memcpy(&value->integer, from, sizeof value->integer); break;
   case FIELD_BOOLEAN: {
     bool truth;
     memcpy(&truth, from, sizeof truth);
@@ -113,12 +116,11 @@ void field_get(const struct field *row, const void *object, struct field_value *
     int index;
     memcpy(&index, from, sizeof index);
     value->number = index;
-    if (index >= 0 && (size_t)index < field_choice_count(row)) copy_text(value->text, row->choices[index]);
+    if (index >= 0 && (size_t)index < field_choice_count(row))
+      copy_text(value->text, row->choices[index]);
     break;
   }
-  case FIELD_TEXT:
-    copy_text(value->text, from);
-    break;
+  case FIELD_TEXT: copy_text(value->text, from); break;
   }
 }
 
@@ -138,7 +140,8 @@ void field_defaults(const struct field_table *table, void *object) {
 
 static const struct field *exact(const struct field_table *table, const char *path, size_t length) {
   for (size_t i = 0; i < table->count; i++)
-    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == 0) return &table->rows[i];
+    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == 0)
+      return &table->rows[i];
   return NULL;
 }
 
@@ -164,15 +167,18 @@ static const struct field *unmet(const struct field_table *table, const struct f
   for (size_t links = 0; row->when; links++) {
     const char *equals = strchr(row->when, '=');
     *other = equals ? exact(table, row->when, (size_t)(equals - row->when)) : NULL;
-    if (!*other || links > table->count) return row;
+    if (!*other || links > table->count)
+      return row;
     bool met = false;
     for (const char *at = equals + 1; !met;) {
       size_t length = strcspn(at, "|");
       met = value_is(*other, object, at, length);
-      if (!at[length]) break;
+      if (!at[length])
+        break;
       at += length + 1;
     }
-    if (!met) return row;
+    if (!met)
+      return row;
     row = *other;
   }
   return NULL;
@@ -187,7 +193,8 @@ void field_describe_inactive(const struct field_table *table, const struct field
                              size_t size) {
   const struct field *other, *link = unmet(table, row, object, &other);
   *text = 0;
-  if (!link || !other) return;
+  if (!link || !other)
+    return;
   char wanted[200], came[FIELD_TEXT_SIZE];
   size_t used = 0;
   for (const char *at = strchr(link->when, '=') + 1; *at && used + 5 < sizeof wanted; at++) {
@@ -284,7 +291,8 @@ size_t field_encode(const struct field_table *table, const void *object, uint8_t
     case FIELD_TEXT: {
       size_t length = strnlen(from, FIELD_TEXT_SIZE - 1);
       size += put(to, length, 1);
-      if (to) memcpy(to + 1, from, length);
+      if (to)
+        memcpy(to + 1, from, length);
       size += length;
       break;
     }
@@ -299,23 +307,24 @@ size_t field_encoded_size(const struct field_table *table, const void *object) {
 
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object) {
   size_t used = 8;
-  if (size < used || take(bytes, 8) != table_hash(table)) return 0;
+  if (size < used || take(bytes, 8) != table_hash(table))
+    return 0;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char *to = (char *)object + row->offset;
     static const size_t widths[] = {8, 8, 1, 2, 1};
     size_t width = widths[row->kind];
-    if (size - used < width) return 0;
+    if (size - used < width)
+      return 0;
     uint64_t bits = take(bytes + used, width);
     used += width;
     switch (row->kind) {
     case FIELD_REAL:
-    case FIELD_INTEGER:
-      memcpy(to, &bits, 8);
-      break;
+    case FIELD_INTEGER: memcpy(to, &bits, 8); break;
     case FIELD_BOOLEAN: {
       bool truth = bits == 1;
-      if (bits > 1) return 0;
+      if (bits > 1)
+        return 0;
       memcpy(to, &truth, sizeof truth);
       break;
     }
@@ -324,12 +333,14 @@ size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_
       size_t count = 0;
       while (row->choices[count])
         count++;
-      if (bits >= count) return 0;
+      if (bits >= count)
+        return 0;
       memcpy(to, &index, sizeof index);
       break;
     }
     case FIELD_TEXT:
-      if (size - used < bits) return 0;
+      if (size - used < bits)
+        return 0;
       memset(to, 0, FIELD_TEXT_SIZE);
       memcpy(to, bytes + used, bits);
       used += bits;

@@ -27,31 +27,31 @@ enum field_flags {
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
   FIELD_VOLATILE = 16,     /* results only: times, host...: differs between identical runs; not compared by tests */
   FIELD_LOG = 32,          /* a positive quantity usually varied over decades (hint for plots and designs) */
-  FIELD_DERIVED = 64,      /* inputs only: where it is not given, it follows from other inputs (engine_kind.complete); `number`
-                            * only stands in until then, and the doc text says what it follows from */
+  FIELD_DERIVED = 64,      /* inputs only: where it is not given, it follows from other inputs (engine_kind.complete);
+                            * `number`      only stands in until then, and the doc text says what it follows from */
 };
 
 struct field {
-  const char *path;          /* dotted, lower_case words */
+  const char *path; /* dotted, lower_case words */
   enum field_kind kind;
-  const char *unit;          /* SI: "m", "kg/m^3", "1", "rad"; NULL for non-numbers */
-  size_t offset;             /* offsetof in the struct the table describes */
-  double minimum, maximum;   /* inclusive unless flagged; -HUGE_VAL / HUGE_VAL for none. Integers too */
-  double number;             /* default of REAL/INTEGER/BOOLEAN (0/1)/CHOICE (index); NAN with MAY_BE_OFF = off */
-  const char *text;          /* default of TEXT */
+  const char *unit;           /* SI: "m", "kg/m^3", "1", "rad"; NULL for non-numbers */
+  size_t offset;              /* offsetof in the struct the table describes */
+  double minimum, maximum;    /* inclusive unless flagged; -HUGE_VAL / HUGE_VAL for none. Integers too */
+  double number;              /* default of REAL/INTEGER/BOOLEAN (0/1)/CHOICE (index); NAN with MAY_BE_OFF = off */
+  const char *text;           /* default of TEXT */
   const char *const *choices; /* NULL-terminated, for CHOICE */
-  const char *choice_docs;   /* optional, one sentence per choice, separated by '\n' */
+  const char *choice_docs;    /* optional, one sentence per choice, separated by '\n' */
   unsigned flags;
-  const char *when;          /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active):
-                              * active only then; given otherwise, it is refused */
-  const char *doc;           /* meaning, one or more sentences */
-  const char *source;        /* paper and equation, or NULL */
+  const char *when;   /* NULL, or "path=value|value" (a choice, boolean or integer of the same table, itself active):
+                       * active only then; given otherwise, it is refused */
+  const char *doc;    /* meaning, one or more sentences */
+  const char *source; /* paper and equation, or NULL */
 };
 
 struct field_table {
   const struct field *rows;
   size_t count;
-  size_t size; /* sizeof the struct described */
+  size_t size;      /* sizeof the struct described */
   const char *name; /* "dem scene", for messages */
   const char *doc;
 };
@@ -61,8 +61,8 @@ struct field_table {
 /* A value on its own: what a sweep axis holds, what the store writes. */
 struct field_value {
   enum field_kind kind;
-  double number;  /* REAL (NaN = off), BOOLEAN 0/1, CHOICE index */
-  int64_t integer; /* INTEGER */
+  double number;              /* REAL (NaN = off), BOOLEAN 0/1, CHOICE index */
+  int64_t integer;            /* INTEGER */
   char text[FIELD_TEXT_SIZE]; /* TEXT; for CHOICE the choice's name too */
 };
 
@@ -85,14 +85,15 @@ void field_describe_inactive(const struct field_table *table, const struct field
                              size_t size);
 
 void field_get(const struct field *row, const void *object, struct field_value *value);
-/* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row, and
- * a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message that
- * names path, range and what came. */
+/* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row,
+ * and a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message
+ * that names path, range and what came. */
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error);
 /* Stores a value that is known to suit the row. */
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value);
 /* What field_set does, without storing: *out is `value` brought to the row's own kind, in range. */
-status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out, struct error *error);
+status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
+                       struct error *error);
 /* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked, range is checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
 /* What a number's row asks for: "above 0 m", "at least 1 and at most 12". */

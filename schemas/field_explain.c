@@ -10,7 +10,8 @@ static void wrap(const char *text, FILE *out) {
   size_t column = 0;
   while (*text) {
     size_t word = strcspn(text, " \n");
-    if (column && column + 1 + word > WIDTH) column = 0, fputc('\n', out);
+    if (column && column + 1 + word > WIDTH)
+      column = 0, fputc('\n', out);
     if (word) {
       fprintf(out, "%*s%.*s", column ? 1 : INDENT, "", (int)word, text);
       column += word + (column ? 1 : INDENT);
@@ -18,7 +19,8 @@ static void wrap(const char *text, FILE *out) {
     text += word;
     text += *text != 0;
   }
-  if (column) fputc('\n', out);
+  if (column)
+    fputc('\n', out);
 }
 
 static void explain_choices(const struct field *row, FILE *out) {
@@ -26,7 +28,8 @@ static void explain_choices(const struct field *row, FILE *out) {
   for (size_t i = 0; row->choices[i]; i++) {
     size_t length = doc ? strcspn(doc, "\n") : 0;
     fprintf(out, "%*s%s%s%.*s\n", INDENT + 2, "", row->choices[i], length ? ": " : "", (int)length, doc ? doc : "");
-    if (doc) doc += length + (doc[length] == '\n');
+    if (doc)
+      doc += length + (doc[length] == '\n');
   }
 }
 
@@ -37,9 +40,12 @@ static void explain_row(const struct field *row, FILE *out) {
     char range[160];
     field_describe_range(row, range, sizeof range);
     bool bare = strncmp(range, "a number", 8) == 0;
-    if (row->unit && strcmp(row->unit, "1")) fprintf(out, " in %s", row->unit);
-    if (!bare) fprintf(out, ", %s", range);
-    if (row->flags & FIELD_MAY_BE_OFF) fputs(", or off", out);
+    if (row->unit && strcmp(row->unit, "1"))
+      fprintf(out, " in %s", row->unit);
+    if (!bare)
+      fprintf(out, ", %s", range);
+    if (row->flags & FIELD_MAY_BE_OFF)
+      fputs(", or off", out);
   }
   if (row->flags & FIELD_REQUIRED) {
     fputs("; required\n", out);
@@ -47,8 +53,10 @@ static void explain_row(const struct field *row, FILE *out) {
     fputs("; default follows from other inputs\n", out);
   } else {
     struct field_value value = {.kind = row->kind, .number = row->number, .integer = 0};
-    if (row->kind == FIELD_INTEGER) value.integer = (int64_t)row->number;
-    if (row->kind == FIELD_TEXT && row->text) memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
+    if (row->kind == FIELD_INTEGER)
+      value.integer = (int64_t)row->number;
+    if (row->kind == FIELD_TEXT && row->text)
+      memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
     char text[FIELD_TEXT_SIZE + 64];
     field_print(row, &value, text, sizeof text);
     if (row->kind == FIELD_TEXT)
@@ -56,8 +64,10 @@ static void explain_row(const struct field *row, FILE *out) {
     else
       fprintf(out, "; default %s\n", text);
   }
-  if (row->doc) wrap(row->doc, out);
-  if (row->kind == FIELD_CHOICE) explain_choices(row, out);
+  if (row->doc)
+    wrap(row->doc, out);
+  if (row->kind == FIELD_CHOICE)
+    explain_choices(row, out);
   if (row->when) {
     size_t equals = strcspn(row->when, "=");
     fprintf(out, "%*sOnly when %.*s is ", INDENT, "", (int)equals, row->when);
@@ -80,7 +90,8 @@ size_t field_explain(const struct field_table *table, const char *prefix, FILE *
     length--;
   for (size_t i = 0; i < table->count; i++) {
     const char *path = table->rows[i].path;
-    if (strncmp(path, prefix, length) != 0 || (length && path[length] != 0 && path[length] != '.')) continue;
+    if (strncmp(path, prefix, length) != 0 || (length && path[length] != 0 && path[length] != '.'))
+      continue;
     explain_row(&table->rows[i], out);
     count++;
   }

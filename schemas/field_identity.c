@@ -32,7 +32,8 @@ char *field_identity(const struct field_table *table, const void *object) {
     return NULL;
   }
   for (size_t i = 0; i < table->count; i++)
-    if (field_is_active(table, &table->rows[i], object)) rows[count++] = &table->rows[i];
+    if (field_is_active(table, &table->rows[i], object))
+      rows[count++] = &table->rows[i];
   qsort(rows, count, sizeof *rows, by_path);
   for (size_t i = 0; i < count; i++) {
     struct field_value value;
@@ -45,16 +46,10 @@ char *field_identity(const struct field_table *table, const void *object) {
       else
         fprintf(out, "%a", value.number + 0.0);
       break;
-    case FIELD_INTEGER:
-      fprintf(out, "%" PRId64, value.integer);
-      break;
-    case FIELD_BOOLEAN:
-      fputs(value.number != 0 ? "true" : "false", out);
-      break;
+    case FIELD_INTEGER: fprintf(out, "%" PRId64, value.integer); break;
+    case FIELD_BOOLEAN: fputs(value.number != 0 ? "true" : "false", out); break;
     case FIELD_CHOICE:
-    case FIELD_TEXT:
-      write_text(value.text, out);
-      break;
+    case FIELD_TEXT: write_text(value.text, out); break;
     }
     fputc('\n', out);
   }

@@ -29,16 +29,10 @@ static void write_value(const struct field *row, const struct field_value *value
     field_print_number(value->number, number);
     fputs(isnan(value->number) ? "\"off\"" : isinf(value->number) ? "null" : number, out); /* JSON has no infinity */
     break;
-  case FIELD_INTEGER:
-    fprintf(out, "%" PRId64, value->integer);
-    break;
-  case FIELD_BOOLEAN:
-    fputs(value->number != 0 ? "true" : "false", out);
-    break;
+  case FIELD_INTEGER: fprintf(out, "%" PRId64, value->integer); break;
+  case FIELD_BOOLEAN: fputs(value->number != 0 ? "true" : "false", out); break;
   case FIELD_CHOICE:
-  case FIELD_TEXT:
-    field_json_string(value->text, out);
-    break;
+  case FIELD_TEXT: field_json_string(value->text, out); break;
   }
 }
 
@@ -53,13 +47,15 @@ static void write_level(const struct field_table *table, const void *object, con
   bool first = true;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    if (strncmp(row->path, prefix, length) != 0 || !field_is_active(table, row, object)) continue;
+    if (strncmp(row->path, prefix, length) != 0 || !field_is_active(table, row, object))
+      continue;
     const char *word = row->path + length;
     size_t word_length = strcspn(word, "."), whole = length + word_length + 1;
     bool section = word[word_length] == '.', seen = false;
     for (size_t j = 0; section && j < i && !seen; j++)
       seen = strncmp(table->rows[j].path, row->path, whole) == 0 && field_is_active(table, &table->rows[j], object);
-    if (seen) continue;
+    if (seen)
+      continue;
     fprintf(out, "%s\"%.*s\":", first ? "" : ",", (int)word_length, word);
     first = false;
     if (section) {
@@ -82,7 +78,8 @@ char *field_json(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return NULL;
+  if (!out)
+    return NULL;
   fputc('{', out);
   write_level(table, object, "", 0, out);
   fputc('}', out);

@@ -23,7 +23,8 @@ status field_parse(const struct field *row, const char *text, struct field_value
       came.number = (double)NAN;
       break;
     }
-    if (strcmp(text, "off") == 0) return status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);
+    if (strcmp(text, "off") == 0)
+      return status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);
     if (unit_read(text, row->unit ? row->unit : "1", &came.number, &inner))
       return status_fail(error, inner.status, "%s: %s%s", row->path, inner.message,
                          row->flags & FIELD_MAY_BE_OFF ? " (or off)" : "");
@@ -31,8 +32,10 @@ status field_parse(const struct field *row, const char *text, struct field_value
   case FIELD_INTEGER:
     came.integer = strtoll(text, &end, 10);
     /* Digits alone, or with the row's own unit, keep all 64 bits; all else goes through a double. */
-    if (row->unit && *end == ' ' && strcmp(end + 1, row->unit) == 0) end += strlen(end);
-    if (end != text && *end == 0 && came.integer != INT64_MAX && came.integer != INT64_MIN && *text != ' ') break;
+    if (row->unit && *end == ' ' && strcmp(end + 1, row->unit) == 0)
+      end += strlen(end);
+    if (end != text && *end == 0 && came.integer != INT64_MAX && came.integer != INT64_MIN && *text != ' ')
+      break;
     came.kind = FIELD_REAL; /* "1e6", "2 GiB" */
     if (unit_read(text, row->unit ? row->unit : "1", &came.number, &inner))
       return status_fail(error, inner.status, "%s: %s", row->path, inner.message);

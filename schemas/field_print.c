@@ -18,15 +18,18 @@ void field_print_number(double number, char text[32]) {
   char digits[32];
   for (int precision = 0; precision < 17; precision++) {
     snprintf(digits, sizeof digits, "%.*e", precision, number);
-    if (strtod(digits, NULL) == number) break;
+    if (strtod(digits, NULL) == number)
+      break;
   }
   char mantissa[24];
   size_t count = 0, i = digits[0] == '-';
   for (; digits[i] != 'e'; i++)
-    if (digits[i] != '.') mantissa[count++] = digits[i];
+    if (digits[i] != '.')
+      mantissa[count++] = digits[i];
   long exponent = strtol(digits + i + 1, NULL, 10);
   char *to = text;
-  if (digits[0] == '-') *to++ = '-';
+  if (digits[0] == '-')
+    *to++ = '-';
   if (exponent >= -5 && exponent < 0) { /* 0.00012 */
     to += sprintf(to, "0.%.*s", (int)(-exponent - 1), "00000");
     memcpy(to, mantissa, count);
@@ -34,7 +37,8 @@ void field_print_number(double number, char text[32]) {
   } else if (exponent >= 0 && (exponent < 6 || (exponent < 9 && count > 4))) { /* 5000, 12.5; but 5e8 */
     size_t whole = (size_t)exponent + 1;
     for (size_t k = 0; k < count || k < whole; k++) {
-      if (k == whole) *to++ = '.';
+      if (k == whole)
+        *to++ = '.';
       *to++ = k < count ? mantissa[k] : '0';
     }
     *to = 0;
@@ -52,20 +56,18 @@ int field_print(const struct field *row, const struct field_value *value, char *
   switch (row->kind) {
   case FIELD_REAL:
     field_print_number(value->number, number);
-    if (isnan(value->number)) return snprintf(buffer, size, "%s", number);
+    if (isnan(value->number))
+      return snprintf(buffer, size, "%s", number);
     return snprintf(buffer, size, "%s%s%s", number, space, unit);
-  case FIELD_INTEGER:
-    return snprintf(buffer, size, "%" PRId64 "%s%s", value->integer, space, unit);
-  case FIELD_BOOLEAN:
-    return snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false");
+  case FIELD_INTEGER: return snprintf(buffer, size, "%" PRId64 "%s%s", value->integer, space, unit);
+  case FIELD_BOOLEAN: return snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false");
   case FIELD_CHOICE: {
     size_t index = value->number >= 0 ? (size_t)value->number : 0, count = 0;
     while (row->choices[count])
       count++;
     return snprintf(buffer, size, "%s", value->text[0] ? value->text : index < count ? row->choices[index] : "?");
   }
-  case FIELD_TEXT:
-    return snprintf(buffer, size, "%s", value->text);
+  case FIELD_TEXT: return snprintf(buffer, size, "%s", value->text);
   }
   return 0;
 }

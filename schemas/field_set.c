@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 enum { QUOTE = 60 };
 
@@ -15,12 +15,8 @@ static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value) {
   void *to = (char *)object + row->offset;
   switch (row->kind) {
-  case FIELD_REAL:
-    memcpy(to, &value->number, sizeof value->number);
-    break;
-  case FIELD_INTEGER:
-    memcpy(to, &value->integer, sizeof value->integer);
-    break;
+  case FIELD_REAL: memcpy(to, &value->number, sizeof value->number); break;
+  case FIELD_INTEGER: memcpy(to, &value->integer, sizeof value->integer); break;
   case FIELD_BOOLEAN: {
     bool truth = value->number != 0;
     memcpy(to, &truth, sizeof truth);
@@ -31,9 +27,7 @@ void field_set_unchecked(const struct field *row, void *object, const struct fie
     memcpy(to, &index, sizeof index);
     break;
   }
-  case FIELD_TEXT:
-    copy_text(to, value->text);
-    break;
+  case FIELD_TEXT: copy_text(to, value->text); break;
   }
 }
 
@@ -41,7 +35,8 @@ static status check_range(const struct field *row, double number, const struct f
                           struct error *error) {
   bool low = row->flags & FIELD_ABOVE_MINIMUM ? number > row->minimum : number >= row->minimum;
   bool high = row->flags & FIELD_BELOW_MAXIMUM ? number < row->maximum : number <= row->maximum;
-  if (low && high && isfinite(number)) return STATUS_OK;
+  if (low && high && isfinite(number))
+    return STATUS_OK;
   char range[160], came[FIELD_TEXT_SIZE];
   field_describe_range(row, range, sizeof range);
   field_print(row, value, came, sizeof came);
@@ -57,9 +52,11 @@ static status unknown_choice(const struct field *row, const char *text, struct e
   for (size_t i = 0; row->choices[i]; i++) {
     int n = snprintf(list + used, sizeof list - used, "%s%s", i ? (row->choices[i + 1] ? ", " : " or ") : "",
                      row->choices[i]);
-    if (n > 0 && (size_t)n < sizeof list - used) used += (size_t)n;
-    size_t d = near_distance(text, strlen(text), row->choices[i]);
-    if (d < best && d <= 2 && d < strlen(row->choices[i])) best = d, near = row->choices[i];
+    if (n > 0 && (size_t)n < sizeof list - used)
+      used += (size_t)n;
+    size_t d = edit_distance(text, strlen(text), row->choices[i]);
+    if (d < best && d <= 2 && d < strlen(row->choices[i]))
+      best = d, near = row->choices[i];
   }
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'%s%s%s", row->path, list, QUOTE, text,
                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
@@ -72,13 +69,15 @@ status field_set_value(const struct field *row, const struct field_value *value,
   out->kind = row->kind;
   switch (row->kind) {
   case FIELD_REAL:
-    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER) break;
+    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER)
+      break;
     out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer; /* -0 becomes 0 */
     if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF)
       return out->number = (double)NAN, STATUS_OK; /* one bit pattern */
     return check_range(row, out->number, out, error);
   case FIELD_INTEGER:
-    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER) break;
+    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER)
+      break;
     if (value->kind == FIELD_REAL) {
       if (!(fabs(value->number) <= 9007199254740992.0) || value->number != floor(value->number)) {
         char came[32];
@@ -91,11 +90,13 @@ status field_set_value(const struct field *row, const struct field_value *value,
     }
     return check_range(row, (double)out->integer, out, error);
   case FIELD_BOOLEAN:
-    if (value->kind != FIELD_BOOLEAN) break;
+    if (value->kind != FIELD_BOOLEAN)
+      break;
     out->number = value->number != 0;
     return STATUS_OK;
   case FIELD_CHOICE:
-    if (value->kind != FIELD_CHOICE && value->kind != FIELD_TEXT) break;
+    if (value->kind != FIELD_CHOICE && value->kind != FIELD_TEXT)
+      break;
     if (value->kind == FIELD_CHOICE && !value->text[0]) {
       if (!(value->number >= 0 && value->number < (double)field_choice_count(row)))
         return status_fail(error, STATUS_CONTENT, "%s: there is no choice number %g", row->path, value->number);
@@ -111,7 +112,8 @@ status field_set_value(const struct field *row, const struct field_value *value,
       }
     return unknown_choice(row, value->text, error);
   case FIELD_TEXT:
-    if (value->kind != FIELD_TEXT && value->kind != FIELD_CHOICE) break;
+    if (value->kind != FIELD_TEXT && value->kind != FIELD_CHOICE)
+      break;
     copy_text(out->text, value->text);
     return STATUS_OK;
   }
@@ -122,6 +124,7 @@ status field_set_value(const struct field *row, const struct field_value *value,
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error) {
   struct field_value settled;
   status code = field_set_value(row, value, &settled, error);
-  if (!code) field_set_unchecked(row, object, &settled);
+  if (!code)
+    field_set_unchecked(row, object, &settled);
   return code;
 }

@@ -37,23 +37,24 @@ static void type(const struct field *row, FILE *out) {
     fputs("\"anyOf\": [{\"type\": \"number\"", out);
     range(row, out);
     fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}", out);
-    if (row->flags & FIELD_MAY_BE_OFF) fputs(", {\"const\": \"off\"}", out);
+    if (row->flags & FIELD_MAY_BE_OFF)
+      fputs(", {\"const\": \"off\"}", out);
     fputc(']', out);
     break;
   case FIELD_INTEGER:
-    if (row->unit && strcmp(row->unit, "1")) fputs("\"anyOf\": [{", out);
+    if (row->unit && strcmp(row->unit, "1"))
+      fputs("\"anyOf\": [{", out);
     fputs("\"type\": \"integer\"", out);
     range(row, out);
     if (row->unit && strcmp(row->unit, "1"))
       fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}]", out);
     break;
-  case FIELD_BOOLEAN:
-    fputs("\"type\": \"boolean\"", out);
-    break;
+  case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
   case FIELD_CHOICE:
     fputs("\"enum\": [", out);
     for (size_t i = 0; row->choices[i]; i++) {
-      if (i) fputs(", ", out);
+      if (i)
+        fputs(", ", out);
       field_json_string(row->choices[i], out);
     }
     fputc(']', out);
@@ -69,11 +70,15 @@ static void description(const struct field *row, FILE *out) {
   char *text = NULL;
   size_t size = 0;
   FILE *words = open_memstream(&text, &size);
-  if (!words) return;
-  if (row->doc) fputs(row->doc, words);
+  if (!words)
+    return;
+  if (row->doc)
+    fputs(row->doc, words);
   if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER) {
-    if (row->unit && strcmp(row->unit, "1")) fprintf(words, " In %s, unless another unit is written.", row->unit);
-    if (row->flags & FIELD_MAY_BE_OFF) fputs(" Or `off`.", words);
+    if (row->unit && strcmp(row->unit, "1"))
+      fprintf(words, " In %s, unless another unit is written.", row->unit);
+    if (row->flags & FIELD_MAY_BE_OFF)
+      fputs(" Or `off`.", words);
   }
   const char *doc = row->kind == FIELD_CHOICE ? row->choice_docs : NULL;
   for (size_t i = 0; doc && row->choices[i]; i++) {
@@ -91,17 +96,23 @@ static void description(const struct field *row, FILE *out) {
     }
     fputc('.', words);
   }
-  if (row->source) fprintf(words, " Source: %s.", row->source);
-  if (fclose(words) == 0) field_json_string(*text == ' ' ? text + 1 : text, out);
+  if (row->source)
+    fprintf(words, " Source: %s.", row->source);
+  if (fclose(words) == 0)
+    field_json_string(*text == ' ' ? text + 1 : text, out);
   free(text);
 }
 
 static void default_value(const struct field *row, FILE *out) {
   struct field_value value = {.kind = row->kind, .number = row->number};
-  if (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)) return;
-  if (row->kind == FIELD_INTEGER) value.integer = (int64_t)row->number;
-  if (row->kind == FIELD_TEXT && row->text) memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
-  if (row->kind == FIELD_CHOICE) snprintf(value.text, sizeof value.text, "%s", row->choices[(size_t)row->number]);
+  if (row->flags & (FIELD_REQUIRED | FIELD_DERIVED))
+    return;
+  if (row->kind == FIELD_INTEGER)
+    value.integer = (int64_t)row->number;
+  if (row->kind == FIELD_TEXT && row->text)
+    memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
+  if (row->kind == FIELD_CHOICE)
+    snprintf(value.text, sizeof value.text, "%s", row->choices[(size_t)row->number]);
   fputs(", \"default\": ", out);
   field_json_value(row, &value, out);
 }
@@ -115,14 +126,16 @@ static int required(const struct field_table *table, const char *prefix, size_t 
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    if (!(row->flags & FIELD_REQUIRED) || row->when || !same_start(row->path, prefix, length)) continue;
+    if (!(row->flags & FIELD_REQUIRED) || row->when || !same_start(row->path, prefix, length))
+      continue;
     size_t word = strcspn(row->path + length, ".");
     bool seen = false;
     for (size_t j = 0; j < i && !seen; j++)
       seen = table->rows[j].flags & FIELD_REQUIRED && !table->rows[j].when &&
              same_start(table->rows[j].path, row->path, length + word) &&
              strchr(".", table->rows[j].path[length + word]);
-    if (seen) continue;
+    if (seen)
+      continue;
     fprintf(out, "%s\"%.*s\"", count++ ? ", " : "", (int)word, row->path + length);
   }
   return count;
@@ -144,13 +157,16 @@ static void properties(const struct field_table *table, const char *prefix, size
   bool first = true;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    if (!same_start(row->path, prefix, length)) continue;
+    if (!same_start(row->path, prefix, length))
+      continue;
     size_t word = strcspn(row->path + length, "."), whole = length + word + 1;
     bool section = row->path[length + word] == '.', seen = false;
     for (size_t j = 0; section && j < i && !seen; j++)
       seen = same_start(table->rows[j].path, row->path, whole);
-    if (seen) continue;
-    if (!first) fputc(',', out);
+    if (seen)
+      continue;
+    if (!first)
+      fputc(',', out);
     first = false;
     margin(indent, out);
     fprintf(out, "\"%.*s\": {", (int)word, row->path + length);
@@ -188,14 +204,16 @@ void json_schema_properties(const struct field_table *table, int indent, FILE *o
 static const struct field *controller(const struct field_table *table, const char *when) {
   size_t length = strcspn(when, "=");
   for (size_t i = 0; i < table->count; i++)
-    if (same_start(table->rows[i].path, when, length) && !table->rows[i].path[length]) return &table->rows[i];
+    if (same_start(table->rows[i].path, when, length) && !table->rows[i].path[length])
+      return &table->rows[i];
   return NULL;
 }
 
 /* Whether the row rests on the condition, itself or through what its own condition rests on. */
 static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
   for (size_t links = 0; row && row->when && links <= table->count; links++) {
-    if (strcmp(row->when, when) == 0) return true;
+    if (strcmp(row->when, when) == 0)
+      return true;
     row = controller(table, row->when);
   }
   return false;
@@ -212,7 +230,8 @@ static int descend(const char *path, bool must, FILE *out) {
     else
       fprintf(out, "{\"properties\": {\"%.*s\": ", (int)word, path);
     opened += 2;
-    if (!path[word]) return opened;
+    if (!path[word])
+      return opened;
     path += word + 1;
   }
 }
@@ -228,7 +247,8 @@ static void values(const struct field *row, const char *list, bool excluded, FIL
     size_t length = strcspn(at, "|");
     bool word = row->kind == FIELD_CHOICE || row->kind == FIELD_TEXT || strncmp(at, "off", 3) == 0;
     fprintf(out, "%s%s%.*s%s", at == list ? "" : ", ", word ? "\"" : "", (int)length, at, word ? "\"" : "");
-    if (!at[length]) break;
+    if (!at[length])
+      break;
     at += length + 1;
   }
   fputs(excluded ? "]}}" : "]}", out);
@@ -237,7 +257,8 @@ static void values(const struct field *row, const char *list, bool excluded, FIL
 /* The condition holds when nothing is written. */
 static bool holds_by_default(const struct field_table *table, const struct field *row, const char *when) {
   void *object = calloc(1, table->size);
-  if (!object) return false;
+  if (!object)
+    return false;
   field_defaults(table, object);
   struct field probe = {.path = "", .when = when};
   /* Only this link counts here: an ancestor's condition has its own clause. */
@@ -258,9 +279,11 @@ static int conditions(const struct field_table *table, int indent, FILE *out) {
     bool seen = false;
     for (size_t j = 0; when && j < i && !seen; j++)
       seen = table->rows[j].when && strcmp(table->rows[j].when, when) == 0;
-    if (!control || seen) continue;
+    if (!control || seen)
+      continue;
     bool holds = holds_by_default(table, control, when);
-    if (count++) fputc(',', out);
+    if (count++)
+      fputc(',', out);
     margin(indent, out);
     fputs("{\"if\": ", out);
     int opened = descend(control->path, true, out);
@@ -269,8 +292,10 @@ static int conditions(const struct field_table *table, int indent, FILE *out) {
     fprintf(out, ", \"%s\": {\"allOf\": [", holds ? "then" : "else");
     bool first = true;
     for (size_t k = 0; k < table->count; k++) {
-      if (!rests_on(table, &table->rows[k], when)) continue;
-      if (!first) fputc(',', out);
+      if (!rests_on(table, &table->rows[k], when))
+        continue;
+      if (!first)
+        fputc(',', out);
       first = false;
       margin(indent + 1, out);
       opened = descend(table->rows[k].path, false, out);
@@ -289,13 +314,17 @@ void json_schema_write(const struct field_table *table, const char *title, const
   fputs(",\n  \"description\": ", out);
   field_json_string(table->doc ? table->doc : table->name, out);
   fputs(",\n  \"type\": \"object\",\n  \"additionalProperties\": false,\n  \"required\": [", out);
-  if (extra_required) field_json_string(extra_required, out);
-  if (extra_required && requires(table, "", 0)) fputs(", ", out);
+  if (extra_required)
+    field_json_string(extra_required, out);
+  if (extra_required && requires(table, "", 0))
+    fputs(", ", out);
   json_schema_required(table, out);
   fputs("],\n  \"properties\": {", out);
-  if (extra) fprintf(out, "\n    %s,", extra);
+  if (extra)
+    fprintf(out, "\n    %s,", extra);
   json_schema_properties(table, 2, out);
   fputs("\n  },\n  \"allOf\": [", out);
-  if (conditions(table, 2, out) == 0) fputs("\n    true", out);
+  if (conditions(table, 2, out) == 0)
+    fputs("\n    true", out);
   fputs("\n  ]\n}\n", out);
 }

@@ -15,7 +15,7 @@ void json_schema_properties(const struct field_table *table, int indent, FILE *o
 int json_schema_required(const struct field_table *table, FILE *out);
 /* A whole schema document of one table. `extra` (may be NULL) is text with further members of `properties`, such as
  * "\"name\": {\"type\": \"string\"}"; `extra_required` (may be NULL) a word of them that must be given. */
-void json_schema_write(const struct field_table *table, const char *title, const char *extra, const char *extra_required,
-                       FILE *out);
+void json_schema_write(const struct field_table *table, const char *title, const char *extra,
+                       const char *extra_required, FILE *out);
 
 #endif

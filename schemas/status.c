@@ -17,8 +17,7 @@ status status_fail(struct error *error, status code, const char *format, ...) {
 const char *status_name(status code) {
   switch (code) {
 #define STATUS_NAME(constant, value, name, meaning)                                                                    \
-  case constant:                                                                                                       \
-    return name;
+  case constant: return name;
     STATUS_LIST(STATUS_NAME)
 #undef STATUS_NAME
   }
@@ -28,8 +27,7 @@ const char *status_name(status code) {
 const char *status_meaning(status code) {
   switch (code) {
 #define STATUS_MEANING(constant, value, name, meaning)                                                                 \
-  case constant:                                                                                                       \
-    return meaning;
+  case constant: return meaning;
     STATUS_LIST(STATUS_MEANING)
 #undef STATUS_MEANING
   }

@@ -30,7 +30,8 @@ struct error {
   char message[8192];
 };
 
-/* Fill *error (NULL is fine) and return `code`, so that `return status_fail(error, STATUS_IO, "...", ...)` reads well. */
+/* Fill *error (NULL is fine) and return `code`, so that `return status_fail(error, STATUS_IO, "...", ...)` reads well.
+ */
 status status_fail(struct error *error, status code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 const char *status_name(status code);

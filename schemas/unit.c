@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 /* Exact definitions: BIPM, The International System of Units, 9th ed. (2019), tables 3, 4, 7 and 8; CGS: dyn, erg. */
 static const struct base {
@@ -127,9 +127,11 @@ static bool nearest(const char *name, size_t length, char out[16]) {
     for (size_t p = 0; p < (bases[b].prefixes ? 8u : 1u); p++) {
       char candidate[16];
       snprintf(candidate, sizeof candidate, "%s%s", usual[p], bases[b].name);
-      size_t d = 2 * near_distance(name, length, candidate);
-      if (strlen(candidate) == length && strncasecmp(candidate, name, length) == 0) d = 1; /* "KM", "gpa" */
-      if (d < best && d <= (length > 2 ? 2u : 1u)) best = d, strcpy(out, candidate);
+      size_t d = 2 * edit_distance(name, length, candidate);
+      if (strlen(candidate) == length && strncasecmp(candidate, name, length) == 0)
+        d = 1; /* "KM", "gpa" */
+      if (d < best && d <= (length > 2 ? 2u : 1u))
+        best = d, strcpy(out, candidate);
     }
   return best != SIZE_MAX;
 }
@@ -162,7 +164,8 @@ static bool known(const char *name, size_t length, struct unit *unit) {
       return from_base(&bases[b], 0, unit), true;
   for (size_t p = 0; p < PREFIXES; p++) {
     size_t cut = strlen(prefixes[p].name);
-    if (length <= cut || memcmp(prefixes[p].name, name, cut) != 0) continue;
+    if (length <= cut || memcmp(prefixes[p].name, name, cut) != 0)
+      continue;
     for (size_t b = 0; b < BASES; b++)
       if (bases[b].prefixes && strlen(bases[b].name) == length - cut &&
           memcmp(bases[b].name, name + cut, length - cut) == 0)
@@ -204,7 +207,8 @@ static status power(struct parser *p, int *value) {
   else
     return STATUS_OK;
   bool negative = *p->at == '-';
-  if (*p->at == '-' || *p->at == '+') p->at++;
+  if (*p->at == '-' || *p->at == '+')
+    p->at++;
   if (!isdigit((unsigned char)p->at[0]) || isdigit((unsigned char)p->at[1]) || p->at[0] == '0')
     return status_fail(p->error, STATUS_CONTENT, "in unit '%.*s' expected a whole power from 1 to %d after '^'", QUOTE,
                        p->whole, LARGEST_POWER);
@@ -215,11 +219,14 @@ static status power(struct parser *p, int *value) {
 
 static status factor(struct parser *p, struct unit *unit) {
   if (*p->at == '(') {
-    if (++p->depth > DEEPEST) return status_fail(p->error, STATUS_CONTENT, "too many parentheses in a unit");
+    if (++p->depth > DEEPEST)
+      return status_fail(p->error, STATUS_CONTENT, "too many parentheses in a unit");
     p->at++;
     status code = product(p, unit);
-    if (code) return code;
-    if (*p->at != ')') return status_fail(p->error, STATUS_CONTENT, "unit '%.*s' lacks a ')'", QUOTE, p->whole);
+    if (code)
+      return code;
+    if (*p->at != ')')
+      return status_fail(p->error, STATUS_CONTENT, "unit '%.*s' lacks a ')'", QUOTE, p->whole);
     p->at++;
     p->depth--;
     return STATUS_OK;
@@ -248,14 +255,19 @@ static status product(struct parser *p, struct unit *unit) {
     while (*p->at == ' ')
       p->at++;
     status code = factor(p, &next);
-    if (!code) code = power(p, &exponent);
-    if (!code) code = multiply(p, unit, &next, divide ? -exponent : exponent);
-    if (code) return code;
+    if (!code)
+      code = power(p, &exponent);
+    if (!code)
+      code = multiply(p, unit, &next, divide ? -exponent : exponent);
+    if (code)
+      return code;
     while (*p->at == ' ')
       p->at++;
-    if (*p->at == 0 || *p->at == ')') return STATUS_OK;
+    if (*p->at == 0 || *p->at == ')')
+      return STATUS_OK;
     divide = *p->at == '/';
-    if (divide || *p->at == '*' || *p->at == '.') p->at++;
+    if (divide || *p->at == '*' || *p->at == '.')
+      p->at++;
     if (divided && !divide)
       return status_fail(p->error, STATUS_CONTENT,
                          "unit '%.*s' is ambiguous: put what stands below the '/' in parentheses, such as J/(kg K)",
@@ -268,8 +280,10 @@ status unit_parse(const char *text, struct unit *unit, struct error *error) {
   struct parser p = {.whole = text, .at = text, .error = error};
   *unit = one;
   status code = product(&p, unit);
-  if (code) return code;
-  if (*p.at) return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' in a unit", QUOTE, p.at);
+  if (code)
+    return code;
+  if (*p.at)
+    return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' in a unit", QUOTE, p.at);
   unit->factor = unit->times / unit->per * pow(10, unit->ten);
   return STATUS_OK;
 }
@@ -307,15 +321,18 @@ static size_t scan(const char *text, size_t *mantissa, long *exponent, bool *zer
   if (text[i] == '.')
     for (i++; isdigit((unsigned char)text[i]); i++, digits++)
       *zero = *zero && text[i] == '0';
-  if (!digits) return 0;
+  if (!digits)
+    return 0;
   *mantissa = i;
   *exponent = 0;
   if (text[i] == 'e' || text[i] == 'E') {
     size_t j = i + 1 + (text[i + 1] == '+' || text[i + 1] == '-');
     if (isdigit((unsigned char)text[j])) {
       for (; isdigit((unsigned char)text[j]); j++)
-        if (*exponent < 100000) *exponent = 10 * *exponent + (text[j] - '0');
-      if (text[i + 1] == '-') *exponent = -*exponent;
+        if (*exponent < 100000)
+          *exponent = 10 * *exponent + (text[j] - '0');
+      if (text[i + 1] == '-')
+        *exponent = -*exponent;
       i = j;
     }
   }
@@ -343,14 +360,16 @@ static status no_number(const char *text, const char *expected, struct error *er
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error) {
   struct unit want, got;
   status code = unit_parse(expected_unit, &want, error);
-  if (code) return code;
+  if (code)
+    return code;
   while (*text == ' ')
     text++;
   size_t mantissa = 0;
   long exponent = 0;
   bool zero;
   size_t length = scan(text, &mantissa, &exponent, &zero);
-  if (length == 0) return no_number(text, expected_unit, error);
+  if (length == 0)
+    return no_number(text, expected_unit, error);
   const char *rest = text + length;
   if (length == 1 && text[0] == '0' && (*rest == 'x' || *rest == 'X' || *rest == 'o'))
     return status_fail(error, STATUS_CONTENT, "expected a decimal number, got '%.*s'", QUOTE, text);
@@ -370,16 +389,20 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number", QUOTE, rest);
   } else {
     code = unit_parse(rest, &got, error);
-    if (code) return code;
-    if (!unit_same_dimension(&want, &got)) return wrong_dimension(&want, expected_unit, &got, rest, error);
+    if (code)
+      return code;
+    if (!unit_same_dimension(&want, &got))
+      return wrong_dimension(&want, expected_unit, &got, rest, error);
   }
   char shifted[512];
   if (mantissa > sizeof shifted - 32)
     return status_fail(error, STATUS_CONTENT, "a number of more than 480 digits is refused");
   snprintf(shifted, sizeof shifted, "%.*se%ld", (int)mantissa, text, exponent + got.ten);
   double value = strtod(shifted, NULL) * got.times / got.per;
-  if (!isfinite(value)) return status_fail(error, STATUS_CONTENT, "%.*s is too large for a double", QUOTE, text);
-  if (value == 0 && !zero) return status_fail(error, STATUS_CONTENT, "%.*s is too small for a double", QUOTE, text);
+  if (!isfinite(value))
+    return status_fail(error, STATUS_CONTENT, "%.*s is too large for a double", QUOTE, text);
+  if (value == 0 && !zero)
+    return status_fail(error, STATUS_CONTENT, "%.*s is too small for a double", QUOTE, text);
   *si = value;
   return STATUS_OK;
 }

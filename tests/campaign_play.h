@@ -1,5 +1,5 @@
-/* A farm played by the test: tasks are taken from a driver, computed by a small stand-in for engine `dem` (its tables, no
- * physics: fragments drawn from inputs and seed) and reported in an order of the test's choosing. */
+/* A farm played by the test: tasks are taken from a driver, computed by a small stand-in for engine `dem` (its tables,
+ * no physics: fragments drawn from inputs and seed) and reported in an order of the test's choosing. */
 #ifndef CLAST_TESTS_CAMPAIGN_PLAY_H
 #define CLAST_TESTS_CAMPAIGN_PLAY_H
 
@@ -9,11 +9,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/driver.h"
 #include "campaign/run.h"
-#include "engine/dem/inputs.h"
-#include "engine/dem/results.h"
+#include "engine/dem/observe/results.h"
+#include "engine/dem/scene/inputs.h"
 #include "engine/random.h"
 
 struct play_run {
@@ -42,7 +42,9 @@ static double play_progress(const void *run) {
   (void)run;
   return 1;
 }
-static double play_work(const void *inputs) { return 1 / ((const struct dem_inputs *)inputs)->threshold.strain; }
+static double play_work(const void *inputs) {
+  return 1 / ((const struct dem_inputs *)inputs)->threshold.strain;
+}
 static size_t play_memory(const void *inputs) {
   (void)inputs;
   return 1000000;
@@ -71,7 +73,9 @@ static status play_finish(void *run, struct outcome *outcome, void *result, stru
   field_defaults(&outcome_table, outcome);
   field_defaults(&dem_results, results);
   outcome_fragments(outcome, n, *fragments);
-  outcome->state = mine->seed % 50 == 49 ? OUTCOME_NOT_FINITE : mine->seed % 10 == 9 ? OUTCOME_END_TIME : OUTCOME_COMPLETED;
+  outcome->state = mine->seed % 50 == 49  ? OUTCOME_NOT_FINITE
+                   : mine->seed % 10 == 9 ? OUTCOME_END_TIME
+                                          : OUTCOME_COMPLETED;
   outcome->steps = 7;
   outcome->time_step = outcome->time = 1e-6;
   results->grains = (int64_t)n;
@@ -85,18 +89,31 @@ static status play_write_fields(void *run, const char *path, struct error *error
   fclose(file);
   return STATUS_OK;
 }
-static void play_free(void *run) { free(run); }
+static void play_free(void *run) {
+  free(run);
+}
 
-static const struct engine_kind play_kind = {
-    .name = "dem", .doc = "stand-in", .results_version = 1, .inputs = &dem_inputs, .results = &dem_results,
-    .memory = play_memory, .work = play_work, .prepare = play_prepare, .step = play_step, .progress = play_progress,
-    .finish = play_finish, .write_fields = play_write_fields, .free = play_free};
+static const struct engine_kind play_kind = {.name = "dem",
+                                             .doc = "stand-in",
+                                             .results_version = 1,
+                                             .inputs = &dem_inputs,
+                                             .results = &dem_results,
+                                             .memory = play_memory,
+                                             .work = play_work,
+                                             .prepare = play_prepare,
+                                             .step = play_step,
+                                             .progress = play_progress,
+                                             .finish = play_finish,
+                                             .write_snapshot = play_write_fields,
+                                             .free = play_free};
 static const struct engine_kind *play_find(const char *name, struct error *error) {
   (void)error;
   return strcmp(name, "dem") == 0 ? &play_kind : NULL;
 }
 
-static inline struct field_value play_real(double x) { return (struct field_value){.kind = FIELD_REAL, .number = x}; }
+static inline struct field_value play_real(double x) {
+  return (struct field_value){.kind = FIELD_REAL, .number = x};
+}
 
 /* strain x angle, as a document would give it. */
 static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per_point) {
@@ -117,8 +134,12 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
   campaign->axes = calloc(2, sizeof *campaign->axes);
   for (int a = 0; a < 2; a++) {
     size_t n = a ? angles : strains;
-    campaign->axes[a] = (struct design_axis){.row = field_find(&dem_inputs, a ? "threshold.angle" : "threshold.strain", &error),
-                                             .kind = DESIGN_AXIS_LEVELS, .level_count = n, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+    campaign->axes[a] = (struct design_axis){.row = field_find(&dem_inputs, a ? "threshold.angle" : "threshold.strain",
+                                                               &error),
+                                             .kind = DESIGN_AXIS_LEVELS,
+                                             .level_count = n,
+                                             .lower = -HUGE_VAL,
+                                             .upper = HUGE_VAL};
     campaign->axes[a].levels = calloc(n, sizeof *campaign->axes[a].levels);
     for (size_t i = 0; i < n; i++)
       campaign->axes[a].levels[i] = play_real(0.01 * (double)(i + 1));
@@ -129,15 +150,18 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
 enum play_fate { PLAY_RUN, PLAY_CRASH, PLAY_SLOW, PLAY_STOP };
 struct play {
   int slots;
-  uint64_t order;      /* seed of the order in which runs finish; 0 = as they were given out */
-  int stop_after;      /* reports, then everything out is dropped; 0 = never */
+  uint64_t order; /* seed of the order in which runs finish; 0 = as they were given out */
+  int stop_after; /* reports, then everything out is dropped; 0 = never */
   enum play_fate (*fate)(uint64_t seed, int attempt); /* NULL: all run */
   int reports;
-  char *says;          /* message of the status that ended it, malloc'd */
+  char *says; /* message of the status that ended it, malloc'd */
 };
 
 static status play_farm(struct play *play, struct driver *driver, struct error *error) {
-  struct { struct farm_task task; uint8_t *bytes; } out[64];
+  struct {
+    struct farm_task task;
+    uint8_t *bytes;
+  } out[64];
   struct farm_manager manager = driver_manager(driver);
   int count = 0;
   status code = STATUS_OK;
@@ -159,8 +183,8 @@ static status play_farm(struct play *play, struct driver *driver, struct error *
     /* mark, name, seed: see run.c */
     memcpy(&seed, out[pick].bytes + 8 + 12 + 8 + 3, sizeof seed);
     enum play_fate fate = play->fate ? play->fate(seed, 0) : PLAY_RUN;
-    struct farm_report report = {.id = out[pick].task.id, .ending = FARM_DONE, .wall_s = 0.01, .cpu_s = 0.01,
-                                 .host = "here", .message = ""};
+    struct farm_report report =
+        {.id = out[pick].task.id, .ending = FARM_DONE, .wall_s = 0.01, .cpu_s = 0.01, .host = "here", .message = ""};
     uint8_t *bytes = NULL;
     if (fate == PLAY_CRASH) {
       report.ending = FARM_CRASHED;
@@ -186,7 +210,8 @@ static status play_farm(struct play *play, struct driver *driver, struct error *
 }
 
 /* One invocation of `clast run`. */
-static status play_once(struct play *play, const struct campaign *campaign, const char *path, struct driver_summary *summary) {
+static status play_once(struct play *play, const struct campaign *campaign, const char *path,
+                        struct driver_summary *summary) {
   struct error error = {0};
   struct store *store = NULL;
   struct driver *driver = NULL;

@@ -37,11 +37,13 @@ static inline status journal_report(void *context, const struct farm_report *rep
   const status result = task_list_report(context, report, error);
   const char *path = getenv("CLAST_FARM_TEST_JOURNAL");
   char line[64];
-  const int n =
-      snprintf(line, sizeof line, "%llu %d %d\n", (unsigned long long)report->id, (int)report->ending, report->rank);
+  const int n = snprintf(line, sizeof line, "%llu %d %d\n", (unsigned long long)report->id, (int)report->ending,
+                         report->rank);
   const int file = path ? open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600) : -1;
-  if (file >= 0 && write(file, line, (size_t)n) != n) return STATUS_IO;
-  if (file >= 0) close(file);
+  if (file >= 0 && write(file, line, (size_t)n) != n)
+    return STATUS_IO;
+  if (file >= 0)
+    close(file);
   return result;
 }
 
@@ -64,8 +66,9 @@ static inline int program_work(char **argv) {
   }
   task_list_new(&list, (size_t)it.count);
   for (int i = 0; i < it.count; i++)
-    list.tasks[i] =
-        (struct task){.id = (uint64_t)i, .kind = i == it.special ? it.special_kind : it.kind, .amount = it.amount};
+    list.tasks[i] = (struct task){.id = (uint64_t)i,
+                                  .kind = i == it.special ? it.special_kind : it.kind,
+                                  .amount = it.amount};
   struct farm_manager manager = task_list_manager(&list);
   manager.report = journal_report;
   const int total = farm_slots_total(farm);
@@ -117,11 +120,13 @@ static inline struct running launch(const char *program, struct launch it) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
     setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
 #ifdef __SANITIZE_ADDRESS__
-    if (it.ranks) setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* Open MPI's own; alone, our leaks are looked for */
+    if (it.ranks)
+      setenv("ASAN_OPTIONS", "detect_leaks=0", 1); /* Open MPI's own; alone, our leaks are looked for */
 #endif
     const int nothing = open("/dev/null", O_RDWR);
     dup2(nothing, STDIN_FILENO);
-    if (!getenv("CLAST_FARM_TEST_LOUD")) dup2(nothing, STDERR_FILENO); /* mpirun's long farewells */
+    if (!getenv("CLAST_FARM_TEST_LOUD"))
+      dup2(nothing, STDERR_FILENO); /* mpirun's long farewells */
     if (it.ranks)
       execlp("mpirun", "mpirun", "--oversubscribe", "-n", ranks, program, "work", text, (char *)NULL);
     else
@@ -138,24 +143,29 @@ static inline int family(const struct running *running, pid_t *pids, int most) {
   for (struct dirent *entry; directory && (entry = readdir(directory));) {
     const int pid = atoi(entry->d_name);
     char path[64], needle[128], bytes[16384];
-    if (pid <= 0) continue;
+    if (pid <= 0)
+      continue;
     snprintf(path, sizeof path, "/proc/%d/environ", pid);
     const int file = open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0) continue;
+    if (file < 0)
+      continue;
     const ssize_t n = read(file, bytes, sizeof bytes - 1);
     close(file);
-    if (n <= 0) continue; /* a zombie has none */
+    if (n <= 0)
+      continue; /* a zombie has none */
     const int length = snprintf(needle, sizeof needle, TAG_VARIABLE "=%s", running->tag);
     for (ssize_t i = 0; i + length < n; i += (ssize_t)strlen(bytes + i) + 1) {
       bytes[n] = '\0';
       if (strcmp(bytes + i, needle) == 0) {
-        if (count < most) pids[count] = (pid_t)pid;
+        if (count < most)
+          pids[count] = (pid_t)pid;
         count++;
         break;
       }
     }
   }
-  if (directory) closedir(directory);
+  if (directory)
+    closedir(directory);
   return count < most ? count : most;
 }
 
@@ -163,12 +173,14 @@ static inline pid_t parent_of(pid_t pid) {
   char path[64], bytes[512] = "";
   snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
   const int file = open(path, O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
+  if (file < 0)
+    return 0;
   const ssize_t n = read(file, bytes, sizeof bytes - 1);
   close(file);
   const char *after = n > 0 ? strrchr(bytes, ')') : NULL;
   int parent = 0;
-  if (after) sscanf(after + 1, " %*c %d", &parent);
+  if (after)
+    sscanf(after + 1, " %*c %d", &parent);
   return parent;
 }
 
@@ -188,7 +200,8 @@ static inline pid_t descendant(const struct running *running, pid_t top, int dep
     int level = -1;
     while (up && up != top && level < 8)
       up = parent_of(up), level++;
-    if (up == top && pids[i] != top && level == depth && nth-- == 0) return pids[i];
+    if (up == top && pids[i] != top && level == depth && nth-- == 0)
+      return pids[i];
   }
   return 0;
 }
@@ -196,7 +209,8 @@ static inline pid_t descendant(const struct running *running, pid_t top, int dep
 static inline pid_t await_descendant(const struct running *running, pid_t top, int depth, int nth) {
   for (int i = 0; i < 1000; i++) {
     const pid_t pid = descendant(running, top, depth, nth);
-    if (pid) return pid;
+    if (pid)
+      return pid;
     task_sleep(0.01);
   }
   return 0;
@@ -208,13 +222,15 @@ static inline int journal_lines(const struct running *running) {
   int lines = 0;
   for (int c; file && (c = getc(file)) != EOF;)
     lines += c == '\n';
-  if (file) fclose(file);
+  if (file)
+    fclose(file);
   return lines;
 }
 
 static inline bool await_journal(const struct running *running, int lines) {
   for (int i = 0; i < 2000; i++) {
-    if (journal_lines(running) >= lines) return true;
+    if (journal_lines(running) >= lines)
+      return true;
     task_sleep(0.01);
   }
   return false;
@@ -242,7 +258,8 @@ static inline bool ended(const struct running *running, double seconds, struct o
   out->summary = file && fscanf(file, "%d %d %d %d %d %d %d %d %lf %lf %lf %llu", &out->status, &out->reported,
                                 &out->twice, &out->wrong, &out->done, &out->lost, &out->stopping, &out->slots_total,
                                 &out->manager_cpu_s, &out->waiting_cpu_s, &out->wall_s, &out->sum) == 12;
-  if (file) fclose(file);
+  if (file)
+    fclose(file);
   return true;
 }
 

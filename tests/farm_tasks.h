@@ -43,8 +43,10 @@ static inline double task_kept_waiting(void) {
   char text[128] = "";
   unsigned long long ran = 0, waited = 0;
   const int file = open("/proc/self/schedstat", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
-  if (read(file, text, sizeof text - 1) > 0) sscanf(text, "%llu %llu", &ran, &waited);
+  if (file < 0)
+    return 0;
+  if (read(file, text, sizeof text - 1) > 0)
+    sscanf(text, "%llu %llu", &ran, &waited);
   close(file);
   return 1e-9 * (double)waited;
 }
@@ -76,7 +78,8 @@ static inline void task_sleep(double seconds) {
 static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **result, size_t *result_size,
                                struct error *error) {
   struct task task;
-  if (size < sizeof task) return status_fail(error, STATUS_CONTENT, "a task of %zu bytes", size);
+  if (size < sizeof task)
+    return status_fail(error, STATUS_CONTENT, "a task of %zu bytes", size);
   memcpy(&task, bytes, sizeof task);
   size_t big = 0;
   double waited = task.kind == TASK_BURN ? task_kept_waiting() : 0;
@@ -85,49 +88,43 @@ static inline status task_work(const uint8_t *bytes, size_t size, uint8_t **resu
     task_burn(task.amount);
     waited = task_kept_waiting() - waited;
     break;
-  case TASK_SLEEP:
-    task_sleep(task.amount);
-    break;
+  case TASK_SLEEP: task_sleep(task.amount); break;
   case TASK_SEGV:
     signal(SIGSEGV, SIG_DFL);
     raise(SIGSEGV);
     break;
-  case TASK_ABORT:
-    signal(SIGABRT, SIG_DFL);
-    abort();
-  case TASK_EXIT:
-    exit(task.number);
+  case TASK_ABORT: signal(SIGABRT, SIG_DFL); abort();
+  case TASK_EXIT: exit(task.number);
   case TASK_HANG:
     for (;;)
       pause();
-  case TASK_FAIL:
-    return status_fail(error, (status)task.number, "task %d cannot", (int)task.id);
+  case TASK_FAIL: return status_fail(error, (status)task.number, "task %d cannot", (int)task.id);
   case TASK_ALLOC: {
     volatile char *memory = malloc((size_t)task.amount);
-    if (!memory) return status_fail(error, STATUS_MEMORY, "no %g bytes", task.amount);
+    if (!memory)
+      return status_fail(error, STATUS_MEMORY, "no %g bytes", task.amount);
     for (size_t i = 0; i < (size_t)task.amount; i += 4096)
       memory[i] = 1;
     free((void *)memory);
     break;
   }
-  case TASK_BIG:
-    big = (size_t)task.amount;
-    break;
+  case TASK_BIG: big = (size_t)task.amount; break;
   case TASK_PRINT:
     printf("polluted\n");
     fflush(stdout);
     break;
   case TASK_WILD: /* writes into every file it can find, then crashes: a torn stream */
     for (int file = 3; file < 64; file++)
-      if (write(file, "CLF1 nonsense nonsense nonsense nonsense nonsense", 49) < 0) continue;
+      if (write(file, "CLF1 nonsense nonsense nonsense nonsense nonsense", 49) < 0)
+        continue;
     raise(SIGKILL);
     break;
-  default:
-    break;
+  default: break;
   }
   *result_size = sizeof(struct task_answer) + big;
   *result = malloc(*result_size);
-  if (!*result) return status_fail(error, STATUS_MEMORY, "no memory");
+  if (!*result)
+    return status_fail(error, STATUS_MEMORY, "no memory");
   memset(*result, (int)(task.id & 0xff), *result_size);
   memcpy(*result, &(struct task_answer){task.id, task_value(task.id), waited}, sizeof(struct task_answer));
   return STATUS_OK;
@@ -178,7 +175,8 @@ static inline void task_list_free(struct task_list *list) {
 
 static inline bool task_list_next(void *context, struct farm_task *task) {
   struct task_list *list = context;
-  if (list->given == list->count) return false;
+  if (list->given == list->count)
+    return false;
   const struct task *it = &list->tasks[list->given++];
   *task = (struct farm_task){.id = it->id, .bytes = (const uint8_t *)it, .size = sizeof *it};
   return true;
@@ -188,7 +186,8 @@ static inline status task_list_report(void *context, const struct farm_report *r
   struct task_list *list = context;
   const size_t id = report->id;
   list->reported++;
-  if (id >= list->count) return status_fail(error, STATUS_INTERNAL, "unknown id");
+  if (id >= list->count)
+    return status_fail(error, STATUS_INTERNAL, "unknown id");
   list->reports[id]++;
   list->endings[id] = (int)report->ending;
   list->exit_codes[id] = report->exit_code;
@@ -205,7 +204,8 @@ static inline status task_list_report(void *context, const struct farm_report *r
       list->wrong++;
     else {
       memcpy(&answer, report->bytes, sizeof answer);
-      if (answer.id != id || answer.value != task_value(id)) list->wrong++;
+      if (answer.id != id || answer.value != task_value(id))
+        list->wrong++;
       list->sum += answer.value;
       list->kept_waiting_s += answer.kept_waiting_s;
       for (size_t i = sizeof answer; i < report->size; i += 509)

@@ -1,7 +1,7 @@
-/* Result bits change only on purpose: a few small runs of each engine under the baseline CPU class have pinned hashes. When such a
- * test fails and the change was meant, raise the engine's .results_version and put its number and the printed hashes into the
- * test; when it was not meant, the change has a fault. glibc's own CPU variants are masked, so that any x86-64 machine gives
- * the same bits. */
+/* Result bits change only on purpose: a few small runs of each engine under the baseline CPU class have pinned hashes.
+ * When such a test fails and the change was meant, raise the engine's .results_version and put its number and the
+ * printed hashes into the test; when it was not meant, the change has a fault. glibc's own CPU variants are masked, so
+ * that any x86-64 machine gives the same bits. */
 #ifndef CLAST_TESTS_GOLDEN_H
 #define CLAST_TESTS_GOLDEN_H
 
@@ -26,10 +26,10 @@ static void golden_version(const struct engine_kind *kind, int pinned) {
     fail_msg("results_version of %s is %d now: pin its hashes here", kind->name, kind->results_version);
 }
 
-/* 1 with a line about it when the hash of a run is not the pinned one, else 0. `own`: numbers of the engine's own that are
- * part of it. Frees the fragments. */
-static int golden_changed(const struct engine_kind *kind, const char *name, struct ran ran, const double *own, size_t count,
-                          const char *pinned) {
+/* 1 with a line about it when the hash of a run is not the pinned one, else 0. `own`: numbers of the engine's own that
+ * are part of it. Frees the fragments. */
+static int golden_changed(const struct engine_kind *kind, const char *name, struct ran ran, const double *own,
+                          size_t count, const char *pinned) {
   const size_t size = (3 + count + ran.count * 12) * sizeof(double);
   double *numbers = malloc(size), *at = numbers;
   assert_non_null(numbers);
@@ -40,8 +40,9 @@ static int golden_changed(const struct engine_kind *kind, const char *name, stru
   at += count;
   for (size_t i = 0; i < ran.count; i++, at += 12) {
     const struct fragment *f = &ran.fragments[i];
-    const double values[12] = {f->mass,        f->position[0], f->position[1], f->position[2], f->velocity[0],       f->velocity[1],
-                               f->velocity[2], f->spin[0],     f->spin[1],     f->spin[2],     f->moment_of_inertia, f->kinetic_energy};
+    const double values[12] = {f->mass,        f->position[0], f->position[1],       f->position[2],
+                               f->velocity[0], f->velocity[1], f->velocity[2],       f->spin[0],
+                               f->spin[1],     f->spin[2],     f->moment_of_inertia, f->kinetic_energy};
     memcpy(at, values, sizeof values);
   }
   uint8_t digest[16];

@@ -1,9 +1,10 @@
-/* The law of damage of one particle in plain C, from the flaws as they were drawn: what the engine's loops (crack_range.h) must give. */
+/* The law of damage of one particle in plain C, from the flaws as they were drawn: what the engine's loops
+ * (crack_range.h) must give. */
 #ifndef CLAST_TESTS_GRADY_KIPP_H
 #define CLAST_TESTS_GRADY_KIPP_H
 
-#include "engine/sph/flaws.h"
-#include "engine/sph/fracture.h"
+#include "engine/sph/body/flaws.h"
+#include "engine/sph/material/fracture.h"
 
 /* How many of particle i's flaws are open at ln(strain). */
 static inline size_t grady_kipp_open(const struct sph_flaws *flaws, size_t i, double log_strain) {
@@ -19,11 +20,14 @@ static inline size_t grady_kipp_open(const struct sph_flaws *flaws, size_t i, do
 }
 
 /* D^(1/3) after dt with `open` of `total` flaws open. rate = c_g/R_s, 1/s. */
-static inline double grady_kipp_grow(double damage_cbrt, size_t open, size_t total, int growth, int cap, double rate, double dt) {
-  if (!open) return damage_cbrt;
+static inline double grady_kipp_grow(double damage_cbrt, size_t open, size_t total, int growth, int cap, double rate,
+                                     double dt) {
+  if (!open)
+    return damage_cbrt;
   double grown = damage_cbrt + sph_fracture_rate(open, growth) * rate * dt;
   const double limit = sph_fracture_limit(open, total, cap);
-  if (grown > limit) grown = limit;
+  if (grown > limit)
+    grown = limit;
   return grown > damage_cbrt ? grown : damage_cbrt;
 }
 

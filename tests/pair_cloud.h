@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/pairs.h"
+#include "engine/sph/pairs/pairs.h"
 #include "tests/noise.h"
 
 enum { SIDE = 22, LARGE = 36, MOST = LARGE * LARGE * LARGE, COLUMNS = 11 }; /* three chunks, twelve */

@@ -1,13 +1,15 @@
-/* Sums of the pair loop in arrays of all particles, for tests and benchmarks: engine/sph/pairs.h hands them over piece by piece. */
+/* Sums of the pair loop in arrays of all particles, for tests and benchmarks: engine/sph/pairs/pairs.h hands them over
+ * piece by piece. */
 #ifndef CLAST_TESTS_PAIR_SUMS_H
 #define CLAST_TESTS_PAIR_SUMS_H
 
 #include <string.h>
 
-#include "engine/sph/pairs.h"
+#include "engine/sph/pairs/pairs.h"
 
 static inline void pair_sums_copy(double *to, size_t first, size_t count, const double *from) {
-  if (to && from) memcpy(to + first, from, count * sizeof *to);
+  if (to && from)
+    memcpy(to + first, from, count * sizeof *to);
 }
 
 /* A sph_pairs_take; `context` is a struct sph_pair_sums of the whole arrays. */

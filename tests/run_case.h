@@ -1,4 +1,5 @@
-/* Running a built-in scene of any engine, changed by a few overrides, from a test. Everything fails the test by itself. */
+/* Running a built-in scene of any engine, changed by a few overrides, from a test. Everything fails the test by itself.
+ */
 #ifndef CLAST_TESTS_RUN_CASE_H
 #define CLAST_TESTS_RUN_CASE_H
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/sph/system.h"
+#include "engine/sph/step/system.h"
 
 #define CASE_UNUSED __attribute__((unused))
 
@@ -70,18 +70,21 @@ static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p,
                                                   const struct sph_parameters *parameters) {
   struct sph_system *s = NULL;
   struct error error = {0};
-  if (sph_system_create(p, bodies, physics, parameters, &s, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (sph_system_create(p, bodies, physics, parameters, &s, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   return s;
 }
 
 static CASE_UNUSED void case_steps(struct sph_system *s, int steps) {
   for (int k = 0; k < steps; k++)
-    if (!sph_system_step(s, HUGE_VAL)) fail_msg("step %d: %s", k, sph_system_failure(s));
+    if (!sph_system_step(s, HUGE_VAL))
+      fail_msg("step %d: %s", k, sph_system_failure(s));
 }
 
 static CASE_UNUSED void case_run(struct sph_system *s, double until) {
   while (sph_system_time(s) < until)
-    if (!sph_system_step(s, until)) fail_msg("at %g s: %s", sph_system_time(s), sph_system_failure(s));
+    if (!sph_system_step(s, until))
+      fail_msg("at %g s: %s", sph_system_time(s), sph_system_failure(s));
 }
 
 static CASE_UNUSED double case_total(struct sph_ledger l) {

@@ -4,7 +4,7 @@
 
 #include "tests/sph_case.h"
 
-#include "engine/sph/system_layout.h"
+#include "engine/sph/step/system_layout.h"
 
 enum { SIDE = 8, SMALL = 3 };
 static const double spacing = 1e-3;

@@ -1,5 +1,5 @@
-/* Moving solids for tests, through engine/sph/bodies.h and engine/sph/system.h alone. Everything fails the test by
- * itself.
+/* Moving solids for tests, through engine/sph/body/bodies.h and engine/sph/step/system.h alone. Everything fails the
+ * test by itself.
  *
  *   struct solid_case c = solid_make(1);      parameters at their defaults, bodies empty
  *   c.body[0].shape = ...; c.physics[0].material = solid_basalt(); c.physics[0].strength = true;
@@ -23,9 +23,9 @@
 
 #include <cmocka.h> /* after what it needs */
 
-#include "engine/sph/bodies.h"
-#include "engine/sph/system.h"
-#include "engine/sph/tillotson.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/tillotson.h"
+#include "engine/sph/step/system.h"
 
 #define UNUSED __attribute__((unused))
 
@@ -130,7 +130,8 @@ UNUSED static void solid_start(struct solid_case *c) {
 }
 
 UNUSED static void solid_step(struct solid_case *c, double until) {
-  if (!sph_system_step(c->system, until)) fail_msg("step: %s", sph_system_failure(c->system));
+  if (!sph_system_step(c->system, until))
+    fail_msg("step: %s", sph_system_failure(c->system));
 }
 
 UNUSED static void solid_until(struct solid_case *c, double until) {
@@ -196,7 +197,8 @@ UNUSED static void solid_swing_add(struct solid_swing *s, double time, double va
     s->start = value;
   else if (s->value * value < 0 && s->crossings < 3)
     s->crossing[s->crossings++] = s->time + (time - s->time) * s->value / (s->value - value);
-  if (fabs(value) > s->extreme[s->crossings]) s->extreme[s->crossings] = fabs(value);
+  if (fabs(value) > s->extreme[s->crossings])
+    s->extreme[s->crossings] = fabs(value);
   s->time = time;
   s->value = value;
 }

@@ -80,8 +80,8 @@ static const struct field fixture_input_rows[] = {
      .number = 100,
      .doc = "Grains."},
 };
-static const struct field_table fixture_inputs_table =
-    FIELD_TABLE(fixture_input_rows, struct fixture_inputs, "fake scene", "A scene for tests.");
+static const struct field_table fixture_inputs_table = FIELD_TABLE(fixture_input_rows, struct fixture_inputs,
+                                                                   "fake scene", "A scene for tests.");
 static const struct field fixture_result_rows[] = {
     {.path = "broken.count",
      .kind = FIELD_INTEGER,
@@ -106,8 +106,8 @@ static const struct field fixture_result_rows[] = {
      .flags = FIELD_VOLATILE,
      .doc = "A time on the wall."},
 };
-static const struct field_table fixture_results_table =
-    FIELD_TABLE(fixture_result_rows, struct fixture_result, "fake result", "A result for tests.");
+static const struct field_table fixture_results_table = FIELD_TABLE(fixture_result_rows, struct fixture_result,
+                                                                    "fake result", "A result for tests.");
 static const struct field fixture_estimate_rows[] = {
     {.path = "window",
      .kind = FIELD_CHOICE,
@@ -122,8 +122,8 @@ static const struct field fixture_estimate_rows[] = {
      .maximum = HUGE_VAL,
      .doc = "Exponent."},
 };
-static const struct field_table fixture_estimates_table =
-    FIELD_TABLE(fixture_estimate_rows, struct fixture_estimate, "fake estimate", "An estimate for tests.");
+static const struct field_table fixture_estimates_table = FIELD_TABLE(fixture_estimate_rows, struct fixture_estimate,
+                                                                      "fake estimate", "An estimate for tests.");
 
 static const struct engine_kind fixture_kind = {.name = "fake",
                                                 .doc = "Made-up numbers.",
@@ -192,8 +192,9 @@ static inline void fixture_fill(struct fixture_run *f, const struct scene *scene
     f->outcome.mean_fragment_mass_rest = square / total / 2;
     f->outcome.dust_fraction = f->fragments[fragments - 1].mass / total;
   }
-  f->result = (struct fixture_result){
-      .broken = 3 * replicate, .hardest = 0.5 * (double)replicate, .clock = 1e-3 * (double)getpid()};
+  f->result = (struct fixture_result){.broken = 3 * replicate,
+                                      .hardest = 0.5 * (double)replicate,
+                                      .clock = 1e-3 * (double)getpid()};
   f->estimates[0] = (struct fixture_estimate){.window = 0, .beta = 1.5 + 0.01 * (double)replicate};
   f->estimates[1] = (struct fixture_estimate){.window = 1, .beta = NAN};
   f->run = (struct store_run){.point_id = point_id,
@@ -225,7 +226,8 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
   struct fixture_run *f = malloc(sizeof *f);
   int64_t campaign = 0, session = 0, point = 0;
   status result = store_add_campaign(store, "made-up", "name: made-up", "{}", &campaign, error);
-  if (result == STATUS_OK) result = store_begin_session(store, "{\"version\":\"test\"}", &session, error);
+  if (result == STATUS_OK)
+    result = store_begin_session(store, "{\"version\":\"test\"}", &session, error);
   int64_t outer = by_replicate ? replicates : 1;
   for (int64_t r = 0; result == STATUS_OK && r < outer; r++)
     for (int p = 0; result == STATUS_OK && p < points_m * points_k; p++) {
@@ -237,7 +239,8 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
         result = store_add_run(store, &f->run, error);
       }
     }
-  if (result == STATUS_OK) result = store_end_session(store, session, "ok", error);
+  if (result == STATUS_OK)
+    result = store_end_session(store, session, "ok", error);
   free(f);
   return result;
 }

@@ -13,13 +13,15 @@ static inline int sweep(const char *folder) {
   DIR *list = opendir(folder);
   for (const struct dirent *entry; list && (entry = readdir(list));) {
     char path[1024];
-    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0) continue;
+    if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+      continue;
     snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
     fprintf(stderr, "left behind: %s\n", path);
     unlink(path);
     left++;
   }
-  if (list) closedir(list);
+  if (list)
+    closedir(list);
   rmdir(folder);
   return left;
 }

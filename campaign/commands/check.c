@@ -31,9 +31,10 @@ const struct command check_command = {
     .group = "the store",
     .arguments = "STORE",
     .summary = "is the store whole: integrity, sums, orphans, missing files",
-    .doc = "Checks the file's integrity, foreign keys, orphaned rows, kept files that are missing, running sums and\n"
-           "spectra against the fragment masses, masses against the total, results against their ranges, and every run's\n"
-           "identity against its scene. Each problem is a line on stdout; exit 65 when there is any.",
+    .doc =
+        "Checks the file's integrity, foreign keys, orphaned rows, kept files that are missing, running sums and\n"
+        "spectra against the fragment masses, masses against the total, results against their ranges, and every run's\n"
+        "identity against its scene. Each problem is a line on stdout; exit 65 when there is any.",
     .examples = "clast check out.db\nclast check out.db && cp out.db /archive/",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

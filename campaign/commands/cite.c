@@ -22,15 +22,11 @@ static bool absent(const struct field *row, const void *inputs) {
   struct field_value value;
   field_get(row, inputs, &value);
   switch (row->kind) {
-  case FIELD_REAL:
-    return isnan(value.number) || value.number == 0;
-  case FIELD_BOOLEAN:
-    return value.number == 0;
-  case FIELD_CHOICE:
-    return strcmp(value.text, "none") == 0 || strcmp(value.text, "off") == 0;
+  case FIELD_REAL: return isnan(value.number) || value.number == 0;
+  case FIELD_BOOLEAN: return value.number == 0;
+  case FIELD_CHOICE: return strcmp(value.text, "none") == 0 || strcmp(value.text, "off") == 0;
   case FIELD_INTEGER:
-  case FIELD_TEXT:
-    break;
+  case FIELD_TEXT: break;
   }
   return false;
 }
@@ -75,9 +71,10 @@ const struct command cite_command = {
     .group = "scenes and inputs",
     .arguments = "SCENE",
     .summary = "the papers behind what a scene switches on",
-    .doc = "Prints the sources of the engine and of the scene's inputs (a built-in name or a file), but for what is off\n"
-           "or zero, and of the engine's results, so that a paper can name what it really used; `clast explain SCENE`\n"
-           "has the sources of the modules that are on.",
+    .doc =
+        "Prints the sources of the engine and of the scene's inputs (a built-in name or a file), but for what is off\n"
+        "or zero, and of the engine's results, so that a paper can name what it really used; `clast explain SCENE`\n"
+        "has the sources of the modules that are on.",
     .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

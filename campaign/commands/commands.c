@@ -3,17 +3,39 @@
 #include <string.h>
 
 static const struct command *const all[] = {
-    /* running */ &run_command, &plan_command, &simulate_command, &retry_command,
-    /* scenes and inputs */ &scenes_command, &materials_command, &explain_command, &schema_command, &cite_command,
-    /* results */ &status_command, &estimates_command, &stats_command, &spectrum_command, &query_command,
-    &plot_command, &map_command, &picture_command,
-    /* the store */ &check_command, &export_command, &merge_command, &replay_command,
-    /* about clast */ &help_command, &version_command, &completion_command,
+    /* running */ &run_command,
+    &plan_command,
+    &simulate_command,
+    &retry_command,
+    /* scenes and inputs */ &scenes_command,
+    &materials_command,
+    &explain_command,
+    &schema_command,
+    &cite_command,
+    /* results */ &status_command,
+    &estimates_command,
+    &stats_command,
+    &spectrum_command,
+    &query_command,
+    &plot_command,
+    &map_command,
+    &picture_command,
+    /* the store */ &check_command,
+    &export_command,
+    &merge_command,
+    &replay_command,
+    /* about clast */ &help_command,
+    &version_command,
+    &completion_command,
 };
 
-size_t commands_count(void) { return sizeof all / sizeof all[0]; }
+size_t commands_count(void) {
+  return sizeof all / sizeof all[0];
+}
 
-const struct command *const *commands_all(void) { return all; }
+const struct command *const *commands_all(void) {
+  return all;
+}
 
 const struct command *commands_find(const char *name, struct error *error) {
   const char *names[sizeof all / sizeof all[0]];

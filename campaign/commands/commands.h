@@ -2,11 +2,12 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 #define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 
-#include "campaign/commands/option.h"
+#include "campaign/terminal/option.h"
 
 extern const struct command run_command, plan_command, simulate_command;
 extern const struct command explain_command, scenes_command, materials_command, schema_command, cite_command;
-extern const struct command status_command, stats_command, estimates_command, spectrum_command, query_command, picture_command;
+extern const struct command status_command, stats_command, estimates_command, spectrum_command, query_command,
+    picture_command;
 extern const struct command check_command, export_command, merge_command, replay_command, retry_command;
 extern const struct command map_command, plot_command;
 extern const struct command help_command, version_command, completion_command;

@@ -8,7 +8,7 @@
 
 #include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 enum { AXES_MAXIMUM = 16, RESAMPLE_SEED = 1 };
 static const double level = 0.95;
@@ -53,17 +53,18 @@ static status point_row(void *context, size_t count, const struct query_value *v
     struct pooled_exponent fits[METHODS];
     int64_t fragments = 0;
     for (int m = 0; m < METHODS; m++) {
-      fits[m] = (struct pooled_exponent){.fit = {.beta = NAN, .standard_error = NAN}, .interval = {.standard_error = NAN}};
+      fits[m] = (struct pooled_exponent){.fit = {.beta = NAN, .standard_error = NAN},
+                                         .interval = {.standard_error = NAN}};
       if (!code && lower > 0 && point.runs.count > 0)
-        code = pooled_exponent(&point.runs, methods[m], lower, (size_t)printing->choice->resamples, level, RESAMPLE_SEED,
-                               &fits[m], error);
+        code = pooled_exponent(&point.runs, methods[m], lower, (size_t)printing->choice->resamples, level,
+                               RESAMPLE_SEED, &fits[m], error);
       if (methods[m] == EXPONENT_MASSES)
         fragments = fits[m].fit.n;
     }
     if (code)
       break;
     if (printing->format == TABLE_TEXT && window > 0 && fragments == 0)
-      continue; /* an empty line tells people nothing */
+      continue;                                                /* an empty line tells people nothing */
     bool blank = printing->format == TABLE_TEXT && window > 0; /* people see each point's inputs once */
     value_cell(printing->table, &values[0], blank);
     for (size_t i = 6; i < count; i++)
@@ -120,14 +121,16 @@ static void headings(struct printing *printing) {
   " where (:campaign = 0 or point_id in (select point_id from campaign_point where campaign_id = :campaign))"          \
   " and (:point = 0 or point_id = :point)"
 
-static void parameters_of(const struct estimates_choice *choice, char text[2][32], struct query_parameter parameters[2]) {
+static void parameters_of(const struct estimates_choice *choice, char text[2][32],
+                          struct query_parameter parameters[2]) {
   snprintf(text[0], 32, "%lld", (long long)choice->campaign);
   snprintf(text[1], 32, "%lld", (long long)choice->point);
   parameters[0] = (struct query_parameter){"campaign", text[0]};
   parameters[1] = (struct query_parameter){"point", text[1]};
 }
 
-status estimates_points(struct store *store, const struct estimates_choice *choice, int64_t *points, struct error *error) {
+status estimates_points(struct store *store, const struct estimates_choice *choice, int64_t *points,
+                        struct error *error) {
   char text[2][32];
   struct query_parameter parameters[2];
   double number = 0;
@@ -138,9 +141,11 @@ status estimates_points(struct store *store, const struct estimates_choice *choi
 }
 
 const char *const estimates_legend =
-    "beta: exponent of F(m) ~ m^-beta (differential), pooled over the runs of a point, each run's largest fragment left out.\n"
+    "beta: exponent of F(m) ~ m^-beta (differential), pooled over the runs of a point, each run's largest fragment "
+    "left out.\n"
     "LSQ: least squares on log bins, the paper's way, biased; binned, ML: maximum likelihood on bins and on masses.\n"
-    "Windows hold fragments of 2, 5, 10 mean masses of a grain or particle and more (from N - 1/2). Errors: one standard error, from resampling runs.\n";
+    "Windows hold fragments of 2, 5, 10 mean masses of a grain or particle and more (from N - 1/2). Errors: one "
+    "standard error, from resampling runs.\n";
 
 status estimates_rows(struct store *store, const struct estimates_choice *choice, enum table_format format, FILE *out,
                       struct error *error) {
@@ -208,10 +213,11 @@ const struct command estimates_command = {
     .group = "results",
     .arguments = "STORE",
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
-    .doc = "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
-           "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
-           "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle\n"
-           "and more, each run's largest fragment left out). Errors of the exponents come from resampling runs.",
+    .doc =
+        "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
+        "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
+        "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle\n"
+        "and more, each run's largest fragment left out). Errors of the exponents come from resampling runs.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -2,14 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/table.h"
 #include "engine/scene.h"
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 enum { TABLES_MAXIMUM = 24 };
 
@@ -44,7 +44,7 @@ static status explain_path(const char *path, struct error *error) {
     const struct field *row = field_find(list[i], path, &missed);
     if (!row && !has_prefix(list[i], path)) {
       const char *near = field_nearest(list[i], path);
-      if (near && (!nearest || near_distance(path, strlen(path), near) < near_distance(path, strlen(path), nearest)))
+      if (near && (!nearest || edit_distance(path, strlen(path), near) < edit_distance(path, strlen(path), nearest)))
         nearest = near;
       continue;
     }
@@ -53,7 +53,8 @@ static status explain_path(const char *path, struct error *error) {
   }
   if (found)
     return STATUS_OK;
-  return status_fail(error, STATUS_CONTENT, "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
+  return status_fail(error, STATUS_CONTENT,
+                     "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
 }
 
@@ -86,7 +87,8 @@ static status list_paths(const struct explain_options *options, struct error *er
       table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
       void *object = calloc(1, list[i]->size);
       struct field_value value;
-      bool input = list[i] != &outcome_table && list[i] != &estimates_table && !(row->flags & (FIELD_REQUIRED | FIELD_DERIVED));
+      bool input = list[i] != &outcome_table && list[i] != &estimates_table &&
+                   !(row->flags & (FIELD_REQUIRED | FIELD_DERIVED));
       if (object && input) {
         field_defaults(list[i], object);
         field_get(row, object, &value);
@@ -159,12 +161,13 @@ static status run(const struct command_line *line, struct error *error) {
     return list_paths(options, error);
   const char *name = line->arguments[0];
   const char *ending = strrchr(name, '.');
-  bool file = strchr(name, '/') || (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0 ||
-                                               strcmp(ending, ".json") == 0));
+  bool file = strchr(name, '/') ||
+              (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0 || strcmp(ending, ".json") == 0));
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
   if (!code && !file && !scene_builtin_text(name) && options->set.count == 0)
-    return (code = table_text_only(&options->table, "the explanation of a path", error)) ? code : explain_path(name, error);
+    return (code = table_text_only(&options->table, "the explanation of a path", error)) ? code
+                                                                                         : explain_path(name, error);
   struct scene *scene = NULL;
   if (!code)
     code = scene_load(name, NULL, &scene, error);
@@ -180,7 +183,8 @@ status explain_override(struct scene *scene, const char *text, struct error *err
   const char *equals = strchr(text, '=');
   char path[FIELD_TEXT_SIZE];
   if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
-    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"", text);
+    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
+                       text);
   snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
   return scene_set_text(scene, path, equals + 1, error);
 }
@@ -197,7 +201,8 @@ const struct command explain_command = {
     .summary = "what an input or result means; what a scene models and what it costs",
     .doc = "Of a PATH (threshold.strain, or strain where that is unique; contact for a whole section): meaning, unit,\n"
            "range, default and source. Of a SCENE (a built-in name or a file): what is modelled and why, the expected\n"
-           "cost, and every input with its value (--json and --csv: these alone). Without argument: a table of all inputs and\n"
+           "cost, and every input with its value (--json and --csv: these alone). Without argument: a table of all "
+           "inputs and\n"
            "results.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,

@@ -2,8 +2,8 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_EXPLAIN_H
 #define CLAST_CAMPAIGN_COMMANDS_EXPLAIN_H
 
-#include "campaign/commands/option.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/option.h"
+#include "campaign/terminal/table.h"
 #include "engine/scene.h"
 
 struct explain_options {
@@ -12,9 +12,12 @@ struct explain_options {
 };
 
 #define EXPLAIN_SET(type_, member_)                                                                                    \
-  {"set", 's', OPTION_LIST, "PATH=VALUE", offsetof(type_, member_), 0, 0, NULL,                                        \
-   "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. What the "  \
-   "scene says and this leaves without effect is dropped."}
+  {                                                                                                                    \
+    "set", 's', OPTION_LIST, "PATH=VALUE", offsetof(type_, member_), 0, 0, NULL,                                       \
+        "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "     \
+        "What the "                                                                                                    \
+        "scene says and this leaves without effect is dropped."                                                        \
+  }
 
 /* One --set; not checked across fields (scene_check). STATUS_USAGE, STATUS_CONTENT. */
 status explain_override(struct scene *scene, const char *text, struct error *error);

@@ -29,14 +29,16 @@ static void note(void *context, const char *text) {
     fprintf(stderr, "clast: %s\n", text);
 }
 
-static const char *plural(int64_t count) { return count == 1 ? "" : "s"; }
+static const char *plural(int64_t count) {
+  return count == 1 ? "" : "s";
+}
 
 static void print_summary(const struct driver_summary *summary, const char *store, double wall_s, status code) {
   char wall[64], cpu[64];
   progress_duration(wall_s, wall, sizeof wall);
   progress_duration(summary->cpu_s, cpu, sizeof cpu);
-  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time), %" PRId64 " found in the store\n", store,
-          summary->runs_done, plural(summary->runs_done), wall, cpu, summary->runs_reused);
+  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time), %" PRId64 " found in the store\n",
+          store, summary->runs_done, plural(summary->runs_done), wall, cpu, summary->runs_reused);
   fprintf(stderr, "points: %" PRIu64 " of %" PRIu64 " complete", summary->points_done, summary->points);
   if (summary->points_interval_met || summary->points_cap_reached)
     fprintf(stderr, " (interval met %" PRIu64 ", most runs reached %" PRIu64 ")", summary->points_interval_met,
@@ -53,7 +55,8 @@ static void print_summary(const struct driver_summary *summary, const char *stor
 }
 
 /* The store's verdict, not the driver's: what is printed is what any later reader will find. */
-static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet, struct error *error) {
+static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet,
+                              struct error *error) {
   struct store *store = NULL;
   int64_t points = 0;
   struct estimates_choice choice = {.campaign = campaign, .resamples = 400};
@@ -61,7 +64,8 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
   if (!code)
     code = estimates_points(store, &choice, &points, error);
   if (!code && format == TABLE_TEXT && points > MANY_POINTS)
-    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path, campaign);
+    fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
+            campaign);
   else if (!code)
     code = estimates_rows(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
@@ -73,7 +77,8 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
 }
 
 static status manage(const struct campaign *campaign, const char *store, const struct launch_options *options,
-                     struct farm *farm, enum table_format format, const struct command_line *line, struct error *error) {
+                     struct farm *farm, enum table_format format, const struct command_line *line,
+                     struct error *error) {
   bool manager = farm_rank(farm) == 0;
   struct progress *progress = NULL;
   if (manager && !options->quiet) {
@@ -83,8 +88,12 @@ static status manage(const struct campaign *campaign, const char *store, const s
   }
   char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
   struct notes notes = {progress, options->quiet};
-  struct driver_options driver = {.store_path = store, .facts = facts, .progress = progress, .note = note,
-                                  .note_context = &notes, .slots = farm_slots_total(farm)};
+  struct driver_options driver = {.store_path = store,
+                                  .facts = facts,
+                                  .progress = progress,
+                                  .note = note,
+                                  .note_context = &notes,
+                                  .slots = farm_slots_total(farm)};
   struct driver_summary summary = {0};
   struct timespec start, end;
   clock_gettime(CLOCK_MONOTONIC, &start);
@@ -108,7 +117,8 @@ static status manage(const struct campaign *campaign, const char *store, const s
 
 status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
                        enum table_format format, const struct command_line *line, struct error *error) {
-  struct farm_options farm_options = {.slots = (int)options->slots, .in_process = options->in_process,
+  struct farm_options farm_options = {.slots = (int)options->slots,
+                                      .in_process = options->in_process,
                                       .use_mpi = farm_under_mpi()};
   struct farm *farm = NULL;
   driver_farm_options(campaign, &farm_options);

@@ -3,8 +3,8 @@
 #define CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
 
 #include "campaign/campaign.h"
-#include "campaign/commands/option.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/option.h"
+#include "campaign/terminal/table.h"
 
 struct launch_options {
   int64_t slots;
@@ -13,12 +13,28 @@ struct launch_options {
 };
 
 #define LAUNCH_OPTIONS(type_, member_)                                                                                 \
-  {"slots", 'j', OPTION_INTEGER, "N", offsetof(type_, member_) + offsetof(struct launch_options, slots), 0, 4096, "0", \
+  {"slots",                                                                                                            \
+   'j',                                                                                                                \
+   OPTION_INTEGER,                                                                                                     \
+   "N",                                                                                                                \
+   offsetof(type_, member_) + offsetof(struct launch_options, slots),                                                  \
+   0,                                                                                                                  \
+   4096,                                                                                                               \
+   "0",                                                                                                                \
    "Runs at a time; under mpirun or srun, of each rank. 0 is one per core, and one per rank."},                        \
-      {"in-process", 0, OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, in_process), 0,  \
-       0, NULL, "No process of its own for each run: faster for runs of milliseconds, but a crash takes a slot along."}, \
-  {"quiet", 'q', OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, quiet), 0, 0, NULL,     \
-   "No progress and no remarks on stderr; warnings and errors stay."}
+      {"in-process",                                                                                                   \
+       0,                                                                                                              \
+       OPTION_FLAG,                                                                                                    \
+       NULL,                                                                                                           \
+       offsetof(type_, member_) + offsetof(struct launch_options, in_process),                                         \
+       0,                                                                                                              \
+       0,                                                                                                              \
+       NULL,                                                                                                           \
+       "No process of its own for each run: faster for runs of milliseconds, but a crash takes a slot along."},        \
+  {                                                                                                                    \
+    "quiet", 'q', OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, quiet), 0, 0, NULL,    \
+        "No progress and no remarks on stderr; warnings and errors stay."                                              \
+  }
 
 /* Farm, driver, and at the end the table of estimates from the store, on rank 0. The farm is started before anything
  * that opens HDF5 or starts a thread. */

@@ -5,9 +5,13 @@
 
 #include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
-enum { WIDTH = 900, MOST_GROUPS = 10000, MEAN_COLUMN = 7 }; /* x, y, engine, results_version, n, failed, censored, mean */
+enum {
+  WIDTH = 900,
+  MOST_GROUPS = 10000,
+  MEAN_COLUMN = 7
+}; /* x, y, engine, results_version, n, failed, censored, mean */
 
 struct options {
   const char *x, *y, *quantity;
@@ -40,8 +44,9 @@ static status add(struct map *map, const struct query_value *x, const struct que
     return STATUS_OK; /* off, or does not apply: no place on an axis of numbers */
   for (size_t i = 0; map->exponent && i < map->count; i++)
     if (map->points[i][0] == x->real && map->points[i][1] == y->real)
-      return status_fail(error, STATUS_USAGE, "several points share %s = %g and %s = %g: their exponents are not averaged",
-                         map->name[0], x->real, map->name[1], y->real);
+      return status_fail(error, STATUS_USAGE,
+                         "several points share %s = %g and %s = %g: their exponents are not averaged", map->name[0],
+                         x->real, map->name[1], y->real);
   map->points[map->count][0] = x->real;
   map->points[map->count][1] = y->real;
   map->points[map->count++][2] = value;
@@ -92,14 +97,16 @@ static status run(const struct command_line *line, struct error *error) {
   snprintf(title, sizeof title, "%s%s, %s over seeds%s", map.exponent ? "exponent " : "", options->quantity,
            map.exponent ? "pooled" : "mean", pool && !map.exponent ? " and other inputs" : "");
   if (!code)
-    code = picture_map_points(line->arguments[1], WIDTH, title, options->quantity, map.name[0], map.name[1], map.count, (const double(*)[3])map.points, error);
+    code = picture_map_points(line->arguments[1], WIDTH, title, options->quantity, map.name[0], map.name[1], map.count,
+                              (const double(*)[3])map.points, error);
   free(map.points);
   store_close(map.store, NULL);
   return code;
 }
 
 static const struct option_row rows[] = {
-    {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL, "Varied input along the bottom: a path or its unique ending."},
+    {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
+     "Varied input along the bottom: a path or its unique ending."},
     {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input along the side."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
      "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
@@ -111,7 +118,8 @@ const struct command map_command = {
     .group = "results",
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over two varied inputs as a picture",
-    .doc = "Draws the mean over seeds of a result, or the exponent pooled over seeds, as a tile for every pair of values of\n"
+    .doc = "Draws the mean over seeds of a result, or the exponent pooled over seeds, as a tile for every pair of "
+           "values of\n"
            "two varied inputs. Pairs without a usable run are crossed. The ending chooses the format, .png or .svg.",
     .examples = "clast map out.db map.png -x strain -y angle\nclast map out.db beta.svg -x strain -y angle -q beta",
     .minimum_arguments = 2,

@@ -1,7 +1,7 @@
 /* `clast merge TARGET SOURCE...`: stores from several machines into one. */
 #include <inttypes.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/pooling.h"
 #include "db/store.h"
@@ -11,12 +11,15 @@ static status run(const struct command_line *line, struct error *error) {
   int64_t disagreeing = 0;
   char warning[512] = "";
   status code = store_open_writer(line->arguments[0], &estimates_table, &store, warning, sizeof warning, error);
-  if (code) return code;
-  if (*warning) fprintf(stderr, "clast: warning: %s\n", warning);
+  if (code)
+    return code;
+  if (*warning)
+    fprintf(stderr, "clast: warning: %s\n", warning);
   for (size_t i = 1; !code && i < line->count; i++) {
     int64_t added = 0, differing = 0;
     code = store_merge(store, line->arguments[i], &added, &differing, error);
-    if (!code) fprintf(stderr, "%s: %" PRId64 " run%s added\n", line->arguments[i], added, added == 1 ? "" : "s");
+    if (!code)
+      fprintf(stderr, "%s: %" PRId64 " run%s added\n", line->arguments[i], added, added == 1 ? "" : "s");
     if (!code && differing)
       fprintf(stderr,
               "clast: warning: %s: %" PRId64
@@ -26,7 +29,8 @@ static status run(const struct command_line *line, struct error *error) {
               line->arguments[i], differing, differing == 1 ? "" : "s", line->arguments[0], line->arguments[0]);
     disagreeing += differing;
   }
-  if (!code) code = pooling_store(store, 0, error);
+  if (!code)
+    code = pooling_store(store, 0, error);
   status closed = store_close(store, code ? NULL : error);
   code = code ? code : closed;
   if (!code && disagreeing)

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/picture.h"
+#include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
 #include "engine/body.h"
 #include "engine/cloud.h"
@@ -22,9 +22,12 @@ static status draw_grains(const char *fields, const char *picture, const char *c
   status code = body_read(fields, &body, error);
   if (code)
     return code;
-  struct picture_panel panel = {
-      .body = {.cells = body.cells, .first_vertex = body.first_vertex, .vertex = (const double(*)[2])body.vertex,
-               .fragment = body.fragment, .cracks = body.cracks, .crack = (const uint32_t(*)[2])body.crack}};
+  struct picture_panel panel = {.body = {.cells = body.cells,
+                                         .first_vertex = body.first_vertex,
+                                         .vertex = (const double(*)[2])body.vertex,
+                                         .fragment = body.fragment,
+                                         .cracks = body.cracks,
+                                         .crack = (const uint32_t(*)[2])body.crack}};
   char numbers[160];
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
   code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
@@ -33,7 +36,8 @@ static status draw_grains(const char *fields, const char *picture, const char *c
 }
 
 /* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
-static status choose_look(const struct options *options, struct picture_look *look, const char **what, struct error *error) {
+static status choose_look(const struct options *options, struct picture_look *look, const char **what,
+                          struct error *error) {
   *what = options->what ? options->what : "damage";
   if (!strcmp(*what, "fragments"))
     *what = NULL;
@@ -65,14 +69,14 @@ static void name_look(const struct picture_look *look, const struct cloud *cloud
   if (used < size && isfinite(cloud->time))
     used += (size_t)snprintf(text + used, size - used, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
   if (used < size && look->view == PICTURE_CUT)
-    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle", 'x' + look->axis,
-             look->plane);
+    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle",
+             'x' + look->axis, look->plane);
   else if (used < size && look->view == PICTURE_APART)
     snprintf(text + used, size - used, ", fragments drawn apart");
 }
 
-static status draw_particles(const char *fields, const char *picture, const char *caption, const struct options *options,
-                             struct error *error) {
+static status draw_particles(const char *fields, const char *picture, const char *caption,
+                             const struct options *options, struct error *error) {
   struct picture_look look;
   struct cloud cloud = {0};
   double *value = NULL;
@@ -87,8 +91,13 @@ static status draw_particles(const char *fields, const char *picture, const char
   }
   if (what && !value && (code = cloud_read_column(fields, &cloud, what, &value, unit, meaning, error)))
     goto cleanup;
-  struct picture_cloud drawn = {.n = cloud.n, .position = (const double(*)[3])cloud.position, .size = cloud.size,
-                                .mass = cloud.mass, .fragment = cloud.fragment, .part = cloud.part, .value = value};
+  struct picture_cloud drawn = {.n = cloud.n,
+                                .position = (const double(*)[3])cloud.position,
+                                .size = cloud.size,
+                                .mass = cloud.mass,
+                                .fragment = cloud.fragment,
+                                .part = cloud.part,
+                                .value = value};
   name_look(&look, &cloud, title, sizeof title);
   picture_particles_numbers(&drawn, numbers, sizeof numbers);
   look.title = caption ? caption : title;
@@ -103,7 +112,8 @@ cleanup:
 }
 
 /* What lies along the axis: the quantity asked for, or distention and damage. */
-static status draw_profile(const char *fields, const char *picture, const struct options *options, struct error *error) {
+static status draw_profile(const char *fields, const char *picture, const struct options *options,
+                           struct error *error) {
   enum { MOST = 2 };
   const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
   struct picture_profile panel[MOST];
@@ -123,11 +133,13 @@ static status draw_profile(const char *fields, const char *picture, const struct
     }
     snprintf(labels[panels], sizeof labels[panels], strcmp(unit, "1") && *unit ? "%s (%s)" : "%s", names[panels], unit);
     bool share = !strcmp(names[panels], "damage");
-    panel[panels] = (struct picture_profile){labels[panels], values[panels], {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
+    panel[panels] = (struct picture_profile){labels[panels],
+                                             values[panels],
+                                             {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
   }
   name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
-  code = picture_profile(picture, WIDTH, options->caption ? options->caption : title, "depth at the start (m)", count, depth, panels, panel,
-                         error);
+  code = picture_profile(picture, WIDTH, options->caption ? options->caption : title, "depth at the start (m)", count,
+                         depth, panels, panel, error);
 cleanup:
   free(depth);
   for (size_t k = 0; k < MOST; k++)
@@ -150,8 +162,10 @@ static status draw(const char *fields, const char *picture, const struct options
     if (code)
       return code;
     body_clear(&body);
-    return status_fail(error, STATUS_USAGE, "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
-                                            "are for particles in space", fields);
+    return status_fail(error, STATUS_USAGE,
+                       "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
+                       "are for particles in space",
+                       fields);
   }
   return draw_grains(fields, picture, options->caption, error);
 }
@@ -167,11 +181,13 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title over it."},
     {"what", 0, OPTION_TEXT, "QUANTITY", offsetof(struct options, what), 0, 0, NULL,
-     "Particles: what colours them: damage (where there is any, else pressure), pressure, density, energy, distention, flaws..., "
+     "Particles: what colours them: damage (where there is any, else pressure), pressure, density, energy, distention, "
+     "flaws..., "
      "or fragments."},
     {"view", 0, OPTION_TEXT, "VIEW", offsetof(struct options, view), 0, 0, NULL,
      "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the default "
-     "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a plate)."},
+     "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
+     "plate)."},
     {"axis", 0, OPTION_TEXT, "x|y|z", offsetof(struct options, axis), 0, 0, NULL,
      "Particles: the axis that is looked along, at right angles to a cut (y)."},
     {"at", 0, OPTION_TEXT, "LENGTH", offsetof(struct options, at), 0, 0, NULL,
@@ -183,11 +199,14 @@ const struct command picture_command = {
     .group = "results",
     .arguments = "FIELDS.hdf PICTURE.png",
     .summary = "draw the body of a fields file: fragments, damage, pressure",
-    .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields). Grains in the\n"
-           "plane: every fragment in a colour of its own, cracks inside fragments as lines. Particles in space: a cut, a view\n"
+    .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields). Grains in "
+           "the\n"
+           "plane: every fragment in a colour of its own, cracks inside fragments as lines. Particles in space: a cut, "
+           "a view\n"
            "from outside, or the fragments apart. The ending chooses the format, .png or .svg.",
-    .examples = "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
-                "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
+    .examples =
+        "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
+        "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
     .options = rows,

@@ -11,12 +11,16 @@ struct options {
   bool no_trial, json;
 };
 
-status plan_command_print(const char *path, const char *store, int64_t slots, bool no_trial, bool json, struct error *error) {
+status plan_command_print(const char *path, const char *store, int64_t slots, bool no_trial, bool json,
+                          struct error *error) {
   struct campaign *campaign = NULL;
   struct plan plan = {0};
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
-  struct plan_options options = {.store_path = store, .no_trial = no_trial,
-                                 .slots = slots ? (int)slots : cores > 0 ? (int)cores : 1};
+  struct plan_options options = {.store_path = store,
+                                 .no_trial = no_trial,
+                                 .slots = slots       ? (int)slots
+                                          : cores > 0 ? (int)cores
+                                                      : 1};
   status code = campaign_load(path, &campaign, error);
   if (!code)
     code = plan_make(campaign, &options, &plan, error);
@@ -37,7 +41,8 @@ status plan_command_print(const char *path, const char *store, int64_t slots, bo
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return plan_command_print(line->arguments[0], options->store, options->slots, options->no_trial, options->json, error);
+  return plan_command_print(line->arguments[0], options->store, options->slots, options->no_trial, options->json,
+                            error);
 }
 
 static const struct option_row rows[] = {
@@ -55,8 +60,9 @@ const struct command plan_command = {
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
     .summary = "what a campaign would do and cost; stores nothing",
-    .doc = "Reads and checks the campaign, counts its points and runs (and those the store has already), times up to 5 s\n"
-           "of a trial run, and prints what is modelled and the expected time, memory and disk. Nothing is stored.",
+    .doc =
+        "Reads and checks the campaign, counts its points and runs (and those the store has already), times up to 5 s\n"
+        "of a trial run, and prints what is modelled and the expected time, memory and disk. Nothing is stored.",
     .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -6,7 +6,7 @@
 
 #include "analysis/point.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 /* Columns of query_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF = 8, COLUMNS = 9 };
@@ -34,8 +34,9 @@ struct plot {
 static status take_columns(void *context, size_t count, const char *const *names, struct error *error) {
   struct plot *plot = context;
   if (count != plot->axes + COLUMNS || (plot->axes == 2 && strcmp(names[0], names[1]) == 0))
-    return status_fail(error, STATUS_USAGE, "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
-                                            "one), and one quantity");
+    return status_fail(error, STATUS_USAGE,
+                       "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another "
+                       "one), and one quantity");
   for (size_t i = 0; i < plot->axes; i++)
     snprintf(plot->name[i], sizeof plot->name[i], "%s", names[i]);
   const char *mean = names[plot->axes + MEAN];
@@ -44,10 +45,12 @@ static status take_columns(void *context, size_t count, const char *const *names
 }
 
 /* keys: the axes' values. */
-static status add(struct plot *plot, const struct query_value *keys, int64_t version, struct picture_mean mean, struct error *error) {
+static status add(struct plot *plot, const struct query_value *keys, int64_t version, struct picture_mean mean,
+                  struct error *error) {
   const struct query_value *x = &keys[0];
   if (x->kind == QUERY_TEXT)
-    return status_fail(error, STATUS_USAGE, "%s is no number: it can tell lines apart (--by), but is no axis", plot->name[0]);
+    return status_fail(error, STATUS_USAGE, "%s is no number: it can tell lines apart (--by), but is no axis",
+                       plot->name[0]);
   if (x->kind == QUERY_NULL)
     return STATUS_OK; /* off, or does not apply: no place on an axis of numbers */
   char value[sizeof plot->value[0]] = "";
@@ -59,7 +62,8 @@ static status add(struct plot *plot, const struct query_value *keys, int64_t ver
   while (c < plot->count && (strcmp(plot->value[c], value) != 0 || plot->version[c] != version))
     c++;
   if (c == MOST_CURVES)
-    return status_fail(error, STATUS_USAGE, "more than %d lines cannot be told apart: choose a --by with fewer values", MOST_CURVES);
+    return status_fail(error, STATUS_USAGE, "more than %d lines cannot be told apart: choose a --by with fewer values",
+                       MOST_CURVES);
   if (c == plot->count) {
     plot->mean[c] = malloc(MOST_MEANS * sizeof *plot->mean[c]);
     if (!plot->mean[c])
@@ -74,8 +78,10 @@ static status add(struct plot *plot, const struct query_value *keys, int64_t ver
   mean.x = x->real;
   for (size_t i = 0; plot->exponent && i < curve->count; i++)
     if (plot->mean[c][i].x == mean.x)
-      return status_fail(error, STATUS_USAGE, "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
-                         plot->name[0], mean.x);
+      return status_fail(
+          error, STATUS_USAGE,
+          "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
+          plot->name[0], mean.x);
   plot->mean[c][curve->count++] = mean;
   return STATUS_OK;
 }
@@ -94,19 +100,23 @@ static status take_point(void *context, size_t count, const struct query_value *
   struct plot *plot = context;
   const struct query_value *rest = values + plot->axes;
   struct pooled_exponent out;
-  status code = point_exponent(plot->store, rest[0].integer, rest[1].integer, plot->method, plot->window, RESAMPLES, 0.95, &out, error);
+  status code = point_exponent(plot->store, rest[0].integer, rest[1].integer, plot->method, plot->window, RESAMPLES,
+                               0.95, &out, error);
   if (code)
     return code;
   const bool several = rest[2].integer > 1;
-  const struct picture_mean mean = {0, out.fit.beta, several ? out.interval.lower : (double)NAN, several ? out.interval.upper : (double)NAN};
+  const struct picture_mean mean = {0, out.fit.beta, several ? out.interval.lower : (double)NAN,
+                                    several ? out.interval.upper : (double)NAN};
   return add(plot, values, rest[1].integer, mean, error);
 }
 
 static status fit_points(struct plot *plot, struct error *error) {
   const struct query_sink sink = {plot, NULL, take_point};
   char sql[1000];
-  snprintf(sql, sizeof sql, "select \"%s\", %s%s%s point_id, results_version, n from points where n > 0 order by point_id, results_version",
-           plot->name[0], plot->axes == 2 ? "\"" : "", plot->axes == 2 ? plot->name[1] : "", plot->axes == 2 ? "\"," : "");
+  snprintf(
+      sql, sizeof sql,
+      "select \"%s\", %s%s%s point_id, results_version, n from points where n > 0 order by point_id, results_version",
+      plot->name[0], plot->axes == 2 ? "\"" : "", plot->axes == 2 ? plot->name[1] : "", plot->axes == 2 ? "\"," : "");
   return query_run(plot->store, sql, 0, NULL, 0, &sink, error);
 }
 
@@ -124,8 +134,13 @@ static void finish(struct plot *plot, const char *by) {
     char version[40] = "";
     const bool valued = *plot->value[c] != '\0';
     if (several)
-      snprintf(version, sizeof version, "%sresults_version %lld", plot->axes == 2 ? ", " : "", (long long)plot->version[c]);
-    snprintf(plot->label[c], sizeof plot->label[c], "%s%s%s%s", plot->axes == 2 ? by : "", valued ? " = " : plot->axes == 2 ? ": none" : "", plot->value[c], version);
+      snprintf(version, sizeof version, "%sresults_version %lld", plot->axes == 2 ? ", " : "",
+               (long long)plot->version[c]);
+    snprintf(plot->label[c], sizeof plot->label[c], "%s%s%s%s", plot->axes == 2 ? by : "",
+             valued            ? " = "
+             : plot->axes == 2 ? ": none"
+                               : "",
+             plot->value[c], version);
     qsort(plot->mean[c], plot->curve[c].count, sizeof *plot->mean[c], ascending);
     plot->curve[c].label = *plot->label[c] ? plot->label[c] : NULL;
   }
@@ -145,7 +160,8 @@ static status label_axis(struct store *store, const char *column, char label[300
   const struct query_parameter parameter = {"column", column};
   const struct query_sink sink = {label, NULL, take_unit};
   snprintf(label, 300, "%s", column);
-  return query_run(store, "select min(unit) from column_doc where column_name = :column and unit <> '1'", 1, &parameter, 0, &sink, error);
+  return query_run(store, "select min(unit) from column_doc where column_name = :column and unit <> '1'", 1, &parameter,
+                   0, &sink, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -169,11 +185,12 @@ static status run(const struct command_line *line, struct error *error) {
   bool pool = false;
   if (!code)
     code = rows_pool(plot.store, plot.name[0], plot.axes == 2 ? plot.name[1] : NULL, &pool, error);
-  if (!code && !(code = label_axis(plot.store, plot.name[0], x_label, error)) && !(code = label_axis(plot.store, plot.name[1], by_label, error)) &&
+  if (!code && !(code = label_axis(plot.store, plot.name[0], x_label, error)) &&
+      !(code = label_axis(plot.store, plot.name[1], by_label, error)) &&
       !(code = label_axis(plot.store, plot.name[2], y_label, error))) {
     finish(&plot, by_label);
-    snprintf(title, sizeof title, "%s, %s over seeds%s with 95 %% interval", plot.name[2], plot.exponent ? "pooled" : "mean",
-             pool && !plot.exponent ? " and other inputs" : "");
+    snprintf(title, sizeof title, "%s, %s over seeds%s with 95 %% interval", plot.name[2],
+             plot.exponent ? "pooled" : "mean", pool && !plot.exponent ? " and other inputs" : "");
     code = picture_curves(line->arguments[1], WIDTH, title, x_label, y_label, plot.count, plot.curve, error);
   }
   for (size_t c = 0; c < plot.count; c++)
@@ -183,8 +200,10 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL, "Varied input along the bottom: a path or its unique ending."},
-    {"by", 'b', OPTION_TEXT, "AXIS", offsetof(struct options, by), 0, 0, NULL, "Another varied input: a line for each of its values, at most 8."},
+    {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
+     "Varied input along the bottom: a path or its unique ending."},
+    {"by", 'b', OPTION_TEXT, "AXIS", offsetof(struct options, by), 0, 0, NULL,
+     "Another varied input: a line for each of its values, at most 8."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
      "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
      "beta_METHOD_WINDOW (beta_binned_from_2)."},
@@ -195,12 +214,16 @@ const struct command plot_command = {
     .group = "results",
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over one varied input as lines with error bars",
-    .doc = "Draws the mean over seeds of a result against a varied input, with the 95 % interval of the mean (Student t) where\n"
-           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same numbers.\n"
+    .doc = "Draws the mean over seeds of a result against a varied input, with the 95 % interval of the mean (Student "
+           "t) where\n"
+           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same "
+           "numbers.\n"
            "Where other inputs differ, too, it is a mean over them as well, and the title says so. Of an exponent\n"
-           "(`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An axis over a\n"
+           "(`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An axis "
+           "over a\n"
            "factor of 20 and more is logarithmic. The ending chooses the format, .png or .svg.",
-    .examples = "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
+    .examples =
+        "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
     .options = rows,

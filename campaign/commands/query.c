@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
 
@@ -43,7 +43,8 @@ static status run(const struct command_line *line, struct error *error) {
   if (line->count == 0)
     return status_fail(error, STATUS_USAGE, "clast query needs a store; usage: clast query STORE [SQL]");
   if ((line->count == 2) == (options->named != NULL))
-    return status_fail(error, STATUS_USAGE, "give either an SQL statement or --named NAME; `clast query --list` shows the names");
+    return status_fail(error, STATUS_USAGE,
+                       "give either an SQL statement or --named NAME; `clast query --list` shows the names");
   const struct query_canned *canned = options->named ? query_canned_find(options->named, error) : NULL;
   if (options->named && !canned)
     return STATUS_USAGE;
@@ -89,9 +90,11 @@ const struct command query_command = {
     .group = "results",
     .arguments = "STORE [SQL]",
     .summary = "ask the store: SQL that only reads, or a canned query",
-    .doc = "Runs one SQL statement that only reads, or a canned query by name, and prints its rows. The store may be in\n"
-           "use by a running campaign. Views to start from: runs, points, spectra, estimates; column_doc explains columns.\n"
-           "Besides SQLite's own functions: stdev(x), median(x), hist_sum(masses).",
+    .doc =
+        "Runs one SQL statement that only reads, or a canned query by name, and prints its rows. The store may be in\n"
+        "use by a running campaign. Views to start from: runs, points, spectra, estimates; column_doc explains "
+        "columns.\n"
+        "Besides SQLite's own functions: stdev(x), median(x), hist_sum(masses).",
     .examples = "clast query out.db \"select replicate, largest_fraction from runs order by 2 limit 5\"\n"
                 "clast query --list",
     .maximum_arguments = 2,

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
 #include "campaign/run.h"
+#include "campaign/terminal/rows.h"
+#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
-#include "engine/whole_file.h"
 
 struct options {
   const char *fields;
@@ -69,14 +69,11 @@ static bool same_value(const struct field *row, const struct field_value *comput
       return stored->kind == QUERY_NULL || isnan(stored->real);
     return stored->kind != QUERY_NULL && computed->number == stored->real &&
            signbit(computed->number) == signbit(stored->real);
-  case FIELD_INTEGER:
-    return stored->kind == QUERY_INTEGER && computed->integer == stored->integer;
-  case FIELD_BOOLEAN:
-    return stored->kind == QUERY_INTEGER && (computed->number != 0) == (stored->integer != 0);
+  case FIELD_INTEGER: return stored->kind == QUERY_INTEGER && computed->integer == stored->integer;
+  case FIELD_BOOLEAN: return stored->kind == QUERY_INTEGER && (computed->number != 0) == (stored->integer != 0);
   case FIELD_CHOICE:
   case FIELD_TEXT:
-    return stored->kind == QUERY_NULL ? !*computed->text
-                                      : stored->text && strcmp(computed->text, stored->text) == 0;
+    return stored->kind == QUERY_NULL ? !*computed->text : stored->text && strcmp(computed->text, stored->text) == 0;
   }
   return false;
 }
@@ -135,7 +132,8 @@ static status compare_masses(void *context, size_t count, const struct query_val
 static status compare(struct store *store, const struct query_parameter *run, struct comparison *comparison,
                       struct error *error) {
   char sql[256];
-  snprintf(sql, sizeof sql, "select * from run join result_%s using (run_id) where run_id = :run", comparison->kind->name);
+  snprintf(sql, sizeof sql, "select * from run join result_%s using (run_id) where run_id = :run",
+           comparison->kind->name);
   struct query_sink values = {comparison, take_names, compare_row}, masses = {comparison, NULL, compare_masses};
   status code = query_run(store, sql, 1, run, 0, &values, error);
   if (!code)
@@ -153,22 +151,28 @@ static status replay(struct store *store, const char *run_id, const struct optio
   struct scene *scene = NULL;
   struct run_result result = {0};
   struct comparison comparison = {.result = &result};
-  status code = query_run(store, "select scene, seed, results_version, json_extract(facts, '$.cpu_class') from run join point using (point_id)"
-                          " left join session using (session_id) where run_id = :run", 1, &run, 0, &sink, error);
+  status code = query_run(
+      store,
+      "select scene, seed, results_version, json_extract(facts, '$.cpu_class') from run join point using (point_id)"
+      " left join session using (session_id) where run_id = :run",
+      1, &run, 0, &sink, error);
   if (!code && !origin.found)
-    code = status_fail(error, STATUS_USAGE, "there is no run %s; `clast query STORE \"select run_id from run\"` lists them",
-                       run_id);
+    code = status_fail(error, STATUS_USAGE,
+                       "there is no run %s; `clast query STORE \"select run_id from run\"` lists them", run_id);
   if (!code)
     code = scene_parse("scene of the run", origin.scene, &scene, error);
   if (!code && scene->kind->results_version != origin.results_version)
-    code = status_fail(error, STATUS_CONTENT,
-                       "run %s was made by results version %" PRId64 " of engine %s, this program makes version %d: its "
-                       "bits differ on purpose; replay it with the program of that version (table session has its commit)",
-                       run_id, origin.results_version, scene->kind->name, scene->kind->results_version);
+    code =
+        status_fail(error, STATUS_CONTENT,
+                    "run %s was made by results version %" PRId64 " of engine %s, this program makes version %d: its "
+                    "bits differ on purpose; replay it with the program of that version (table session has its commit)",
+                    run_id, origin.results_version, scene->kind->name, scene->kind->results_version);
   if (!code && options->fields)
-    code = whole_file_try(options->fields, "fields file", error);
+    code = atomic_file_try(options->fields, "fields file", error);
   if (!code) {
-    struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)origin.seed,
+    struct run_request request = {.kind = scene->kind,
+                                  .inputs = scene->inputs,
+                                  .seed = (uint64_t)origin.seed,
                                   .fields_path = options->fields};
     code = run_simulate(&request, NULL, NULL, 0, &result, error);
   }
@@ -189,14 +193,16 @@ static status replay(struct store *store, const char *run_id, const struct optio
   char class[160] = "";
   const char *here = cpu_class_name(cpu_class_choose());
   if (*origin.cpu_class && strcmp(origin.cpu_class, here) != 0)
-    snprintf(class, sizeof class, "; they are of CPU class %s and these of %s, and bits are promised within a class: replay with CLAST_CPU=%s",
-             origin.cpu_class, here, origin.cpu_class);
+    snprintf(
+        class, sizeof class,
+        "; they are of CPU class %s and these of %s, and bits are promised within a class: replay with CLAST_CPU=%s",
+        origin.cpu_class, here, origin.cpu_class);
   if (!code && comparison.different)
-    code = status_fail(error, STATUS_CONTENT, "run %s: %zu of %zu results differ%s", run_id, comparison.different, comparison.compared,
-                       class);
+    code = status_fail(error, STATUS_CONTENT, "run %s: %zu of %zu results differ%s", run_id, comparison.different,
+                       comparison.compared, class);
   else if (!code)
-    fprintf(stderr, "run %s: %zu results and %zu fragment masses agree to the last bit\n", run_id, comparison.compared - 1,
-            result.fragment_count);
+    fprintf(stderr, "run %s: %zu results and %zu fragment masses agree to the last bit\n", run_id,
+            comparison.compared - 1, result.fragment_count);
   if (!code && options->fields && result.outcome.state == OUTCOME_INVALID)
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
   free(comparison.names);
@@ -233,8 +239,10 @@ const struct command replay_command = {
     .group = "the store",
     .arguments = "STORE RUN",
     .summary = "compute a stored run again and compare every bit",
-    .doc = "Takes the scene and seed of run number RUN (run_id) from the store, computes it again and compares all results\n"
-           "and fragment masses. Differences are printed as a table; exit 65 when there are any. The store is not changed.",
+    .doc = "Takes the scene and seed of run number RUN (run_id) from the store, computes it again and compares all "
+           "results\n"
+           "and fragment masses. Differences are printed as a table; exit 65 when there are any. The store is not "
+           "changed.",
     .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

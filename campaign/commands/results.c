@@ -3,26 +3,18 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/commands/explain.h"
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
   field_get(row, object, &value);
   switch (row->kind) {
-  case FIELD_REAL:
-    table_real(table, value.number);
-    break;
-  case FIELD_INTEGER:
-    table_integer(table, value.integer);
-    break;
-  case FIELD_BOOLEAN:
-    table_boolean(table, value.number != 0);
-    break;
+  case FIELD_REAL: table_real(table, value.number); break;
+  case FIELD_INTEGER: table_integer(table, value.integer); break;
+  case FIELD_BOOLEAN: table_boolean(table, value.number != 0); break;
   case FIELD_CHOICE:
-  case FIELD_TEXT:
-    table_text(table, value.text);
-    break;
+  case FIELD_TEXT: table_text(table, value.text); break;
   }
 }
 
@@ -44,7 +36,8 @@ void results_row(struct table *table, const struct field *row, const void *objec
 static void list(struct table *table, const struct field_table *fields, const void *object) {
   for (size_t i = 0; i < fields->count; i++) {
     const struct field *row = &fields->rows[i];
-    if (!empty(row, object) && row->kind != FIELD_TEXT) /* else: does not apply to this scene; the message goes to stderr */
+    if (!empty(row, object) &&
+        row->kind != FIELD_TEXT) /* else: does not apply to this scene; the message goes to stderr */
       results_row(table, row, object);
   }
 }

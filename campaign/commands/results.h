@@ -2,8 +2,8 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_RESULTS_H
 #define CLAST_CAMPAIGN_COMMANDS_RESULTS_H
 
-#include "campaign/commands/table.h"
 #include "campaign/run.h"
+#include "campaign/terminal/table.h"
 
 /* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */
 void results_row(struct table *table, const struct field *row, const void *object);

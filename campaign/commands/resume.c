@@ -33,8 +33,11 @@ status resume_look(struct resume *resume, const struct engine_kind *kind, void *
   resume->saved = now();
   if (code || !stopped)
     return code;
-  return status_fail(error, STATUS_STOPPED, "stopped at %.4g s of simulated time, saved in %s: the same command goes on from there",
+  return status_fail(error, STATUS_STOPPED,
+                     "stopped at %.4g s of simulated time, saved in %s: the same command goes on from there",
                      kind->time(run), resume->path);
 }
 
-void resume_end(struct resume *resume) { unlink(resume->path); }
+void resume_end(struct resume *resume) {
+  unlink(resume->path);
+}

@@ -1,13 +1,13 @@
-/* A run that can be stopped and gone on with: SIGINT, SIGTERM and SIGHUP write its restart file and end the command, which
- * then exits 75; every few minutes the file is written anew, against harder ends. */
+/* A run that can be stopped and gone on with: SIGINT, SIGTERM and SIGHUP write its restart file and end the command,
+ * which then exits 75; every few minutes the file is written anew, against harder ends. */
 #ifndef CLAST_CAMPAIGN_COMMANDS_RESUME_H
 #define CLAST_CAMPAIGN_COMMANDS_RESUME_H
 
 #include "engine/engine.h"
 
 struct resume {
-  const char *path;  /* of the restart file */
-  double saved;      /* s, monotonic: when it was last written */
+  const char *path; /* of the restart file */
+  double saved;     /* s, monotonic: when it was last written */
 };
 
 /* From now on signals are noted, not obeyed; a second one ends the process at once. */

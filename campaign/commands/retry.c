@@ -78,8 +78,9 @@ static status run(const struct command_line *line, struct error *error) {
   double tried = NAN;
   status code = table_choose(&options->launch.table, &format, error);
   if (!code && strcmp(options->status, "failed") != 0)
-    code = status_fail(error, STATUS_USAGE, "--status knows \"failed\" only: a run that ended with a verdict of its own "
-                                            "(NaN, time step, energy) would end the same way again");
+    code = status_fail(error, STATUS_USAGE,
+                       "--status knows \"failed\" only: a run that ended with a verdict of its own "
+                       "(NaN, time step, energy) would end the same way again");
   if (!code)
     code = read_store(path, options, &origin, &tried, error);
   if (!code && isnan(tried)) {
@@ -122,7 +123,8 @@ const struct command retry_command = {
     .group = "running",
     .arguments = "STORE",
     .summary = "try failed runs of a store again, with raised limits",
-    .doc = "Takes the campaign from the store and computes what it lacks, runs whose attempts were used up included, with\n"
+    .doc = "Takes the campaign from the store and computes what it lacks, runs whose attempts were used up included, "
+           "with\n"
            "as many attempts more as the campaign allows and raised limits. Limits are no part of a run's identity.",
     .examples = "clast retry out.db --status failed --time '1 h'\nclast retry out.db --memory off -j 2",
     .minimum_arguments = 1,

@@ -6,7 +6,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
 #include "campaign/commands/plan.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/table.h"
 
 struct options {
   struct launch_options launch;
@@ -46,9 +46,11 @@ const struct command run_command = {
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
     .summary = "run a campaign, or go on with it: only what is missing is computed",
-    .doc = "Computes every run the campaign asks for and its store lacks, on all cores of this machine or on the ranks of\n"
-           "mpirun or srun, and prints the estimates of every point at the end. Ctrl-C stops it cleanly (exit 75); the\n"
-           "same command goes on. Killed, it loses at most the last second of results.",
+    .doc =
+        "Computes every run the campaign asks for and its store lacks, on all cores of this machine or on the ranks "
+        "of\n"
+        "mpirun or srun, and prints the estimates of every point at the end. Ctrl-C stops it cleanly (exit 75); the\n"
+        "same command goes on. Killed, it loses at most the last second of results.",
     .examples = "clast run campaign.yaml -j 4\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

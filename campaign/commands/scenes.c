@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/table.h"
 #include "engine/scene.h"
 
 struct options {
@@ -11,7 +11,8 @@ struct options {
 
 /* The document's first comment line says what the scene is. */
 static void headline(const char *text, char *line, size_t size) {
-  while (*text == '#' && strstr(text, "yaml-language-server") && strstr(text, "yaml-language-server") < strchr(text, '\n'))
+  while (*text == '#' && strstr(text, "yaml-language-server") &&
+         strstr(text, "yaml-language-server") < strchr(text, '\n'))
     text = strchr(text, '\n') + 1;
   text += strspn(text, "# ");
   snprintf(line, size, "%.*s", (int)strcspn(text, "\n"), text);
@@ -63,8 +64,9 @@ const struct command scenes_command = {
     .group = "scenes and inputs",
     .arguments = "[NAME]",
     .summary = "the built-in scenes; with a name, its document to start from",
-    .doc = "Lists the scenes that are built in. With a NAME it prints that scene's document, with its sources: save it,\n"
-           "edit it, and give the file wherever a scene is asked for.",
+    .doc =
+        "Lists the scenes that are built in. With a NAME it prints that scene's document, with its sources: save it,\n"
+        "edit it, and give the file wherever a scene is asked for.",
     .examples = "clast scenes\nclast scenes disc-explosion > my-disc.yaml",
     .maximum_arguments = 1,
     .options = rows,

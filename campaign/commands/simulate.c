@@ -4,8 +4,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "analysis/estimates.h"
-#include "analysis/picture_canvas.h"
+#include "analysis/pictures/picture_canvas.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
@@ -14,7 +14,7 @@
 #include "campaign/commands/resume.h"
 #include "campaign/commands/snapshots.h"
 #include "campaign/run.h"
-#include "engine/whole_file.h"
+#include "engine/atomic_file.h"
 
 enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for a million particles */
 
@@ -49,11 +49,11 @@ static status look(void *context, const struct engine_kind *kind, void *run, str
 static status places(const struct options *options, struct error *error) {
   status code = options->picture ? picture_canvas_named(options->picture, error) : STATUS_OK;
   if (!code && options->picture)
-    code = whole_file_try(options->picture, "picture", error);
+    code = atomic_file_try(options->picture, "picture", error);
   if (!code && options->fields)
-    code = whole_file_try(options->fields, "fields file", error);
+    code = atomic_file_try(options->fields, "fields file", error);
   if (!code && options->restart)
-    code = whole_file_try(options->restart, "restart file", error);
+    code = atomic_file_try(options->restart, "restart file", error);
   return code;
 }
 
@@ -71,16 +71,22 @@ static status simulate(const struct scene *scene, const struct options *options,
     resume_begin(&resume, options->restart);
     watch.resume = &resume;
   }
-  struct run_request request = {.kind = scene->kind, .inputs = scene->inputs, .seed = (uint64_t)options->seed,
-                                .fields_path = fields, .restart_path = options->restart};
+  struct run_request request = {.kind = scene->kind,
+                                .inputs = scene->inputs,
+                                .seed = (uint64_t)options->seed,
+                                .fields_path = fields,
+                                .restart_path = options->restart};
   struct run_result result = {0};
-  status code = options->snapshots ? snapshots_open(scene->name, options->snapshots, options->restart && access(options->restart, F_OK) == 0,
-                                                  &watch.snapshots, error) : STATUS_OK;
+  status code = options->snapshots
+                    ? snapshots_open(scene->name, options->snapshots,
+                                     options->restart && access(options->restart, F_OK) == 0, &watch.snapshots, error)
+                    : STATUS_OK;
   if (!code)
     code = run_simulate(&request, look, &watch, BLOCK, &result, error);
   if (watch.terminal)
     fputs("\r\033[K", stderr);
-  if (!code && options->picture && result.outcome.state != OUTCOME_INVALID) { /* which has no body, and writes no fields */
+  if (!code && options->picture &&
+      result.outcome.state != OUTCOME_INVALID) { /* which has no body, and writes no fields */
     char caption[FIELD_TEXT_SIZE + 64];
     snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
     code = picture_draw(fields, options->picture, caption, error);
@@ -128,12 +134,14 @@ static const struct option_row rows[] = {
     {"picture", 'p', OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
      "Draw the body at the end: fragments of grains, or the damage of particles on a cut."},
     {"fields", 0, OPTION_TEXT, "FILE.hdf", offsetof(struct options, fields), 0, 0, NULL,
-     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file; named .hdf, ParaView opens it."},
+     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file; named .hdf, ParaView "
+     "opens it."},
     {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
      "Write up to N such files on the way, SCENE_000000.hdf and so on, evenly over the longest time the run may take; "
      "SCENE.hdf.series lists them with their times for ParaView."},
     {"restart", 0, OPTION_TEXT, "FILE", offsetof(struct options, restart), 0, 0, NULL,
-     "Go on from this file if it is there. It is written every five minutes and when the run is interrupted (exit 75: the "
+     "Go on from this file if it is there. It is written every five minutes and when the run is interrupted (exit 75: "
+     "the "
      "same command goes on, to the same bits), and removed at the end."},
     {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
     TABLE_OPTIONS(struct options, table),

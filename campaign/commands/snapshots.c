@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/fields_read.h"
-#include "engine/whole_file.h"
+#include "engine/atomic_file.h"
+#include "engine/snapshot_read.h"
 #include "schemas/field.h"
 
 struct snapshots {
@@ -50,13 +50,13 @@ static void find_earlier(struct snapshots *s, double progress) {
   s->next = (int64_t)ceil(progress * (double)s->count);
   for (int64_t k = 0; k < s->next && k < s->count; k++) {
     char path[FIELD_TEXT_SIZE + 64];
-    struct fields_read *file;
+    struct snapshot_read *file;
     path_of(s, k, path, sizeof path);
-    if (fields_read_open(path, &file, NULL))
+    if (snapshot_read_open(path, &file, NULL))
       continue;
-    if (!fields_read_real(file, "run", "time", &s->time[k]))
+    if (!snapshot_read_real(file, "run", "time", &s->time[k]))
       s->time[k] = NAN;
-    fields_read_close(file);
+    snapshot_read_close(file);
   }
 }
 
@@ -87,7 +87,7 @@ static status write_series(const struct snapshots *s, struct error *error) {
     return status_fail(error, STATUS_MEMORY, "no memory for the list of snapshots");
   }
   snprintf(path, sizeof path, "%s.hdf.series", s->name);
-  status code = whole_file_write(path, "list of snapshots", text, size, error);
+  status code = atomic_file_write(path, "list of snapshots", text, size, error);
   free(text);
   return code;
 }
@@ -101,7 +101,7 @@ status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void 
   char path[FIELD_TEXT_SIZE + 64];
   int64_t number = s->next;
   path_of(s, number, path, sizeof path);
-  status code = kind->write_fields(run, path, error);
+  status code = kind->write_snapshot(run, path, error);
   if (code)
     return code;
   s->time[number] = kind->time(run);

@@ -8,12 +8,14 @@
 
 struct snapshots; /* opaque */
 
-/* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first before it has moved far.
- * `resumed`: the run goes on from a restart file; what came before is on the disk and stays in the list. STATUS_MEMORY. */
+/* `count` files NAME_000000.hdf, ... evenly over the longest time that a run may take, the first before it has moved
+ * far. `resumed`: the run goes on from a restart file; what came before is on the disk and stays in the list.
+ * STATUS_MEMORY. */
 status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error);
 void snapshots_close(struct snapshots *snapshots); /* NULL is fine */
-/* Between blocks of steps: writes the snapshot that is due, if one is, and NAME.hdf.series anew. Both are whole files at any
- * moment. Steps longer than the time between snapshots leave numbers out. What write_fields returns, STATUS_IO. */
+/* Between blocks of steps: writes the snapshot that is due, if one is, and NAME.hdf.series anew. Both are whole files
+ * at any moment. Steps longer than the time between snapshots leave numbers out. What write_snapshot returns,
+ * STATUS_IO. */
 status snapshots_look(struct snapshots *snapshots, const struct engine_kind *kind, void *run, struct error *error);
 
 #endif

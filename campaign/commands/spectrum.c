@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/text_plot.h"
 #include "analysis/point.h"
-#include "analysis/text_plot.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 struct options {
   int64_t point;
@@ -15,21 +15,22 @@ struct options {
   struct table_options table;
 };
 
-/* From the bins of single runs, so that any condition on runs can choose them. The scatter between runs gives the error:
- * fragments of one run are not independent. */
-static const char sql_start[] =
-    "with chosen as (select r.run_id, r.point_id, r.results_version, (select total_mass from run where run_id = r.run_id) as m"
-    "   from run as r where r.counts and r.results_version ="
-    "   (select max(results_version) from run as newest where newest.point_id = r.point_id)",
-    sql_end[] =
-        "), total as (select point_id, count(*) as n, sum(m) as mass from chosen group by point_id),"
-        " pooled as (select point_id, bin, sum(count) as s1, sum(count * count) as s2, sum(mass) as mass"
-        "   from chosen join spectrum using (run_id) group by point_id, bin)"
-        " select point_id, lower, upper, n as runs, s1 as fragments,"
-        "   s1 / (n * (upper - lower)) as density,"
-        "   case when n > 1 then sqrt(max(0.0, (1.0 * s2 - 1.0 * s1 * s1 / n) / (n - 1) / n)) / (upper - lower) end as density_error,"
-        "   pooled.mass / total.mass as mass_share"
-        " from pooled join total using (point_id) join bin using (bin) order by point_id, bin";
+/* From the bins of single runs, so that any condition on runs can choose them. The scatter between runs gives the
+ * error: fragments of one run are not independent. */
+static const char
+    sql_start[] = "with chosen as (select r.run_id, r.point_id, r.results_version, (select total_mass from run where "
+                  "run_id = r.run_id) as m"
+                  "   from run as r where r.counts and r.results_version ="
+                  "   (select max(results_version) from run as newest where newest.point_id = r.point_id)",
+    sql_end[] = "), total as (select point_id, count(*) as n, sum(m) as mass from chosen group by point_id),"
+                " pooled as (select point_id, bin, sum(count) as s1, sum(count * count) as s2, sum(mass) as mass"
+                "   from chosen join spectrum using (run_id) group by point_id, bin)"
+                " select point_id, lower, upper, n as runs, s1 as fragments,"
+                "   s1 / (n * (upper - lower)) as density,"
+                "   case when n > 1 then sqrt(max(0.0, (1.0 * s2 - 1.0 * s1 * s1 / n) / (n - 1) / n)) / (upper - "
+                "lower) end as density_error,"
+                "   pooled.mass / total.mass as mass_share"
+                " from pooled join total using (point_id) join bin using (bin) order by point_id, bin";
 
 enum { POINTS_MAXIMUM = 8, WIDTH = 900, COLUMNS = 100 }; /* more curves in one picture cannot be told apart */
 
@@ -80,7 +81,8 @@ static status add_input(void *context, size_t count, const struct query_value *v
   char item[128];
   int size = snprintf(item, sizeof item, "%s %s%s%s, ", word ? word + 1 : values[0].text, value, unit ? " " : "",
                       unit ? values[2].text : "");
-  if (size > 0 && label->used + (size_t)size + sizeof "20000 runs" < sizeof label->text) { /* what does not fit is left out */
+  if (size > 0 &&
+      label->used + (size_t)size + sizeof "20000 runs" < sizeof label->text) { /* what does not fit is left out */
     memcpy(label->text + label->used, item, (size_t)size + 1);
     label->used += (size_t)size;
   }
@@ -93,8 +95,10 @@ static status label_of(struct store *store, int64_t point, size_t runs, struct l
   const struct query_parameter parameter = {"point", number};
   const struct query_sink sink = {label, NULL, add_input};
   *label = (struct label){0};
-  status code = query_run(store, "select path, value, unit from point_input join axis using (path) where point_id = :point "
-                                 "order by path desc", 1, &parameter, 0, &sink, error);
+  status code = query_run(store,
+                          "select path, value, unit from point_input join axis using (path) where point_id = :point "
+                          "order by path desc",
+                          1, &parameter, 0, &sink, error);
   if (label->used == 0) /* nothing was varied */
     label->used = (size_t)snprintf(label->text, sizeof label->text, "point %lld, ", (long long)point);
   snprintf(label->text + label->used, sizeof label->text - label->used, "%zu run%s", runs, runs == 1 ? "" : "s");
@@ -109,8 +113,8 @@ static status draw(struct store *store, const struct options *options, struct er
   struct picture_series series[POINTS_MAXIMUM];
   status code = STATUS_OK;
   if (!options->point)
-    code = query_run(store, "select point_id from point_total where runs > 0 group by point_id order by point_id", 0, NULL, 0, &sink,
-                     error);
+    code = query_run(store, "select point_id from point_total where runs > 0 group by point_id order by point_id", 0,
+                     NULL, 0, &sink, error);
   for (size_t i = 0; !code && i < chosen.count; i++) {
     struct point_data point;
     code = point_read(store, chosen.points[i], 0, &point, error);
@@ -190,9 +194,10 @@ const struct command spectrum_command = {
     .group = "results",
     .arguments = "STORE",
     .summary = "fragment mass spectra of the points, with errors from run to run",
-    .doc = "Prints for each point and each mass bin that holds something the fragments of all runs that count, the\n"
-           "density F(m) (fragments per kg and run) with its standard error from the scatter between runs, and the share\n"
-           "of the mass. F(m) is differential: a power law m^-beta has this slope on it, N(>m) has beta - 1.",
+    .doc =
+        "Prints for each point and each mass bin that holds something the fragments of all runs that count, the\n"
+        "density F(m) (fragments per kg and run) with its standard error from the scatter between runs, and the share\n"
+        "of the mass. F(m) is differential: a power law m^-beta has this slope on it, N(>m) has beta - 1.",
     .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --csv --picture spectrum.svg",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

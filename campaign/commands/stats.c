@@ -1,9 +1,9 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
 #include <string.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 struct options {
   const char *by, *quantity;
@@ -20,10 +20,11 @@ static status refuse_exponents(const char *names, const char *store, struct erro
     name += strspn(name, " ");
     (void)estimates_named(name, &is, &method, &window, &ignored);
     if (is)
-      return status_fail(error, STATUS_USAGE,
-                         "%.*s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
-                         "`clast plot` and `clast map` draw them with -q beta",
-                         (int)strcspn(name, ", "), name, store);
+      return status_fail(
+          error, STATUS_USAGE,
+          "%.*s: exponents are fitted to all runs of a point together, not averaged: `clast estimates %s` has them, "
+          "`clast plot` and `clast map` draw them with -q beta",
+          (int)strcspn(name, ", "), name, store);
   }
   return STATUS_OK;
 }
@@ -41,7 +42,8 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   struct rows rows;
   struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = query_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, error);
+  code = query_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink,
+                     error);
   code = rows_end(&rows, code, error);
   store_close(store, NULL);
   return code;
@@ -49,7 +51,8 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows_of_options[] = {
     {"by", 'b', OPTION_TEXT, "AXES", offsetof(struct options, by), 0, 0, "",
-     "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs are "
+     "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs "
+     "are "
      "pooled."},
     {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, "largest_fraction",
      "Results to average, comma-separated; main: the five main ones, a wide table. `clast explain` lists all."},
@@ -61,10 +64,12 @@ const struct command stats_command = {
     .group = "results",
     .arguments = "STORE",
     .summary = "means over seeds with standard deviation, standard error and 95 % interval",
-    .doc = "Groups the runs by varied inputs and prints for each group how many runs count, failed or reached the hard\n"
-           "end time, and of each quantity mean, standard deviation, standard error and half width of the 95 % interval\n"
-           "of the mean (Student t). Runs of different results versions are never mixed.",
-    .examples = "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
+    .doc =
+        "Groups the runs by varied inputs and prints for each group how many runs count, failed or reached the hard\n"
+        "end time, and of each quantity mean, standard deviation, standard error and half width of the 95 % interval\n"
+        "of the mean (Student t). Runs of different results versions are never mixed.",
+    .examples =
+        "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .options = rows_of_options,

@@ -1,6 +1,6 @@
 /* `clast status STORE`: how far each campaign of a store is. */
 #include "campaign/commands/commands.h"
-#include "campaign/commands/rows.h"
+#include "campaign/terminal/rows.h"
 
 struct options {
   struct table_options table;
@@ -49,9 +49,10 @@ const struct command status_command = {
     .group = "results",
     .arguments = "STORE",
     .summary = "how far the campaigns of a store are, and what failed",
-    .doc = "One row per campaign: points, runs stored, those that count in statistics, censored (ended at the hard end\n"
-           "time), failed, surplus; failed attempts, runs given up without a result; and how the last session ended.\n"
-           "Works while a campaign is running.",
+    .doc =
+        "One row per campaign: points, runs stored, those that count in statistics, censored (ended at the hard end\n"
+        "time), failed, surplus; failed attempts, runs given up without a result; and how the last session ended.\n"
+        "Works while a campaign is running.",
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

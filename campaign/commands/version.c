@@ -1,7 +1,7 @@
 /* `clast version`, also as `clast --version`: what this program was built from and with, and what it runs on. */
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/table.h"
+#include "campaign/terminal/table.h"
 
 struct options {
   bool json;
@@ -25,18 +25,12 @@ static void print_json(size_t count, const struct fact *facts) {
 static status run(const struct command_line *line, struct error *error) {
   (void)error;
   const struct fact facts[] = {
-      {"version", BUILD_VERSION},
-      {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
-      {"commit_date", BUILD_DATE},
-      {"compiler", BUILD_COMPILER},
-      {"flags", BUILD_FLAGS},
-      {"MPI", BUILD_MPI},
-      {"SQLite", BUILD_SQLITE},
-      {"HDF5", BUILD_HDF5},
-      {"GSL", BUILD_GSL},
-      {"cairo", BUILD_CAIRO},
-      {"libfyaml", BUILD_FYAML},
-      {"plfit", BUILD_PLFIT},
+      {"version", BUILD_VERSION},  {"commit", BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT},
+      {"commit_date", BUILD_DATE}, {"compiler", BUILD_COMPILER},
+      {"flags", BUILD_FLAGS},      {"MPI", BUILD_MPI},
+      {"SQLite", BUILD_SQLITE},    {"HDF5", BUILD_HDF5},
+      {"GSL", BUILD_GSL},          {"cairo", BUILD_CAIRO},
+      {"libfyaml", BUILD_FYAML},   {"plfit", BUILD_PLFIT},
   };
   size_t facts_count = sizeof facts / sizeof facts[0];
   if (((const struct options *)line->options)->json) {

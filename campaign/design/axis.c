@@ -60,9 +60,7 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     else
       x = axis->a + u * (axis->b - axis->a);
     break;
-  case DESIGN_AXIS_LOG_UNIFORM:
-    x = exp(log(axis->a) + u * (log(axis->b) - log(axis->a)));
-    break;
+  case DESIGN_AXIS_LOG_UNIFORM: x = exp(log(axis->a) + u * (log(axis->b) - log(axis->a))); break;
   case DESIGN_AXIS_NORMAL:
     x = axis->a + axis->b * truncated_normal((axis->lower - axis->a) / axis->b, (axis->upper - axis->a) / axis->b, u);
     break;
@@ -72,8 +70,7 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     x = axis->a * exp(axis->b * truncated_normal(lower, upper, u));
     break;
   }
-  default:
-    break;
+  default: break;
   }
   if (axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM)
     x = fmin(fmax(x, axis->a), axis->b); /* exp(log b) may round across b */

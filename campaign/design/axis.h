@@ -1,6 +1,6 @@
-/* One axis of a campaign: a path into the scene and the values it takes. An axis never knows physics (design: a sweep axis
- * is a path, never an if on its name). Every kind of axis is one function of u in [0, 1): its quantile. Grids walk the
- * levels of the kinds that have levels. */
+/* One axis of a campaign: a path into the scene and the values it takes. An axis never knows physics (design: a sweep
+ * axis is a path, never an if on its name). Every kind of axis is one function of u in [0, 1): its quantile. Grids walk
+ * the levels of the kinds that have levels. */
 #ifndef CLAST_CAMPAIGN_DESIGN_AXIS_H
 #define CLAST_CAMPAIGN_DESIGN_AXIS_H
 
@@ -20,14 +20,15 @@ struct design_axis {
   int kind;                   /* enum design_axis_kind */
   struct field_value *levels; /* owned */
   size_t level_count;
-  double a, b;                /* bounds (uniform kinds), mean and sd, median and sigma; factor and offset (linked) */
-  double lower, upper;        /* truncation, -HUGE_VAL / HUGE_VAL for none */
-  size_t linked;              /* index of the axis it follows, which is not itself linked */
+  double a, b;         /* bounds (uniform kinds), mean and sd, median and sigma; factor and offset (linked) */
+  double lower, upper; /* truncation, -HUGE_VAL / HUGE_VAL for none */
+  size_t linked;       /* index of the axis it follows, which is not itself linked */
 };
 
 void design_axis_free_all(struct design_axis *axes, size_t count); /* frees the array too */
 
-/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest, and no bound is crossed. */
+/* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest, and no bound is
+ * crossed. */
 void design_axis_quantile(const struct design_axis *axis, double u, struct field_value *value);
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,

@@ -104,7 +104,9 @@ void design_free(struct design *design) {
   free(design);
 }
 
-uint64_t design_points(const struct design *design) { return design->points; }
+uint64_t design_points(const struct design *design) {
+  return design->points;
+}
 
 /* Levels of point i of a grid (the last axis turns fastest) or a list. */
 static void walk_levels(struct design *design, uint64_t i) {

@@ -1,5 +1,5 @@
-/* Which points a campaign has, one after the other. Streamed: a design of a million points is a counter, not a table, so
- * that the first run starts at once. Point i of a design depends on (kind, seed, i, number of points) alone. */
+/* Which points a campaign has, one after the other. Streamed: a design of a million points is a counter, not a table,
+ * so that the first run starts at once. Point i of a design depends on (kind, seed, i, number of points) alone. */
 #ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_H
 #define CLAST_CAMPAIGN_DESIGN_DESIGN_H
 
@@ -9,8 +9,8 @@ struct design; /* opaque */
 
 enum design_kind { DESIGN_GRID, DESIGN_LIST, DESIGN_RANDOM, DESIGN_LATIN_HYPERCUBE, DESIGN_SOBOL };
 
-/* axes are borrowed. STATUS_CONTENT: a distribution in a grid, lists of unequal length, more axes than Sobol numbers have
- * (40 in GSL, whose own check lets 41 through and gives zeros), no points. */
+/* axes are borrowed. STATUS_CONTENT: a distribution in a grid, lists of unequal length, more axes than Sobol numbers
+ * have (40 in GSL, whose own check lets 41 through and gives zeros), no points. */
 status design_create(enum design_kind kind, const struct design_axis *axes, size_t axis_count, uint64_t points,
                      uint64_t seed, struct design **out, struct error *error);
 void design_free(struct design *design); /* NULL is fine */
@@ -22,7 +22,8 @@ bool design_next(struct design *design, struct field_value *values);
 /* Coordinates in [0, 1) of point i on dimension d, by kind: what the axes' quantiles are taken at. */
 double design_random_coordinate(uint64_t seed, uint64_t i, size_t dimension);
 double design_latin_coordinate(uint64_t seed, uint64_t points, uint64_t i, size_t dimension);
-/* A permutation of 0..points-1 without a table: a Feistel network keyed by (seed, dimension), walked back into range. */
+/* A permutation of 0..points-1 without a table: a Feistel network keyed by (seed, dimension), walked back into range.
+ */
 uint64_t design_latin_permute(uint64_t seed, size_t dimension, uint64_t points, uint64_t i);
 
 struct design_sobol; /* GSL's generator, origin included, digitally shifted */
@@ -30,6 +31,7 @@ status design_sobol_create(size_t dimensions, uint64_t seed, struct design_sobol
 void design_sobol_next(struct design_sobol *sobol, double *coordinates);
 void design_sobol_free(struct design_sobol *sobol);
 enum { DESIGN_SOBOL_BITS = 30 }; /* GSL's resolution */
-uint32_t design_sobol_shift(uint64_t seed, size_t dimension); /* DESIGN_SOBOL_BITS bits, XORed into the integer coordinate */
+uint32_t design_sobol_shift(uint64_t seed,
+                            size_t dimension); /* DESIGN_SOBOL_BITS bits, XORed into the integer coordinate */
 
 #endif

@@ -1,7 +1,7 @@
-/* Latin hypercube (McKay, Beckman & Conover 1979): each dimension is cut into as many strata as there are points, and each
- * stratum holds one point. The strata's order is a pseudo-random permutation per dimension that needs no table: a Feistel
- * network over the next power of four, walked along its cycle until it lands inside (Black & Rogaway 2002), so that a
- * design of a million points costs no memory and point i is known at once. */
+/* Latin hypercube (McKay, Beckman & Conover 1979): each dimension is cut into as many strata as there are points, and
+ * each stratum holds one point. The strata's order is a pseudo-random permutation per dimension that needs no table: a
+ * Feistel network over the next power of four, walked along its cycle until it lands inside (Black & Rogaway 2002), so
+ * that a design of a million points costs no memory and point i is known at once. */
 #include <math.h>
 
 #include "campaign/design/design.h"

@@ -1,7 +1,7 @@
-/* Sobol numbers from GSL with two corrections. The origin, which GSL leaves out, is put back: the first 2^k points are a
- * net only with it (Owen 2020, "On dropping the first Sobol' point"). And a digital shift by seed (Cranley & Patterson
- * 1976 for nets; L'Ecuyer & Lemieux 2002) makes the estimate unbiased and lets replicates of the design give an error;
- * half of the last bit is added, so that no coordinate is 0, where an unbounded law has no quantile. */
+/* Sobol numbers from GSL with two corrections. The origin, which GSL leaves out, is put back: the first 2^k points are
+ * a net only with it (Owen 2020, "On dropping the first Sobol' point"). And a digital shift by seed (Cranley &
+ * Patterson 1976 for nets; L'Ecuyer & Lemieux 2002) makes the estimate unbiased and lets replicates of the design give
+ * an error; half of the last bit is added, so that no coordinate is 0, where an unbounded law has no quantile. */
 #include <gsl/gsl_qrng.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "campaign/design/stopping.h"
 
-#include "analysis/sample.h"
+#include "analysis/statistics/sample.h"
 
 enum design_verdict design_stopping_judge(const struct design_stopping *rule, const double *values, int64_t *prefix) {
   if (rule->fixed)

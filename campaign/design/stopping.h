@@ -1,5 +1,5 @@
-/* When a point has enough replicates. The rule looks at complete prefixes 0..n-1 of replicate numbers and at nothing else:
- * "the first n that finished" would favour quick runs (measured: 2.8 standard errors with 32 workers). */
+/* When a point has enough replicates. The rule looks at complete prefixes 0..n-1 of replicate numbers and at nothing
+ * else: "the first n that finished" would favour quick runs (measured: 2.8 standard errors with 32 workers). */
 #ifndef CLAST_CAMPAIGN_DESIGN_STOPPING_H
 #define CLAST_CAMPAIGN_DESIGN_STOPPING_H
 
@@ -8,9 +8,9 @@
 #include <stdint.h>
 
 struct design_stopping {
-  bool fixed;                      /* `minimum` replicates, nothing is judged */
+  bool fixed; /* `minimum` replicates, nothing is judged */
   int64_t minimum, batch, maximum;
-  double half_width, level;        /* of the confidence interval of the mean */
+  double half_width, level; /* of the confidence interval of the mean */
 };
 
 enum design_verdict { DESIGN_GROW, DESIGN_INTERVAL_MET, DESIGN_CAP_REACHED, DESIGN_FIXED };

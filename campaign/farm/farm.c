@@ -29,7 +29,8 @@ static status watch_signals(struct farm *farm, struct error *error) {
   sigemptyset(&set);
   for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++) {
     struct sigaction now;
-    if (sigaction(wanted[i], NULL, &now) == 0 && now.sa_handler == SIG_IGN) continue; /* nohup, or `&` in a script */
+    if (sigaction(wanted[i], NULL, &now) == 0 && now.sa_handler == SIG_IGN)
+      continue; /* nohup, or `&` in a script */
     sigaddset(&set, wanted[i]);
   }
   if (sigprocmask(SIG_BLOCK, &set, &farm->mask_before) != 0 ||
@@ -40,7 +41,8 @@ static status watch_signals(struct farm *farm, struct error *error) {
 
 int farm_signal(struct farm *farm) {
   struct signalfd_siginfo info;
-  if (read(farm->signals, &info, sizeof info) == (ssize_t)sizeof info) return (int)info.ssi_signo;
+  if (read(farm->signals, &info, sizeof info) == (ssize_t)sizeof info)
+    return (int)info.ssi_signo;
   if (farm->link && farm->launcher && getppid() != farm->launcher) {
     farm->launcher = 0;
     farm->broken = true;
@@ -68,7 +70,8 @@ static status introduce(struct farm *farm, struct error *error) {
   gethostname(it.host, sizeof it.host - 1);
   farm->peers[0].slots = farm->peers[0].started_with = it.slots;
   memcpy(farm->peers[0].host, it.host, sizeof it.host);
-  if (!farm->link) return STATUS_OK;
+  if (!farm->link)
+    return STATUS_OK;
   if (farm->rank > 0) {
     status sent = farm_link_send(farm->link, 0, FARM_FRAME_HELLO, 0, 1, &(struct iovec){&it, sizeof it}, error);
     return sent == STATUS_OK ? farm_link_flush(farm->link, error) : sent;
@@ -77,14 +80,16 @@ static status introduce(struct farm *farm, struct error *error) {
   for (int missing = farm->ranks - 1; missing > 0;) {
     int count;
     const status drained = farm_link_drain(farm->link, hello, farm, &count, error);
-    if (drained != STATUS_OK) return drained;
+    if (drained != STATUS_OK)
+      return drained;
     missing = 0;
     for (int rank = 1; rank < farm->ranks; rank++)
       missing += farm->peers[rank].slots == 0;
     if (missing && farm_clock_ns() > until)
       return status_fail(error, STATUS_MEMORY, "%d of %d ranks did not start within %d s", missing, farm->ranks,
                          (int)(HELLO_NS / FARM_CLOCK_S));
-    if (missing) nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
+    if (missing)
+      nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
   }
   return STATUS_OK;
 }
@@ -93,25 +98,33 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   const int64_t start = farm_clock_ns();
   status result = STATUS_MEMORY;
   struct farm *farm = calloc(1, sizeof *farm);
-  if (!farm) return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  if (!farm)
+    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
   *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
   struct farm_options *const o = &farm->options;
   if (o->slots < 0 || o->slots > 4096) {
     result = status_fail(error, STATUS_USAGE, "%d slots asked for: from 1 to 4096, or 0 for one per core", o->slots);
     goto cleanup;
   }
-  if (o->slots == 0) o->slots = o->use_mpi ? 1 : usable_cores();
-  if (!(o->grace_s > 0)) o->grace_s = o->use_mpi ? 0.5 : 2;
-  if (!(o->drain_s > 0)) o->drain_s = 120;
-  if (!(o->lost_after_s > 0)) o->lost_after_s = 60;
+  if (o->slots == 0)
+    o->slots = o->use_mpi ? 1 : usable_cores();
+  if (!(o->grace_s > 0))
+    o->grace_s = o->use_mpi ? 0.5 : 2;
+  if (!(o->drain_s > 0))
+    o->drain_s = 120;
+  if (!(o->lost_after_s > 0))
+    o->lost_after_s = 60;
   result = farm_pool_start(o, work, &farm->pool, error); /* forks: before MPI and its threads */
-  if (result == STATUS_OK) result = watch_signals(farm, error);
-  if (result != STATUS_OK) goto cleanup;
+  if (result == STATUS_OK)
+    result = watch_signals(farm, error);
+  if (result != STATUS_OK)
+    goto cleanup;
   prctl(PR_SET_TIMERSLACK, 1000UL); /* or a sleep of 50 us takes 100 */
   if (o->use_mpi) {
     farm->launcher = getppid();
     result = farm_link_open(&farm->link, error);
-    if (result != STATUS_OK) goto cleanup;
+    if (result != STATUS_OK)
+      goto cleanup;
     farm->rank = farm_link_rank(farm->link);
     farm->ranks = farm_link_ranks(farm->link);
   }
@@ -123,7 +136,8 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   for (int rank = 0; rank < farm->ranks; rank++)
     farm->peers[rank].mean_wall_s = 1;
   result = introduce(farm, error);
-  if (result != STATUS_OK) goto cleanup;
+  if (result != STATUS_OK)
+    goto cleanup;
   farm->usage.start_up_s = 1e-9 * (double)(farm_clock_ns() - start);
   *out = farm;
   return STATUS_OK;
@@ -142,7 +156,8 @@ int farm_ranks(const struct farm *farm) {
 
 int farm_slots_total(const struct farm *farm) {
   int total = 0;
-  if (farm->rank > 0) return farm->options.slots;
+  if (farm->rank > 0)
+    return farm->options.slots;
   for (int rank = 0; rank < farm->ranks; rank++)
     total += farm->peers[rank].started_with;
   return total;
@@ -153,7 +168,8 @@ struct farm_usage farm_usage(const struct farm *farm) {
 }
 
 status farm_run(struct farm *farm, const struct farm_manager *manager, struct error *error) {
-  if (!farm->pool) return farm->last = status_fail(error, STATUS_STOPPED, "the farm was stopped and has no slots left");
+  if (!farm->pool)
+    return farm->last = status_fail(error, STATUS_STOPPED, "the farm was stopped and has no slots left");
   return farm->last = farm->rank == 0 ? farm_manage(farm, manager, error) : farm_serve(farm, error);
 }
 
@@ -162,26 +178,32 @@ static status finalize(void *context, int rank, const struct farm_frame *frame, 
   (void)rank;
   (void)payload;
   (void)error;
-  if (frame->kind == FARM_FRAME_FINALIZE) *(bool *)context = true;
+  if (frame->kind == FARM_FRAME_FINALIZE)
+    *(bool *)context = true;
   return STATUS_OK;
 }
 
 /* MPI_Finalize waits for the others, spinning. So they meet asleep first: the manager may have a store to close. */
 static bool agree_to_finalize(struct farm *farm) {
   int count;
-  if (farm->broken) return false;
+  if (farm->broken)
+    return false;
   if (farm->rank == 0) {
     for (int rank = 1; rank < farm->ranks; rank++)
-      if (farm_link_send(farm->link, rank, FARM_FRAME_FINALIZE, 0, 0, NULL, NULL) != STATUS_OK) return false;
+      if (farm_link_send(farm->link, rank, FARM_FRAME_FINALIZE, 0, 0, NULL, NULL) != STATUS_OK)
+        return false;
     return farm_link_flush(farm->link, NULL) == STATUS_OK;
   }
   const int64_t until = farm_clock_ns() + FINALIZE_NS * 10;
   int64_t sleep_ns = FARM_SLEEP_LEAST_NS;
   for (bool now = false; !now;) {
-    if (farm_link_drain(farm->link, finalize, &now, &count, NULL) != STATUS_OK) return false;
+    if (farm_link_drain(farm->link, finalize, &now, &count, NULL) != STATUS_OK)
+      return false;
     farm_signal(farm);
-    if (farm->broken || farm_clock_ns() > until) return false;
-    if (!now) nanosleep(&(struct timespec){.tv_nsec = sleep_ns}, NULL);
+    if (farm->broken || farm_clock_ns() > until)
+      return false;
+    if (!now)
+      nanosleep(&(struct timespec){.tv_nsec = sleep_ns}, NULL);
     sleep_ns = farm_sleep_longer(sleep_ns);
   }
   return true;
@@ -189,9 +211,11 @@ static bool agree_to_finalize(struct farm *farm) {
 
 status farm_stop(struct farm *farm, struct error *error) {
   (void)error;
-  if (!farm) return STATUS_OK;
+  if (!farm)
+    return STATUS_OK;
   farm_pool_end(farm->pool);
-  if (farm->link) farm_link_close(farm->link, agree_to_finalize(farm), farm->last);
+  if (farm->link)
+    farm_link_close(farm->link, agree_to_finalize(farm), farm->last);
   if (farm->signals >= 0) {
     close(farm->signals);
     sigprocmask(SIG_SETMASK, &farm->mask_before, NULL);

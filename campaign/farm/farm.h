@@ -3,13 +3,13 @@
  *
  * One slot pool everywhere (design: joint 4): farm_start() forks a fork server before MPI_Init, any thread and HDF5;
  * the server forks slots; a slot forks one child per run (isolated) or computes itself (in process, for very short
- * runs). `-j N` alone drives N slots; under mpirun/srun every rank is such a pool and MPI links the pools to rank 0. One
- * protocol, one code path. Nobody busy-waits.
+ * runs). `-j N` alone drives N slots; under mpirun/srun every rank is such a pool and MPI links the pools to rank 0.
+ * One protocol, one code path. Nobody busy-waits.
  *
  * Measured by bench_farm on two cores shared with other work (400 tasks, lognormal, mean 50 ms), of the time the kernel
- * gave: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at mean 1 s dearest first. No-op runs without a store:
- * 640 000-970 000/s in process, 3 200-4 000/s isolated: a fork costs half a millisecond of a slot. So isolated is the
- * default, and in process pays for runs below some 10 ms. */
+ * gave: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at mean 1 s dearest first. No-op runs without a
+ * store: 640 000-970 000/s in process, 3 200-4 000/s isolated: a fork costs half a millisecond of a slot. So isolated
+ * is the default, and in process pays for runs below some 10 ms. */
 #ifndef CLAST_CAMPAIGN_FARM_FARM_H
 #define CLAST_CAMPAIGN_FARM_FARM_H
 

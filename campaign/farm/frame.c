@@ -9,18 +9,22 @@ static size_t padded(size_t size) {
 
 bool farm_frame_reserve(struct farm_bytes *bytes, size_t more) {
   const size_t used = bytes->end - bytes->begin;
-  if (bytes->capacity - bytes->end >= more) return true;
+  if (bytes->capacity - bytes->end >= more)
+    return true;
   if (bytes->begin > 0 && bytes->capacity - used >= more && bytes->begin >= used) { /* cheap: halves do not overlap */
     memcpy(bytes->data, bytes->data + bytes->begin, used);
   } else {
     size_t capacity = bytes->capacity ? bytes->capacity : 4096;
     while (capacity - used < more) {
-      if (capacity > SIZE_MAX / 4) return false;
+      if (capacity > SIZE_MAX / 4)
+        return false;
       capacity *= 2;
     }
     uint8_t *data = malloc(capacity);
-    if (!data) return false;
-    if (used) memcpy(data, bytes->data + bytes->begin, used);
+    if (!data)
+      return false;
+    if (used)
+      memcpy(data, bytes->data + bytes->begin, used);
     free(bytes->data);
     bytes->data = data;
     bytes->capacity = capacity;
@@ -37,7 +41,8 @@ void farm_frame_free(struct farm_bytes *bytes) {
 
 void farm_frame_trim(struct farm_bytes *bytes) {
   bytes->begin = bytes->end = 0;
-  if (bytes->capacity > (size_t)1 << 20) farm_frame_free(bytes);
+  if (bytes->capacity > (size_t)1 << 20)
+    farm_frame_free(bytes);
 }
 
 /* Not cryptographic: it must see torn, shifted and foreign bytes, at memory speed. */
@@ -64,20 +69,26 @@ bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint
                        const struct iovec *part) {
   size_t size = 0;
   for (int i = 0; i < parts; i++) {
-    if (part[i].iov_len > FARM_FRAME_LARGEST - size) return false;
+    if (part[i].iov_len > FARM_FRAME_LARGEST - size)
+      return false;
     size += part[i].iov_len;
   }
   const size_t total = sizeof(struct farm_frame) + padded(size);
-  if (!farm_frame_reserve(bytes, total)) return false;
+  if (!farm_frame_reserve(bytes, total))
+    return false;
   uint8_t *const payload = bytes->data + bytes->end + sizeof(struct farm_frame);
   uint8_t *to = payload;
   for (int i = 0; i < parts; i++) {
-    if (part[i].iov_len) memcpy(to, part[i].iov_base, part[i].iov_len);
+    if (part[i].iov_len)
+      memcpy(to, part[i].iov_base, part[i].iov_len);
     to += part[i].iov_len;
   }
   memset(to, 0, padded(size) - size);
-  struct farm_frame frame = {
-      .magic = FARM_FRAME_MAGIC, .kind = (uint16_t)kind, .ticket = ticket, .handle = handle, .size = size};
+  struct farm_frame frame = {.magic = FARM_FRAME_MAGIC,
+                             .kind = (uint16_t)kind,
+                             .ticket = ticket,
+                             .handle = handle,
+                             .size = size};
   frame.check = check_of(&frame, payload);
   memcpy(bytes->data + bytes->end, &frame, sizeof frame);
   bytes->end += total;
@@ -86,13 +97,17 @@ bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint
 
 int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload) {
   const size_t used = bytes->end - bytes->begin;
-  if (used < sizeof *frame) return 0;
+  if (used < sizeof *frame)
+    return 0;
   memcpy(frame, bytes->data + bytes->begin, sizeof *frame);
-  if (frame->magic != FARM_FRAME_MAGIC || frame->size > FARM_FRAME_LARGEST) return -1;
+  if (frame->magic != FARM_FRAME_MAGIC || frame->size > FARM_FRAME_LARGEST)
+    return -1;
   const size_t total = sizeof *frame + padded(frame->size);
-  if (used < total) return 0;
+  if (used < total)
+    return 0;
   *payload = bytes->data + bytes->begin + sizeof *frame;
-  if (check_of(frame, *payload) != frame->check) return -1;
+  if (check_of(frame, *payload) != frame->check)
+    return -1;
   bytes->begin += total;
   return 1;
 }
@@ -100,9 +115,11 @@ int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const ui
 size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum) {
   const size_t used = bytes->end - bytes->begin;
   struct farm_frame frame;
-  if (used < sizeof frame) return minimum;
+  if (used < sizeof frame)
+    return minimum;
   memcpy(&frame, bytes->data + bytes->begin, sizeof frame);
-  if (frame.magic != FARM_FRAME_MAGIC || frame.size > FARM_FRAME_LARGEST) return minimum;
+  if (frame.magic != FARM_FRAME_MAGIC || frame.size > FARM_FRAME_LARGEST)
+    return minimum;
   const size_t total = sizeof frame + padded(frame.size);
   return total > used && total - used > minimum ? total - used : minimum;
 }

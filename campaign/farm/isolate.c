@@ -22,7 +22,8 @@
 static size_t address_space(void) {
   char text[64] = "";
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
-  if (file < 0) return 0;
+  if (file < 0)
+    return 0;
   const ssize_t n = read(file, text, sizeof text - 1);
   close(file);
   return n > 0 ? (size_t)strtoull(text, NULL, 10) * (size_t)sysconf(_SC_PAGESIZE) : 0;
@@ -30,7 +31,8 @@ static size_t address_space(void) {
 
 void farm_isolate_limit_memory(size_t bytes) {
   struct rlimit limit;
-  if (getrlimit(RLIMIT_AS, &limit) != 0) return;
+  if (getrlimit(RLIMIT_AS, &limit) != 0)
+    return;
   limit.rlim_cur = limit.rlim_max;
   const size_t base = bytes ? address_space() : 0;
   if (bytes && bytes < SIZE_MAX - base && (limit.rlim_max == RLIM_INFINITY || base + bytes < limit.rlim_max))
@@ -40,11 +42,13 @@ void farm_isolate_limit_memory(size_t bytes) {
 
 static bool renew_pipe(struct farm_isolate *isolate) {
   for (int i = 0; i < 2; i++) {
-    if (isolate->result[i] >= 0) close(isolate->result[i]);
+    if (isolate->result[i] >= 0)
+      close(isolate->result[i]);
     isolate->result[i] = -1;
   }
   farm_frame_free(&isolate->in);
-  if (pipe2(isolate->result, O_CLOEXEC) != 0) return false;
+  if (pipe2(isolate->result, O_CLOEXEC) != 0)
+    return false;
   return fcntl(isolate->result[0], F_SETFL, O_NONBLOCK) == 0;
 }
 
@@ -63,8 +67,10 @@ bool farm_isolate_open(struct farm_isolate *isolate, int channel) {
 static void write_all(int file, const uint8_t *bytes, size_t size) {
   while (size > 0) {
     const ssize_t n = write(file, bytes, size);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(STATUS_IO);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      _exit(STATUS_IO);
     bytes += n;
     size -= (size_t)n;
   }
@@ -81,19 +87,23 @@ static _Noreturn void compute(const struct farm_isolate *isolate, const struct f
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}); /* a thousand crashes must not fill the disk */
-  if (setup->options.memory_limit) farm_isolate_limit_memory(setup->options.memory_limit);
+  if (setup->options.memory_limit)
+    farm_isolate_limit_memory(setup->options.memory_limit);
 
   uint8_t *result = NULL;
   size_t result_size = 0;
   struct error error = {0};
   const int64_t verdict = setup->work(task, size, &result, &result_size, &error);
-  if (setup->options.memory_limit) farm_isolate_limit_memory(0); /* the limit is on the work, not on its answer */
+  if (setup->options.memory_limit)
+    farm_isolate_limit_memory(0); /* the limit is on the work, not on its answer */
 
   struct iovec part[2] = {{.iov_base = (void *)&verdict, .iov_len = sizeof verdict},
                           {.iov_base = result, .iov_len = result_size}};
-  if (verdict != STATUS_OK) part[1] = (struct iovec){.iov_base = error.message, .iov_len = strlen(error.message)};
+  if (verdict != STATUS_OK)
+    part[1] = (struct iovec){.iov_base = error.message, .iov_len = strlen(error.message)};
   struct farm_bytes out = {0};
-  if (!farm_frame_append(&out, FARM_FRAME_ANSWER, 0, handle, 2, part)) _exit(STATUS_MEMORY);
+  if (!farm_frame_append(&out, FARM_FRAME_ANSWER, 0, handle, 2, part))
+    _exit(STATUS_MEMORY);
   write_all(isolate->result[1], out.data, out.end);
   _exit(STATUS_OK);
 }
@@ -102,22 +112,26 @@ static _Noreturn void compute(const struct farm_isolate *isolate, const struct f
 
 static bool drain_pipe(struct farm_isolate *isolate) {
   for (;;) {
-    if (!farm_frame_reserve(&isolate->in, farm_frame_missing(&isolate->in, 4096))) return false;
-    const ssize_t n =
-        read(isolate->result[0], isolate->in.data + isolate->in.end, isolate->in.capacity - isolate->in.end);
+    if (!farm_frame_reserve(&isolate->in, farm_frame_missing(&isolate->in, 4096)))
+      return false;
+    const ssize_t n = read(isolate->result[0], isolate->in.data + isolate->in.end,
+                           isolate->in.capacity - isolate->in.end);
     if (n > 0) {
       isolate->in.end += (size_t)n;
       continue;
     }
-    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EINTR)
+      continue;
     return true;
   }
 }
 
 static int timeout_ms(int64_t until_ns) {
-  if (until_ns == INT64_MAX) return -1;
+  if (until_ns == INT64_MAX)
+    return -1;
   const int64_t left = until_ns - farm_clock_ns();
-  if (left <= 0) return 0;
+  if (left <= 0)
+    return 0;
   return left > 3600 * FARM_CLOCK_S ? 3600000 : (int)(left / FARM_CLOCK_MS) + 1;
 }
 
@@ -135,19 +149,22 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
     const int ready = poll(fds, 3, asked_ms);
     if (asked_ms >= 0 && until != INT64_MAX) { /* stopped (Ctrl-Z) meanwhile? That time is not the run's. */
       const int64_t late = farm_clock_ns() - before - asked_ms * FARM_CLOCK_MS;
-      if (late > FARM_CLOCK_S) until += late;
+      if (late > FARM_CLOCK_S)
+        until += late;
     }
     if (ready > 0 && (fds[2].revents & (POLLRDHUP | POLLHUP | POLLERR))) {
       kill(child, SIGKILL); /* the main process is gone */
       _exit(STATUS_OK);
     }
-    if (ready > 0 && (fds[1].revents & POLLIN)) drain_pipe(isolate);
+    if (ready > 0 && (fds[1].revents & POLLIN))
+      drain_pipe(isolate);
     if (ready > 0 && (fds[0].revents & POLLIN)) {
       struct signalfd_siginfo info;
       while (read(isolate->child_signal, &info, sizeof info) > 0) {
       }
       const pid_t ended = wait4(child, wait_status, WNOHANG, usage);
-      if (ended == child) break;
+      if (ended == child)
+        break;
       if (ended < 0 && errno != EINTR) {
         *wait_status = SIGKILL; /* somebody else waited for it: no verdict, so a crash */
         break;
@@ -175,7 +192,8 @@ bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup
     return farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2,
                              (struct iovec[]){{&head, sizeof head}, {text, (size_t)n}});
   }
-  if (child == 0) compute(isolate, setup, handle, task, size, self);
+  if (child == 0)
+    compute(isolate, setup, handle, task, size, self);
 
   int ended = 0;
   struct rusage usage = {0};
@@ -222,7 +240,8 @@ bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup
     head.ending = FARM_CRASHED;
     snprintf(text, sizeof text, "the run's process exited with code %d and no result", head.exit_code);
   }
-  if (text[0]) part[2] = (struct iovec){text, strlen(text)};
+  if (text[0])
+    part[2] = (struct iovec){text, strlen(text)};
   bool written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 3, part);
   if (!written && head.ending == FARM_DONE) { /* too large, or no memory for a copy here */
     head.ending = FARM_FAILED;

@@ -29,7 +29,8 @@ status farm_link_open(struct farm_link **out, struct error *error) {
     return status_fail(error, STATUS_MEMORY, "MPI_Init failed: start with mpirun or srun --mpi=pmix");
   MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
   struct farm_link *link = calloc(1, sizeof *link);
-  if (!link) return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  if (!link)
+    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
   MPI_Comm_rank(MPI_COMM_WORLD, &link->rank);
   MPI_Comm_size(MPI_COMM_WORLD, &link->ranks);
   link->arriving_last = &link->arriving;
@@ -51,9 +52,11 @@ int farm_link_ranks(const struct farm_link *link) {
 
 static status post(struct farm_link *link, int rank, struct error *error) {
   struct farm_bytes *const out = &link->out[rank];
-  if (out->begin == out->end) return STATUS_OK;
+  if (out->begin == out->end)
+    return STATUS_OK;
   struct message *message = calloc(1, sizeof *message);
-  if (!message) return status_fail(error, STATUS_MEMORY, "no memory for a message to rank %d", rank);
+  if (!message)
+    return status_fail(error, STATUS_MEMORY, "no memory for a message to rank %d", rank);
   message->bytes = *out;
   message->rank = rank;
   *out = (struct farm_bytes){0};
@@ -76,16 +79,19 @@ status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kin
     size += part[i].iov_len;
   if (out->end - out->begin + size > LARGEST_MESSAGE) {
     const status posted = post(link, rank, error);
-    if (posted != STATUS_OK) return posted;
+    if (posted != STATUS_OK)
+      return posted;
   }
-  if (farm_frame_append(out, kind, 0, handle, parts, part)) return STATUS_OK;
+  if (farm_frame_append(out, kind, 0, handle, parts, part))
+    return STATUS_OK;
   return status_fail(error, STATUS_MEMORY, "no memory for a message of %zu bytes to rank %d", size, rank);
 }
 
 status farm_link_flush(struct farm_link *link, struct error *error) {
   for (int rank = 0; rank < link->ranks; rank++) {
     const status posted = post(link, rank, error);
-    if (posted != STATUS_OK) return posted;
+    if (posted != STATUS_OK)
+      return posted;
   }
   return STATUS_OK;
 }
@@ -101,7 +107,8 @@ static status receive(struct farm_link *link, bool *any, struct error *error) {
   *any = false;
   if (MPI_Iprobe(MPI_ANY_SOURCE, TAG, MPI_COMM_WORLD, &flag, &from) != MPI_SUCCESS)
     return status_fail(error, STATUS_INTERNAL, "MPI_Iprobe failed");
-  if (!flag) return STATUS_OK;
+  if (!flag)
+    return STATUS_OK;
   MPI_Get_count(&from, MPI_BYTE, &size);
   struct message *message = calloc(1, sizeof *message);
   if (!message || size < 0 || !farm_frame_reserve(&message->bytes, (size_t)size + 1)) {
@@ -125,7 +132,8 @@ static status receive(struct farm_link *link, bool *any, struct error *error) {
 /* An earlier message of this rank has not all arrived yet. */
 static bool overtakes(const struct farm_link *link, const struct message *message) {
   for (const struct message *before = link->arriving; before != message; before = before->next)
-    if (before->rank == message->rank) return true;
+    if (before->rank == message->rank)
+      return true;
   return false;
 }
 
@@ -148,7 +156,8 @@ status farm_link_drain(struct farm_link *link,
   }
   for (bool any = true; any;) {
     result = receive(link, &any, error);
-    if (result != STATUS_OK) return result;
+    if (result != STATUS_OK)
+      return result;
   }
   for (struct message **at = &link->arriving; *at;) {
     struct message *message = *at;
@@ -157,7 +166,8 @@ status farm_link_drain(struct farm_link *link,
       continue;
     }
     *at = message->next;
-    if (link->arriving_last == &message->next) link->arriving_last = at;
+    if (link->arriving_last == &message->next)
+      link->arriving_last = at;
     ++*count;
     int got = 0;
     struct farm_frame frame;
@@ -170,13 +180,15 @@ status farm_link_drain(struct farm_link *link,
                            message->rank);
     farm_frame_free(&message->bytes);
     free(message);
-    if (result != STATUS_OK) return result;
+    if (result != STATUS_OK)
+      return result;
   }
   return STATUS_OK;
 }
 
 void farm_link_close(struct farm_link *link, bool together, int exit_code) {
-  if (!link) return;
+  if (!link)
+    return;
   if (!together) {
     fflush(NULL);
     MPI_Abort(MPI_COMM_WORLD, exit_code);

@@ -29,14 +29,17 @@ struct manager {
 
 /* The first reason to end stays. */
 static void end_with(struct manager *m, status reason, double grace_s) {
-  if (m->final == STATUS_OK) m->final = reason;
+  if (m->final == STATUS_OK)
+    m->final = reason;
   const int64_t drop_ns = farm_clock_ns() + farm_clock_from_s(grace_s);
-  if (!m->draining || drop_ns < m->drop_ns) m->drop_ns = drop_ns;
+  if (!m->draining || drop_ns < m->drop_ns)
+    m->drop_ns = drop_ns;
   m->draining = true;
 }
 
 static void fail(struct manager *m, status reason) {
-  if (reason == STATUS_OK) return;
+  if (reason == STATUS_OK)
+    return;
   m->silent = m->dropping = true;
   end_with(m, reason, 0);
 }
@@ -51,8 +54,10 @@ static void tell(struct manager *m, int rank, enum farm_frame_kind kind, uint64_
 
 static size_t room(const struct manager *m, int rank) {
   const struct farm_peer *peer = &m->farm->peers[rank];
-  if (peer->lost || peer->slots <= 0) return 0;
-  if (rank == 0) return farm_pool_room(m->farm->pool);
+  if (peer->lost || peer->slots <= 0)
+    return 0;
+  if (rank == 0)
+    return farm_pool_room(m->farm->pool);
   const double ahead = REMOTE_AHEAD_S / (peer->mean_wall_s + 1e-9);
   const size_t each = ahead < 1 ? 1 : ahead > REMOTE_AHEAD_MOST ? REMOTE_AHEAD_MOST : (size_t)ahead;
   return (size_t)peer->slots * (1 + each);
@@ -63,8 +68,10 @@ static int emptiest(const struct manager *m) {
   int best = -1;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
     const struct farm_peer *peer = &m->farm->peers[rank], *other = best < 0 ? NULL : &m->farm->peers[best];
-    if (peer->out >= room(m, rank)) continue;
-    if (!other || peer->out * (size_t)other->slots < other->out * (size_t)peer->slots) best = rank;
+    if (peer->out >= room(m, rank))
+      continue;
+    if (!other || peer->out * (size_t)other->slots < other->out * (size_t)peer->slots)
+      best = rank;
   }
   return best;
 }
@@ -72,7 +79,8 @@ static int emptiest(const struct manager *m) {
 static void assign(struct manager *m, int rank, struct farm_job *job) {
   job->rank = rank;
   m->farm->peers[rank].out++;
-  if (m->first_ns == 0) m->first_ns = m->last_ns = farm_clock_ns();
+  if (m->first_ns == 0)
+    m->first_ns = m->last_ns = farm_clock_ns();
   if (rank == 0)
     farm_pool_submit(m->farm->pool, job);
   else
@@ -108,7 +116,8 @@ static void fill(struct manager *m) {
 /* ---- taking back: for idle slots at the end, and when the farm stops ---- */
 
 static void come_back(struct manager *m, struct farm_job *job) {
-  if (m->farm->peers[job->rank].out > 0) m->farm->peers[job->rank].out--;
+  if (m->farm->peers[job->rank].out > 0)
+    m->farm->peers[job->rank].out--;
   job->rank = -1;
   if (!m->draining) {
     farm_job_push(&m->returned, job);
@@ -121,7 +130,8 @@ static void come_back(struct manager *m, struct farm_job *job) {
 static void recall(struct manager *m, int rank, size_t most) {
   struct farm_peer *peer = &m->farm->peers[rank];
   if (rank > 0) {
-    if (peer->recalling || peer->lost) return;
+    if (peer->recalling || peer->lost)
+      return;
     peer->recalling = true;
     tell(m, rank, FARM_FRAME_RECALL, most, 0, NULL);
     return;
@@ -138,19 +148,23 @@ static void balance(struct manager *m) {
       farm_job_table_remove(&m->table, job->handle);
     return;
   }
-  if (!m->dry || m->returned.first || m->farm->ranks == 1) return;
+  if (!m->dry || m->returned.first || m->farm->ranks == 1)
+    return;
   size_t idle = 0;
   int loaded = -1;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
     const struct farm_peer *peer = &m->farm->peers[rank];
-    if (peer->lost || peer->slots <= 0) continue;
+    if (peer->lost || peer->slots <= 0)
+      continue;
     const size_t slots = (size_t)peer->slots;
-    if (peer->out < slots) idle += slots - peer->out;
+    if (peer->out < slots)
+      idle += slots - peer->out;
     if (peer->out > slots && !peer->recalling && peer->mean_wall_s > 1e-3 &&
         (loaded < 0 || peer->out * (size_t)m->farm->peers[loaded].slots > m->farm->peers[loaded].out * slots))
       loaded = rank;
   }
-  if (idle == 0 || loaded < 0) return;
+  if (idle == 0 || loaded < 0)
+    return;
   const size_t over = m->farm->peers[loaded].out - (size_t)m->farm->peers[loaded].slots;
   recall(m, loaded, over < idle ? over : idle);
 }
@@ -181,7 +195,8 @@ static void report(struct manager *m, struct farm_job *job, const struct farm_re
                                  .slot = result->slot,
                                  .host = peer->host,
                                  .message = text};
-  if (peer->out > 0) peer->out--;
+  if (peer->out > 0)
+    peer->out--;
   peer->mean_wall_s += 0.1 * (result->wall_s - peer->mean_wall_s);
   m->usage.task_cpu_s += result->cpu_s;
   m->usage.tasks++;
@@ -214,7 +229,8 @@ static void lose(struct manager *m, int rank, const char *why) {
   int blamed = 0;
   for (size_t place = 0; place < m->table.capacity; place++) {
     struct farm_job *job = m->table.job[place];
-    if (!job || job->rank != rank || peer->out == 0) continue;
+    if (!job || job->rank != rank || peer->out == 0)
+      continue;
     if (blamed++ < peer->slots)
       report(m, job, &lost, NULL, why, strlen(why));
     else
@@ -229,12 +245,14 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   struct manager *m = context;
   struct farm_peer *const peer = &m->farm->peers[rank];
   peer->heard_ns = farm_clock_ns();
-  if (peer->lost) return STATUS_OK;
+  if (peer->lost)
+    return STATUS_OK;
   struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
   switch (frame->kind) {
   case FARM_FRAME_RESULT: {
     struct farm_result result;
-    if (frame->size < sizeof result) return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+    if (frame->size < sizeof result)
+      return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
     memcpy(&result, payload, sizeof result);
     if (result.size > frame->size - sizeof result)
       return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
@@ -244,11 +262,10 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
     return STATUS_OK;
   }
   case FARM_FRAME_RETURNED:
-    if (job && job->rank == rank) come_back(m, job);
+    if (job && job->rank == rank)
+      come_back(m, job);
     return STATUS_OK;
-  case FARM_FRAME_RECALLED:
-    peer->recalling = false;
-    return STATUS_OK;
+  case FARM_FRAME_RECALLED: peer->recalling = false; return STATUS_OK;
   case FARM_FRAME_ALIVE:
     if ((int)frame->handle < peer->slots) {
       if (frame->handle == 0) {
@@ -261,7 +278,8 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
     return STATUS_OK;
   case FARM_FRAME_SIGNAL: /* of this rank alone, or of the whole group: then ours comes too */
     if (!m->draining) {
-      if (m->calls->stopping) m->calls->stopping(m->calls->context, (int)frame->handle);
+      if (m->calls->stopping)
+        m->calls->stopping(m->calls->context, (int)frame->handle);
       status_fail(m->error, STATUS_STOPPED, "rank %d got signal %d (%s): stopped; the same command resumes", rank,
                   (int)frame->handle, strsignal((int)frame->handle));
       end_with(m, STATUS_STOPPED, frame->handle == SIGUSR1 ? m->farm->options.drain_s : m->farm->options.grace_s);
@@ -271,10 +289,10 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
     return STATUS_OK;
   case FARM_FRAME_BYE:
     peer->bye = true;
-    if (frame->size == sizeof peer->cpu_s) memcpy(&peer->cpu_s, payload, sizeof peer->cpu_s);
+    if (frame->size == sizeof peer->cpu_s)
+      memcpy(&peer->cpu_s, payload, sizeof peer->cpu_s);
     return STATUS_OK;
-  default:
-    return status_fail(error, STATUS_INTERNAL, "rank %d sent a message of unknown kind %d", rank, frame->kind);
+  default: return status_fail(error, STATUS_INTERNAL, "rank %d sent a message of unknown kind %d", rank, frame->kind);
   }
 }
 
@@ -287,7 +305,8 @@ static void mind_signals(struct manager *m) {
       m->dropping = true;
     } else if (!m->signal_ns) {
       m->signal_ns = now;
-      if (m->calls->stopping) m->calls->stopping(m->calls->context, number);
+      if (m->calls->stopping)
+        m->calls->stopping(m->calls->context, number);
       if (m->final == STATUS_OK) {
         if (m->farm->launcher == 0 && m->farm->link)
           status_fail(m->error, STATUS_STOPPED, "mpirun has died: stopped; the same command resumes");
@@ -306,18 +325,21 @@ static void mind_ranks(struct manager *m, int64_t now, int64_t late_ns) {
   int alive = 0;
   if (m->farm->peers[0].slots != farm_pool_slots(m->farm->pool)) {
     m->farm->peers[0].slots = farm_pool_slots(m->farm->pool);
-    if (m->farm->peers[0].slots == 0) recall(m, 0, SIZE_MAX >> 1);
+    if (m->farm->peers[0].slots == 0)
+      recall(m, 0, SIZE_MAX >> 1);
   }
   for (int rank = 0; rank < m->farm->ranks; rank++) {
     struct farm_peer *const peer = &m->farm->peers[rank];
     if (rank > 0 && !peer->lost) {
-      if (late_ns > FARM_CLOCK_S) peer->heard_ns += late_ns; /* it was us who did not listen */
+      if (late_ns > FARM_CLOCK_S)
+        peer->heard_ns += late_ns; /* it was us who did not listen */
       if (now - peer->heard_ns > limit) {
         char why[160];
         snprintf(why, sizeof why, "rank %d on %s has said nothing for %g s: frozen or gone", rank, peer->host,
                  m->farm->options.lost_after_s);
         peer->lost = m->farm->broken = true;
-        if (m->calls->stopping) m->calls->stopping(m->calls->context, 0);
+        if (m->calls->stopping)
+          m->calls->stopping(m->calls->context, 0);
         lose(m, rank, why);
       }
     }
@@ -331,7 +353,8 @@ static void mind_ranks(struct manager *m, int64_t now, int64_t late_ns) {
 }
 
 static bool finished(const struct manager *m) {
-  if (m->dropping) return true;
+  if (m->dropping)
+    return true;
   size_t out = 0;
   bool recalling = false;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
@@ -349,7 +372,8 @@ static void say_goodbye(struct manager *m) {
   const char *text = m->final != STATUS_OK && m->error ? m->error->message : "";
   if (m->dropping) {
     for (size_t place = 0; place < m->table.capacity; place++) /* these are the pool's to free */
-      if (m->table.job[place] && m->table.job[place]->rank == 0) m->table.job[place] = NULL;
+      if (m->table.job[place] && m->table.job[place]->rank == 0)
+        m->table.job[place] = NULL;
     farm_pool_end(farm->pool);
     farm->pool = NULL;
   }
@@ -360,19 +384,24 @@ static void say_goodbye(struct manager *m) {
                        &ignored) != STATUS_OK)
       farm->broken = true;
   }
-  if (!farm->link) return;
-  if (farm_link_flush(farm->link, &ignored) != STATUS_OK) farm->broken = true;
+  if (!farm->link)
+    return;
+  if (farm_link_flush(farm->link, &ignored) != STATUS_OK)
+    farm->broken = true;
   const int64_t until = farm_clock_ns() + (m->signal_ns ? FARM_CLOCK_S / 2 : BYE_NS);
   for (int missing = 1; missing > 0 && farm_clock_ns() < until;) {
     int count;
-    if (farm_link_drain(farm->link, take, m, &count, &ignored) != STATUS_OK) break;
+    if (farm_link_drain(farm->link, take, m, &count, &ignored) != STATUS_OK)
+      break;
     missing = 0;
     for (int rank = 1; rank < farm->ranks; rank++)
       missing += !farm->peers[rank].bye && !farm->peers[rank].lost;
-    if (missing) nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
+    if (missing)
+      nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
   }
   for (int rank = 1; rank < farm->ranks; rank++) {
-    if (!farm->peers[rank].bye) farm->broken = true;
+    if (!farm->peers[rank].bye)
+      farm->broken = true;
     m->usage.waiting_cpu_s += farm->peers[rank].cpu_s;
   }
 }
@@ -394,12 +423,16 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
     fill(&m);
     balance(&m);
     farm_pool_dispatch(farm->pool);
-    if (farm->link) fail(&m, farm_link_flush(farm->link, m.error));
+    if (farm->link)
+      fail(&m, farm_link_flush(farm->link, m.error));
     const int64_t now = farm_clock_ns();
-    if (m.draining && now >= m.drop_ns) m.dropping = true;
-    if (finished(&m)) break;
+    if (m.draining && now >= m.drop_ns)
+      m.dropping = true;
+    if (finished(&m))
+      break;
     int64_t timeout_ns = ticked_ns + TICK_NS - now;
-    if (farm->ranks > 1 && sleep_ns < timeout_ns) timeout_ns = sleep_ns;
+    if (farm->ranks > 1 && sleep_ns < timeout_ns)
+      timeout_ns = sleep_ns;
     const bool heard = farm_pool_wait(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
     if (farm->ranks > 1) {
       struct error later;
@@ -411,12 +444,13 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
     looped_ns = after;
     if (after - ticked_ns >= TICK_NS) {
       ticked_ns = after;
-      if (!m.draining) m.dry = false;
+      if (!m.draining)
+        m.dry = false;
       struct error later;
       if (calls->tick && !m.silent) {
         const size_t slots = (size_t)farm_slots_total(farm), taken = m.table.count;
-        const status said =
-            calls->tick(calls->context, (int)(taken < slots ? taken : slots), m.final == STATUS_OK ? m.error : &later);
+        const status said = calls->tick(calls->context, (int)(taken < slots ? taken : slots),
+                                        m.final == STATUS_OK ? m.error : &later);
         if (said == STATUS_STOPPED && !m.draining) {
           end_with(&m, said, farm->options.drain_s);
           take_all_back(&m);

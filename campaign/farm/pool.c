@@ -51,7 +51,8 @@ status farm_pool_start(const struct farm_options *options, farm_work work, struc
   const size_t slots = (size_t)options->slots;
   status result = STATUS_MEMORY;
   struct farm_pool *pool = calloc(1, sizeof *pool);
-  if (!pool) return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  if (!pool)
+    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
   *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
   pool->looked_ns = farm_clock_ns();
   pool->slots = calloc(slots, sizeof *pool->slots);
@@ -59,14 +60,16 @@ status farm_pool_start(const struct farm_options *options, farm_work work, struc
   pool->records_size = slots * sizeof *pool->setup.records;
   pool->setup.records = mmap(NULL, pool->records_size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (!pool->slots || !pool->fds || pool->setup.records == MAP_FAILED) {
-    if (pool->setup.records == MAP_FAILED) pool->setup.records = NULL;
+    if (pool->setup.records == MAP_FAILED)
+      pool->setup.records = NULL;
     status_fail(error, STATUS_MEMORY, "no memory for %zu slots", slots);
     goto cleanup;
   }
   for (size_t i = 0; i < slots; i++)
     pool->slots[i].channel = -1;
   result = farm_server_start(&pool->setup, &pool->server, &pool->control, error);
-  if (result != STATUS_OK) goto cleanup;
+  if (result != STATUS_OK)
+    goto cleanup;
   *out = pool;
   return STATUS_OK;
 cleanup:
@@ -85,7 +88,8 @@ void farm_pool_submit(struct farm_pool *pool, struct farm_job *job) {
 
 int farm_pool_slots(const struct farm_pool *pool) {
   int alive = 0;
-  if (pool->control < 0) return 0;
+  if (pool->control < 0)
+    return 0;
   for (int i = 0; i < pool->setup.options.slots; i++)
     alive += !pool->slots[i].given_up;
   return alive;
@@ -106,18 +110,22 @@ static void flush(struct slot *slot) {
   while (slot->channel >= 0 && slot->out.begin < slot->out.end) {
     const ssize_t n = send(slot->channel, slot->out.data + slot->out.begin, slot->out.end - slot->out.begin,
                            MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return; /* full: poll tells when not; dead: the server tells */
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      return; /* full: poll tells when not; dead: the server tells */
     slot->out.begin += (size_t)n;
   }
-  if (slot->out.begin == slot->out.end) farm_frame_trim(&slot->out);
+  if (slot->out.begin == slot->out.end)
+    farm_frame_trim(&slot->out);
 }
 
 static bool give(struct farm_pool *pool, int index, struct farm_job *job) {
   struct farm_slot_record *const record = &pool->setup.records[index];
   struct slot *const slot = &pool->slots[index];
   for (uint16_t ticket = 0; ticket < FARM_SLOT_TICKETS; ticket++) {
-    if (atomic_load(&record->ticket[ticket]) != 0) continue;
+    if (atomic_load(&record->ticket[ticket]) != 0)
+      continue;
     if (!farm_frame_append(&slot->out, FARM_FRAME_TASK, ticket, job->handle, 1, &(struct iovec){job->bytes, job->size}))
       return false;
     atomic_store(&record->ticket[ticket], job->handle); /* before the flush that shows it to the slot */
@@ -134,10 +142,13 @@ static struct farm_job *take_back(struct farm_pool *pool, int index) {
   struct slot *const slot = &pool->slots[index];
   struct farm_job *last = NULL;
   for (struct farm_job *job = slot->jobs.first; job; job = job->next)
-    if (atomic_load(&record->ticket[job->ticket]) == job->handle) last = job;
-  if (!last) return NULL;
+    if (atomic_load(&record->ticket[job->ticket]) == job->handle)
+      last = job;
+  if (!last)
+    return NULL;
   uint64_t expected = last->handle;
-  if (!atomic_compare_exchange_strong(&record->ticket[last->ticket], &expected, 0)) return NULL;
+  if (!atomic_compare_exchange_strong(&record->ticket[last->ticket], &expected, 0))
+    return NULL;
   return farm_job_take(&slot->jobs, last->handle);
 }
 
@@ -145,7 +156,8 @@ static int slot_with(const struct farm_pool *pool, bool most) {
   int best = -1;
   for (int i = 0; i < pool->setup.options.slots; i++) {
     const struct slot *slot = &pool->slots[i];
-    if (slot->channel < 0) continue;
+    if (slot->channel < 0)
+      continue;
     if (best < 0 ||
         (most ? slot->jobs.count > pool->slots[best].jobs.count : slot->jobs.count < pool->slots[best].jobs.count))
       best = i;
@@ -157,7 +169,8 @@ void farm_pool_dispatch(struct farm_pool *pool) {
   const size_t deep = depth(pool);
   while (pool->queue.first) {
     const int index = slot_with(pool, false);
-    if (index < 0 || pool->slots[index].jobs.count >= deep) break;
+    if (index < 0 || pool->slots[index].jobs.count >= deep)
+      break;
     struct farm_job *job = farm_job_pop(&pool->queue);
     if (!give(pool, index, job)) {
       farm_job_push_front(&pool->queue, job);
@@ -166,9 +179,11 @@ void farm_pool_dispatch(struct farm_pool *pool) {
   }
   for (int index; !pool->queue.first && (index = slot_with(pool, false)) >= 0 && pool->slots[index].jobs.count == 0;) {
     const int loaded = slot_with(pool, true);
-    if (pool->slots[loaded].jobs.count < 2) break;
+    if (pool->slots[loaded].jobs.count < 2)
+      break;
     struct farm_job *job = take_back(pool, loaded);
-    if (!job) break;
+    if (!job)
+      break;
     if (!give(pool, index, job)) {
       farm_job_push_front(&pool->queue, job);
       break;
@@ -206,36 +221,46 @@ static bool listen_to(struct farm_pool *pool, struct slot *slot) {
   bool open = true;
   for (;;) {
     const size_t want = farm_frame_missing(&slot->in, 16384);
-    if (!farm_frame_reserve(&slot->in, want)) return false;
+    if (!farm_frame_reserve(&slot->in, want))
+      return false;
     const size_t space = slot->in.capacity - slot->in.end;
     const ssize_t n = recv(slot->channel, slot->in.data + slot->in.end, space, MSG_DONTWAIT);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0 && errno == EAGAIN) break;
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n < 0 && errno == EAGAIN)
+      break;
     if (n <= 0) {
       open = false;
       break;
     }
     slot->in.end += (size_t)n;
-    if ((size_t)n < space) break;
+    if ((size_t)n < space)
+      break;
   }
   for (;;) {
     struct farm_frame frame;
     struct farm_result result;
     const uint8_t *payload;
     const int got = farm_frame_next(&slot->in, &frame, &payload);
-    if (got < 0) return false;
-    if (got == 0) break;
-    if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result) return false;
+    if (got < 0)
+      return false;
+    if (got == 0)
+      break;
+    if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result)
+      return false;
     memcpy(&result, payload, sizeof result);
-    if (result.size > frame.size - sizeof result) return false;
+    if (result.size > frame.size - sizeof result)
+      return false;
     struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
-    if (!job) continue; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
+    if (!job)
+      continue; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
     slot->idle_deaths = 0;
     pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
     ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
           frame.size - sizeof result - result.size);
   }
-  if (slot->in.begin == slot->in.end) farm_frame_trim(&slot->in);
+  if (slot->in.begin == slot->in.end)
+    farm_frame_trim(&slot->in);
   return open;
 }
 
@@ -268,7 +293,8 @@ static void mourn(struct farm_pool *pool, int index, const struct farm_result *v
   atomic_store(&record->running, 0);
   const bool timed_out = running && slot->killed == running;
   slot->killed = slot->forgiven = 0;
-  if (!blamed) return;
+  if (!blamed)
+    return;
   struct farm_result result = *verdict;
   char limit[96];
   if (timed_out) {
@@ -320,9 +346,11 @@ static void hear_server(struct farm_pool *pool) {
     struct farm_server_message message;
     int channel;
     const int got = farm_server_hear(pool->control, &message, &channel);
-    if (got == 0) return;
+    if (got == 0)
+      return;
     if (got < 0 || message.slot < 0 || message.slot >= pool->setup.options.slots) {
-      if (channel >= 0) close(channel);
+      if (channel >= 0)
+        close(channel);
       server_died(pool);
       return;
     }
@@ -341,13 +369,15 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
   const int64_t now = farm_clock_ns(), late = now - pool->looked_ns;
   pool->looked_ns = now;
   int64_t next = INT64_MAX;
-  if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0)) return next;
+  if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0))
+    return next;
   const int64_t limit = farm_clock_from_s(pool->setup.options.time_limit_s);
   for (int i = 0; i < pool->setup.options.slots; i++) {
     struct slot *const slot = &pool->slots[i];
     const uint64_t running = atomic_load(&pool->setup.records[i].running);
     const int64_t started = atomic_load(&pool->setup.records[i].started_ns);
-    if (slot->channel < 0 || slot->jobs.count == 0) continue;
+    if (slot->channel < 0 || slot->jobs.count == 0)
+      continue;
     /* We look every second at least. If we did not, all of us were stopped (Ctrl-Z): not the run's fault. */
     if (running && late > 2 * FARM_CLOCK_S) {
       slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
@@ -367,44 +397,57 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
 bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   const int slots = pool->setup.options.slots;
   const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = farm_clock_ns();
-  if (timeout_ns > FARM_CLOCK_S) timeout_ns = FARM_CLOCK_S;
-  if (deadline - now < timeout_ns) timeout_ns = deadline > now ? deadline - now : 0;
+  if (timeout_ns > FARM_CLOCK_S)
+    timeout_ns = FARM_CLOCK_S;
+  if (deadline - now < timeout_ns)
+    timeout_ns = deadline > now ? deadline - now : 0;
   for (int i = 0; i < slots; i++) {
     const struct slot *slot = &pool->slots[i];
     pool->fds[i] = (struct pollfd){.fd = slot->channel, .events = POLLIN};
-    if (slot->out.begin < slot->out.end) pool->fds[i].events |= POLLOUT;
+    if (slot->out.begin < slot->out.end)
+      pool->fds[i].events |= POLLOUT;
   }
   pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
   pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
   const struct timespec timeout = {timeout_ns / FARM_CLOCK_S, (long)(timeout_ns % FARM_CLOCK_S)};
   const int ready = ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL);
-  if (ready <= 0) return false;
+  if (ready <= 0)
+    return false;
   for (int i = 0; i < slots; i++) {
     struct slot *const slot = &pool->slots[i];
-    if (pool->fds[i].revents & POLLOUT) flush(slot);
-    if (!(pool->fds[i].revents & (POLLIN | POLLHUP | POLLERR))) continue;
-    if (listen_to(pool, slot)) continue;
+    if (pool->fds[i].revents & POLLOUT)
+      flush(slot);
+    if (!(pool->fds[i].revents & (POLLIN | POLLHUP | POLLERR)))
+      continue;
+    if (listen_to(pool, slot))
+      continue;
     /* Closed: it is dead and the server will say why. Nonsense: kill it, and the server will say so. */
-    if (pool->control >= 0) farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
+    if (pool->control >= 0)
+      farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
     close(slot->channel);
     slot->channel = -1;
   }
-  if (pool->control >= 0 && pool->fds[slots].revents) hear_server(pool);
+  if (pool->control >= 0 && pool->fds[slots].revents)
+    hear_server(pool);
   return true;
 }
 
 void farm_pool_end(struct farm_pool *pool) {
-  if (!pool) return;
-  if (pool->control >= 0) farm_server_end(pool->server, pool->control);
+  if (!pool)
+    return;
+  if (pool->control >= 0)
+    farm_server_end(pool->server, pool->control);
   for (int i = 0; pool->slots && i < pool->setup.options.slots; i++) {
     struct slot *const slot = &pool->slots[i];
-    if (slot->channel >= 0) close(slot->channel);
+    if (slot->channel >= 0)
+      close(slot->channel);
     farm_job_clear(&slot->jobs);
     farm_frame_free(&slot->in);
     farm_frame_free(&slot->out);
   }
   farm_job_clear(&pool->queue);
-  if (pool->setup.records) munmap(pool->setup.records, pool->records_size);
+  if (pool->setup.records)
+    munmap(pool->setup.records, pool->records_size);
   free(pool->slots);
   free(pool->fds);
   free(pool);

@@ -18,7 +18,8 @@ struct server {
 };
 
 static void keep(struct server *server, status result) {
-  if (server->failed == STATUS_OK) server->failed = result;
+  if (server->failed == STATUS_OK)
+    server->failed = result;
 }
 
 static void say(struct server *server, enum farm_frame_kind kind, uint64_t handle, int parts,
@@ -31,8 +32,9 @@ static void job_ended(void *context, struct farm_job *job, const struct farm_res
                       const char *message, size_t message_size) {
   struct server *server = context;
   say(server, FARM_FRAME_RESULT, job->handle, 3,
-      (struct iovec[]){
-          {(void *)result, sizeof *result}, {(void *)bytes, result->size}, {(void *)message, message_size}});
+      (struct iovec[]){{(void *)result, sizeof *result},
+                       {(void *)bytes, result->size},
+                       {(void *)message, message_size}});
   free(job);
 }
 
@@ -42,7 +44,8 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   (void)rank;
   if (frame->kind == FARM_FRAME_TASK) {
     struct farm_job *job = farm_job_new(frame->handle, payload, frame->size);
-    if (!job) return status_fail(error, STATUS_MEMORY, "no memory for a task of %zu bytes", (size_t)frame->size);
+    if (!job)
+      return status_fail(error, STATUS_MEMORY, "no memory for a task of %zu bytes", (size_t)frame->size);
     farm_pool_submit(server->farm->pool, job);
   } else if (frame->kind == FARM_FRAME_RECALL) {
     struct farm_job_queue back = {0};
@@ -52,7 +55,8 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
     say(server, FARM_FRAME_RECALLED, 0, 0, NULL);
   } else if (frame->kind == FARM_FRAME_END) {
     struct farm_end end;
-    if (frame->size < sizeof end) return status_fail(error, STATUS_INTERNAL, "the manager's last word is torn");
+    if (frame->size < sizeof end)
+      return status_fail(error, STATUS_INTERNAL, "the manager's last word is torn");
     memcpy(&end, payload, sizeof end);
     server->ended = true;
     server->drop = end.drop != 0;
@@ -69,8 +73,10 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
 /* Between two signals or after the launcher's death the manager may be gone for good: then leave alone. */
 static bool leave_alone(struct server *server, int64_t *leave_ns) {
   const int number = farm_signal(server->farm);
-  if (number) say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
-  if (server->farm->broken && *leave_ns == 0) *leave_ns = farm_clock_ns() + 2 * FARM_CLOCK_S;
+  if (number)
+    say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
+  if (server->farm->broken && *leave_ns == 0)
+    *leave_ns = farm_clock_ns() + 2 * FARM_CLOCK_S;
   return *leave_ns != 0 && farm_clock_ns() > *leave_ns;
 }
 
@@ -105,7 +111,8 @@ status farm_serve(struct farm *farm, struct error *error) {
     }
     sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(sleep_ns);
   }
-  if (!server.ended) return server.failed;
+  if (!server.ended)
+    return server.failed;
   if (server.drop) {
     farm_pool_end(farm->pool);
     farm->pool = NULL;
@@ -114,7 +121,9 @@ status farm_serve(struct farm *farm, struct error *error) {
   farm->usage.waiting_cpu_s = used;
   say(&server, FARM_FRAME_BYE, 0, 1, &(struct iovec){(void *)&used, sizeof used});
   keep(&server, farm_link_flush(farm->link, error));
-  if (server.failed != STATUS_OK) return server.failed;
-  if (server.final != STATUS_OK && error) *error = server.final_error;
+  if (server.failed != STATUS_OK)
+    return server.failed;
+  if (server.final != STATUS_OK && error)
+    *error = server.final_error;
   return server.final;
 }

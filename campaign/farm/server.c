@@ -48,7 +48,8 @@ static void spawn(struct server *server, int slot) {
   int ends[2];
   pid_t pid = -1;
   const pid_t self = getpid();
-  if (server->pids[slot]) return;
+  if (server->pids[slot])
+    return;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0) {
     pid = fork();
     if (pid == 0) {
@@ -62,7 +63,8 @@ static void spawn(struct server *server, int slot) {
     }
     const int why = errno;
     close(ends[1]);
-    if (pid < 0) close(ends[0]);
+    if (pid < 0)
+      close(ends[0]);
     errno = why;
   }
   if (pid < 0) {
@@ -82,7 +84,8 @@ static void bury(struct server *server) {
   pid_t pid;
   while ((pid = waitpid(-1, &value, WNOHANG)) > 0) {
     for (int slot = 0; slot < server->setup->options.slots; slot++) {
-      if (server->pids[slot] != pid) continue;
+      if (server->pids[slot] != pid)
+        continue;
       server->pids[slot] = 0;
       tell(server->control, &(struct farm_server_message){FARM_SERVER_DIED, slot, pid, value}, -1);
     }
@@ -91,7 +94,8 @@ static void bury(struct server *server) {
 
 static _Noreturn void end(struct server *server) {
   for (int slot = 0; slot < server->setup->options.slots; slot++)
-    if (server->pids[slot]) kill(server->pids[slot], SIGKILL);
+    if (server->pids[slot])
+      kill(server->pids[slot], SIGKILL);
   while (waitpid(-1, NULL, 0) > 0 || errno == EINTR) {
   }
   _exit(STATUS_OK);
@@ -101,7 +105,8 @@ static _Noreturn void end(struct server *server) {
  * all the cores there are instead (the kernel cuts this down to what the job's cpuset allows). */
 static void spread(int slots) {
   cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) != 0 || CPU_COUNT(&set) >= slots) return;
+  if (sched_getaffinity(0, sizeof set, &set) != 0 || CPU_COUNT(&set) >= slots)
+    return;
   memset(&set, 0xff, sizeof set);
   sched_setaffinity(0, sizeof set, &set);
 }
@@ -120,7 +125,8 @@ static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pi
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   if (nothing >= 0) {
     dup2(nothing, STDIN_FILENO);
-    if (nothing > STDERR_FILENO) close(nothing);
+    if (nothing > STDERR_FILENO)
+      close(nothing);
   }
   spread(setup->options.slots);
   sigset_t set;
@@ -130,19 +136,25 @@ static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pi
   struct server server = {.setup = setup, .control = control};
   server.child_signal = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
   server.pids = calloc((size_t)setup->options.slots, sizeof *server.pids);
-  if (server.child_signal < 0 || !server.pids) _exit(STATUS_MEMORY);
+  if (server.child_signal < 0 || !server.pids)
+    _exit(STATUS_MEMORY);
   for (int slot = 0; slot < setup->options.slots; slot++)
     spawn(&server, slot);
   for (;;) {
     struct pollfd fds[2] = {{.fd = control, .events = POLLIN}, {.fd = server.child_signal, .events = POLLIN}};
-    if (poll(fds, 2, -1) < 0 && errno != EINTR) end(&server);
-    if (fds[1].revents & POLLIN) bury(&server);
+    if (poll(fds, 2, -1) < 0 && errno != EINTR)
+      end(&server);
+    if (fds[1].revents & POLLIN)
+      bury(&server);
     if (fds[0].revents) {
       struct farm_server_message message;
       const ssize_t n = recv(control, &message, sizeof message, 0);
-      if (n < 0 && errno == EINTR) continue;
-      if (n != (ssize_t)sizeof message || message.slot < 0 || message.slot >= setup->options.slots) end(&server);
-      if (message.verb == FARM_SERVER_SPAWN) spawn(&server, message.slot);
+      if (n < 0 && errno == EINTR)
+        continue;
+      if (n != (ssize_t)sizeof message || message.slot < 0 || message.slot >= setup->options.slots)
+        end(&server);
+      if (message.verb == FARM_SERVER_SPAWN)
+        spawn(&server, message.slot);
       if (message.verb == FARM_SERVER_KILL && message.pid > 0 && server.pids[message.slot] == message.pid)
         kill(message.pid, SIGKILL);
     }
@@ -181,10 +193,13 @@ int farm_server_hear(int control, struct farm_server_message *message, int *chan
     struct cmsghdr head;
     char bytes[CMSG_SPACE(sizeof(int))];
   } rights;
-  struct msghdr packet = {
-      .msg_iov = &part, .msg_iovlen = 1, .msg_control = rights.bytes, .msg_controllen = sizeof rights.bytes};
+  struct msghdr packet = {.msg_iov = &part,
+                          .msg_iovlen = 1,
+                          .msg_control = rights.bytes,
+                          .msg_controllen = sizeof rights.bytes};
   const ssize_t n = recvmsg(control, &packet, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  if (n < 0) return errno == EAGAIN || errno == EINTR ? 0 : -1;
+  if (n < 0)
+    return errno == EAGAIN || errno == EINTR ? 0 : -1;
   for (struct cmsghdr *head = CMSG_FIRSTHDR(&packet); head; head = CMSG_NXTHDR(&packet, head))
     if (head->cmsg_level == SOL_SOCKET && head->cmsg_type == SCM_RIGHTS)
       memcpy(channel, CMSG_DATA(head), sizeof *channel);
@@ -195,7 +210,8 @@ void farm_server_end(pid_t server, int control) {
   close(control);
   for (int i = 0; i < 2000; i++) {
     const pid_t ended = waitpid(server, NULL, WNOHANG);
-    if (ended == server || (ended < 0 && errno != EINTR)) return;
+    if (ended == server || (ended < 0 && errno != EINTR))
+      return;
     nanosleep(&(struct timespec){.tv_nsec = i < 20 ? 100000 : 1000000}, NULL);
   }
   kill(server, SIGKILL); /* its slots die with it */

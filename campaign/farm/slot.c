@@ -20,14 +20,17 @@
 
 void farm_slot_die_with(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(STATUS_OK);
+  if (getppid() != parent)
+    _exit(STATUS_OK);
 }
 
 static void flush(int channel, struct farm_bytes *out) {
   while (out->begin < out->end) {
     const ssize_t n = send(channel, out->data + out->begin, out->end - out->begin, MSG_NOSIGNAL);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(STATUS_OK); /* the main process is gone */
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      _exit(STATUS_OK); /* the main process is gone */
     out->begin += (size_t)n;
   }
   farm_frame_trim(out);
@@ -46,7 +49,8 @@ static int64_t peak_memory(int64_t *floor) {
   if (peak > *floor + (1 << 20)) {
     const int file = open("/proc/self/clear_refs", O_WRONLY | O_CLOEXEC);
     if (file >= 0) {
-      if (write(file, "5", 1) != 1) *floor = peak;
+      if (write(file, "5", 1) != 1)
+        *floor = peak;
       close(file);
     }
   }
@@ -59,7 +63,8 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
   size_t result_size = 0;
   struct error error = {0};
   const size_t memory_limit = setup->options.memory_limit;
-  if (memory_limit) farm_isolate_limit_memory(memory_limit);
+  if (memory_limit)
+    farm_isolate_limit_memory(memory_limit);
   const int64_t start = farm_clock_ns();
   const double cpu = farm_clock_cpu_s();
   const status verdict = setup->work(task, size, &result, &result_size, &error);
@@ -68,7 +73,8 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
                              .wall_s = 1e-9 * (double)(farm_clock_ns() - start),
                              .exit_code = verdict,
                              .peak_memory = peak_memory(floor)};
-  if (memory_limit) farm_isolate_limit_memory(0);
+  if (memory_limit)
+    farm_isolate_limit_memory(0);
   struct iovec part[2] = {{&head, sizeof head}, {result, result_size}};
   head.size = result_size;
   if (verdict != STATUS_OK) {
@@ -106,7 +112,8 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
   /* If the machine runs out of memory, a run is to be ended, not the manager. Raising is allowed to everybody. */
   const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (score >= 0) {
-    if (write(score, "500", 3) != 3) errno = 0;
+    if (write(score, "500", 3) != 3)
+      errno = 0;
     close(score);
   }
   struct farm_slot_record *const record = &setup->records[slot];
@@ -114,17 +121,20 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
   struct farm_isolate isolate;
   int64_t memory_floor = 0, flushed = farm_clock_ns();
   peak_memory(&memory_floor);
-  if (!setup->options.in_process && !farm_isolate_open(&isolate, channel)) _exit(STATUS_MEMORY);
+  if (!setup->options.in_process && !farm_isolate_open(&isolate, channel))
+    _exit(STATUS_MEMORY);
   for (;;) {
     struct farm_frame frame;
     const uint8_t *payload;
     int got;
     while ((got = farm_frame_next(&in, &frame, &payload)) == 1) {
-      if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame)) continue;
+      if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame))
+        continue;
       const bool written = setup->options.in_process
                                ? run_here(setup, slot, frame.handle, payload, frame.size, &memory_floor, &out)
                                : farm_isolate_run(&isolate, setup, slot, frame.handle, payload, frame.size, &out);
-      if (!written) _exit(STATUS_MEMORY);
+      if (!written)
+        _exit(STATUS_MEMORY);
       atomic_store(&record->running, 0);
       const int64_t now = farm_clock_ns();
       if (now - flushed > FLUSH_AFTER_NS || out.end - out.begin > FLUSH_AT_BYTES) {
@@ -132,13 +142,18 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
         flushed = now;
       }
     }
-    if (got < 0) _exit(STATUS_INTERNAL);
+    if (got < 0)
+      _exit(STATUS_INTERNAL);
     flush(channel, &out);
-    if (in.begin == in.end) farm_frame_trim(&in);
-    if (!farm_frame_reserve(&in, farm_frame_missing(&in, 4096))) _exit(STATUS_MEMORY);
+    if (in.begin == in.end)
+      farm_frame_trim(&in);
+    if (!farm_frame_reserve(&in, farm_frame_missing(&in, 4096)))
+      _exit(STATUS_MEMORY);
     const ssize_t n = recv(channel, in.data + in.end, in.capacity - in.end, 0);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) _exit(STATUS_OK);
+    if (n < 0 && errno == EINTR)
+      continue;
+    if (n <= 0)
+      _exit(STATUS_OK);
     in.end += (size_t)n;
     flushed = farm_clock_ns();
   }

@@ -96,7 +96,8 @@ const struct query_canned *query_canned_at(size_t index) {
 const struct query_canned *query_canned_find(const char *name, struct error *error) {
   char known[512] = "";
   for (size_t i = 0; i < query_canned_count(); i++) {
-    if (strcmp(queries[i].name, name) == 0) return &queries[i];
+    if (strcmp(queries[i].name, name) == 0)
+      return &queries[i];
     size_t used = strlen(known);
     snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", queries[i].name);
   }

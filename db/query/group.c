@@ -6,7 +6,7 @@
 #include "db/query.h"
 #include "db/store/internal.h"
 #include "db/views.h"
-#include "schemas/near.h"
+#include "schemas/edit_distance.h"
 
 enum { NAMES = 32, NAME = 128 };
 
@@ -18,7 +18,8 @@ struct names {
 /* `column` ends in `wanted` after an underscore or a dot, or is it. */
 static bool ends_in(const char *column, const char *wanted) {
   size_t length = strlen(column), tail = strlen(wanted);
-  if (tail > length) return false;
+  if (tail > length)
+    return false;
   const char *end = column + length - tail;
   return strcmp(end, wanted) == 0 && (end == column || end[-1] == '_' || end[-1] == '.');
 }
@@ -40,7 +41,7 @@ static status consider(void *context, size_t count, const struct query_value *va
   (void)error;
   struct choice *choice = context;
   const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
-  const size_t distance = near_distance(choice->wanted, strlen(choice->wanted), name);
+  const size_t distance = edit_distance(choice->wanted, strlen(choice->wanted), name);
   if (distance < choice->distance) {
     choice->distance = distance;
     snprintf(choice->near, sizeof choice->near, "%s", name);
@@ -66,18 +67,22 @@ static status resolve(struct store *store, const char *list, const char *what, c
     char *from = word + strspn(word, " ");
     for (size_t n = strlen(from); n > 0 && from[n - 1] == ' '; n--)
       from[n - 1] = '\0';
-    if (!*from) continue;
-    struct choice choice = {.wanted = from, .distance = near_limit(strlen(from)) + 1};
+    if (!*from)
+      continue;
+    struct choice choice = {.wanted = from, .distance = edit_distance_limit(strlen(from)) + 1};
     const struct query_sink sink = {.context = &choice, .row = consider};
     status result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
-    if (result != STATUS_OK) return result;
+    if (result != STATUS_OK)
+      return result;
     if (choice.matches > 1)
       return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, from, choice.matching);
     if (choice.matches == 0 && choice.near[0])
       return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, from, choice.near);
     if (choice.matches == 0)
-      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, from, choice.known[0] ? choice.known : "none");
-    if (out->count == NAMES) return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
+      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, from,
+                         choice.known[0] ? choice.known : "none");
+    if (out->count == NAMES)
+      return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
     snprintf(out->name[out->count++], NAME, "%s", choice.found);
   }
   return STATUS_OK;
@@ -87,7 +92,8 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   char *sql = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&sql, &size);
-  if (!out) return NULL;
+  if (!out)
+    return NULL;
   fputs("SELECT ", out);
   for (size_t i = 0; i < axes->count; i++)
     fprintf(out, "\"%s\", ", axes->name[i]);
@@ -142,9 +148,11 @@ status query_group(struct store *store, const char *by, const char *quantities, 
                 &results, error);
   for (int i = 0; result == STATUS_OK && !quantities && views_quantities[i]; i++)
     snprintf(results.name[results.count++], NAME, "%s", views_quantities[i]);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   char *sql = group_sql(&axes, &results);
-  if (!sql) return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
   result = query_run(store, sql, 0, NULL, 0, sink, error);
   free(sql);
   return result;

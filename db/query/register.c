@@ -15,7 +15,8 @@ struct deviation { /* Welford 1962 */
 static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
   struct deviation *d = sqlite3_aggregate_context(context, sizeof *d);
-  if (!d || sqlite3_value_type(values[0]) == SQLITE_NULL) return;
+  if (!d || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
   double x = sqlite3_value_double(values[0]), from_old = x - d->mean;
   d->n++;
   d->mean += from_old / (double)d->n;
@@ -24,7 +25,8 @@ static void stdev_step(sqlite3_context *context, int count, sqlite3_value **valu
 
 static void stdev_final(sqlite3_context *context) {
   struct deviation *d = sqlite3_aggregate_context(context, 0);
-  if (d && d->n > 1) sqlite3_result_double(context, sqrt(d->squares / (double)(d->n - 1)));
+  if (d && d->n > 1)
+    sqlite3_result_double(context, sqrt(d->squares / (double)(d->n - 1)));
 }
 
 struct sample {
@@ -35,7 +37,8 @@ struct sample {
 static void median_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
   struct sample *s = sqlite3_aggregate_context(context, sizeof *s);
-  if (!s || sqlite3_value_type(values[0]) == SQLITE_NULL) return;
+  if (!s || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
   if (s->n == s->capacity) {
     size_t capacity = s->capacity ? 2 * s->capacity : 64;
     double *grown = realloc(s->values, capacity * sizeof *grown);
@@ -56,7 +59,8 @@ static int ascending(const void *a, const void *b) {
 
 static void median_final(sqlite3_context *context) {
   struct sample *s = sqlite3_aggregate_context(context, 0);
-  if (!s || s->n == 0) return;
+  if (!s || s->n == 0)
+    return;
   qsort(s->values, s->n, sizeof *s->values, ascending);
   sqlite3_result_double(context, s->n % 2 ? s->values[s->n / 2] : (s->values[s->n / 2 - 1] + s->values[s->n / 2]) / 2);
   free(s->values);
@@ -73,7 +77,8 @@ struct histogram {
 static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
   struct histogram *h = sqlite3_aggregate_context(context, sizeof *h);
-  if (!h || sqlite3_value_type(values[0]) == SQLITE_NULL) return;
+  if (!h || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
   const unsigned char *bytes = sqlite3_value_blob(values[0]);
   size_t size = (size_t)sqlite3_value_bytes(values[0]);
   h->wrong = h->wrong || sqlite3_value_type(values[0]) != SQLITE_BLOB || size % 8 != 0;
@@ -84,7 +89,8 @@ static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **v
       bits = bits << 8 | bytes[i + (size_t)k];
     memcpy(&mass, &bits, sizeof mass);
     int bin = spectrum_bin(mass);
-    if (bin < LOWEST || bin >= LOWEST + BINS) continue;
+    if (bin < LOWEST || bin >= LOWEST + BINS)
+      continue;
     h->count[bin - LOWEST]++;
     h->mass[bin - LOWEST] += mass;
   }
@@ -106,7 +112,8 @@ static void hist_sum_final(sqlite3_context *context) {
   }
   fputc('[', out);
   for (int i = 0; h && i < BINS; i++) {
-    if (h->count[i] == 0) continue;
+    if (h->count[i] == 0)
+      continue;
     fprintf(out, "%s[%d,%lld,%.17g]", first ? "" : ",", i + LOWEST, (long long)h->count[i], h->mass[i]);
     first = false;
   }
@@ -118,13 +125,15 @@ static void hist_sum_final(sqlite3_context *context) {
 
 status query_register_functions(struct store *store, struct error *error) {
   const int flags = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS;
-  if (store->functions) return STATUS_OK;
+  if (store->functions)
+    return STATUS_OK;
   int code = sqlite3_create_function(store->db, "stdev", 1, flags, NULL, NULL, stdev_step, stdev_final);
   if (code == SQLITE_OK)
     code = sqlite3_create_function(store->db, "median", 1, flags, NULL, NULL, median_step, median_final);
   if (code == SQLITE_OK)
     code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
-  if (code != SQLITE_OK) return sql_fail(store->db, code, "registering functions", error);
+  if (code != SQLITE_OK)
+    return sql_fail(store->db, code, "registering functions", error);
   store->functions = true;
   return STATUS_OK;
 }

@@ -26,11 +26,13 @@ static void bind_text(sqlite3_stmt *statement, int index, const char *text) {
 /* INSERT of `fixed` columns followed by a field table's columns. */
 static status prepare_insert(struct store *store, sqlite3_stmt **statement, const char *table, const char *fixed,
                              const struct field_table *fields, const char *doing, struct error *error) {
-  if (*statement) return STATUS_OK;
+  if (*statement)
+    return STATUS_OK;
   char *sql = NULL;
   size_t size = 0, columns = 1;
   FILE *out = open_memstream(&sql, &size);
-  if (!out) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   for (const char *c = fixed; *c; c++)
     columns += *c == ',';
   fprintf(out, "INSERT INTO %s (%s", table, fixed);
@@ -63,7 +65,8 @@ status store_add_campaign(struct store *store, const char *name, const char *doc
                           int64_t *campaign_id, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &statement,
                        "adding a campaign", error);
   if (result == STATUS_OK) {
@@ -101,12 +104,13 @@ static void point_hash(const struct scene *scene, uint8_t hash[16]) {
 
 static status add_inputs(struct store *store, int64_t point_id, const struct scene *scene, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
-  status result =
-      sql_prepare_once(store->db, &store->point_input,
-                       "INSERT INTO point_input (point_id, path, value) VALUES (?1, ?2, ?3)", adding_point, error);
+  status result = sql_prepare_once(store->db, &store->point_input,
+                                   "INSERT INTO point_input (point_id, path, value) VALUES (?1, ?2, ?3)", adding_point,
+                                   error);
   for (size_t i = 0; result == STATUS_OK && i < inputs->count; i++) {
     const struct field *row = &inputs->rows[i];
-    if (!field_is_active(inputs, row, scene->inputs)) continue;
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
     sqlite3_bind_int64(store->point_input, 1, point_id);
     bind_text(store->point_input, 2, row->path);
     sql_bind_field(store->point_input, 3, row, scene->inputs, true);
@@ -126,14 +130,18 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
     result = sql_prepare_once(store->db, &store->point,
                               "INSERT INTO point (hash, engine, scene_name, scene) VALUES (?1, ?2, ?3, ?4)",
                               adding_point, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   sqlite3_bind_blob(store->point_find, 1, hash, 16, SQLITE_STATIC);
   int code = sqlite3_step(store->point_find);
   *point_id = code == SQLITE_ROW ? sqlite3_column_int64(store->point_find, 0) : 0;
   sqlite3_reset(store->point_find);
-  if (code == SQLITE_ROW) return STATUS_OK;
-  if (code != SQLITE_DONE) return sql_fail(store->db, code, adding_point, error);
-  if (!(json = scene_json(scene))) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
+  if (code == SQLITE_ROW)
+    return STATUS_OK;
+  if (code != SQLITE_DONE)
+    return sql_fail(store->db, code, adding_point, error);
+  if (!(json = scene_json(scene)))
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
   sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
   bind_text(store->point, 2, scene->kind->name);
   bind_text(store->point, 3, scene->name);
@@ -147,15 +155,18 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
 /* *grown: the views need another column. */
 static status add_axis(struct store *store, const struct scene *scene, const char *path, bool *grown,
                        struct error *error) {
-  status result =
-      sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point, error);
-  if (result != STATUS_OK) return result;
+  status result = sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point,
+                                   error);
+  if (result != STATUS_OK)
+    return result;
   const struct field *row = field_find(scene->kind->inputs, path, error);
-  if (!row) return STATUS_CONTENT;
+  if (!row)
+    return STATUS_CONTENT;
   bind_text(store->axis_find, 1, row->path);
   bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
   sqlite3_reset(store->axis_find);
-  if (known) return STATUS_OK;
+  if (known)
+    return STATUS_OK;
   char name[SCHEMA_NAME_SIZE];
   result = views_axis_column(store->db, row->path, name, sizeof name, error);
   if (result == STATUS_OK)
@@ -180,11 +191,14 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
   struct store_kind *entry = &store->kinds[store->kind_count];
   int64_t before = 0, after = 0;
   status result = sql_integer(store->db, "PRAGMA schema_version", 0, &before, error);
-  if (result == STATUS_OK) result = schema_complete(store->db, &table, error);
-  if (result == STATUS_OK) result = sql_integer(store->db, "PRAGMA schema_version", 0, &after, error);
+  if (result == STATUS_OK)
+    result = schema_complete(store->db, &table, error);
+  if (result == STATUS_OK)
+    result = sql_integer(store->db, "PRAGMA schema_version", 0, &after, error);
   if (result == STATUS_OK)
     result = prepare_insert(store, &entry->insert, table.name, "run_id", kind->results, adding_run, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   *grown = *grown || before != after;
   entry->kind = kind;
   store->kind_count++;
@@ -197,9 +211,11 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
   bool grown = false;
   struct store_kind *kind = NULL;
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = find_kind(store, scene->kind, &kind, &grown, error);
-  if (result == STATUS_OK) result = find_or_add_point(store, scene, point_id, error);
+  if (result == STATUS_OK)
+    result = find_or_add_point(store, scene, point_id, error);
   if (result == STATUS_OK && campaign_id > 0) {
     result = sql_prepare_once(store->db, &store->campaign_point,
                               "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)",
@@ -212,7 +228,8 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
   }
   for (size_t i = 0; result == STATUS_OK && i < varied_count; i++)
     result = add_axis(store, scene, varied_paths[i], &grown, error);
-  if (result == STATUS_OK && grown) result = views_regenerate(store->db, error);
+  if (result == STATUS_OK && grown)
+    result = views_regenerate(store->db, error);
   return store_end(store, result, 1, error);
 }
 
@@ -222,7 +239,8 @@ static status add_row(struct store *store, const struct store_run *run, int64_t 
                      "point_id, session_id, identity, replicate, seed, results_version, surplus, counts, attempt, "
                      "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path",
                      &outcome_table, adding_run, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   sqlite3_stmt *statement = store->run;
   sqlite3_bind_int64(statement, 1, run->point_id);
   if (run->session_id > 0)
@@ -250,22 +268,27 @@ static status add_row(struct store *store, const struct store_run *run, int64_t 
 }
 
 status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
-  if (store_has_run(store, run->identity)) return STATUS_OK;
+  if (store_has_run(store, run->identity))
+    return STATUS_OK;
   bool grown = false;
   int64_t run_id = 0;
   struct store_kind *kind = NULL;
   struct identities_entry *entry = NULL;
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = find_kind(store, run->kind, &kind, &grown, error);
-  if (result == STATUS_OK && grown) result = views_regenerate(store->db, error);
-  if (result == STATUS_OK) result = add_row(store, run, &run_id, error);
+  if (result == STATUS_OK && grown)
+    result = views_regenerate(store->db, error);
+  if (result == STATUS_OK)
+    result = add_row(store, run, &run_id, error);
   if (result == STATUS_OK && run->result) {
     sqlite3_bind_int64(kind->insert, 1, run_id);
     bind_fields(kind->insert, 2, run->kind->results, run->result);
     result = sql_run(kind->insert, adding_run, error);
   }
-  if (result == STATUS_OK) result = store_fragments_add(store, run_id, run, error);
+  if (result == STATUS_OK)
+    result = store_fragments_add(store, run_id, run, error);
   if (result == STATUS_OK && run->estimate_count)
     result = store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error);
   if (result == STATUS_OK && !(entry = identities_add(&store->identities, run->identity)))
@@ -280,7 +303,8 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
   static const char doing[] = "adding an attempt";
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result =
       prepare_insert(store, &store->attempt, "attempt",
                      "identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, wall_time, "
@@ -311,7 +335,8 @@ status store_add_attempt(struct store *store, const struct store_attempt *attemp
     sqlite3_bind_int(statement, 15, attempt->rank);
     sqlite3_bind_double(statement, 16, wall_clock());
     result = sql_run(statement, doing, error);
-    if (result == STATUS_OK) entry->attempts++;
+    if (result == STATUS_OK)
+      entry->attempts++;
   }
   return store_end(store, result, 1, error);
 }

@@ -26,7 +26,8 @@ static void say(struct report *report, const char *format, ...) {
   vsnprintf(text, sizeof text, format, arguments);
   va_end(arguments);
   report->problems++;
-  if (report->line) report->line(report->context, text);
+  if (report->line)
+    report->line(report->context, text);
 }
 
 /* Every row of `sql` is a problem; its first column is the sentence. */
@@ -36,7 +37,8 @@ static status no_rows(struct report *report, const char *sql, struct error *erro
   int code = SQLITE_DONE;
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
     say(report, "%s", (const char *)sqlite3_column_text(statement, 0));
-  if (result == STATUS_OK && code != SQLITE_DONE) result = sql_fail(report->store->db, code, "checking", error);
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(report->store->db, code, "checking", error);
   sqlite3_finalize(statement);
   return result;
 }
@@ -73,16 +75,19 @@ static status check_results(struct report *report, struct error *error) {
   return result;
 }
 
-/* `' column is value' || ...` over a table's columns that have a range, for each row's value that is not in it; false: none has.
- * Older stores lack columns. */
+/* `' column is value' || ...` over a table's columns that have a range, for each row's value that is not in it; false:
+ * none has. Older stores lack columns. */
 static bool range_columns(struct store *store, const char *table, const struct field_table *fields, FILE *sql) {
   bool any = false;
   for (size_t k = 0; k < fields->count; k++) {
     const struct field *row = &fields->rows[k];
     char name[FIELD_TEXT_SIZE];
-    if ((row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) || (row->minimum == -HUGE_VAL && row->maximum == HUGE_VAL)) continue;
+    if ((row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) ||
+        (row->minimum == -HUGE_VAL && row->maximum == HUGE_VAL))
+      continue;
     sql_column_name(row->path, name, sizeof name);
-    if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK) continue;
+    if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK)
+      continue;
     fprintf(sql, "%siif(\"%s\" < %.17g OR \"%s\" > %.17g, ' %s is ' || \"%s\", '')", any ? " || " : "", name,
             fmax(row->minimum, -DBL_MAX), name, fmin(row->maximum, DBL_MAX), name, name);
     any = true;
@@ -90,8 +95,8 @@ static bool range_columns(struct store *store, const char *table, const struct f
   return any;
 }
 
-/* Results of runs that count, within the ranges of their rows: a share above 1 is an error of the sums. Those of another
- * results_version cannot be judged. */
+/* Results of runs that count, within the ranges of their rows: a share above 1 is an error of the sums. Those of
+ * another results_version cannot be judged. */
 static status check_ranges(struct report *report, struct error *error) {
   status result = STATUS_OK;
   for (size_t k = 0; result == STATUS_OK && k < 2 * engine_count(); k++) {
@@ -101,14 +106,20 @@ static status check_ranges(struct report *report, struct error *error) {
     char *sql = NULL;
     size_t size = 0;
     FILE *text = open_memstream(&sql, &size);
-    if (!text) return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    if (!text)
+      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
     fputs("SELECT 'run ' || run_id || ', out of range:' || wrong FROM (SELECT run_id, ", text);
     const bool any = range_columns(report->store, name, k % 2 ? kind->results : &outcome_table, text);
-    fprintf(text, " AS wrong FROM run JOIN point USING (point_id)%s%s%s WHERE counts AND engine = '%s' AND results_version = %d) WHERE wrong <> ''",
-            k % 2 ? " JOIN \"" : "", k % 2 ? name : "", k % 2 ? "\" USING (run_id)" : "", kind->name, kind->results_version);
+    fprintf(text,
+            " AS wrong FROM run JOIN point USING (point_id)%s%s%s WHERE counts AND engine = '%s' AND results_version = "
+            "%d) WHERE wrong <> ''",
+            k % 2 ? " JOIN \"" : "", k % 2 ? name : "", k % 2 ? "\" USING (run_id)" : "", kind->name,
+            kind->results_version);
     fclose(text);
-    if (!sql) return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
-    if (any) result = no_rows(report, sql, error);
+    if (!sql)
+      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    if (any)
+      result = no_rows(report, sql, error);
     free(sql);
   }
   return result;
@@ -122,8 +133,8 @@ static status check_files(struct report *report, struct error *error) {
                               &statement, "checking", error);
   while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW) {
     const char *name = (const char *)sqlite3_column_text(statement, 1);
-    char *path =
-        name[0] == '/' ? sqlite3_mprintf("%s", name) : sqlite3_mprintf("%.*s%s", folder, report->store->path, name);
+    char *path = name[0] == '/' ? sqlite3_mprintf("%s", name)
+                                : sqlite3_mprintf("%.*s%s", folder, report->store->path, name);
     if (path && access(path, R_OK) != 0)
       say(report, "run %lld: its fields file %s is missing", (long long)sqlite3_column_int64(statement, 0), path);
     sqlite3_free(path);
@@ -145,7 +156,8 @@ static void check_spectrum(struct report *report, int64_t run_id, size_t n, cons
     i++;
   }
   sqlite3_reset(rows);
-  if (!same || i != count) say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
+  if (!same || i != count)
+    say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
 }
 
 static status check_masses(struct report *report, struct error *error) {
@@ -182,7 +194,8 @@ static status check_masses(struct report *report, struct error *error) {
       total += masses[i];
       descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
     }
-    if (!descending) say(report, "run %lld: its masses are not in descending order", (long long)run_id);
+    if (!descending)
+      say(report, "run %lld: its masses are not in descending order", (long long)run_id);
     /* The engine may have summed in another order: n roundings of the total, n below 1e6. */
     double stored = sqlite3_column_double(runs, 2);
     if (sqlite3_column_int(runs, 3) && fabs(total - stored) > 1e-9 * stored)
@@ -210,7 +223,8 @@ static status check_identities(struct report *report, struct error *error) {
     struct scene *scene = NULL;
     struct error why = {0};
     int64_t point_id = sqlite3_column_int64(points, 0);
-    if (!engine_find((const char *)sqlite3_column_text(points, 3), NULL)) continue;
+    if (!engine_find((const char *)sqlite3_column_text(points, 3), NULL))
+      continue;
     if (scene_parse((const char *)sqlite3_column_text(points, 2), (const char *)sqlite3_column_text(points, 1), &scene,
                     &why) != STATUS_OK) {
       say(report, "point %lld: its scene cannot be read: %.600s", (long long)point_id, why.message);
@@ -240,15 +254,21 @@ status store_check(struct store *store, void (*line)(void *context, const char *
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && i < sizeof questions / sizeof questions[0]; i++)
     result = no_rows(&report, questions[i], error);
-  if (result == STATUS_OK) result = check_results(&report, error);
-  if (result == STATUS_OK) result = check_ranges(&report, error);
-  if (result == STATUS_OK) result = check_files(&report, error);
-  if (result == STATUS_OK) result = sums_mismatches(store->db, &wrong, error);
+  if (result == STATUS_OK)
+    result = check_results(&report, error);
+  if (result == STATUS_OK)
+    result = check_ranges(&report, error);
+  if (result == STATUS_OK)
+    result = check_files(&report, error);
+  if (result == STATUS_OK)
+    result = sums_mismatches(store->db, &wrong, error);
   if (result == STATUS_OK && wrong > 0)
     say(&report, "running sums: %lld rows of point_total and point_spectrum differ from the runs they sum",
         (long long)wrong);
-  if (result == STATUS_OK) result = check_masses(&report, error);
-  if (result == STATUS_OK) result = check_identities(&report, error);
+  if (result == STATUS_OK)
+    result = check_masses(&report, error);
+  if (result == STATUS_OK)
+    result = check_identities(&report, error);
   if (result == STATUS_OK && report.problems > 0)
     result = status_fail(error, STATUS_CONTENT, "%s: %lld problems found", store->path, (long long)report.problems);
   return result;

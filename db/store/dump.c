@@ -8,23 +8,16 @@ static const char doing[] = "writing what is deterministic";
 
 static void print_value(FILE *out, sqlite3_stmt *row, int column) {
   switch (sqlite3_column_type(row, column)) {
-  case SQLITE_INTEGER:
-    fprintf(out, "%lld", (long long)sqlite3_column_int64(row, column));
-    break;
-  case SQLITE_FLOAT:
-    fprintf(out, "%a", sqlite3_column_double(row, column));
-    break;
-  case SQLITE_TEXT:
-    fprintf(out, "'%s'", (const char *)sqlite3_column_text(row, column));
-    break;
+  case SQLITE_INTEGER: fprintf(out, "%lld", (long long)sqlite3_column_int64(row, column)); break;
+  case SQLITE_FLOAT: fprintf(out, "%a", sqlite3_column_double(row, column)); break;
+  case SQLITE_TEXT: fprintf(out, "'%s'", (const char *)sqlite3_column_text(row, column)); break;
   case SQLITE_BLOB: {
     const unsigned char *bytes = sqlite3_column_blob(row, column);
     for (int i = 0; i < sqlite3_column_bytes(row, column); i++)
       fprintf(out, "%02x", bytes[i]);
     break;
   }
-  default:
-    fputs("null", out);
+  default: fputs("null", out);
   }
 }
 
@@ -33,8 +26,10 @@ static status print_rows(sqlite3 *db, const char *sql, int64_t run_id, const cha
                          struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = sql_prepare(db, sql, &statement, doing, error);
-  if (result != STATUS_OK) return result;
-  if (sqlite3_bind_parameter_count(statement)) sqlite3_bind_int64(statement, 1, run_id);
+  if (result != STATUS_OK)
+    return result;
+  if (sqlite3_bind_parameter_count(statement))
+    sqlite3_bind_int64(statement, 1, run_id);
   int code;
   while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
     fputs(head, out);
@@ -44,7 +39,8 @@ static status print_rows(sqlite3 *db, const char *sql, int64_t run_id, const cha
     }
     fputc('\n', out);
   }
-  if (code != SQLITE_DONE) result = sql_fail(db, code, doing, error);
+  if (code != SQLITE_DONE)
+    result = sql_fail(db, code, doing, error);
   sqlite3_finalize(statement);
   return result;
 }
@@ -70,11 +66,13 @@ static char *list_columns(sqlite3 *db, const char *table) {
 static status print_columns(sqlite3 *db, const char *table, const char *before, const char *after, int64_t run_id,
                             const char *head, FILE *out, struct error *error) {
   char *columns = list_columns(db, table);
-  if (!columns) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!columns)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   const char *list = *before ? columns : *columns ? columns + 2 : "NULL";
   char *sql = sqlite3_mprintf("SELECT %s%s FROM \"%w\" %s", before, list, table, after);
   sqlite3_free(columns);
-  if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = print_rows(db, sql, run_id, head, out, error);
   sqlite3_free(sql);
   return result;
@@ -88,7 +86,8 @@ static status print_run(sqlite3 *db, int64_t run_id, const char *engine, FILE *o
                     "hex(identity) AS identity, (SELECT hex(hash) FROM point p WHERE p.point_id = run.point_id) "
                     "AS point, replicate, seed, results_version",
                     "WHERE run_id = ?1", run_id, "run", out, error);
-  if (result == STATUS_OK) result = print_columns(db, table, "", "WHERE run_id = ?1", run_id, " result", out, error);
+  if (result == STATUS_OK)
+    result = print_columns(db, table, "", "WHERE run_id = ?1", run_id, " result", out, error);
   if (result == STATUS_OK)
     result = print_rows(db, "SELECT masses FROM fragment_mass WHERE run_id = ?1", run_id, " fragments", out, error);
   if (result == STATUS_OK)
@@ -97,15 +96,15 @@ static status print_run(sqlite3 *db, int64_t run_id, const char *engine, FILE *o
     result = print_rows(db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin", run_id, " spectrum",
                         out, error);
   if (result == STATUS_OK)
-    result =
-        print_columns(db, "estimate", "ordinal", "WHERE run_id = ?1 ORDER BY ordinal", run_id, " estimate", out, error);
+    result = print_columns(db, "estimate", "ordinal", "WHERE run_id = ?1 ORDER BY ordinal", run_id, " estimate", out,
+                           error);
   return result;
 }
 
 status store_dump(struct store *store, FILE *out, struct error *error) {
   sqlite3_stmt *statement = NULL;
-  status result =
-      print_rows(store->db, "SELECT hex(hash) AS hash, engine, scene FROM point ORDER BY hash", 0, "point", out, error);
+  status result = print_rows(store->db, "SELECT hex(hash) AS hash, engine, scene FROM point ORDER BY hash", 0, "point",
+                             out, error);
   if (result == STATUS_OK)
     result = sql_prepare(
         store->db, "SELECT run_id, engine FROM run JOIN point USING (point_id) WHERE surplus = 0 ORDER BY identity",
@@ -114,8 +113,10 @@ status store_dump(struct store *store, FILE *out, struct error *error) {
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
     result = print_run(store->db, sqlite3_column_int64(statement, 0), (const char *)sqlite3_column_text(statement, 1),
                        out, error);
-  if (result == STATUS_OK && code != SQLITE_DONE) result = sql_fail(store->db, code, doing, error);
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(store->db, code, doing, error);
   sqlite3_finalize(statement);
-  if (result == STATUS_OK && ferror(out)) result = status_fail(error, STATUS_IO, "%s failed", doing);
+  if (result == STATUS_OK && ferror(out))
+    result = status_fail(error, STATUS_IO, "%s failed", doing);
   return result;
 }

@@ -8,9 +8,11 @@
 static const char adding_run[] = "adding a run";
 
 static bool reserve_blob(struct store *store, size_t size) {
-  if (size <= store->blob_capacity) return true;
+  if (size <= store->blob_capacity)
+    return true;
   uint8_t *grown = realloc(store->blob, 2 * size);
-  if (!grown) return false;
+  if (!grown)
+    return false;
   store->blob = grown;
   store->blob_capacity = 2 * size;
   return true;
@@ -24,7 +26,8 @@ static void put_little_endian(uint8_t *place, uint64_t bits, int bytes) {
 static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
   status result = sql_prepare_once(store->db, &store->masses,
                                    "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)", adding_run, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   if (!reserve_blob(store, 44 * run->fragment_count + 8))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   for (size_t i = 0; i < run->fragment_count; i++) {
@@ -35,11 +38,13 @@ static status add_masses(struct store *store, int64_t run_id, const struct store
   sqlite3_bind_int64(store->masses, 1, run_id);
   sqlite3_bind_blob64(store->masses, 2, store->blob, 8 * run->fragment_count, SQLITE_STATIC);
   result = sql_run(store->masses, adding_run, error);
-  if (result != STATUS_OK || !run->keep_motion) return result;
+  if (result != STATUS_OK || !run->keep_motion)
+    return result;
 
   result = sql_prepare_once(store->db, &store->motion, "INSERT INTO fragment_motion (run_id, motion) VALUES (?1, ?2)",
                             adding_run, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   for (size_t i = 0; i < run->fragment_count; i++) {
     const struct fragment *f = &run->fragments[i];
     const double values[11] = {f->position[0], f->position[1],       f->position[2],   f->velocity[0],
@@ -60,7 +65,8 @@ static status add_masses(struct store *store, int64_t run_id, const struct store
 /* Bins of the run into store->bins; *masses is only read. */
 static status fill_bins(struct store *store, size_t *count, const struct store_run *run, struct error *error) {
   double *masses = malloc((run->fragment_count + 1) * sizeof *masses);
-  if (!masses) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  if (!masses)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   for (size_t i = 0; i < run->fragment_count; i++)
     masses[i] = run->fragments[i].mass;
   *count = spectrum_fill(run->fragment_count, masses, store->bins, store->bin_capacity);
@@ -79,9 +85,12 @@ static status fill_bins(struct store *store, size_t *count, const struct store_r
 
 static status cover_bins(struct store *store, int lowest, int highest, struct error *error) {
   bool none = store->lowest_bin > store->highest_bin;
-  if (!none && lowest >= store->lowest_bin && highest <= store->highest_bin) return STATUS_OK;
-  if (!none && store->lowest_bin < lowest) lowest = store->lowest_bin;
-  if (!none && store->highest_bin > highest) highest = store->highest_bin;
+  if (!none && lowest >= store->lowest_bin && highest <= store->highest_bin)
+    return STATUS_OK;
+  if (!none && store->lowest_bin < lowest)
+    lowest = store->lowest_bin;
+  if (!none && store->highest_bin > highest)
+    highest = store->highest_bin;
   status result = bins_cover(store->db, lowest, highest, error);
   store->lowest_bin = lowest;
   store->highest_bin = highest;
@@ -126,7 +135,8 @@ static status add_sums(struct store *store, const struct store_run *run, size_t 
   for (size_t i = 0; counted && i < count; i++) {
     const struct spectrum_bin_row *bin = &store->bins[i];
     struct sums_row *row = sums_at(&store->sums, run->point_id, version, bin->bin);
-    if (!row) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+    if (!row)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
     row->runs++;
     row->count += bin->count;
     row->count_squared += bin->count * bin->count;
@@ -135,7 +145,8 @@ static status add_sums(struct store *store, const struct store_run *run, size_t 
     mass += bin->mass;
   }
   struct sums_row *total = sums_at(&store->sums, run->point_id, version, SPECTRUM_NO_BIN);
-  if (!total) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  if (!total)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   total->runs += counted;
   total->censored += counted && run->outcome->state == OUTCOME_END_TIME;
   total->surplus += run->surplus;
@@ -148,8 +159,10 @@ static status add_sums(struct store *store, const struct store_run *run, size_t 
 static status add_spectrum(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
   size_t count = 0;
   status result = fill_bins(store, &count, run, error);
-  if (result == STATUS_OK && count) result = cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error);
-  if (result == STATUS_OK) result = insert_bins(store, run_id, count, error);
+  if (result == STATUS_OK && count)
+    result = cover_bins(store, store->bins[0].bin, store->bins[count - 1].bin, error);
+  if (result == STATUS_OK)
+    result = insert_bins(store, run_id, count, error);
   return result == STATUS_OK ? add_sums(store, run, count, error) : result;
 }
 

@@ -71,7 +71,8 @@ static status map_parents(sqlite3 *db, struct error *error) {
 /* Runs that main lacks, numbered on from its last. */
 static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
   char *columns = common_columns(db, "run", "");
-  if (!columns) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!columns)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_execute(db,
                               "CREATE TEMP TABLE merge_run (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
                               "INSERT INTO merge_run SELECT b.run_id, (SELECT ifnull(max(run_id), 0) FROM main.run) + "
@@ -95,7 +96,8 @@ static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
 /* Rows of a table that belong to the runs that were copied. */
 static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) {
   char *columns = common_columns(db, table, "run_id");
-  if (!columns) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!columns)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result =
       sql_executef(db, doing, error,
                    "INSERT INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m JOIN other.\"%w\" o ON "
@@ -153,12 +155,18 @@ static status copy_results(sqlite3 *db, struct error *error) {
 
 static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   status result = make_tables(db, error);
-  if (result == STATUS_OK) result = map_parents(db, error);
-  if (result == STATUS_OK) result = copy_runs(db, added, error);
-  if (result == STATUS_OK) result = copy_results(db, error);
-  if (result == STATUS_OK) result = copy_attempts(db, error);
-  if (result == STATUS_OK) result = bins_cover_spectrum(db, error);
-  if (result == STATUS_OK && *added > 0) result = sums_rebuild(db, 0, error);
+  if (result == STATUS_OK)
+    result = map_parents(db, error);
+  if (result == STATUS_OK)
+    result = copy_runs(db, added, error);
+  if (result == STATUS_OK)
+    result = copy_results(db, error);
+  if (result == STATUS_OK)
+    result = copy_attempts(db, error);
+  if (result == STATUS_OK)
+    result = bins_cover_spectrum(db, error);
+  if (result == STATUS_OK && *added > 0)
+    result = sums_rebuild(db, 0, error);
   /* Pooled estimates were of fewer runs. */
   if (result == STATUS_OK && *added > 0)
     result =
@@ -183,15 +191,21 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
   struct store *other = NULL;
   *added = *differing = 0;
   status result = store_open_reader(source, &other, error); /* refuses what is missing, foreign, newer, older */
-  if (result == STATUS_OK) result = store_close(other, error);
-  if (result == STATUS_OK) result = store_flush(store, error);
-  if (result == STATUS_OK) result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
-  if (result != STATUS_OK) return result;
+  if (result == STATUS_OK)
+    result = store_close(other, error);
+  if (result == STATUS_OK)
+    result = store_flush(store, error);
+  if (result == STATUS_OK)
+    result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
+  if (result != STATUS_OK)
+    return result;
   result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
   if (result == STATUS_OK) {
     result = count_differing(store->db, differing, error);
-    if (result == STATUS_OK) result = merge(store->db, added, error);
-    if (result == STATUS_OK) result = sql_execute(store->db, "COMMIT", doing, error);
+    if (result == STATUS_OK)
+      result = merge(store->db, added, error);
+    if (result == STATUS_OK)
+      result = sql_execute(store->db, "COMMIT", doing, error);
     if (result != STATUS_OK) {
       sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
       *added = 0;

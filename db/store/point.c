@@ -9,9 +9,11 @@ static int state_of(const char *name) {
   static const char *const path = "state";
   for (size_t i = 0; i < outcome_table.count; i++) {
     const struct field *row = &outcome_table.rows[i];
-    if (strcmp(row->path, path) != 0) continue;
+    if (strcmp(row->path, path) != 0)
+      continue;
     for (int k = 0; row->choices[k]; k++)
-      if (strcmp(row->choices[k], name) == 0) return k;
+      if (strcmp(row->choices[k], name) == 0)
+        return k;
   }
   return OUTCOME_INVALID;
 }
@@ -29,10 +31,12 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
       "= ?2 ORDER BY r.replicate, r.seed",
       of_outcome ? "r" : "e", column, of_outcome ? "" : "LEFT JOIN result_", of_outcome ? "" : kind->name,
       of_outcome ? "" : " e ON e.run_id = r.run_id");
-  if (!sql) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_prepare(store->db, sql, &statement, doing, error);
   sqlite3_free(sql);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   sqlite3_bind_int64(statement, 1, point_id);
   sqlite3_bind_int(statement, 2, kind->results_version);
   int code;
@@ -48,10 +52,12 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
         .peak_memory = sqlite3_column_int64(statement, 7),
         .fields_path = (const char *)sqlite3_column_text(statement, 8),
     };
-    if (sqlite3_column_bytes(statement, 1) == 16) memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
+    if (sqlite3_column_bytes(statement, 1) == 16)
+      memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
     each(context, &run);
   }
-  if (code != SQLITE_DONE) result = sql_fail(store->db, code, doing, error);
+  if (code != SQLITE_DONE)
+    result = sql_fail(store->db, code, doing, error);
   sqlite3_finalize(statement);
   return result;
 }

@@ -9,14 +9,16 @@ static const char writing[] = "writing estimates";
 /* INSERT of `key` columns and the estimate's own, `rows` rows at once. */
 static status prepare(struct store *store, sqlite3_stmt **statement, const char *table, const char *key, size_t rows,
                       struct error *error) {
-  if (*statement) return STATUS_OK;
+  if (*statement)
+    return STATUS_OK;
   if (!store->estimate_table)
     return status_fail(error, STATUS_INTERNAL, "%s: estimates came, but the store was opened without their table",
                        store->path);
   char *sql = NULL;
   size_t size = 0, columns = store->estimate_table->count + 1;
   FILE *out = open_memstream(&sql, &size);
-  if (!out) return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
   for (const char *c = key; *c; c++)
     columns += *c == ',';
   fprintf(out, "INSERT INTO %s (%s", table, key);
@@ -50,7 +52,8 @@ status store_set_estimates_rows(struct store *store, int64_t run_id, size_t coun
     store->estimate = NULL;
   }
   status result = prepare(store, &store->estimate, "estimate", "run_id, ordinal", count, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   store->estimate_rows = count;
   const struct field_table *table = store->estimate_table;
   for (size_t i = 0; i < count; i++) {
@@ -80,15 +83,18 @@ static status add_point_estimates(struct store *store, int64_t point_id, int res
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
                            const void *rows, struct error *error) {
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   if (run_id > 0) {
     result = sql_executef(store->db, writing, error, "DELETE FROM estimate WHERE run_id = %lld", (long long)run_id);
-    if (result == STATUS_OK && count) result = store_set_estimates_rows(store, run_id, count, rows, error);
+    if (result == STATUS_OK && count)
+      result = store_set_estimates_rows(store, run_id, count, rows, error);
   } else {
     result = sql_executef(store->db, writing, error,
                           "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d",
                           (long long)point_id, results_version);
-    if (result == STATUS_OK) result = add_point_estimates(store, point_id, results_version, count, rows, error);
+    if (result == STATUS_OK)
+      result = add_point_estimates(store, point_id, results_version, count, rows, error);
   }
   return store_end(store, result, 1, error);
 }
@@ -96,7 +102,8 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
   static const char doing[] = "moving a stopping prefix";
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = sums_write(&store->sums, store->db, error);
   if (result == STATUS_OK)
     result =
@@ -106,7 +113,8 @@ status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, s
                      "dust_fraction + mean_fragment_mass IS NOT NULL WHERE point_id = %lld AND surplus <> (replicate "
                      ">= %lld)",
                      (long long)prefix, (long long)prefix, (long long)point_id, (long long)prefix);
-  if (result == STATUS_OK && sqlite3_changes64(store->db) > 0) result = sums_rebuild(store->db, point_id, error);
+  if (result == STATUS_OK && sqlite3_changes64(store->db) > 0)
+    result = sums_rebuild(store->db, point_id, error);
   return store_end(store, result, 1, error);
 }
 
@@ -114,11 +122,13 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
   static const char doing[] = "noting a fields file";
   sqlite3_stmt *statement = NULL;
   status result = store_begin(store, error);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = sql_prepare(store->db, "UPDATE run SET fields_path = ?2 WHERE identity = ?1", &statement, doing, error);
   if (result == STATUS_OK) {
     sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
-    if (fields_path) sqlite3_bind_text(statement, 2, fields_path, -1, SQLITE_STATIC);
+    if (fields_path)
+      sqlite3_bind_text(statement, 2, fields_path, -1, SQLITE_STATIC);
     result = sql_run(statement, doing, error);
     if (result == STATUS_OK && sqlite3_changes(store->db) == 0)
       result = status_fail(error, STATUS_INTERNAL, "%s: no such run is stored", doing);

@@ -2,15 +2,19 @@
 
 #include <math.h>
 
-#include "engine/dem/run.h"
+#include "engine/dem/run/run.h"
 
-/* Measured by tests/unit/test_dem_engine.c on the built-in scenes; without that, a body's bytes per grain: outlines, beams
- * and contacts of the moving system, its tessellation, and what fragments need at the end. */
+/* Measured by tests/unit/test_dem_engine.c on the built-in scenes; without that, a body's bytes per grain: outlines,
+ * beams and contacts of the moving system, its tessellation, and what fragments need at the end. */
 enum { BYTES_PER_GRAIN = 4000, BYTES_ANYWAY = 1 << 20 };
 
-static status check(const void *inputs, struct error *error) { return dem_inputs_check(inputs, error); }
+static status check(const void *inputs, struct error *error) {
+  return dem_inputs_check(inputs, error);
+}
 
-static char *describe(const void *inputs) { return dem_describe_scene(inputs); }
+static char *describe(const void *inputs) {
+  return dem_describe_scene(inputs);
+}
 
 static size_t memory(const void *inputs) {
   return (size_t)(dem_inputs_grains(inputs) * BYTES_PER_GRAIN) + BYTES_ANYWAY;
@@ -35,7 +39,9 @@ static status step(void *run, uint64_t max_steps, bool *finished, struct error *
   return STATUS_OK;
 }
 
-static double time_of(const void *run) { return dem_system_time(((const struct dem_run *)run)->system); }
+static double time_of(const void *run) {
+  return dem_system_time(((const struct dem_run *)run)->system);
+}
 
 static double progress(const void *run) {
   const struct dem_run *r = run;
@@ -47,11 +53,13 @@ static status finish(void *run, struct outcome *outcome, void *result, struct fr
   return dem_report_finish(run, outcome, result, fragments, fragment_count, error);
 }
 
-static status write_fields(void *run, const char *path, struct error *error) {
-  return dem_fields_write(run, path, error);
+static status write_snapshot(void *run, const char *path, struct error *error) {
+  return dem_snapshot_write(run, path, error);
 }
 
-static status save(void *run, const char *path, struct error *error) { return dem_restart_save(run, path, error); }
+static status save(void *run, const char *path, struct error *error) {
+  return dem_restart_save(run, path, error);
+}
 
 static status restore(const void *inputs, const char *path, void **run, struct error *error) {
   struct dem_run *made;
@@ -60,13 +68,16 @@ static status restore(const void *inputs, const char *path, void **run, struct e
   return code;
 }
 
-static void release(void *run) { dem_run_free(run); }
+static void release(void *run) {
+  dem_run_free(run);
+}
 
 const struct engine_kind dem_engine = {
     .name = "dem",
-    .doc = "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
-           "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
-           "names at each input.",
+    .doc =
+        "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
+        "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
+        "names at each input.",
     /* 2: the reference side of a contact has a floor. 3: contacts that begin with a break (contact.bonded off) are in
      * the ledger; grains too fast for the time step end a run. */
     .results_version = 3,
@@ -81,7 +92,7 @@ const struct engine_kind dem_engine = {
     .progress = progress,
     .time = time_of,
     .finish = finish,
-    .write_fields = write_fields,
+    .write_snapshot = write_snapshot,
     .save = save,
     .restore = restore,
     .free = release,

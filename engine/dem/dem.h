@@ -2,8 +2,8 @@
 #ifndef CLAST_ENGINE_DEM_DEM_H
 #define CLAST_ENGINE_DEM_DEM_H
 
-#include "engine/dem/inputs.h"
-#include "engine/dem/results.h"
+#include "engine/dem/observe/results.h"
+#include "engine/dem/scene/inputs.h"
 #include "engine/engine.h"
 
 extern const struct engine_kind dem_engine;

@@ -2,17 +2,27 @@
 
 #include <math.h>
 
-#include "engine/sph/run.h"
+#include "engine/sph/run/run.h"
 
-static void complete(void *inputs, const bool *given) { sph_inputs_complete(inputs, given); }
+static void complete(void *inputs, const bool *given) {
+  sph_inputs_complete(inputs, given);
+}
 
-static status check(const void *inputs, struct error *error) { return sph_inputs_check(inputs, error); }
+static status check(const void *inputs, struct error *error) {
+  return sph_inputs_check(inputs, error);
+}
 
-static char *describe(const void *inputs) { return sph_describe_scene(inputs); }
+static char *describe(const void *inputs) {
+  return sph_describe_scene(inputs);
+}
 
-static size_t memory(const void *inputs) { return sph_describe_memory(inputs); }
+static size_t memory(const void *inputs) {
+  return sph_describe_memory(inputs);
+}
 
-static double work(const void *inputs) { return sph_describe_work(inputs); }
+static double work(const void *inputs) {
+  return sph_describe_work(inputs);
+}
 
 static status prepare(const void *inputs, uint64_t seed, void **run, struct error *error) {
   struct sph_run *made;
@@ -28,7 +38,9 @@ static status step(void *run, uint64_t max_steps, bool *finished, struct error *
   return code ? status_fail(error, code, "%s", sph_system_failure(r->system)) : STATUS_OK;
 }
 
-static double time_of(const void *run) { return sph_system_time(((const struct sph_run *)run)->system); }
+static double time_of(const void *run) {
+  return sph_system_time(((const struct sph_run *)run)->system);
+}
 
 static double progress(const void *run) {
   const struct sph_run *r = run;
@@ -40,11 +52,13 @@ static status finish(void *run, struct outcome *outcome, void *result, struct fr
   return sph_report_finish(run, outcome, result, fragments, fragment_count, error);
 }
 
-static status write_fields(void *run, const char *path, struct error *error) {
-  return sph_fields_write(run, path, error);
+static status write_snapshot(void *run, const char *path, struct error *error) {
+  return sph_snapshot_write(run, path, error);
 }
 
-static status save(void *run, const char *path, struct error *error) { return sph_restart_save(run, path, error); }
+static status save(void *run, const char *path, struct error *error) {
+  return sph_restart_save(run, path, error);
+}
 
 static status restore(const void *inputs, const char *path, void **run, struct error *error) {
   struct sph_run *made;
@@ -53,13 +67,17 @@ static status restore(const void *inputs, const char *path, void **run, struct e
   return code;
 }
 
-static void release(void *run) { sph_run_free(run); }
+static void release(void *run) {
+  sph_run_free(run);
+}
 
 const struct engine_kind sph_engine = {
     .name = "sph",
-    .doc = "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state and "
-           "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` names "
-           "at each input.",
+    .doc =
+        "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state and "
+        "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` "
+        "names "
+        "at each input.",
     .results_version = 5,
     .inputs = &sph_inputs,
     .results = &sph_results,
@@ -73,7 +91,7 @@ const struct engine_kind sph_engine = {
     .progress = progress,
     .time = time_of,
     .finish = finish,
-    .write_fields = write_fields,
+    .write_snapshot = write_snapshot,
     .save = save,
     .restore = restore,
     .free = release,

@@ -3,8 +3,8 @@
 #define CLAST_ENGINE_SPH_SPH_H
 
 #include "engine/engine.h"
-#include "engine/sph/inputs.h"
-#include "engine/sph/results.h"
+#include "engine/sph/observe/results.h"
+#include "engine/sph/scene/inputs.h"
 
 extern const struct engine_kind sph_engine;
 

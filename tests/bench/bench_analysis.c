@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "analysis/estimates.h"
 #include "analysis/pooled.h"
+#include "analysis/statistics/estimates.h"
 #include "engine/random.h"
 
 static double seconds(void) {
@@ -26,14 +26,18 @@ static int pooled(void) {
   enum { RUNS = 200, EACH = 80 };
   static double masses[RUNS * EACH];
   size_t first[RUNS + 1];
-  for (size_t r = 0; r <= RUNS; r++) first[r] = r * EACH;
-  for (size_t i = 0; i < RUNS * EACH; i++) masses[i] = 1 / (1 - random_draw(2, 2, i, 0));
-  for (size_t r = 0; r < RUNS; r++) qsort(masses + first[r], EACH, sizeof *masses, descending);
+  for (size_t r = 0; r <= RUNS; r++)
+    first[r] = r * EACH;
+  for (size_t i = 0; i < RUNS * EACH; i++)
+    masses[i] = 1 / (1 - random_draw(2, 2, i, 0));
+  for (size_t r = 0; r < RUNS; r++)
+    qsort(masses + first[r], EACH, sizeof *masses, descending);
   struct pooled_runs runs = {RUNS, first, masses};
   for (int method = 0; method < EXPONENT_METHODS; method++) {
     struct pooled_exponent out;
     double start = seconds();
-    if (pooled_exponent(&runs, (enum exponent_method)method, 1, method == EXPONENT_KS ? 2 : 100, 0.95, 1, &out, NULL)) return 70;
+    if (pooled_exponent(&runs, (enum exponent_method)method, 1, method == EXPONENT_KS ? 2 : 100, 0.95, 1, &out, NULL))
+      return 70;
     printf("analysis_pooled_%s_200_runs_%s_ms %.1f ms\n", exponent_method_names[method],
            method == EXPONENT_KS ? "2_resamples" : "100_resamples", 1e3 * (seconds() - start));
   }
@@ -55,7 +59,8 @@ int main(void) {
   double best = HUGE_VAL;
   for (int repeat = 0; repeat < 50; repeat++) {
     double start = seconds();
-    if (estimates_make(N, fragments, rows, NULL)) return 70;
+    if (estimates_make(N, fragments, rows, NULL))
+      return 70;
     best = fmin(best, seconds() - start);
   }
   printf("analysis_estimates_500_ms %.3f ms\n", 1e3 * best);

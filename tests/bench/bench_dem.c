@@ -8,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "engine/dem/system_layout.h"
+#include "engine/dem/step/system_layout.h"
 #include "tests/bench/dem_disc.h"
 #include "tests/bench/reference_dem.h"
 
@@ -28,7 +28,8 @@ static double reference_steps(struct reference_dem *reference, struct dem_system
   reference_dem_state(reference, system);
   const struct dem_ledger l = dem_system_ledger(system);
   const double ours = l.kinetic + l.beam + l.contact, theirs = reference_dem_energy(reference);
-  if (fabs(ours / theirs - 1.0) > 1e-6) fail("the reference does not compute the same energy", NULL);
+  if (fabs(ours / theirs - 1.0) > 1e-6)
+    fail("the reference does not compute the same energy", NULL);
   const double start = now();
   for (int k = 0; k < steps; ++k)
     reference_dem_step(reference);
@@ -54,10 +55,12 @@ static double ringing(const char *name, double scale, bool with_reference, doubl
   for (int k = 0; k < steps; k += every, ++samples) {
     const double start = now();
     for (int i = 0; i < every; ++i)
-      if (!dem_system_step(system)) fail("a position is no longer finite", NULL);
+      if (!dem_system_step(system))
+        fail("a position is no longer finite", NULL);
     spent += now() - start;
     share += dem_system_overlap_share(system);
-    if (reference) reference_spent += reference_steps(reference, system, reference_every);
+    if (reference)
+      reference_spent += reference_steps(reference, system, reference_every);
   }
   l = dem_system_ledger(system);
   const double cells = (double)t->cell_count, speed = cells * steps / spent;
@@ -67,7 +70,8 @@ static double ringing(const char *name, double scale, bool with_reference, doubl
     reference_dem_free(reference);
   }
   printf("dem_grain_steps_per_s_%s %.4g grain-steps/s\n", name, speed);
-  if (reference_speed > 0.0) printf("dem_ratio_to_reference_%s %.3g 1\n", name, speed / reference_speed);
+  if (reference_speed > 0.0)
+    printf("dem_ratio_to_reference_%s %.3g 1\n", name, speed / reference_speed);
   printf("dem_overlap_share_%s %.3f 1\n", name, share / samples);
   printf("dem_energy_error_%s %.2e 1\n", name, (l.kinetic + l.beam + l.contact) / before - 1.0);
   printf("dem_list_rebuilds_%s %.0f 1\n", name, (double)system->now.rebuilds);
@@ -88,11 +92,13 @@ static void explosion(double reference_speed) {
   dem_disc_charge(system, t, p.density, 5e4);
   const double start = now();
   while (dem_system_time(system) < 20e-3 && dem_system_time(system) - dem_system_last_break(system) < 0.3e-3)
-    if (!dem_system_step(system)) fail("a position is no longer finite", NULL);
+    if (!dem_system_step(system))
+      fail("a position is no longer finite", NULL);
   const double speed = (double)t->cell_count * (double)dem_system_steps(system) / (now() - start);
   const struct dem_break *log;
   printf("dem_grain_steps_per_s_explosion %.4g grain-steps/s\n", speed);
-  if (reference_speed > 0.0) printf("dem_ratio_to_reference_explosion %.3g 1\n", speed / reference_speed);
+  if (reference_speed > 0.0)
+    printf("dem_ratio_to_reference_explosion %.3g 1\n", speed / reference_speed);
   printf("dem_steps_explosion %.0f 1\n", (double)dem_system_steps(system));
   printf("dem_broken_share_explosion %.3f 1\n", (double)dem_system_breaks(system, &log) / (double)t->pair_count);
   printf("dem_list_rebuilds_explosion %.0f 1\n", (double)system->now.rebuilds);
@@ -103,8 +109,11 @@ static void explosion(double reference_speed) {
 int main(int argc, char **argv) {
   const char *only = argc > 1 ? argv[1] : "";
   double reference = 0.0;
-  if (!*only || !strcmp(only, "1100")) reference = ringing("1100", 1.0, true, 0.0);
-  if (!*only || !strcmp(only, "10000")) ringing("10000", 3.015, false, reference);
-  if (!*only || !strcmp(only, "explosion")) explosion(reference);
+  if (!*only || !strcmp(only, "1100"))
+    reference = ringing("1100", 1.0, true, 0.0);
+  if (!*only || !strcmp(only, "10000"))
+    ringing("10000", 3.015, false, reference);
+  if (!*only || !strcmp(only, "explosion"))
+    explosion(reference);
   return 0;
 }

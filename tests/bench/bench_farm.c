@@ -49,8 +49,9 @@ static double fill(double *list, int count, double mean, uint64_t seed) {
 static void tasks_from(struct task_list *list, const double *cost, int count) {
   task_list_new(list, (size_t)count);
   for (int i = 0; i < count; i++)
-    list->tasks[i] =
-        (struct task){.id = (uint64_t)i, .kind = cost ? TASK_BURN : TASK_ECHO, .amount = cost ? cost[i] : 0};
+    list->tasks[i] = (struct task){.id = (uint64_t)i,
+                                   .kind = cost ? TASK_BURN : TASK_ECHO,
+                                   .amount = cost ? cost[i] : 0};
 }
 
 static double since(int64_t start_ns) {
@@ -119,7 +120,8 @@ static bool have(const char *program) {
 static double piped(const char *command, const double *cost, int count) {
   const int64_t start = farm_clock_ns();
   FILE *pipe = popen(command, "w");
-  if (!pipe) return NAN;
+  if (!pipe)
+    return NAN;
   for (int i = 0; i < count; i++)
     fprintf(pipe, "%.6f\n", cost ? cost[i] : 0);
   return pclose(pipe) == 0 ? since(start) : (double)NAN;
@@ -143,18 +145,22 @@ static double mpi4py(const double *cost, int count) {
   char path[] = "/tmp/bench_farm_XXXXXX", costs_path[64], command[256];
   const int file = mkstemp(path);
   double wall = NAN;
-  if (file < 0 || write(file, python, sizeof python - 1) < 0) return NAN;
+  if (file < 0 || write(file, python, sizeof python - 1) < 0)
+    return NAN;
   close(file);
   snprintf(costs_path, sizeof costs_path, "%s.costs", path);
   FILE *list = fopen(costs_path, "w");
   for (int i = 0; list && i < count; i++)
     fprintf(list, "%.6f\n", cost[i]);
-  if (list) fclose(list);
+  if (list)
+    fclose(list);
   snprintf(command, sizeof command, "mpirun --oversubscribe -n 3 /usr/bin/python3 -m mpi4py.futures %s %s 2>/dev/null",
            path, costs_path);
   FILE *pipe = popen(command, "r");
-  if (pipe && fscanf(pipe, "%lf", &wall) != 1) wall = NAN;
-  if (pipe) pclose(pipe);
+  if (pipe && fscanf(pipe, "%lf", &wall) != 1)
+    wall = NAN;
+  if (pipe)
+    pclose(pipe);
   unlink(path);
   unlink(costs_path);
   return wall;
@@ -172,7 +178,8 @@ static int rank_main(char **argv) {
     return 1;
   fill(costs, TASKS, 0.05, 1);
   tasks_from(&list, count > 1 ? costs : NULL, count);
-  if (count == 1) list.tasks[0] = (struct task){.kind = TASK_SLEEP, .amount = 3};
+  if (count == 1)
+    list.tasks[0] = (struct task){.kind = TASK_SLEEP, .amount = 3};
   const struct farm_manager manager = task_list_manager(&list);
   const status result = farm_run(farm, &manager, &error);
   if (farm_rank(farm) == 0) {
@@ -199,7 +206,8 @@ static struct ranks_usage over_ranks(const char *self, int ranks, bool in_proces
   FILE *pipe = popen(command, "r");
   if (pipe && fscanf(pipe, "%lf %lf %lf %lf %lf", &u.sum, &u.wall, &u.manager, &u.waiting, &u.start_up) != 5)
     u.sum = NAN;
-  if (pipe) pclose(pipe);
+  if (pipe)
+    pclose(pipe);
   return u;
 }
 
@@ -252,7 +260,8 @@ static double stored_per_s(bool in_process, size_t fragments) {
     if (store_flush(s.store, &error) == STATUS_OK && usage.tasks == NOTHINGS)
       rate = NOTHINGS / (since(start) - usage.start_up_s); /* to the last commit */
   }
-  if (isnan(rate)) fprintf(stderr, "bench_farm: %s\n", error.message);
+  if (isnan(rate))
+    fprintf(stderr, "bench_farm: %s\n", error.message);
   store_close(s.store, NULL);
   fixture_path(path, "bench-farm"); /* removes it */
   free(s.run);
@@ -260,16 +269,19 @@ static double stored_per_s(bool in_process, size_t fragments) {
 }
 
 static void best(double *so_far, double now) {
-  if (isnan(*so_far) || now > *so_far) *so_far = now;
+  if (isnan(*so_far) || now > *so_far)
+    *so_far = now;
 }
 
 int main(int argc, char **argv) {
-  if (argc == 4 && strcmp(argv[1], "rank") == 0) return rank_main(argv);
+  if (argc == 4 && strcmp(argv[1], "rank") == 0)
+    return rank_main(argv);
   const int rounds = argc > 1 && atoi(argv[1]) > 0 ? atoi(argv[1]) : 1;
   char command[1024], self[512] = "";
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
-  if (readlink("/proc/self/exe", self, sizeof self - 1) < 0) return 1;
+  if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
+    return 1;
   cost_sum = fill(costs, TASKS, 0.05, 1);
   long_sum = fill(long_costs, LONG_TASKS, 1, 2);
   qsort(long_costs, LONG_TASKS, sizeof *long_costs, dearest_first);

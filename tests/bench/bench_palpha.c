@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "engine/sph/materials.h"
-#include "engine/sph/ranges.h"
-#include "engine/sph/system.h"
+#include "engine/sph/material/materials.h"
+#include "engine/sph/modules/ranges.h"
+#include "engine/sph/step/system.h"
 
 enum { ROUNDS = 3, STEPS = 60, N = 24, SMALL = 6 };
 
@@ -17,12 +17,14 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* A block of porous ice (or of the same ice without pores) and a solid projectile at 3 km/s, with strength and flaws. */
+/* A block of porous ice (or of the same ice without pores) and a solid projectile at 3 km/s, with strength and flaws.
+ */
 static struct sph_system *make(const struct sph_material *material, bool pores, bool flaws) {
   const size_t large = N * N * N, small = SMALL * SMALL * SMALL;
   const double dx = 1e-3;
   struct sph_particles *p;
-  if (sph_particles_make(large + small, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &p, NULL) != STATUS_OK) exit(1);
+  if (sph_particles_make(large + small, SPH_WITH_STRESS | SPH_WITH_DAMAGE, &p, NULL) != STATUS_OK)
+    exit(1);
   for (size_t i = 0; i < p->n; i++) {
     size_t k = i < large ? i : i - large, side = i < large ? N : SMALL;
     double shift = i < large ? 0 : 0.5 * (N - SMALL);
@@ -37,10 +39,11 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   }
   struct sph_flaw_law law = {.weibull = material->weibull, .volume = (double)large * dx * dx * dx, .seed = 1};
   struct sph_flaws *list = NULL;
-  if (flaws && sph_flaws_make(&law, large, NULL, NULL, 0, &list, NULL) != STATUS_OK) exit(1);
-  struct sph_body_physics bodies[2] = {
-      {.material = *material, .strength = true, .flaws = list, .porosity = pores ? &material->porosity : NULL},
-      {.material = *material, .strength = true}};
+  if (flaws && sph_flaws_make(&law, large, NULL, NULL, 0, &list, NULL) != STATUS_OK)
+    exit(1);
+  struct sph_body_physics bodies[2] =
+      {{.material = *material, .strength = true, .flaws = list, .porosity = pores ? &material->porosity : NULL},
+       {.material = *material, .strength = true}};
   struct sph_parameters parameters = sph_parameters_default();
   struct sph_system *s;
   struct error error;
@@ -53,8 +56,8 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   return s;
 }
 
-/* The loop that pores add (or replace: Tillotson's) alone, on the state that the run has come to, standing still; it changes nothing
- * there. */
+/* The loop that pores add (or replace: Tillotson's) alone, on the state that the run has come to, standing still; it
+ * changes nothing there. */
 static double loop(struct sph_system *s, sph_hook hook) {
   static double none[SPH_BLOCK];
   struct sph_pair_sums still = {0};
@@ -77,25 +80,30 @@ static double loop(struct sph_system *s, sph_hook hook) {
 int main(void) {
   struct sph_material material;
   struct error error;
-  if (sph_materials_load("porous-ice", &material, &error) != STATUS_OK) return 1;
+  if (sph_materials_load("porous-ice", &material, &error) != STATUS_OK)
+    return 1;
   const double particles = N * N * N + SMALL * SMALL * SMALL;
   double loops[2] = {HUGE_VAL, HUGE_VAL}, limit = HUGE_VAL;
   double best[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, bytes[3] = {0};
   for (int round = 0; round < ROUNDS; round++)
     for (int pores = 0; pores < 3; pores++) { /* without; with; alpha_0 = 1 */
       struct sph_material m = material;
-      if (pores == 2) m.porosity.distention = 1;
+      if (pores == 2)
+        m.porosity.distention = 1;
       struct sph_system *s = make(&m, pores > 0, true);
       double start = now();
       for (int k = 0; k < STEPS; k++)
-        if (!sph_system_step(s, HUGE_VAL)) return 1;
+        if (!sph_system_step(s, HUGE_VAL))
+          return 1;
       best[pores] = fmin(best[pores], (now() - start) / (STEPS * particles));
       if (pores < 2) {
         sph_hook hook = pores ? s->ranges->palpha : s->ranges->tillotson;
         for (size_t k = 0; pores && k < s->block_count; k++)
-          if (!s->solid[s->block[k].body].physics.porosity) s->block[k].high = s->block[k].low; /* the projectile has none */
+          if (!s->solid[s->block[k].body].physics.porosity)
+            s->block[k].high = s->block[k].low; /* the projectile has none */
         loops[pores] = fmin(loops[pores], loop(s, hook));
-        if (pores) limit = fmin(limit, loop(s, s->ranges->palpha_limit));
+        if (pores)
+          limit = fmin(limit, loop(s, s->ranges->palpha_limit));
       }
       bytes[pores] = (double)sph_system_bytes(s) / particles;
       sph_system_free(s);

@@ -1,9 +1,10 @@
 /* Speed of the SPH solid on one core: `name value unit` per line.
  *
- * First the pair loop alone, on a resting sphere of basalt with drawn velocities and stresses: time per particle, pairs and
- * flops per second against what the core's multiply-add units can do, the frozen plain C loop beside it (reference_sph.c), float
- * against double, threads. Then whole steps and whole runs (sph_whole_runs.h). An argument runs one of pairs, sizes, modules,
- * threads, run, 10000, 100000 alone; everything takes about a quarter of an hour on one core. */
+ * First the pair loop alone, on a resting sphere of basalt with drawn velocities and stresses: time per particle, pairs
+ * and flops per second against what the core's multiply-add units can do, the frozen plain C loop beside it
+ * (reference_sph.c), float against double, threads. Then whole steps and whole runs (sph_whole_runs.h). An argument
+ * runs one of pairs, sizes, modules, threads, run, 10000, 100000 alone; everything takes about a quarter of an hour on
+ * one core. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,10 +12,10 @@
 #include <time.h>
 
 #include "engine/cpu_class.h"
-#include "engine/sph/bodies.h"
-#include "engine/sph/order.h"
-#include "engine/sph/pairs.h"
-#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/body/hilbert.h"
+#include "engine/sph/pairs/pairs.h"
+#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/bench/sph_whole_runs.h"
 #include "tests/noise.h"
@@ -46,7 +47,8 @@ struct cloud {
 
 static double *column(size_t n) {
   double *a = calloc(n + 7, sizeof *a); /* neighbours.h reads that far */
-  if (!a) fail("memory", NULL);
+  if (!a)
+    fail("memory", NULL);
   return a;
 }
 
@@ -56,9 +58,11 @@ static void cloud_make(size_t wanted, struct cloud *c) {
   struct sph_range range;
   struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = 0.03}, .density = 2700, .h_over_spacing = NAN};
   body.lattice.particles = (double)wanted;
-  if (sph_bodies_make(&body, 1, 0, &p, &range, &error) != STATUS_OK) fail("set-up:", &error);
+  if (sph_bodies_make(&body, 1, 0, &p, &range, &error) != STATUS_OK)
+    fail("set-up:", &error);
   uint32_t *order = malloc(p->n * sizeof *order);
-  if (!order || sph_order_find(p->n, p->x, p->y, p->z, order, &error) != STATUS_OK) fail("order:", &error);
+  if (!order || sph_hilbert_find(p->n, p->x, p->y, p->z, order, &error) != STATUS_OK)
+    fail("order:", &error);
   uint64_t seed = 1;
   c->n = p->n;
   for (int k = 0; k < COLUMNS; k++)
@@ -85,7 +89,8 @@ static void cloud_make(size_t wanted, struct cloud *c) {
     c->slack[i] = 0.05 * p->h[from];
   }
   double **a = c->column, **s = c->sum;
-  c->fields = (struct sph_pair_fields){a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], a[10], {0}, a[16], {0}};
+  c->fields = (struct sph_pair_fields){a[0], a[1], a[2], a[3],  a[4], a[5],  a[6],
+                                       a[7], a[8], a[9], a[10], {0},  a[16], {0}};
   for (int k = 0; k < 5; k++)
     c->fields.stress[k] = a[11 + k];
   c->sums = (struct sph_pair_sums){.ax = s[0], .ay = s[1], .az = s[2], .heating = s[12], .signal = s[13]};
@@ -105,21 +110,27 @@ static void cloud_free(struct cloud *c) {
   free(c->slack);
 }
 
-static const struct sph_pair_options usual = {.viscosity_alpha = 1.5, .viscosity_beta = 3, .strength = true, .spacing_over_h = 0.9,
-                                              .periodic = {NAN, NAN, NAN}, .threads = 1};
+static const struct sph_pair_options usual = {.viscosity_alpha = 1.5,
+                                              .viscosity_beta = 3,
+                                              .strength = true,
+                                              .spacing_over_h = 0.9,
+                                              .periodic = {NAN, NAN, NAN},
+                                              .threads = 1};
 
 /* Best seconds of a pass over a few; *listing likewise of making the lists. */
-static double pass(struct cloud *c, const struct sph_pair_options *options, clockid_t clock, double *listing, double *neighbours,
-                   size_t *bytes) {
+static double pass(struct cloud *c, const struct sph_pair_options *options, clockid_t clock, double *listing,
+                   double *neighbours, size_t *bytes) {
   struct sph_pairs *pairs = NULL;
   struct error error = {0};
   double best = INFINITY;
   *listing = INFINITY;
   double *const *a = c->column;
-  if (sph_pairs_create(c->n, options, &pairs, &error) != STATUS_OK) fail("create:", &error);
+  if (sph_pairs_create(c->n, options, &pairs, &error) != STATUS_OK)
+    fail("create:", &error);
   for (int k = 0; k < 3; k++) {
     const double start = now();
-    if (sph_pairs_list(pairs, c->n, a[0], a[1], a[2], a[3], c->slack, &error) != STATUS_OK) fail("list:", &error);
+    if (sph_pairs_list(pairs, c->n, a[0], a[1], a[2], a[3], c->slack, &error) != STATUS_OK)
+      fail("list:", &error);
     *listing = fmin(*listing, now() - start);
   }
   const int repeats = (int)(4e5 / (double)c->n) + 1;
@@ -141,15 +152,18 @@ static double reference(const struct cloud *c) {
   double *const *a = c->column, *reach = column(c->n), best = INFINITY;
   for (size_t i = 0; i < c->n; i++)
     reach[i] = a[3][i] + c->slack[i];
-  if (reference_sph_lists_make(c->n, 4096, (const double *const *)a, reach, usual.periodic, 1, &lists, &error) != STATUS_OK)
+  if (reference_sph_lists_make(c->n, 4096, (const double *const *)a, reach, usual.periodic, 1, &lists, &error) !=
+      STATUS_OK)
     fail("reference lists:", &error);
   struct sph_pair_sums sums = c->sums;
-  sums.ax = c->other[0], sums.ay = c->other[1], sums.az = c->other[2], sums.heating = c->other[12], sums.signal = c->other[13];
+  sums.ax = c->other[0], sums.ay = c->other[1], sums.az = c->other[2], sums.heating = c->other[12],
+  sums.signal = c->other[13];
   for (int k = 0; k < 9; k++)
     sums.gradient[k] = c->other[3 + k];
   for (int k = 0; k < 3; k++) {
     const double start = now();
-    reference_sph_sum(c->n, lists.start, lists.count, lists.j, &usual, &c->fields, (const double *const *)c->acting, NULL, &sums);
+    reference_sph_sum(c->n, lists.start, lists.count, lists.j, &usual, &c->fields, (const double *const *)c->acting,
+                      NULL, &sums);
     best = fmin(best, now() - start);
   }
   reference_sph_lists_free(&lists);
@@ -174,21 +188,21 @@ static double difference(const struct cloud *c) {
   __attribute__((target("arch=x86-64-" level))) static double name(void) {                                             \
     typedef real vector __attribute__((vector_size(bytes)));                                                           \
     vector s[16];                                                                                                      \
-    const vector f = (vector){0} + (real)0.999999, g = (vector){0} + (real)1e-6;                                        \
-    const int rounds = 10000000;                                                                                        \
-    for (int k = 0; k < 16; k++)                                                                                        \
-      s[k] = f * (real)k;                                                                                               \
+    const vector f = (vector){0} + (real)0.999999, g = (vector){0} + (real)1e-6;                                       \
+    const int rounds = 10000000;                                                                                       \
+    for (int k = 0; k < 16; k++)                                                                                       \
+      s[k] = f * (real)k;                                                                                              \
     const double start = now();                                                                                        \
-    for (int r = 0; r < rounds; r++)                                                                                    \
-      for (int k = 0; k < 16; k++) {                                                                                    \
-        s[k] = s[k] * f + g;                                                                                            \
-        __asm__("" : "+v"(s[k]));                                                                                       \
-      }                                                                                                                 \
+    for (int r = 0; r < rounds; r++)                                                                                   \
+      for (int k = 0; k < 16; k++) {                                                                                   \
+        s[k] = s[k] * f + g;                                                                                           \
+        __asm__("" : "+v"(s[k]));                                                                                      \
+      }                                                                                                                \
     const double spent = now() - start;                                                                                \
-    volatile real keep = 0;                                                                                             \
-    for (int k = 0; k < 16; k++)                                                                                        \
-      keep += s[k][0];                                                                                                  \
-    return 2.0 * 16 * rounds * (double)(bytes / sizeof(real)) / spent;                                                  \
+    volatile real keep = 0;                                                                                            \
+    for (int k = 0; k < 16; k++)                                                                                       \
+      keep += s[k][0];                                                                                                 \
+    return 2.0 * 16 * rounds * (double)(bytes / sizeof(real)) / spent;                                                 \
   }
 PEAK(peak_v4_double, "v4", double, 64)
 PEAK(peak_v3_double, "v3", double, 32)
@@ -209,7 +223,8 @@ static void pairs(const char *name, size_t n) {
   struct sph_pair_options options = usual;
   cloud_make(n, &c);
   const double real = (double)c.n, plain = reference(&c);
-  const double spent = pass(&c, &options, CLOCK_PROCESS_CPUTIME_ID, &listing, &neighbours, &bytes), rate = real * neighbours / 2 / spent;
+  const double spent = pass(&c, &options, CLOCK_PROCESS_CPUTIME_ID, &listing, &neighbours, &bytes),
+               rate = real * neighbours / 2 / spent;
   printf("sph_pairs_ns_per_particle_%s %.1f ns\n", name, 1e9 * spent / real);
   printf("sph_pairs_neighbours_%s %.1f 1\n", name, neighbours);
   printf("sph_pairs_per_s_%s %.4g pairs/s\n", name, rate);
@@ -230,7 +245,8 @@ static void pairs(const char *name, size_t n) {
   options.precision = SPH_DOUBLE;
   const double wall = pass(&c, &options, CLOCK_MONOTONIC, &listing, &neighbours, &bytes);
   options.threads = 2;
-  printf("sph_pairs_threads_2_ratio_%s %.3g 1\n", name, wall / pass(&c, &options, CLOCK_MONOTONIC, &listing, &neighbours, &bytes));
+  printf("sph_pairs_threads_2_ratio_%s %.3g 1\n", name,
+         wall / pass(&c, &options, CLOCK_MONOTONIC, &listing, &neighbours, &bytes));
   cloud_free(&c);
 }
 
@@ -241,10 +257,15 @@ int main(int argc, char **argv) {
     pairs("10000", 10000);
     pairs("100000", 100000);
   }
-  if (!*only || !strcmp(only, "sizes")) sph_whole_runs_sizes();
-  if (!*only || !strcmp(only, "modules")) sph_whole_runs_modules();
-  if (!*only || !strcmp(only, "threads")) sph_whole_runs_threads();
-  if (!*only || !strcmp(only, "run") || !strcmp(only, "10000")) sph_whole_runs_figures("10000", "10000");
-  if (!*only || !strcmp(only, "run") || !strcmp(only, "100000")) sph_whole_runs_figures("100000", "100000");
+  if (!*only || !strcmp(only, "sizes"))
+    sph_whole_runs_sizes();
+  if (!*only || !strcmp(only, "modules"))
+    sph_whole_runs_modules();
+  if (!*only || !strcmp(only, "threads"))
+    sph_whole_runs_threads();
+  if (!*only || !strcmp(only, "run") || !strcmp(only, "10000"))
+    sph_whole_runs_figures("10000", "10000");
+  if (!*only || !strcmp(only, "run") || !strcmp(only, "100000"))
+    sph_whole_runs_figures("100000", "100000");
   return 0;
 }

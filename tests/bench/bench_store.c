@@ -2,7 +2,7 @@
  * value unit`; times are the best of several. Usage: bench_store [runs [folder]]. */
 #include <time.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "tests/store_fixture.h"
 
 enum { POINTS = 100, BINS = 30, REPEATS = 5, VARIANTS = 64 };
@@ -16,7 +16,8 @@ static double now(void) {
 }
 
 static void need(status result) {
-  if (result == STATUS_OK) return;
+  if (result == STATUS_OK)
+    return;
   fprintf(stderr, "%s\n", error.message);
   exit(result);
 }

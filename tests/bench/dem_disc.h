@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-#include "engine/dem/system.h"
+#include "engine/dem/step/system.h"
 
 static inline struct dem_parameters dem_disc_parameters(void) {
   return (struct dem_parameters){.density = 5000.0,
@@ -22,15 +22,19 @@ static inline struct dem_parameters dem_disc_parameters(void) {
 
 static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t seed, struct dem_tessellation **out,
                                          struct error *error) {
-  const struct dem_lattice lattice = {
-      .outline = DEM_OUTLINE_DISC, .spacing = spacing, .disorder = 1.0, .radius = radius, .seed = seed};
+  const struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
+                                      .spacing = spacing,
+                                      .disorder = 1.0,
+                                      .radius = radius,
+                                      .seed = seed};
   return dem_tessellation_make(&lattice, out, error) == STATUS_OK;
 }
 
 static inline uint32_t dem_disc_centre(const struct dem_tessellation *t) {
   uint32_t centre = 0;
   for (uint32_t i = 1; i < t->cell_count; ++i)
-    if (hypot(t->centroid[i].x, t->centroid[i].y) < hypot(t->centroid[centre].x, t->centroid[centre].y)) centre = i;
+    if (hypot(t->centroid[i].x, t->centroid[i].y) < hypot(t->centroid[centre].x, t->centroid[centre].y))
+      centre = i;
   return centre;
 }
 
@@ -58,7 +62,8 @@ static inline void dem_disc_charge(struct dem_system *system, const struct dem_t
   double unit = 0.0;
   for (int pass = 0; pass < 2; ++pass)
     for (size_t k = 0; k < t->pair_count; ++k) {
-      if (t->pair[k][0] != centre && t->pair[k][1] != centre) continue;
+      if (t->pair[k][0] != centre && t->pair[k][1] != centre)
+        continue;
       const uint32_t other = t->pair[k][0] == centre ? t->pair[k][1] : t->pair[k][0];
       const struct dem_point v = dem_disc_push(t, centre, k, density);
       if (pass == 0)

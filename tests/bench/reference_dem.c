@@ -51,7 +51,8 @@ struct reference_dem *reference_dem_create(const struct dem_tessellation *t, con
     for (uint32_t j = i + 1; j < r->bodies; ++j) {
       const int bonded = next < t->pair_count && t->pair[next][0] == i && t->pair[next][1] == j;
       const double dx = r->body[j].x - r->body[i].x, dy = r->body[j].y - r->body[i].y, l = hypot(dx, dy);
-      if (!bonded && l > 1.02 * (r->body[i].radius + r->body[j].radius)) continue;
+      if (!bonded && l > 1.02 * (r->body[i].radius + r->body[j].radius))
+        continue;
       struct bond *b = &r->bond[r->bonds++];
       const double di = sqrt(4.0 * t->area[i] / 3.14159265358979323846),
                    dj = sqrt(4.0 * t->area[j] / 3.14159265358979323846);
@@ -99,7 +100,8 @@ static int separates(const struct body *a, const struct body *b) {
     int inside = 0;
     for (int v = 0; v < b->count && !inside; ++v)
       inside = (q.x - p.x) * (b->world[v].y - p.y) - (q.y - p.y) * (b->world[v].x - p.x) > 0.0;
-    if (!inside) return 1;
+    if (!inside)
+      return 1;
   }
   return 0;
 }
@@ -107,7 +109,8 @@ static int separates(const struct body *a, const struct body *b) {
 static void contact(struct reference_dem *r, const struct bond *b) {
   struct body *i = &r->body[b->i], *j = &r->body[b->j];
   const double dx = j->x - i->x, dy = j->y - i->y, reach = i->radius + j->radius;
-  if (dx * dx + dy * dy > reach * reach || separates(i, j) || separates(j, i)) return;
+  if (dx * dx + dy * dy > reach * reach || separates(i, j) || separates(j, i))
+    return;
   /* Clip i by j's sides (Sutherland & Hodgman); edge[] says which side of j an edge of the result lies on, or -1. */
   struct dem_point poly[2 * MOST], out[2 * MOST];
   int edge[2 * MOST], out_edge[2 * MOST], n = i->count;
@@ -120,7 +123,8 @@ static void contact(struct reference_dem *r, const struct bond *b) {
       const struct dem_point a = poly[v], c = poly[(v + 1) % n];
       const double da = (q.x - p.x) * (a.y - p.y) - (q.y - p.y) * (a.x - p.x);
       const double dc = (q.x - p.x) * (c.y - p.y) - (q.y - p.y) * (c.x - p.x);
-      if (da >= 0.0) out[m] = a, out_edge[m++] = edge[v];
+      if (da >= 0.0)
+        out[m] = a, out_edge[m++] = edge[v];
       if ((da >= 0.0) != (dc >= 0.0)) {
         const double t = da / (da - dc);
         out[m] = (struct dem_point){a.x + t * (c.x - a.x), a.y + t * (c.y - a.y)};
@@ -136,7 +140,8 @@ static void contact(struct reference_dem *r, const struct bond *b) {
     const double ax = poly[v].x - i->x, ay = poly[v].y - i->y, bx = poly[(v + 1) % n].x - i->x,
                  by = poly[(v + 1) % n].y - i->y;
     twice += ax * by - ay * bx;
-    if (edge[v] < 0) cx += bx - ax, cy += by - ay, moment += 0.5 * (bx * bx + by * by - ax * ax - ay * ay);
+    if (edge[v] < 0)
+      cx += bx - ax, cy += by - ay, moment += 0.5 * (bx * bx + by * by - ax * ax - ay * ay);
   }
   const double f = b->kappa * 0.5 * twice, fx = -f * cy, fy = f * cx;
   i->fx += fx, i->fy += fy, i->torque += f * moment;
@@ -156,8 +161,10 @@ static void forces(struct reference_dem *r) {
   }
   for (size_t k = 0; k < r->bonds; ++k) {
     struct bond *b = &r->bond[k];
-    if (!r->body[b->i].present || !r->body[b->j].present) continue;
-    if (b->beam) beam(r, b);
+    if (!r->body[b->i].present || !r->body[b->j].present)
+      continue;
+    if (b->beam)
+      beam(r, b);
     contact(r, b);
   }
 }

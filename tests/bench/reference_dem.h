@@ -3,7 +3,7 @@
 #ifndef CLAST_TESTS_BENCH_REFERENCE_DEM_H
 #define CLAST_TESTS_BENCH_REFERENCE_DEM_H
 
-#include "engine/dem/system.h"
+#include "engine/dem/step/system.h"
 
 struct reference_dem;
 struct reference_dem *reference_dem_create(const struct dem_tessellation *tessellation,

@@ -6,9 +6,9 @@
 #include <time.h>
 
 #include "engine/scene.h"
-#include "engine/sph/run.h"
-#include "engine/sph/system_list.h"
-#include "engine/sph/system_step.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/step/system_list.h"
+#include "engine/sph/step/system_step.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");
@@ -32,8 +32,10 @@ static struct sph_run *prepare(const char *particles, const struct setting *set,
       scene_set_text(*scene, "fidelity.particles", particles, &error) != STATUS_OK)
     fail("scene:", &error);
   for (; set && set->path; set++)
-    if (scene_set_text(*scene, set->path, set->text, &error) != STATUS_OK) fail("scene:", &error);
-  if (scene_check(*scene, &error) != STATUS_OK || (*scene)->kind->prepare((*scene)->inputs, 1, &run, &error) != STATUS_OK)
+    if (scene_set_text(*scene, set->path, set->text, &error) != STATUS_OK)
+      fail("scene:", &error);
+  if (scene_check(*scene, &error) != STATUS_OK ||
+      (*scene)->kind->prepare((*scene)->inputs, 1, &run, &error) != STATUS_OK)
     fail("prepare:", &error);
   return run;
 }
@@ -42,8 +44,8 @@ static void leave(void *context, size_t first, size_t count, const struct sph_pa
   (void)context, (void)first, (void)count, (void)sums;
 }
 
-/* Seconds that a pass of the pair loop, a test of the lists and a listing take on the state as it stands. All three leave it as
- * it is. */
+/* Seconds that a pass of the pair loop, a test of the lists and a listing take on the state as it stands. All three
+ * leave it as it is. */
 struct phases {
   double pairs, stale, listing;
 };
@@ -56,7 +58,8 @@ static struct phases measure(struct sph_system *s) {
   volatile bool stale = sph_pairs_slack(s->pairs, 0, s->n, f.x, f.y, f.z, f.h) < 0;
   (void)stale;
   const double tested = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-  if (!sph_system_list_again(s)) fail(s->failure, NULL);
+  if (!sph_system_list_again(s))
+    fail(s->failure, NULL);
   return (struct phases){summed - start, tested - summed, clock_of(CLOCK_PROCESS_CPUTIME_ID) - tested};
 }
 
@@ -75,7 +78,8 @@ static struct figures whole(const char *name, const char *particles, const char 
   bool finished = false;
   while (!finished) {
     const double start = clock_of(CLOCK_PROCESS_CPUTIME_ID);
-    if (scene->kind->step(run, LOOK, &finished, &error) != STATUS_OK) fail("step:", &error);
+    if (scene->kind->step(run, LOOK, &finished, &error) != STATUS_OK)
+      fail("step:", &error);
     spent += clock_of(CLOCK_PROCESS_CPUTIME_ID) - start;
     const struct phases p = measure(run->system);
     sum.pairs += p.pairs, sum.stale += p.stale, sum.listing += p.listing, looks++;
@@ -84,10 +88,13 @@ static struct figures whole(const char *name, const char *particles, const char 
   struct sph_results results;
   struct fragment *fragments = NULL;
   size_t count;
-  if (scene->kind->finish(run, &outcome, &results, &fragments, &count, &error) != STATUS_OK) fail("finish:", &error);
-  if (outcome.state != OUTCOME_COMPLETED) fprintf(stderr, "bench_sph: %s %s did not complete: %s\n", name, precision, outcome.message);
+  if (scene->kind->finish(run, &outcome, &results, &fragments, &count, &error) != STATUS_OK)
+    fail("finish:", &error);
+  if (outcome.state != OUTCOME_COMPLETED)
+    fprintf(stderr, "bench_sph: %s %s did not complete: %s\n", name, precision, outcome.message);
   const double n = (double)run->system->n, steps = (double)outcome.steps;
-  const struct figures f = {n * steps / spent, results.largest.veneer_fraction, outcome.energy_error, results.undamaged_fraction};
+  const struct figures f = {n * steps / spent, results.largest.veneer_fraction, outcome.energy_error,
+                            results.undamaged_fraction};
   printf("sph_particle_steps_per_s_%s %.4g particle-steps/s\n", name, f.speed);
   printf("sph_particles_%s %.0f 1\n", name, n);
   printf("sph_steps_%s %.0f 1\n", name, steps);
@@ -125,14 +132,16 @@ static void to_listing(struct scene *scene, struct sph_run *run, uint64_t count)
   bool finished = false;
   const uint64_t last = run->system->now.listings + count;
   while (!finished && run->system->now.listings < last)
-    if (scene->kind->step(run, 1, &finished, &error) != STATUS_OK) fail("step:", &error);
-  if (finished) fail("a run ended early:", &error);
+    if (scene->kind->step(run, 1, &finished, &error) != STATUS_OK)
+      fail("step:", &error);
+  if (finished)
+    fail("a run ended early:", &error);
 }
 
 enum { LISTINGS = 8 }; /* for one of so many particles are sorted: system_list.c */
 
-/* Seconds per particle-step near the start, best of `tries`: over so many listings that a step has its share of them and of the sorting,
- * whatever the size; without the first one, with its allocations. */
+/* Seconds per particle-step near the start, best of `tries`: over so many listings that a step has its share of them
+ * and of the sorting, whatever the size; without the first one, with its allocations. */
 static double steps_of(const char *particles, const struct setting *set, clockid_t clock, int tries, double *bytes) {
   double best = INFINITY;
   for (int k = 0; k < tries; k++) {
@@ -144,7 +153,8 @@ static double steps_of(const char *particles, const struct setting *set, clockid
     const double start = clock_of(clock);
     to_listing(scene, run, LISTINGS);
     best = fmin(best, (clock_of(clock) - start) / (n * (double)(run->system->now.steps - first)));
-    if (bytes) *bytes = (double)sph_system_bytes(run->system) / n;
+    if (bytes)
+      *bytes = (double)sph_system_bytes(run->system) / n;
     scene->kind->free(run);
     scene_free(scene);
   }
@@ -174,13 +184,16 @@ void sph_whole_runs_modules(void) {
                               fluid[] = {{"target.strength", "false"}, {"projectile.strength", "false"}, {NULL, NULL}},
                               corrected[] = {{"method.gradient_correction", "true"}, {NULL, NULL}},
                               volumes[] = {{"method.volume_weights", "true"}, {NULL, NULL}},
-                              opposed[] = {{"target.fracture", "off"}, {"method.artificial_stress", "0.3"}, {NULL, NULL}},
+                              opposed[] = {{"target.fracture", "off"},
+                                           {"method.artificial_stress", "0.3"},
+                                           {NULL, NULL}},
                               shorter[] = {{"fidelity.precision", "float"}, {NULL, NULL}};
   static const struct {
     const char *name;
     const struct setting *with, *without;
-  } module[] = {{"strength", whole_body, fluid},          {"fracture", none, whole_body},     {"exact_flaws", none, compact},
-                {"gradient_correction", corrected, none}, {"volume_weights", volumes, none},  {"artificial_stress", opposed, whole_body},
+  } module[] = {{"strength", whole_body, fluid},   {"fracture", none, whole_body},
+                {"exact_flaws", none, compact},    {"gradient_correction", corrected, none},
+                {"volume_weights", volumes, none}, {"artificial_stress", opposed, whole_body},
                 {"float", shorter, none}};
   for (size_t k = 0; k < sizeof module / sizeof *module; k++) {
     double with_bytes, without_bytes, with = INFINITY, without = INFINITY;

@@ -1,4 +1,5 @@
-/* Whole steps of the SPH solid, for bench_sph: the scene `basalt-sphere` with all its physics. Each prints its figures. */
+/* Whole steps of the SPH solid, for bench_sph: the scene `basalt-sphere` with all its physics. Each prints its figures.
+ */
 #ifndef CLAST_TESTS_BENCH_SPH_WHOLE_RUNS_H
 #define CLAST_TESTS_BENCH_SPH_WHOLE_RUNS_H
 

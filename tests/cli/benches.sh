@@ -14,9 +14,9 @@ figures 11 "$build/tests/bench/bench_analysis_program"
 figures 3 "$build/tests/bench/bench_campaign_program"
 if [ "$sanitized" -eq 0 ]; then
   figures 18 "$build/tests/bench/bench_dem_program"
-  figures 3 "$build/tests/bench/bench_sph_pieces_program"
+  figures 3 "$build/tests/bench/bench_sph_fragments_program"
   figures 20 "$build/tests/bench/bench_sph_program" 10000
 else # minutes of what the tests have run already
-  ok "(bench_dem not run)"; ok "(nor bench_sph_pieces)"; ok "(nor bench_sph)"
+  ok "(bench_dem not run)"; ok "(nor bench_sph_fragments)"; ok "(nor bench_sph)"
 fi
 done_after 6

@@ -4,7 +4,7 @@
 
 expect 0 "$clast" scenes --json
 scenes=$(python -c "import json; print(*[s['name'] for s in json.load(open('out'))])")
-same "$(echo "$scenes" | wc -w)" "$(ls "$source"/engine/*/scenes/*.yaml | wc -l)" "built-in scenes"
+same "$(echo "$scenes" | wc -w)" "$(ls "$source"/engine/*/scene/builtin/*.yaml | wc -l)" "built-in scenes"
 for scene in $scenes; do
   expect 0 "$clast" scenes "$scene"
   cp out "./$scene.yaml"

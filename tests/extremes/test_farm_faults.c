@@ -56,8 +56,8 @@ static void signals_drain(void **state) {
   const int signals[] = {SIGINT, SIGTERM, SIGUSR1, SIGHUP};
   for (int i = 0; i < 4; i++) {
     struct outcome_of out;
-    const struct running it =
-        launch(program, (struct launch){ALONE, .in_process = i % 2, .count = 1000, .kind = TASK_SLEEP, .amount = 0.05});
+    const struct running it = launch(program, (struct launch){ALONE, .in_process = i % 2, .count = 1000,
+                                                              .kind = TASK_SLEEP, .amount = 0.05});
     assert_true(await_journal(&it, 4));
     killpg(it.pid, signals[i]); /* as a terminal does: to slots and children too, who must not mind */
     assert_true(ended(&it, 5, &out));
@@ -68,7 +68,8 @@ static void signals_drain(void **state) {
     assert_int_equal(out.twice + out.wrong, 0);
     /* SIGTERM and SIGHUP end isolated children, as they have no handler of their own: lost, not crashed. */
     assert_int_equal(out.done + out.lost, out.reported);
-    if (signals[i] == SIGUSR1 || signals[i] == SIGINT) assert_int_equal(out.lost, 0);
+    if (signals[i] == SIGUSR1 || signals[i] == SIGINT)
+      assert_int_equal(out.lost, 0);
   }
 }
 
@@ -102,8 +103,8 @@ static void crash_storm(void **state) {
   (void)state;
   for (int in_process = 0; in_process < 2; in_process++) {
     struct outcome_of out;
-    const struct running it =
-        launch(program, (struct launch){ALONE, .in_process = in_process, .count = 300, .kind = TASK_SEGV});
+    const struct running it = launch(program,
+                                     (struct launch){ALONE, .in_process = in_process, .count = 300, .kind = TASK_SEGV});
     assert_true(ended(&it, 30, &out));
     assert_int_equal(orphans(&it, 1), 0);
     assert_int_equal(out.exit_code, STATUS_OK);
@@ -132,9 +133,11 @@ static void stdout_stays_clean(void **state) {
 }
 
 int main(int argc, char **argv) {
-  if (argc > 2 && strcmp(argv[1], "work") == 0) return program_work(argv);
+  if (argc > 2 && strcmp(argv[1], "work") == 0)
+    return program_work(argv);
   char path[4096] = "";
-  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0) return 1;
+  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0)
+    return 1;
   program = path;
   const struct CMUnitTest tests[] = {cmocka_unit_test(kill_anything), cmocka_unit_test(signals_drain),
                                      cmocka_unit_test(long_runs_are_dropped), cmocka_unit_test(crash_storm),

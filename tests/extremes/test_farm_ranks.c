@@ -70,8 +70,9 @@ static void a_crash_costs_one_run(void **state) {
 static void idle_ranks_sleep(void **state) {
   (void)state;
   struct outcome_of out;
-  const struct running it = launch(
-      program, (struct launch){.ranks = 3, .slots = 1, .count = 1, .kind = TASK_SLEEP, .amount = 2, .special = -1});
+  const struct running
+      it = launch(program,
+                  (struct launch){.ranks = 3, .slots = 1, .count = 1, .kind = TASK_SLEEP, .amount = 2, .special = -1});
   assert_true(ended(&it, 20, &out));
   assert_int_equal(orphans(&it, 2), 0);
   assert_int_equal(out.exit_code, STATUS_OK);
@@ -88,9 +89,12 @@ static void a_killed_rank_ends_the_job(void **state) {
   for (int victim = 0; victim < 3; victim++) { /* rank 0, rank 1, mpirun */
     for (int round = 0; round < rounds; round++) {
       struct outcome_of out;
-      const struct running it = launch(
-          program,
-          (struct launch){.ranks = 3, .slots = 1, .count = 2000, .kind = TASK_SLEEP, .amount = 0.01, .special = -1});
+      const struct running it = launch(program, (struct launch){.ranks = 3,
+                                                                .slots = 1,
+                                                                .count = 2000,
+                                                                .kind = TASK_SLEEP,
+                                                                .amount = 0.01,
+                                                                .special = -1});
       assert_true(await_journal(&it, 10));
       task_sleep(1e-3 * (double)((round * 37 + victim * 11) % 40));
       const pid_t pid = victim == 2 ? it.pid : await_descendant(&it, it.pid, 0, victim);
@@ -108,9 +112,12 @@ static void signals_to_mpirun(void **state) {
   const int signals[] = {SIGUSR1, SIGTERM, SIGINT};
   for (int i = 0; i < 3; i++) {
     struct outcome_of out;
-    const struct running it = launch(
-        program,
-        (struct launch){.ranks = 3, .slots = 1, .count = 2000, .kind = TASK_SLEEP, .amount = 0.05, .special = -1});
+    const struct running it = launch(program, (struct launch){.ranks = 3,
+                                                              .slots = 1,
+                                                              .count = 2000,
+                                                              .kind = TASK_SLEEP,
+                                                              .amount = 0.05,
+                                                              .special = -1});
     assert_true(await_journal(&it, 10));
     kill(it.pid, signals[i]);
     assert_true(ended(&it, 10, &out));
@@ -133,10 +140,13 @@ static void signals_to_mpirun(void **state) {
 static void a_frozen_rank_is_left_behind(void **state) {
   (void)state;
   struct outcome_of out;
-  const struct running it = launch(
-      program,
-      (struct launch){
-          .ranks = 3, .slots = 1, .count = 60, .kind = TASK_SLEEP, .amount = 0.05, .lost_after_s = 3, .special = -1});
+  const struct running it = launch(program, (struct launch){.ranks = 3,
+                                                            .slots = 1,
+                                                            .count = 60,
+                                                            .kind = TASK_SLEEP,
+                                                            .amount = 0.05,
+                                                            .lost_after_s = 3,
+                                                            .special = -1});
   assert_true(await_journal(&it, 6));
   const pid_t victim = await_descendant(&it, it.pid, 0, 2);
   assert_true(victim > 0);
@@ -152,9 +162,11 @@ static void a_frozen_rank_is_left_behind(void **state) {
 }
 
 int main(int argc, char **argv) {
-  if (argc > 2 && strcmp(argv[1], "work") == 0) return program_work(argv);
+  if (argc > 2 && strcmp(argv[1], "work") == 0)
+    return program_work(argv);
   char path[4096] = "";
-  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0) return 1;
+  if (readlink("/proc/self/exe", path, sizeof path - 1) < 0)
+    return 1;
   program = path;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_answers_whatever_the_ranks),

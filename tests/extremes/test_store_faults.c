@@ -23,7 +23,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 enum { M = 2, K = 2, RUNS = 1500 };
@@ -43,7 +44,8 @@ static double now(void) {
 static status fill(const char *path, int64_t runs, struct error *e) {
   struct store *store = NULL;
   status result = store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, e);
-  if (result != STATUS_OK) return result;
+  if (result != STATUS_OK)
+    return result;
   result = fixture_populate(store, M, K, runs, true, e);
   status closing = store_close(store, result == STATUS_OK ? e : NULL);
   return result == STATUS_OK ? closing : result;
@@ -93,23 +95,27 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
       struct fixture_inputs inputs;
       static struct fixture_run f;
       int64_t point;
-      if (store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, NULL) != STATUS_OK) _exit(2);
+      if (store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, NULL) != STATUS_OK)
+        _exit(2);
       int64_t from = (int64_t)before / (M * K);
       *added = (int64_t)before;
       for (int64_t r = from; r < INT64_MAX; r++)
         for (int p = 0; p < M * K; p++) {
           struct scene scene = fixture_scene(&inputs, 6 + p / K, pow(10, 30 + p % K));
-          if (r == from && store_add_point(store, 0, &scene, 2, fixture_axes, &point, NULL) != STATUS_OK) _exit(3);
+          if (r == from && store_add_point(store, 0, &scene, 2, fixture_axes, &point, NULL) != STATUS_OK)
+            _exit(3);
           fixture_fill(&f, &scene, p + 1, 0, r, FIXTURE_FRAGMENTS);
           bool new = !store_has_run(store, f.run.identity);
-          if (store_add_run(store, &f.run, NULL) != STATUS_OK) _exit(4);
+          if (store_add_run(store, &f.run, NULL) != STATUS_OK)
+            _exit(4);
           *added += new;
         }
     }
     /* After so many more runs and a moment more; every fifth while the store is being made or opened. */
     int64_t enough = (int64_t)(before + 600 * fixture_random(11, (uint64_t)i));
     double start = now();
-    while (i % 5 && *(volatile int64_t *)added < enough && now() - start < 20) usleep(200);
+    while (i % 5 && *(volatile int64_t *)added < enough && now() - start < 20)
+      usleep(200);
     usleep((useconds_t)(8000 * fixture_random(12, (uint64_t)i)));
     kill(pid, SIGKILL);
     int ending;
@@ -123,7 +129,8 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
       continue;
     }
     double after = whole(path);
-    if (after < before) fail_msg("committed runs were lost: %g, then %g", before, after);
+    if (after < before)
+      fail_msg("committed runs were lost: %g, then %g", before, after);
     if ((double)*added - after > 500)
       fail_msg("more than a batch was lost: %lld added, %g there", (long long)*added, after);
     in_the_middle += after > before;
@@ -149,7 +156,8 @@ static void run_out_of_room(const char *path, void (*narrow)(void), void (*widen
     struct error said = {0};
     status result = fill(path, RUNS, &said);
     bool clear = strstr(said.message, "give the same command again") || strstr(said.message, "Free some space");
-    if (!clear) fprintf(stderr, "said (%d): %s\n", result, said.message);
+    if (!clear)
+      fprintf(stderr, "said (%d): %s\n", result, said.message);
     _exit(result == STATUS_IO && clear ? 0 : 1);
   }
   int ending;
@@ -209,14 +217,21 @@ static void without_permission(void **state) {
   if (pid == 0) {
     struct store *store = NULL;
     struct error said = {0};
-    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(9);
-    if (store_open_writer("test-store-closed/a.db", NULL, &store, NULL, 0, &said) != STATUS_IO) _exit(1);
-    if (!strstr(said.message, "permission")) _exit(2);
-    if (store_open_writer("test-store-closed/new.db", NULL, &store, NULL, 0, &said) != STATUS_IO) _exit(3);
-    if (store_open_reader("test-store-closed/a.db", &store, &said) != STATUS_OK) _exit(4); /* a finished store reads */
+    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
+      _exit(9);
+    if (store_open_writer("test-store-closed/a.db", NULL, &store, NULL, 0, &said) != STATUS_IO)
+      _exit(1);
+    if (!strstr(said.message, "permission"))
+      _exit(2);
+    if (store_open_writer("test-store-closed/new.db", NULL, &store, NULL, 0, &said) != STATUS_IO)
+      _exit(3);
+    if (store_open_reader("test-store-closed/a.db", &store, &said) != STATUS_OK)
+      _exit(4); /* a finished store reads */
     double runs = 0;
-    if (query_number(store, "SELECT count(*) FROM run", 0, NULL, &runs, &said) != STATUS_OK || runs != 12) _exit(5);
-    if (store_export(store, "test-store-closed/copy.db", &said) != STATUS_IO) _exit(6);
+    if (query_number(store, "SELECT count(*) FROM run", 0, NULL, &runs, &said) != STATUS_OK || runs != 12)
+      _exit(5);
+    if (store_export(store, "test-store-closed/copy.db", &said) != STATUS_IO)
+      _exit(6);
     store_close(store, NULL);
     _exit(0);
   }

@@ -57,7 +57,8 @@ static const struct field rows[] = {
 static const struct field_table table = FIELD_TABLE(rows, struct thing, "thing", "");
 
 static void must(bool truth) {
-  if (!truth) abort();
+  if (!truth)
+    abort();
 }
 
 static size_t walk(document_node *node, int depth) {
@@ -94,7 +95,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
   bool good = document_read(document_root(document), &table, (const char *const[]){"also", NULL}, &thing);
   code = document_finish(document, &report);
   must((code == STATUS_OK) == (report == NULL) && (good || code));
-  if (report) judge_report(report);
+  if (report)
+    judge_report(report);
   if (!code) {
     must(isfinite(thing.needed) && thing.length >= 0 && thing.length <= 10 && thing.law >= 0 && thing.law < 3);
     uint8_t buffer[1024];

@@ -9,7 +9,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 static void must(bool truth) {
-  if (!truth) abort();
+  if (!truth)
+    abort();
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
@@ -24,7 +25,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     error.message[0] = 0;
     status code = unit_read(text, expected[i], &si, &error);
     must(code == STATUS_OK || (code == STATUS_CONTENT && error.message[0] && si == -7));
-    if (code) continue;
+    if (code)
+      continue;
     must(isfinite(si));
     field_print_number(si, shown);
     must(unit_read(shown, expected[i], &back, &error) == STATUS_OK && back == si);

@@ -21,7 +21,8 @@ static void vary(const uint8_t *bytes, size_t size, int variations) {
                                        "*a",  "!!", "|",  ">", "#",        "---\n", "  ", "\t", "1e30", "km/s",
                                        "off", "~",  "? ", ",", "\xC2\xB5", "\xFF",  "(",  ")",  "^",    "/"};
   uint8_t *copy = malloc(2 * size + 64);
-  if (!copy) return;
+  if (!copy)
+    return;
   for (int v = 0; v < variations; v++) {
     memcpy(copy, bytes, size);
     size_t length = size;
@@ -32,7 +33,8 @@ static void vary(const uint8_t *bytes, size_t size, int variations) {
         copy[at] = (uint8_t)next();
       } else if (choice == 1 && at < length) {
         size_t cut = 1 + next() % 8;
-        if (cut > length - at) cut = length - at;
+        if (cut > length - at)
+          cut = length - at;
         memmove(copy + at, copy + at + cut, length - at - cut);
         length -= cut;
       } else if (length + 8 < 2 * size + 64) {
@@ -44,7 +46,8 @@ static void vary(const uint8_t *bytes, size_t size, int variations) {
       }
     }
     uint8_t *exact = malloc(length + 1); /* its own block: the address sanitizer sees one byte too far */
-    if (!exact) break;
+    if (!exact)
+      break;
     memcpy(exact, copy, length);
     LLVMFuzzerTestOneInput(exact, length);
     free(exact);
@@ -55,14 +58,17 @@ static void vary(const uint8_t *bytes, size_t size, int variations) {
 int main(int count, char **arguments) {
   int files = 0, variations = 0;
   for (int i = 1; i < count; i++) {
-    if (i == 1 && (variations = atoi(arguments[i])) > 0) continue;
+    if (i == 1 && (variations = atoi(arguments[i])) > 0)
+      continue;
     DIR *folder = opendir(arguments[i]);
     for (const struct dirent *entry; folder && (entry = readdir(folder));) {
       char path[4096];
-      if (entry->d_name[0] == '.') continue;
+      if (entry->d_name[0] == '.')
+        continue;
       snprintf(path, sizeof path, "%s/%s", arguments[i], entry->d_name);
       FILE *file = fopen(path, "rb");
-      if (!file) continue;
+      if (!file)
+        continue;
       enum { LARGEST = 1 << 20 };
       uint8_t *bytes = malloc(LARGEST);
       size_t size = bytes ? fread(bytes, 1, LARGEST, file) : 0;
@@ -77,7 +83,8 @@ int main(int count, char **arguments) {
       free(exact);
       free(bytes);
     }
-    if (folder) closedir(folder);
+    if (folder)
+      closedir(folder);
   }
   fprintf(stderr, "%d files\n", files);
   return files == 0;

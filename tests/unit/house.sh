@@ -57,13 +57,17 @@ for folder in "${order[@]}"; do
     [ "${#files[@]}" -gt 0 ] || continue                 # generated sources
     checked=$((checked + 1)) fits=no
     for file in "${files[@]}"; do
-      sub=$(basename "$(dirname "$file")")
-      case "$symbol" in
-        "$stem" | "$stem"_* | "${sub}_$stem" | "${sub}_$stem"_*) fits=yes ;;
-        "$sub"_*) if [ "$sub" = "$stem" ] || { [ "$sub" != "$folder" ] && [[ $symbol == "${sub}_${stem}"* ]]; }; then fits=yes; fi ;;
-      esac
+      case "$symbol" in "$stem" | "$stem"_*) fits=yes ;; esac
+      rooms=${file%/*}
+      while [ "$rooms" != "${rooms%/*}" ]; do # every folder below the top one, e.g. pairs and sph of engine/sph/pairs/chunks.c
+        room=${rooms##*/} rooms=${rooms%/*}
+        case "$symbol" in
+          "${room}_$stem" | "${room}_$stem"_*) fits=yes ;;
+          "$room"_*) if [ "$room" = "$stem" ] || [[ $symbol == "${room}_${stem}"* ]]; then fits=yes; fi ;;
+        esac
+      done
     done
-    [ $fits = yes ] || fail "$file exports $symbol: expected ${stem}_... or ${sub}_${stem}_..."
+    [ $fits = yes ] || fail "$file exports $symbol: expected ${stem}_... or FOLDER_${stem}_..."
   done < <(nm -A --defined-only --extern-only "$archive" 2>/dev/null |
     sed -nE 's/^[^:]*:([^:]+):[0-9a-f]* [TDRBGSC] ([A-Za-z_][A-Za-z0-9_]*)$/\1 \2/p' | grep -vE ' (__asan|__odr|_GLOBAL|__ubsan|__start|__stop)' || true)
 done

@@ -43,7 +43,7 @@ for kind in kinds:
         files = sorted(glob.glob(f"{source}/tests/unit/corpus/{kind}/{folder}/*.*"))
         if folder == "good":
             engine = kind.removeprefix("scene-")
-            shipped = f"{source}/campaign/examples/*.yaml" if kind == "campaign" else f"{source}/engine/{engine}/scenes/*.yaml"
+            shipped = f"{source}/campaign/examples/*.yaml" if kind == "campaign" else f"{source}/engine/{engine}/scene/builtin/*.yaml"
             files += sorted(glob.glob(shipped))
         if len(files) < 3:
             fail(f"only {len(files)} documents in {kind}/{folder}")

@@ -1,4 +1,5 @@
-/* Designs: known values, uniformity, strata of Latin hypercubes, Sobol numbers against GSL, laws inside their bounds. */
+/* Designs: known values, uniformity, strata of Latin hypercubes, Sobol numbers against GSL, laws inside their bounds.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,18 +15,28 @@
 
 #include "campaign/design/design.h"
 
-static const struct field real_row = {
-    .path = "x", .kind = FIELD_REAL, .unit = "1", .minimum = -HUGE_VAL, .maximum = HUGE_VAL};
-static const struct field integer_row = {
-    .path = "n", .kind = FIELD_INTEGER, .unit = "1", .minimum = -1e9, .maximum = 1e9};
+static const struct field real_row = {.path = "x",
+                                      .kind = FIELD_REAL,
+                                      .unit = "1",
+                                      .minimum = -HUGE_VAL,
+                                      .maximum = HUGE_VAL};
+static const struct field integer_row = {.path = "n",
+                                         .kind = FIELD_INTEGER,
+                                         .unit = "1",
+                                         .minimum = -1e9,
+                                         .maximum = 1e9};
 
 static struct field_value levels_a[] = {{.number = 6}, {.number = 9}, {.number = 12}};
 static struct field_value levels_b[] = {{.number = 1}, {.number = 2}};
 static struct field_value levels_c[] = {{.number = 10}, {.number = 20}, {.number = 30}};
 
 static struct design_axis levels(struct field_value *values, size_t n) {
-  return (struct design_axis){.row = &real_row, .kind = DESIGN_AXIS_LEVELS, .levels = values, .level_count = n,
-                              .lower = -HUGE_VAL, .upper = HUGE_VAL};
+  return (struct design_axis){.row = &real_row,
+                              .kind = DESIGN_AXIS_LEVELS,
+                              .levels = values,
+                              .level_count = n,
+                              .lower = -HUGE_VAL,
+                              .upper = HUGE_VAL};
 }
 static struct design_axis law(int kind, double a, double b, double lower, double upper) {
   return (struct design_axis){.row = &real_row, .kind = kind, .a = a, .b = b, .lower = lower, .upper = upper};
@@ -35,7 +46,8 @@ static void spaced_levels_hit_their_ends(void **state) {
   (void)state;
   assert_true(design_axis_spaced(1e30, 1e36, 4, true, 0) == 1e30);
   assert_true(design_axis_spaced(1e30, 1e36, 4, true, 3) == 1e36);
-  assert_true(fabs(design_axis_spaced(1e30, 1e36, 4, true, 1) / 1e32 - 1) < 1e-13); /* exp and log round: a few ulp x 70 */
+  assert_true(fabs(design_axis_spaced(1e30, 1e36, 4, true, 1) / 1e32 - 1) <
+              1e-13); /* exp and log round: a few ulp x 70 */
   assert_true(design_axis_spaced(0.1, 0.3, 3, false, 2) == 0.3);
   assert_true(fabs(design_axis_spaced(0.1, 0.3, 3, false, 1) - 0.2) < 1e-15);
 }
@@ -91,7 +103,8 @@ static void refusals_say_the_remedy(void **state) {
   assert_int_equal(design_create(DESIGN_SOBOL, &uniform, 1, 0, 0, &design, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "how many points"));
   assert_int_equal(design_create(DESIGN_RANDOM, NULL, 0, 5, 0, &design, &error), STATUS_CONTENT);
-  assert_int_equal(design_create(DESIGN_SOBOL, &uniform, 1, (UINT64_C(1) << 30) + 1, 0, &design, &error), STATUS_CONTENT);
+  assert_int_equal(design_create(DESIGN_SOBOL, &uniform, 1, (UINT64_C(1) << 30) + 1, 0, &design, &error),
+                   STATUS_CONTENT);
   /* GSL lets 41 dimensions through and answers zeros: the check is ours. */
   struct design_axis many[41];
   for (int i = 0; i < 41; i++)
@@ -290,11 +303,16 @@ static void a_million_points_are_a_counter(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(spaced_levels_hit_their_ends),   cmocka_unit_test(grid_walks_the_last_axis_fastest),
-      cmocka_unit_test(list_goes_in_step_and_links_by_level), cmocka_unit_test(refusals_say_the_remedy),
-      cmocka_unit_test(latin_orders_are_permutations_and_even), cmocka_unit_test(latin_projections_are_stratified),
-      cmocka_unit_test(sobol_is_gsl_with_origin_and_shift), cmocka_unit_test(quantiles_are_the_laws),
-      cmocka_unit_test(truncated_laws_stay_inside),     cmocka_unit_test(random_points_are_uniform),
+      cmocka_unit_test(spaced_levels_hit_their_ends),
+      cmocka_unit_test(grid_walks_the_last_axis_fastest),
+      cmocka_unit_test(list_goes_in_step_and_links_by_level),
+      cmocka_unit_test(refusals_say_the_remedy),
+      cmocka_unit_test(latin_orders_are_permutations_and_even),
+      cmocka_unit_test(latin_projections_are_stratified),
+      cmocka_unit_test(sobol_is_gsl_with_origin_and_shift),
+      cmocka_unit_test(quantiles_are_the_laws),
+      cmocka_unit_test(truncated_laws_stay_inside),
+      cmocka_unit_test(random_points_are_uniform),
       cmocka_unit_test(a_million_points_are_a_counter),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
-/* Campaign documents: what good ones mean, what bad ones are told. Every bad one with the line, the path and the remedy. */
+/* Campaign documents: what good ones mean, what bad ones are told. Every bad one with the line, the path and the
+ * remedy. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,8 +24,8 @@ static status parse(const char *text, struct campaign **campaign, struct error *
 static uint64_t points_of(const struct campaign *campaign) {
   struct design *design = NULL;
   struct error error = {0};
-  if (design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count, (uint64_t)campaign->design.points,
-                    (uint64_t)campaign->design.seed, &design, &error) != STATUS_OK)
+  if (design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) != STATUS_OK)
     fail_msg("%s", error.message);
   const uint64_t points = design_points(design);
   design_free(design);
@@ -81,17 +82,17 @@ static void defaults_and_units(void **state) {
 
 static void every_kind_of_axis(void **state) {
   (void)state;
-  struct campaign *campaign =
-      good(HEAD "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
-                "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
-                "  threshold.angle: {normal: {mean: 4 deg, sd: 1 deg}, truncated: [1 deg, 7 deg]}\n"
-                "  grain.young_modulus: {lognormal: {median: 1 GPa, sigma: 0.1}}\n"
-                "  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5, offset: 1 MPa}\n"
-                "  contact.friction: {uniform: [0, 0.8]}\n"
-                "  contact.tangential_damping: {log_uniform: [1e3 1/s, 1e5 1/s]}\n"
-                "  contact.law: [conservative, printed]\n"
-                "  grain.disorder: {from: 0, to: 1, n: 5}\n"
-                "  contact.bonded: {linked: contact.law, values: [true, false]}\n");
+  struct campaign *campaign = good(HEAD
+                                   "design: {kind: sobol, points: 16, seed: 3}\nvary:\n"
+                                   "  threshold.strain: {log: [1 %, 8 %], n: 4}\n"
+                                   "  threshold.angle: {normal: {mean: 4 deg, sd: 1 deg}, truncated: [1 deg, 7 deg]}\n"
+                                   "  grain.young_modulus: {lognormal: {median: 1 GPa, sigma: 0.1}}\n"
+                                   "  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5, offset: 1 MPa}\n"
+                                   "  contact.friction: {uniform: [0, 0.8]}\n"
+                                   "  contact.tangential_damping: {log_uniform: [1e3 1/s, 1e5 1/s]}\n"
+                                   "  contact.law: [conservative, printed]\n"
+                                   "  grain.disorder: {from: 0, to: 1, n: 5}\n"
+                                   "  contact.bonded: {linked: contact.law, values: [true, false]}\n");
   assert_int_equal(campaign->axis_count, 9);
   assert_int_equal(points_of(campaign), 16);
   assert_int_equal(campaign->axes[0].level_count, 4);
@@ -141,7 +142,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {normal: {mean: 3 %, sd: 1 %}}}\n",
       "cannot take|truncated: [a, b]");
   bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {normal: {mean: 3 %}}}\n", "'sd' is missing");
-  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {lognormal: {median: 3 %, sigma: 0}}}\n", "sigma|0");
+  bad(HEAD "design: {kind: sobol, points: 8}\nvary: {threshold.strain: {lognormal: {median: 3 %, sigma: 0}}}\n",
+      "sigma|0");
   bad(HEAD "design: {kind: sobol, points: 8}\nvary: {contact.law: {uniform: [1, 2]}}\n", "this input is no number");
   bad(HEAD "design: sobol\nvary: {threshold.strain: {uniform: [1 %, 2 %]}}\n", "say how many points");
   bad(HEAD "design: {kind: grid, points: 5}\nvary: {threshold.strain: [1 %]}\n", "t.yaml:3:|points");
@@ -151,7 +153,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "vary: {threshold.strain: [1 %]}\nset: {strain: 2 %}\n", "t.yaml:4:|varied in `vary`");
   bad(HEAD "vary: {beam.young_modulus: {linked: grain.young_modulus}}\n", "is not varied");
   bad(HEAD "vary: {beam.young_modulus: {linked: beam.young_modulus}}\n", "is not varied");
-  bad(HEAD "vary: {beam.young_modulus: {linked: grain.young_modulus}, grain.young_modulus: {linked: beam.young_modulus}}\n",
+  bad(HEAD
+      "vary: {beam.young_modulus: {linked: grain.young_modulus}, grain.young_modulus: {linked: beam.young_modulus}}\n",
       "linked itself");
   bad(HEAD "vary: {beam.young_modulus: {linked: strain, values: [1 GPa]}, strain: [1 %, 2 %]}\n", "as many as");
   bad(HEAD "set: {contact.friction: [1, 2]}\n", "several values belong in `vary`");
@@ -162,7 +165,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "seeds: {per_point: 3, until: {half_width: 0.1}}\n", "exclude each other");
   bad(HEAD "seeds: {max: 100}\n", "only `until` has a maximum");
   bad(HEAD "seeds: {until: {quantity: largest_fraction}}\n", "'half_width' is missing");
-  bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n", "20 replicates at most, but the first decision comes after 30");
+  bad(HEAD "seeds: {until: {half_width: 0.1}, max: 20}\n",
+      "20 replicates at most, but the first decision comes after 30");
   bad(HEAD "seeds: {until: {half_width: 0.1, quantity: largest_fractoin}}\n", "did you mean 'largest_fraction'?");
   bad(HEAD "quantity: message\n", "no number");
   bad(HEAD "keep: {fields: last 3}\n", "expected {fields: none | all | extremes | first N}, got 'last 3'");
@@ -186,9 +190,20 @@ static void odd_bytes_are_refused(void **state) {
   (void)state;
   struct campaign *campaign;
   struct error error;
-  const struct { const char *text; size_t size; } odd[] = {
-      {"", 0}, {"\0\0\0", 3}, {"name: \xff\xfe", 9}, {"[1, 2]", 6}, {"just text", 9}, {"name: t\n---\nname: u\n", 20},
-      {"{", 1}, {"name: 't", 8}, {"\x7f" "ELF\x02\x01\x01\0\0\0\0", 11}};
+  const struct {
+    const char *text;
+    size_t size;
+  } odd[] = {{"", 0},
+             {"\0\0\0", 3},
+             {"name: \xff\xfe", 9},
+             {"[1, 2]", 6},
+             {"just text", 9},
+             {"name: t\n---\nname: u\n", 20},
+             {"{", 1},
+             {"name: 't", 8},
+             {"\x7f"
+              "ELF\x02\x01\x01\0\0\0\0",
+              11}};
   for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
     assert_int_equal(campaign_parse("odd", odd[i].text, odd[i].size, NULL, &campaign, &error), STATUS_CONTENT);
     assert_true(strlen(error.message) > 10);
@@ -232,9 +247,12 @@ static void examples_are_ready_to_run(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults_and_units),        cmocka_unit_test(every_kind_of_axis),
-      cmocka_unit_test(independent_seeds_follow_the_point), cmocka_unit_test(bad_documents_are_told_what_to_do),
-      cmocka_unit_test(all_errors_come_at_once),   cmocka_unit_test(odd_bytes_are_refused),
+      cmocka_unit_test(defaults_and_units),
+      cmocka_unit_test(every_kind_of_axis),
+      cmocka_unit_test(independent_seeds_follow_the_point),
+      cmocka_unit_test(bad_documents_are_told_what_to_do),
+      cmocka_unit_test(all_errors_come_at_once),
+      cmocka_unit_test(odd_bytes_are_refused),
       cmocka_unit_test(examples_are_ready_to_run),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -207,7 +207,8 @@ static void failed_states_are_results(void **state) {
   (void)state;
   const char *path = in("states.db");
   struct driver_summary summary;
-  struct campaign *campaign = play_campaign(1, 1, 60); /* seeds 1..60: 49 not finite, 13 invalid, 9 19 29 39 59 at end time */
+  struct campaign *campaign = play_campaign(1, 1,
+                                            60); /* seeds 1..60: 49 not finite, 13 invalid, 9 19 29 39 59 at end time */
   struct play play = {.slots = 2};
   assert_int_equal(play_once(&play, campaign, path, &summary), STATUS_OK);
   assert_int_equal(summary.runs_done, 60);
@@ -260,7 +261,8 @@ static void fields_are_kept_as_asked(void **state) {
   struct store *store = NULL;
   struct error error = {0};
   assert_int_equal(store_open_reader(path, &store, &error), STATUS_OK);
-  if (store_check(store, print_line, NULL, &error) != STATUS_OK) /* every file it names is there, and the sums are right */
+  if (store_check(store, print_line, NULL, &error) !=
+      STATUS_OK) /* every file it names is there, and the sums are right */
     fail_msg("%s", error.message);
   store_close(store, NULL);
   free(play.says);

@@ -9,18 +9,27 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/progress.h"
+#include "campaign/terminal/progress.h"
 
 static struct progress_state of(int64_t done) {
-  return (struct progress_state){.done = done, .total = 1000, .running = 2, .rate = 20, .seconds_left = 90,
-                                 .quantity = "largest_fraction", .mean = 0.3125, .half_width = 0.008};
+  return (struct progress_state){.done = done,
+                                 .total = 1000,
+                                 .running = 2,
+                                 .rate = 20,
+                                 .seconds_left = 90,
+                                 .quantity = "largest_fraction",
+                                 .mean = 0.3125,
+                                 .half_width = 0.008};
 }
 
 static void durations(void **state) {
   (void)state;
   char text[32];
-  const struct { double s; const char *text; } cases[] = {{0.4, "0.4 s"}, {42.4, "42 s"}, {125, "2 min 05 s"},
-                                                          {12000, "3 h 20 min"}, {200000, "2 d 07 h"}, {NAN, "?"}};
+  const struct {
+    double s;
+    const char *text;
+  } cases[] = {{0.4, "0.4 s"},        {42.4, "42 s"},       {125, "2 min 05 s"},
+               {12000, "3 h 20 min"}, {200000, "2 d 07 h"}, {NAN, "?"}};
   for (size_t i = 0; i < 6; i++) {
     progress_duration(cases[i].s, text, sizeof text);
     assert_string_equal(text, cases[i].text);
@@ -101,7 +110,8 @@ static void a_bar_is_redrawn_ten_times_a_second_and_fits(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(durations), cmocka_unit_test(a_log_gets_a_line_per_twentieth_or_minute),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(durations),
+                                     cmocka_unit_test(a_log_gets_a_line_per_twentieth_or_minute),
                                      cmocka_unit_test(a_bar_is_redrawn_ten_times_a_second_and_fits)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -16,7 +16,8 @@
 #include "engine/random.h"
 
 static double normal(uint64_t seed, uint64_t item, uint64_t draw) {
-  double u = random_draw(seed, RANDOM_RESAMPLE, item, 2 * draw), v = random_draw(seed, RANDOM_RESAMPLE, item, 2 * draw + 1);
+  double u = random_draw(seed, RANDOM_RESAMPLE, item, 2 * draw),
+         v = random_draw(seed, RANDOM_RESAMPLE, item, 2 * draw + 1);
   return sqrt(-2 * log(1 - u)) * cos(2 * M_PI * v);
 }
 
@@ -44,10 +45,10 @@ static void judges_prefixes(void **state) {
   assert_int_equal(design_stopping_judge(&rule, values, &prefix), DESIGN_FIXED);
 }
 
-/* A farm of 32 slots whose runs take the longer the larger their outcome (correlation 0.8 of the logarithm), played many
- * times. The point's own rule decides when to stop; what is compared is which runs are averaged. Standard error of the mean of
- * PLAYS plays of >= 30 unit normals: 1/sqrt(30 PLAYS) = 0.0041; five of them are allowed. Stopping itself biases a mean of
- * symmetric values not at all. */
+/* A farm of 32 slots whose runs take the longer the larger their outcome (correlation 0.8 of the logarithm), played
+ * many times. The point's own rule decides when to stop; what is compared is which runs are averaged. Standard error of
+ * the mean of PLAYS plays of >= 30 unit normals: 1/sqrt(30 PLAYS) = 0.0041; five of them are allowed. Stopping itself
+ * biases a mean of symmetric values not at all. */
 static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
   (void)state;
   enum { PLAYS = 2000, SLOTS = 32, MOST = 200 };
@@ -61,7 +62,10 @@ static void prefixes_are_unbiased_where_first_finished_is_not(void **state) {
     struct point_replicate replicates[MOST] = {{0}};
     double known[MOST], end[SLOTS];
     struct point point = {.rule = {.minimum = 30, .batch = 10, .maximum = MOST, .half_width = 0.45, .level = 0.95},
-                          .prefix = 30, .capacity = MOST, .replicates = replicates, .values = known};
+                          .prefix = 30,
+                          .capacity = MOST,
+                          .replicates = replicates,
+                          .values = known};
     int64_t on[SLOTS], finished = 0;
     double first = 0;
     for (int r = 0; r < MOST; r++)
@@ -113,8 +117,11 @@ static void a_failed_attempt_is_wanted_again(void **state) {
   (void)state;
   struct point_replicate replicates[16] = {{0}};
   double values[16];
-  struct point point = {.rule = {.fixed = true, .minimum = 5, .maximum = 5}, .prefix = 5, .capacity = 16,
-                        .replicates = replicates, .values = values};
+  struct point point = {.rule = {.fixed = true, .minimum = 5, .maximum = 5},
+                        .prefix = 5,
+                        .capacity = 16,
+                        .replicates = replicates,
+                        .values = values};
   for (int64_t r = 0; r < 5; r++) {
     assert_int_equal(point_next(&point, false), r);
     replicates[r].state = POINT_OUT;
@@ -169,9 +176,9 @@ static void costs_are_learnt(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(judges_prefixes), cmocka_unit_test(prefixes_are_unbiased_where_first_finished_is_not),
-      cmocka_unit_test(a_failed_attempt_is_wanted_again), cmocka_unit_test(fields_of_the_extremes),
-      cmocka_unit_test(costs_are_learnt)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(judges_prefixes),
+                                     cmocka_unit_test(prefixes_are_unbiased_where_first_finished_is_not),
+                                     cmocka_unit_test(a_failed_attempt_is_wanted_again),
+                                     cmocka_unit_test(fields_of_the_extremes), cmocka_unit_test(costs_are_learnt)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,9 @@
 /* Engine dem as its callers see it: tables, built-in scenes, refusals, stop rules, chunks that do not matter. */
 #include "tests/run_case.h"
 
-#include "engine/dem/assemble.h"
-#include "engine/dem/run.h"
-#include "engine/dem/system_layout.h"
+#include "engine/dem/lattice/assemble.h"
+#include "engine/dem/run/run.h"
+#include "engine/dem/step/system_layout.h"
 
 static const char *const scenes[] = {"disc-explosion", "block-impact", "uniaxial", "compression", "disc-collision"};
 
@@ -94,12 +94,12 @@ static void explosion_starts_as_the_paper_says(void **state) {
         continue;
       moving++;
       speed += v;
-      assert_true(radius < 3.5 * inputs.grain.spacing); /* neighbours of the centre */
+      assert_true(radius < 3.5 * inputs.grain.spacing);                 /* neighbours of the centre */
       assert_true(g.x * g.vx + g.y * g.vy > -v * inputs.grain.spacing); /* outwards, but for a lopsided centre */
     }
     assert_in_range(moving, 3, 14);
     assert_true(speed / (double)moving > 100 && speed / (double)moving < 300); /* table 1: about 200 m/s */
-    assert_in_range(n, 1060, 1140);                                           /* table 1: about 1100 */
+    assert_in_range(n, 1060, 1140);                                            /* table 1: about 1100 */
     dem_run_free(run);
   }
 }
@@ -207,7 +207,8 @@ static void stop_rules(void **state) {
   assert_int_equal(ran.results.dem.broken, ran.results.dem.broken_stretch + ran.results.dem.broken_bend);
   if (ran.outcome.state == OUTCOME_COMPLETED) {
     assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_QUIET);
-    assert_true(fabs(ran.outcome.time - ran.results.dem.last_break - inputs.stop.quiet_time) < 1.5 * inputs.fidelity.time_step);
+    assert_true(fabs(ran.outcome.time - ran.results.dem.last_break - inputs.stop.quiet_time) <
+                1.5 * inputs.fidelity.time_step);
   } else
     assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_END_TIME);
   assert_true(ran.outcome.energy_error < 0.02); /* Verlet at 1 us with breaking; physics: 0.1 % unbroken */
@@ -246,7 +247,8 @@ static void stop_rules(void **state) {
   free(ran.fragments);
 }
 
-/* What the report makes of the ledger, from its definition: bounds alone do not see a figure that is ten times too small. */
+/* What the report makes of the ledger, from its definition: bounds alone do not see a figure that is ten times too
+ * small. */
 static void figures_by_hand(void **state) {
   (void)state;
   const struct dem_inputs cases[] = {small(), DEM_CASE("compression", "body.columns=8", "body.rows=12")};
@@ -258,20 +260,24 @@ static void figures_by_hand(void **state) {
     const struct dem_ledger first = dem_system_ledger(run->system);
     dem_run_advance(run, UINT64_MAX);
     const struct dem_ledger last = dem_system_ledger(run->system);
-    assert_int_equal(dem_report_finish(run, &ran.outcome, &ran.results.dem, &ran.fragments, &ran.count, NULL), STATUS_OK);
-    const double input = run->state.energy_input + fabs(last.external_work), drift = fabs(dem_run_closed(&last) - dem_run_closed(&first));
+    assert_int_equal(dem_report_finish(run, &ran.outcome, &ran.results.dem, &ran.fragments, &ran.count, NULL),
+                     STATUS_OK);
+    const double input = run->state.energy_input + fabs(last.external_work),
+                 drift = fabs(dem_run_closed(&last) - dem_run_closed(&first));
     print_message("energy_error %.3g of %.3g J/m\n", ran.outcome.energy_error, input);
     /* sums in the same order: the last digits of the whole */
     assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-14 && ran.outcome.energy_error > 1e-9);
     for (size_t k = 0; k < ran.count; k++)
-      translation += 0.5 * ran.fragments[k].mass * (pow(ran.fragments[k].velocity[0], 2) + pow(ran.fragments[k].velocity[1], 2));
+      translation += 0.5 * ran.fragments[k].mass *
+                     (pow(ran.fragments[k].velocity[0], 2) + pow(ran.fragments[k].velocity[1], 2));
     assert_true(translation > 0 && fabs(ran.outcome.kinetic_energy_share / (translation / input) - 1) < 1e-12);
     free(ran.fragments);
     dem_run_free(run);
   }
 }
 
-/* Whatever the number of grains is modulo the lanes: lists made at every step would be right, and eight times slower. */
+/* Whatever the number of grains is modulo the lanes: lists made at every step would be right, and eight times slower.
+ */
 static void neighbour_lists_last(void **state) {
   (void)state;
   struct dem_inputs inputs = small();
@@ -284,14 +290,15 @@ static void neighbour_lists_last(void **state) {
   }
 }
 
-/* Pairs with a very short common side once had a contact stiffness without limit: these two runs then ended with energy errors
- * of 67 and 5. A sound run drifts by less than 1e-3 at this time step; 1e-2 is far from both. */
+/* Pairs with a very short common side once had a contact stiffness without limit: these two runs then ended with energy
+ * errors of 67 and 5. A sound run drifts by less than 1e-3 at this time step; 1e-2 is far from both. */
 static void short_common_sides_do_not_blow_up(void **state) {
   (void)state;
   assert_true(dem_assemble_reference_side(0, 1, 1) == 0.54);
   assert_true(dem_assemble_reference_side(1e-9, 1, 1) == 0.27);
   assert_true(dem_assemble_reference_side(0.4, 1, 1) == 0.4);
-  struct dem_inputs disc = DEM_CASE("disc-explosion", "threshold.strain=6 %", "threshold.angle=4 deg", "stop.end_time=3 ms");
+  struct dem_inputs disc = DEM_CASE("disc-explosion", "threshold.strain=6 %", "threshold.angle=4 deg",
+                                    "stop.end_time=3 ms");
   struct dem_inputs block = DEM_CASE("block-impact", "stop.end_time=0.5 ms");
   const struct ran ran[] = {run_case_run(&dem_engine, &disc, 20), run_case_run(&dem_engine, &block, 20)};
   for (int k = 0; k < 2; k++) {
@@ -317,8 +324,8 @@ static void energy_bound_ends_a_run(void **state) {
   free(ran.fragments);
 }
 
-/* Grains that pass through others between two steps lose no energy, so that no ledger tells: two discs that meet at 1000
- * km/s and 1 us once came out whole, as a completed run. */
+/* Grains that pass through others between two steps lose no energy, so that no ledger tells: two discs that meet at
+ * 1000 km/s and 1 us once came out whole, as a completed run. */
 static void grains_too_fast_for_the_step_end_a_run(void **state) {
   (void)state;
   struct dem_inputs disc = small(), discs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=1e6 m/s");
@@ -340,13 +347,17 @@ static void grains_too_fast_for_the_step_end_a_run(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(tables_are_whole),           cmocka_unit_test(builtin_scenes_say_what_they_model),
-      cmocka_unit_test(explosion_starts_as_the_paper_says), cmocka_unit_test(impact_and_collision_start),
-      cmocka_unit_test(what_cannot_run_is_refused), cmocka_unit_test(chunks_do_not_matter),
-      cmocka_unit_test(stop_rules),                 cmocka_unit_test(neighbour_lists_last),
-      cmocka_unit_test(figures_by_hand),
-      cmocka_unit_test(short_common_sides_do_not_blow_up),
-      cmocka_unit_test(energy_bound_ends_a_run),    cmocka_unit_test(grains_too_fast_for_the_step_end_a_run)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(tables_are_whole),
+                                     cmocka_unit_test(builtin_scenes_say_what_they_model),
+                                     cmocka_unit_test(explosion_starts_as_the_paper_says),
+                                     cmocka_unit_test(impact_and_collision_start),
+                                     cmocka_unit_test(what_cannot_run_is_refused),
+                                     cmocka_unit_test(chunks_do_not_matter),
+                                     cmocka_unit_test(stop_rules),
+                                     cmocka_unit_test(neighbour_lists_last),
+                                     cmocka_unit_test(figures_by_hand),
+                                     cmocka_unit_test(short_common_sides_do_not_blow_up),
+                                     cmocka_unit_test(energy_bound_ends_a_run),
+                                     cmocka_unit_test(grains_too_fast_for_the_step_end_a_run)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include "engine/dem/run.h"
+#include "engine/dem/run/run.h"
 
 static char folder[] = "/tmp/clast_dem_files_XXXXXX";
 
@@ -67,8 +67,9 @@ static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void
 
 static void fields_describe_themselves(void **state) {
   (void)state;
-  struct dem_inputs cases[2] = {small(false), DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
-                                                       "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
+  struct dem_inputs cases[2] = {small(false),
+                                DEM_CASE("compression", "body.columns=8", "body.rows=10", "loading.rate=20 1/s",
+                                         "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
   for (int c = 0; c < 2; c++) {
     void *run;
     struct error error = {0};
@@ -76,9 +77,10 @@ static void fields_describe_themselves(void **state) {
     snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
     assert_int_equal(dem_engine.prepare(&cases[c], 5, &run, NULL), STATUS_OK);
     struct ran ran = run_case_end(&dem_engine, run, 1000);
-    if (dem_engine.write_fields(run, path, &error))
+    if (dem_engine.write_snapshot(run, path, &error))
       fail_msg("%s", error.message);
-    size_t n = ((struct dem_run *)run)->tessellation->cell_count, beams = ((struct dem_run *)run)->tessellation->pair_count;
+    size_t n = ((struct dem_run *)run)->tessellation->cell_count,
+           beams = ((struct dem_run *)run)->tessellation->pair_count;
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
     assert_true(file >= 0);
     assert_int_equal(rows(file, "grains/position"), n);
@@ -112,7 +114,8 @@ static void fields_describe_themselves(void **state) {
         int64_t q = p + 1 < offset[k + 1] ? p + 1 : offset[k];
         area += 0.5 * (point[3 * p] * point[3 * q + 1] - point[3 * q] * point[3 * p + 1]);
       }
-      assert_true(fabs(area * 5000 / mass[k] - 1) < 1e-9); /* cross products of coordinates up to metres: 1e-16 / 1e-4 */
+      assert_true(fabs(area * 5000 / mass[k] - 1) <
+                  1e-9); /* cross products of coordinates up to metres: 1e-16 / 1e-4 */
     }
     free(point);
     free(mass);

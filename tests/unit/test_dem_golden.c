@@ -2,7 +2,7 @@
 #include "tests/golden.h"
 
 enum { RESULTS_VERSION = 3 };
-#define GOLDEN_DISC "0e38e047ed1ddd66cbca46b75860a7be"
+#define GOLDEN_DISC  "0e38e047ed1ddd66cbca46b75860a7be"
 #define GOLDEN_BLOCK "c228d1616498c15948619c2d85e21372"
 
 static int changed(const char *name, const struct dem_inputs *inputs, const char *pinned) {
@@ -14,7 +14,8 @@ static int changed(const char *name, const struct dem_inputs *inputs, const char
 static void bits_change_only_with_the_version(void **state) {
   (void)state;
   golden_version(&dem_engine, RESULTS_VERSION);
-  struct dem_inputs disc = DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms");
+  struct dem_inputs disc = DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m",
+                                    "stop.end_time=1 ms");
   struct dem_inputs block = DEM_CASE("block-impact", "body.columns=12", "body.rows=8", "stop.end_time=0.5 ms",
                                      "threshold.modulus=8", "contact.friction=0.3", "contact.tangential_damping=1e4",
                                      "fidelity.integrator=gear");

@@ -94,7 +94,8 @@ static char *report_of(const char *text, size_t size, struct thing *thing) {
   const char *report;
   code = document_finish(document, &report);
   assert_int_equal(code, report ? STATUS_CONTENT : STATUS_OK);
-  if (!report) assert_true(good);
+  if (!report)
+    assert_true(good);
   char *copy = report ? strdup(report) : NULL;
   document_free(document);
   return copy;
@@ -122,7 +123,8 @@ static void good_documents_are_read(void **state) {
       "# comment\nshape: block\nblock: {height: 12 mm}\nbody:\n  length: \"30 cm\"\n  limit: off\n  count: 1e1\n"
       "memory: 2 KiB\nbroken: False\ncontact: {law: off}\nname: 'o''k'\nnote: [any, {thing: 1}]\n",
       &thing);
-  if (report) print_error("%s\n", report);
+  if (report)
+    print_error("%s\n", report);
   assert_null(report);
   assert_true(thing.shape == 1 && thing.needed == 0.012 && thing.length == 0.3 && field_is_off(thing.limit));
   assert_true(thing.count == 10 && thing.memory == 2048 && !thing.broken && thing.law == 2);
@@ -130,14 +132,16 @@ static void good_documents_are_read(void **state) {
   report = report_text(
       "%YAML 1.2\n--- # start\n{\"body\": {\"length\": 1.5, \"limit\": -1e30}, name: 007, broken: true}\n...\n",
       &thing);
-  if (report) print_error("%s\n", report);
+  if (report)
+    print_error("%s\n", report);
   assert_null(report);
   assert_true(thing.length == 1.5 && thing.limit == -1e30);
   assert_string_equal(thing.name, "007"); /* as written */
   report = report_text("\xEF\xBB\xBF"
                        "contact: &c {speed: 3 km/h}\r\nbody: {length: &l 0.1, limit: *l}\r\n",
                        &thing);
-  if (report) print_error("%s\n", report);
+  if (report)
+    print_error("%s\n", report);
   assert_null(report);
   assert_true(thing.limit == 0.1);
 }
@@ -426,8 +430,10 @@ static void utf8_is_judged_strictly(void **state) {
     struct thing thing;
     snprintf(text, sizeof text, "name: a%sb\n", cases[i].bytes);
     char *report = report_text(text, &thing);
-    if ((report == NULL) != cases[i].good) fail_msg("case %zu: %s", i, report ? report : "accepted");
-    if (report) assert_non_null(strstr(report, "a.yaml:1:8: error: "));
+    if ((report == NULL) != cases[i].good)
+      fail_msg("case %zu: %s", i, report ? report : "accepted");
+    if (report)
+      assert_non_null(strstr(report, "a.yaml:1:8: error: "));
     free(report);
   }
 }

@@ -8,7 +8,7 @@
 #include <math.h>
 
 #include "analysis/analysis.h"
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 
 static void rows_of_a_run(void **state) {
   (void)state;
@@ -30,7 +30,8 @@ static void rows_of_a_run(void **state) {
   int headlines = 0;
   for (int i = 0; i < ESTIMATES_COUNT; i++) {
     headlines += rows[i].headline;
-    if (rows[i].headline) headline = &rows[i];
+    if (rows[i].headline)
+      headline = &rows[i];
     assert_true(isfinite(rows[i].fit.beta) && rows[i].fit.standard_error > 0);
     assert_true(rows[i].fit.lower >= 2 * estimates_window_elements((enum estimates_window)rows[i].window));
     assert_true(rows[i].fit.upper <= fragments[0].mass);
@@ -40,26 +41,31 @@ static void rows_of_a_run(void **state) {
   assert_int_equal(headline->fit.method, EXPONENT_MASSES);
   assert_true(headline->fit.lower == 9 && headline->fit.upper == 600);
   assert_int_equal(headline->fit.n, 59); /* 300/2 .. 300/60 = 5 grains; not the 300 of M_1 */
-  assert_int_equal(rows[6].fit.n, 59);       /* masses from 2 */
-  assert_int_equal(rows[8].fit.n, 29);       /* masses from 10: to 300/30; not 300/31 = 9 */
+  assert_int_equal(rows[6].fit.n, 59);   /* masses from 2 */
+  assert_int_equal(rows[8].fit.n, 29);   /* masses from 10: to 300/30; not 300/31 = 9 */
 }
 
 static void nothing_to_fit(void **state) {
   (void)state;
   struct estimate rows[ESTIMATES_COUNT];
-  struct fragment whole = {.mass = 5, .count = 1000}, dust[3] = {{.mass = 1, .count = 1}, {.mass = 1, .count = 1}, {.mass = 1, .count = 1}};
+  struct fragment whole = {.mass = 5, .count = 1000},
+                  dust[3] = {{.mass = 1, .count = 1}, {.mass = 1, .count = 1}, {.mass = 1, .count = 1}};
   assert_int_equal(estimates_make(1, &whole, rows, NULL), STATUS_OK);
-  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+  for (int i = 0; i < ESTIMATES_COUNT; i++)
+    assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
   assert_int_equal(estimates_make(3, dust, rows, NULL), STATUS_OK);
-  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+  for (int i = 0; i < ESTIMATES_COUNT; i++)
+    assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
   assert_int_equal(estimates_make(0, NULL, rows, NULL), STATUS_OK);
-  for (int i = 0; i < ESTIMATES_COUNT; i++) assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
+  for (int i = 0; i < ESTIMATES_COUNT; i++)
+    assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
 }
 
 static void equal_masses_have_no_exponent(void **state) {
   (void)state;
   double masses[50];
-  for (int i = 0; i < 50; i++) masses[i] = 3;
+  for (int i = 0; i < 50; i++)
+    masses[i] = 3;
   const struct exponent_window windows[] = {{3, HUGE_VAL}, {1, HUGE_VAL}, {3, 4}, {1, 3.0000001}};
   for (int w = 0; w < 4; w++) {
     for (int method = 0; method < EXPONENT_METHODS; method++) {
@@ -81,7 +87,8 @@ static void bad_windows_are_refused(void **state) {
   assert_int_equal(exponent_fit((enum exponent_method)17, 5, masses, (struct exponent_window){1, 2}, &fit, &error),
                    STATUS_USAGE);
   struct spectrum_bin_row bin = {0, 5, 5};
-  assert_int_equal(exponent_fit_bins(EXPONENT_KS, 1, &bin, (struct exponent_window){1, 20}, &fit, &error), STATUS_USAGE);
+  assert_int_equal(exponent_fit_bins(EXPONENT_KS, 1, &bin, (struct exponent_window){1, 20}, &fit, &error),
+                   STATUS_USAGE);
 }
 
 int main(void) {

@@ -141,8 +141,9 @@ static void queues_keep_order(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(any_cut), cmocka_unit_test(any_flipped_bit), cmocka_unit_test(foreign_and_oversized),
-      cmocka_unit_test(handles_are_never_used_twice), cmocka_unit_test(queues_keep_order)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(any_cut), cmocka_unit_test(any_flipped_bit),
+                                     cmocka_unit_test(foreign_and_oversized),
+                                     cmocka_unit_test(handles_are_never_used_twice),
+                                     cmocka_unit_test(queues_keep_order)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,7 +25,8 @@ const char *__asan_default_options(void) {
 static struct farm *start(struct farm_options options) {
   struct farm *farm = NULL;
   struct error error = {0};
-  if (farm_start(&options, task_work, &farm, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (farm_start(&options, task_work, &farm, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   return farm;
 }
 
@@ -87,8 +88,10 @@ static void every_ending(void **state) {
     list.tasks[23] = (struct task){.id = 23, .kind = TASK_ALLOC, .amount = 3e8};
     list.tasks[27] = (struct task){.id = 27, .kind = TASK_EXIT, .number = 0};
     list.tasks[31].kind = TASK_WILD;
-    const struct farm_options options = {
-        .slots = 2, .in_process = mode, .time_limit_s = 0.4, .memory_limit = (size_t)1 << 27};
+    const struct farm_options options = {.slots = 2,
+                                         .in_process = mode,
+                                         .time_limit_s = 0.4,
+                                         .memory_limit = (size_t)1 << 27};
     assert_int_equal(run_list(options, &list, &error), STATUS_OK);
     assert_each_once(&list);
     assert_int_equal(list.endings[3], FARM_CRASHED);
@@ -107,7 +110,8 @@ static void every_ending(void **state) {
     assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
     assert_int_equal(list.endings[31], FARM_CRASHED);
     for (size_t i = 0; i < list.count; i++)
-      if (list.tasks[i].kind == TASK_ECHO) assert_int_equal(list.endings[i], FARM_DONE);
+      if (list.tasks[i].kind == TASK_ECHO)
+        assert_int_equal(list.endings[i], FARM_DONE);
     task_list_free(&list);
   }
 }
@@ -255,7 +259,8 @@ static int open_files(void) {
   DIR *directory = opendir("/proc/self/fd");
   while (directory && readdir(directory))
     count++;
-  if (directory) closedir(directory);
+  if (directory)
+    closedir(directory);
   return count;
 }
 

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/edit_distance.h"
 #include "schemas/field.h"
-#include "schemas/near.h"
 
 struct thing {
   double length, limit, angle;
@@ -140,17 +140,17 @@ static void finds_by_suffix(void **state) {
 
 static void distances_count_slips(void **state) {
   (void)state;
-  assert_int_equal(near_distance("kitten", 6, "sitting"), 3);
-  assert_int_equal(near_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
-  assert_int_equal(near_distance("", 0, "abc"), 3);
-  assert_int_equal(near_distance("abc", 3, "abc"), 0);
-  assert_int_equal(near_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
-  assert_int_equal(near_limit(1), 0);
-  assert_int_equal(near_limit(12), 4);
+  assert_int_equal(edit_distance("kitten", 6, "sitting"), 3);
+  assert_int_equal(edit_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
+  assert_int_equal(edit_distance("", 0, "abc"), 3);
+  assert_int_equal(edit_distance("abc", 3, "abc"), 0);
+  assert_int_equal(edit_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
+  assert_int_equal(edit_distance_limit(1), 0);
+  assert_int_equal(edit_distance_limit(12), 4);
   char lengthy[400];
   memset(lengthy, 'a', sizeof lengthy);
   lengthy[399] = 0;
-  assert_true(near_distance(lengthy, 399, "a") == SIZE_MAX);
+  assert_true(edit_distance(lengthy, 399, "a") == SIZE_MAX);
 }
 
 static void conditions_chain(void **state) {
@@ -221,7 +221,8 @@ static void parses_or_says_why(void **state) {
       assert_int_equal(code, STATUS_CONTENT);
       assert_string_equal(error.message, cases[i].message);
     } else {
-      if (code) fail_msg("%s: %s", cases[i].text, error.message);
+      if (code)
+        fail_msg("%s: %s", cases[i].text, error.message);
       field_print(row(cases[i].path), &value, shown, sizeof shown);
       assert_string_equal(shown, cases[i].shown);
       struct field_value again; /* what is printed reads back the same */
@@ -343,7 +344,8 @@ static void random_thing(uint64_t *word, struct thing *thing) {
     *word ^= *word << 17;
     struct field_value value = {.kind = rows[i].kind, .number = (double)(*word % 2)};
     memcpy(&value.integer, word, 8);
-    if (rows[i].kind == FIELD_REAL) memcpy(&value.number, word, 8);
+    if (rows[i].kind == FIELD_REAL)
+      memcpy(&value.number, word, 8);
     size_t length = rows[i].kind == FIELD_TEXT ? *word % FIELD_TEXT_SIZE : 0;
     for (size_t k = 0; k < length; k++)
       value.text[k] = (char)(1 + (*word >> k % 56) % 255);
@@ -405,10 +407,14 @@ static void bytes_are_pinned_and_guarded(void **state) {
   /* Another name, kind, order or choice: refused. */
   for (int change = 0; change < 4; change++) {
     memcpy(changed, few, sizeof few);
-    if (change == 0) changed[0].path = "y";
-    if (change == 1) changed[0].kind = FIELD_INTEGER;
-    if (change == 2) changed[1] = few[2], changed[2] = few[1];
-    if (change == 3) changed[1].choices = modes;
+    if (change == 0)
+      changed[0].path = "y";
+    if (change == 1)
+      changed[0].kind = FIELD_INTEGER;
+    if (change == 2)
+      changed[1] = few[2], changed[2] = few[1];
+    if (change == 3)
+      changed[1].choices = modes;
     struct field_table other = small;
     other.rows = changed;
     assert_int_equal(field_decode(&other, bytes, size, &back), 0);
@@ -425,11 +431,11 @@ static void bytes_are_pinned_and_guarded(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults_fill_everything),  cmocka_unit_test(finds_by_suffix),
-      cmocka_unit_test(distances_count_slips), cmocka_unit_test(conditions_chain),
-      cmocka_unit_test(parses_or_says_why),        cmocka_unit_test(sets_what_suits),
-      cmocka_unit_test(json_and_identity),         cmocka_unit_test(explains),
-      cmocka_unit_test(bytes_round_trip),          cmocka_unit_test(bytes_are_pinned_and_guarded),
+      cmocka_unit_test(defaults_fill_everything), cmocka_unit_test(finds_by_suffix),
+      cmocka_unit_test(distances_count_slips),    cmocka_unit_test(conditions_chain),
+      cmocka_unit_test(parses_or_says_why),       cmocka_unit_test(sets_what_suits),
+      cmocka_unit_test(json_and_identity),        cmocka_unit_test(explains),
+      cmocka_unit_test(bytes_round_trip),         cmocka_unit_test(bytes_are_pinned_and_guarded),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -75,13 +75,13 @@ static void near(double a, double b) {
 
 static void dumbbell(void **state) {
   (void)state;
-  /* masses 1 and 3 turning as one body at 2 rad/s about their centre of mass, which moves at (5, -1); a third grain apart.
-   * Reduced mass 0.75 at distance sqrt(20): I = 15 + own moments. */
-  const struct fragment_member members[3] = {
-      /* v = (5, -1) + 2 x (-y, x) at (-3, 1.5) and (1, -0.5): distances sqrt(11.25), sqrt(1.25) */
-      {.mass = 1, .position = {-3, 1.5, 0}, .velocity = {5 - 3, -1 - 6, 0}, .spin = 2, .moment_of_inertia = 0.25},
-      {.mass = 3, .position = {1, -0.5, 0}, .velocity = {5 + 1, -1 + 2, 0}, .spin = 2, .moment_of_inertia = 0.5},
-      {.mass = 0.5, .position = {9, 9, 0}, .velocity = {1, 0, 0}, .spin = -7, .moment_of_inertia = 0.125}};
+  /* masses 1 and 3 turning as one body at 2 rad/s about their centre of mass, which moves at (5, -1); a third grain
+   * apart. Reduced mass 0.75 at distance sqrt(20): I = 15 + own moments. */
+  const struct fragment_member members[3] =
+      {/* v = (5, -1) + 2 x (-y, x) at (-3, 1.5) and (1, -0.5): distances sqrt(11.25), sqrt(1.25) */
+       {.mass = 1, .position = {-3, 1.5, 0}, .velocity = {5 - 3, -1 - 6, 0}, .spin = 2, .moment_of_inertia = 0.25},
+       {.mass = 3, .position = {1, -0.5, 0}, .velocity = {5 + 1, -1 + 2, 0}, .spin = 2, .moment_of_inertia = 0.5},
+       {.mass = 0.5, .position = {9, 9, 0}, .velocity = {1, 0, 0}, .spin = -7, .moment_of_inertia = 0.125}};
   const uint32_t links[1][2] = {{1, 0}};
   struct fragment *f;
   size_t count;

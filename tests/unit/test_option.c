@@ -3,9 +3,9 @@
 #include <stdarg.h>
 #include <stddef.h>
 
-#include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
+#include <cmocka.h>
 
 #include "campaign/commands/commands.h"
 
@@ -23,8 +23,16 @@ static const struct option_row rows[] = {
     {"set", 0, OPTION_LIST, "PATH=VALUE", offsetof(struct options, set), 0, 0, NULL, "Override."},
 };
 static const struct command command = {
-    .name = "test", .group = "", .arguments = "A [B]", .summary = "", .doc = "Does a test.", .examples = "clast test a",
-    .minimum_arguments = 1, .maximum_arguments = 2, .options = rows, .option_count = 4,
+    .name = "test",
+    .group = "",
+    .arguments = "A [B]",
+    .summary = "",
+    .doc = "Does a test.",
+    .examples = "clast test a",
+    .minimum_arguments = 1,
+    .maximum_arguments = 2,
+    .options = rows,
+    .option_count = 4,
     .options_size = sizeof(struct options),
 };
 
@@ -143,7 +151,7 @@ static void test_help_is_whole(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_values),   cmocka_unit_test(test_refusals),      cmocka_unit_test(test_too_many),
+      cmocka_unit_test(test_values),       cmocka_unit_test(test_refusals),      cmocka_unit_test(test_too_many),
       cmocka_unit_test(test_nearest_name), cmocka_unit_test(test_help_is_whole),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 #include "analysis/analysis.h"
-#include "analysis/picture.h"
+#include "analysis/pictures/picture.h"
 #include "engine/random.h"
 #include "tests/sweep.h"
 
@@ -35,7 +35,9 @@ struct example {
   double vertex[4 * MOST][2];
 };
 
-static double jitter(int i, int j, int axis) { return 0.35 * (random_draw(8, (uint64_t)axis, (uint64_t)i, (uint64_t)j) - 0.5); }
+static double jitter(int i, int j, int axis) {
+  return 0.35 * (random_draw(8, (uint64_t)axis, (uint64_t)i, (uint64_t)j) - 0.5);
+}
 
 static void make_example(struct example *e, double spread) {
   enum { CENTRES = 40 };
@@ -50,10 +52,12 @@ static void make_example(struct example *e, double spread) {
   for (int j = 0; j < SIDE; j++) {
     for (int i = 0; i < SIDE; i++) {
       double x = (i + 0.5) / SIDE * 2 - 1, y = (j + 0.5) / SIDE * 2 - 1;
-      if (hypot(x, y) > 1) continue;
+      if (hypot(x, y) > 1)
+        continue;
       uint32_t label = 0;
       for (uint32_t c = 1; c < CENTRES; c++)
-        if (hypot(x - cx[c], y - cy[c]) < hypot(x - cx[label], y - cy[label])) label = c;
+        if (hypot(x - cx[c], y - cy[c]) < hypot(x - cx[label], y - cy[label]))
+          label = c;
       bool alone = hypot(x, y) > 0.95 || random_draw(9, 2, (uint64_t)i, (uint64_t)j) < 0.03;
       double ox = alone ? x : cx[label], oy = alone ? y : cy[label];
       size_t n = e->cells++;
@@ -69,7 +73,8 @@ static void make_example(struct example *e, double spread) {
   }
   uint32_t seen[MOST] = {0}, next = 0, number[MOST]; /* labels without gaps */
   for (size_t n = 0; n < e->cells; n++) {
-    if (!seen[e->fragment[n]]++) number[e->fragment[n]] = next++;
+    if (!seen[e->fragment[n]]++)
+      number[e->fragment[n]] = next++;
     e->fragment[n] = number[e->fragment[n]];
   }
   for (int k = 0; k < 8; k++) {
@@ -79,8 +84,12 @@ static void make_example(struct example *e, double spread) {
 }
 
 static struct picture_body body_of(const struct example *e) {
-  return (struct picture_body){.cells = e->cells, .first_vertex = e->first, .vertex = e->vertex, .fragment = e->fragment,
-                               .cracks = 8, .crack = e->crack};
+  return (struct picture_body){.cells = e->cells,
+                               .first_vertex = e->first,
+                               .vertex = e->vertex,
+                               .fragment = e->fragment,
+                               .cracks = 8,
+                               .crack = e->crack};
 }
 
 /* Share of pixels that are not white, and of coloured ones. */
@@ -111,13 +120,30 @@ static void fragments_are_drawn(void **state) {
   static struct example before, after;
   make_example(&before, 0);
   make_example(&after, 0.25);
-  struct picture_panel panels[2] = {{.body = body_of(&before), .caption = "before"}, {.body = body_of(&after), .caption = "after 10 ms"}};
-  assert_int_equal(picture_fragments(at("one.png"), 900, "An example of a broken disc", "40 pieces and dust", 1, panels + 1, NULL), STATUS_OK);
-  assert_int_equal(picture_fragments(at("two.png"), 1400, "An example of a broken disc", "40 pieces and dust", 2, panels, NULL), STATUS_OK);
+  struct picture_panel panels[2] = {{.body = body_of(&before), .caption = "before"},
+                                    {.body = body_of(&after), .caption = "after 10 ms"}};
+  assert_int_equal(picture_fragments(at("one.png"), 900, "An example of a broken disc", "40 pieces and dust", 1,
+                                     panels + 1, NULL),
+                   STATUS_OK);
+  assert_int_equal(picture_fragments(at("two.png"), 1400, "An example of a broken disc", "40 pieces and dust", 2,
+                                     panels, NULL),
+                   STATUS_OK);
   assert_int_equal(picture_fragments(at("two.svg"), 900, NULL, NULL, 2, panels, NULL), STATUS_OK);
   char numbers[160];
-  struct picture_body small = {.cells = 3, .first_vertex = (const uint32_t[]){0, 4, 8, 12},
-                               .vertex = (const double[12][2]){{0, 0}, {2, 0}, {2, 1}, {0, 1}, {2, 0}, {3, 0}, {3, 1}, {2, 1}, {5, 0}, {6, 0}, {6, 1}, {5, 1}},
+  struct picture_body small = {.cells = 3,
+                               .first_vertex = (const uint32_t[]){0, 4, 8, 12},
+                               .vertex = (const double[12][2]){{0, 0},
+                                                               {2, 0},
+                                                               {2, 1},
+                                                               {0, 1},
+                                                               {2, 0},
+                                                               {3, 0},
+                                                               {3, 1},
+                                                               {2, 1},
+                                                               {5, 0},
+                                                               {6, 0},
+                                                               {6, 1},
+                                                               {5, 1}},
                                .fragment = (const uint32_t[]){0, 0, 1}};
   picture_fragments_numbers(&small, "cells", numbers, sizeof numbers);
   assert_string_equal(numbers, "3 cells in 2 fragments, 1 of them single; largest 75.0 % of the area");
@@ -142,18 +168,23 @@ static void spectra_are_drawn(void **state) {
   struct pooled_bin *bins[2];
   for (size_t s = 0; s < 2; s++) {
     size_t first[RUNS + 1];
-    for (size_t i = 0; i < RUNS * EACH; i++) masses[s][i] = 0.0057 * pow(1 - random_draw(5, s, i, 0), -1 / (0.8 + 0.5 * (double)s));
-    for (size_t r = 0; r <= RUNS; r++) first[r] = r * EACH;
+    for (size_t i = 0; i < RUNS * EACH; i++)
+      masses[s][i] = 0.0057 * pow(1 - random_draw(5, s, i, 0), -1 / (0.8 + 0.5 * (double)s));
+    for (size_t r = 0; r <= RUNS; r++)
+      first[r] = r * EACH;
     struct pooled_runs runs = {RUNS, first, masses[s]};
     assert_int_equal(pooled_spectrum(&runs, true, 1, &bins[s], &series[s].count, NULL), STATUS_OK);
     series[s].bins = bins[s];
     series[s].label = s ? "threshold 6 %" : "threshold 3 %";
     series[s].fits = 2;
     series[s].fit = fits[s];
-    fits[s][0] = (struct picture_fit){s ? "\xce\xb2 = 2.30 \xc2\xb1 0.03 (likelihood)" : "\xce\xb2 = 1.80 \xc2\xb1 0.02 (likelihood)", 1.8 + 0.5 * (double)s, 0.0057, HUGE_VAL, EACH};
+    fits[s][0] = (struct picture_fit){s ? "\xce\xb2 = 2.30 \xc2\xb1 0.03 (likelihood)"
+                                        : "\xce\xb2 = 1.80 \xc2\xb1 0.02 (likelihood)",
+                                      1.8 + 0.5 * (double)s, 0.0057, HUGE_VAL, EACH};
     fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH};
   }
-  assert_int_equal(picture_spectrum(at("spectrum.png"), 900, "disc-explosion, 40 runs", "kg/m", 2, series, NULL), STATUS_OK);
+  assert_int_equal(picture_spectrum(at("spectrum.png"), 900, "disc-explosion, 40 runs", "kg/m", 2, series, NULL),
+                   STATUS_OK);
   assert_int_equal(picture_spectrum(at("spectrum.svg"), 600, NULL, "kg", 1, series, NULL), STATUS_OK);
   double dark, coloured;
   int width, height;
@@ -169,12 +200,16 @@ static void spectra_are_drawn(void **state) {
 static void maps_are_drawn(void **state) {
   (void)state;
   double xs[6], ys[4], value[24];
-  for (int i = 0; i < 6; i++) xs[i] = 0.01 * (i + 1);
-  for (int j = 0; j < 4; j++) ys[j] = j + 1;
-  for (int i = 0; i < 24; i++) value[i] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
+  for (int i = 0; i < 6; i++)
+    xs[i] = 0.01 * (i + 1);
+  for (int j = 0; j < 4; j++)
+    ys[j] = j + 1;
+  for (int i = 0; i < 24; i++)
+    value[i] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
   value[7] = NAN;
   struct picture_axis x = {"beam.threshold.strain", 6, xs, false}, y = {"beam.threshold.angle (deg)", 4, ys, false};
-  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", &x, &y, value, NULL), STATUS_OK);
+  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", &x, &y, value, NULL),
+                   STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
@@ -184,28 +219,33 @@ static void maps_are_drawn(void **state) {
   const double nowhere[1][3] = {{NAN, 1, 1}};
   assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 1, nowhere, NULL), STATUS_USAGE);
   assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 0, loose, NULL), STATUS_USAGE);
-  for (int i = 0; i < 24; i++) value[i] = NAN;
+  for (int i = 0; i < 24; i++)
+    value[i] = NAN;
   assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", &x, &y, value, NULL), STATUS_USAGE);
 }
 
 static void profiles_are_drawn(void **state) {
   (void)state;
   double x[40], alpha[40], damage[40];
-  for (int i = 0; i < 40; i++) x[i] = 0.003 * i, alpha[i] = 1.5 - 0.5 * exp(-0.1 * i), damage[i] = i < 20;
+  for (int i = 0; i < 40; i++)
+    x[i] = 0.003 * i, alpha[i] = 1.5 - 0.5 * exp(-0.1 * i), damage[i] = i < 20;
   alpha[7] = NAN; /* a gap */
   const struct picture_profile panels[] = {{"distention", alpha, {HUGE_VAL, -HUGE_VAL}}, {"damage", damage, {0, 1}}};
-  assert_int_equal(picture_profile(at("profile.png"), 900, "Below a crater", "depth (m)", 40, x, 2, panels, NULL), STATUS_OK);
+  assert_int_equal(picture_profile(at("profile.png"), 900, "Below a crater", "depth (m)", 40, x, 2, panels, NULL),
+                   STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("profile.png"), &dark, &coloured, &width, &height);
   assert_true(width == 900 && height > 500 && coloured > 0.002); /* two lines of 2.7 pixels and dots on them */
-  assert_int_equal(picture_profile(at("flat.svg"), 600, NULL, "x", 40, x, 1, &(struct picture_profile){"zero", (double[40]){0}, {HUGE_VAL, -HUGE_VAL}}, NULL),
+  assert_int_equal(picture_profile(at("flat.svg"), 600, NULL, "x", 40, x, 1,
+                                   &(struct picture_profile){"zero", (double[40]){0}, {HUGE_VAL, -HUGE_VAL}}, NULL),
                    STATUS_OK);
   assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 1, x, 1, panels, NULL), STATUS_USAGE);
   assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 40, x, 0, panels, NULL), STATUS_USAGE);
 }
 
-/* Where there is blue and where there is red, in the middle of the lines: pixels of each hue in a part of the picture. */
+/* Where there is blue and where there is red, in the middle of the lines: pixels of each hue in a part of the picture.
+ */
 static int hued(const char *path, bool red, double x0, double x1, double y0, double y1) {
   cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
   assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
@@ -224,35 +264,53 @@ static int hued(const char *path, bool red, double x0, double x1, double y0, dou
 
 static void curves_are_drawn(void **state) {
   (void)state;
-  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95}, {10, 0.9, 0.85, 0.95}, {100, 0.9, 0.85, 0.95}}; /* no gap between them in log x */
+  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95},
+                                      {10, 0.9, 0.85, 0.95},
+                                      {100, 0.9, 0.85, 0.95}}; /* no gap between them in log x */
   const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1}, {10, NAN, 0, 0}, {100, 0.1, NAN, NAN}};
   const struct picture_curve curves[] = {{NULL, 3, high}, {NULL, 3, low}};
-  assert_int_equal(picture_curves(at("curves.png"), 900, "M_1/M", "k (1/m^3)", "largest fraction", 2, curves, NULL), STATUS_OK);
+  assert_int_equal(picture_curves(at("curves.png"), 900, "M_1/M", "k (1/m^3)", "largest fraction", 2, curves, NULL),
+                   STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("curves.png"), &dark, &coloured, &width, &height);
   assert_true(width == 900); /* no legend, no room for one */
-  assert_true(hued(at("curves.png"), false, 0.2, 0.9, 0.1, 0.4) > 1000 && hued(at("curves.png"), true, 0.2, 0.9, 0.1, 0.4) == 0);
-  assert_true(hued(at("curves.png"), true, 0, 1, 0.6, 0.9) > 100); /* dots */
+  assert_true(hued(at("curves.png"), false, 0.2, 0.9, 0.1, 0.4) > 1000 &&
+              hued(at("curves.png"), true, 0.2, 0.9, 0.1, 0.4) == 0);
+  assert_true(hued(at("curves.png"), true, 0, 1, 0.6, 0.9) > 100);     /* dots */
   assert_true(hued(at("curves.png"), true, 0.3, 0.85, 0.1, 0.9) == 0); /* and no line over what is no number */
   /* the dot in the middle of the decades stands in the middle of the axis; a bar is taller than a dot */
   const double middle = (7.5 + 0.5 * (46 - 8.5)) / 46;
-  const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1), line = hued(at("curves.png"), false, middle - 0.11, middle - 0.09, 0, 1);
+  const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1),
+            line = hued(at("curves.png"), false, middle - 0.11, middle - 0.09, 0, 1);
   assert_true(dot > 3 * line && line > 20);
-  assert_true(hued(at("curves.png"), false, middle - 0.002, middle + 0.002, 0, 1) > 80); /* a dot alone: 13 lines of 4 pixels */
-  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN}, {10, 0.9, NAN, NAN}, {19, 0.9, NAN, NAN}}; /* below a factor of 20: linear */
-  assert_int_equal(picture_curves(at("narrow.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){"one label", 3, short_way}, NULL), STATUS_OK);
+  assert_true(hued(at("curves.png"), false, middle - 0.002, middle + 0.002, 0, 1) >
+              80); /* a dot alone: 13 lines of 4 pixels */
+  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN},
+                                           {10, 0.9, NAN, NAN},
+                                           {19, 0.9, NAN, NAN}}; /* below a factor of 20: linear */
+  assert_int_equal(picture_curves(at("narrow.png"), 900, NULL, "x", "y", 1,
+                                  &(struct picture_curve){"one label", 3, short_way}, NULL),
+                   STATUS_OK);
   ink(at("narrow.png"), &dark, &coloured, &width, &height);
   assert_true(width > 950);
   const double share = middle * 900 / width;
-  assert_true(hued(at("narrow.png"), false, share - 0.01, share + 0.01, 0, 0.2) > 2 * hued(at("narrow.png"), false, share + 0.05, share + 0.07, 0, 0.2));
-  const struct picture_mean uneven[] = {{1, 0.2, 0.1, 0.8}, {3, 0.2, 0.1, 0.8}}; /* bars reach to their ends, whatever lies between */
-  assert_int_equal(picture_curves(at("uneven.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){NULL, 2, uneven}, NULL), STATUS_OK);
+  assert_true(hued(at("narrow.png"), false, share - 0.01, share + 0.01, 0, 0.2) >
+              2 * hued(at("narrow.png"), false, share + 0.05, share + 0.07, 0, 0.2));
+  const struct picture_mean uneven[] = {{1, 0.2, 0.1, 0.8},
+                                        {3, 0.2, 0.1, 0.8}}; /* bars reach to their ends, whatever lies between */
+  assert_int_equal(picture_curves(at("uneven.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){NULL, 2, uneven},
+                                  NULL),
+                   STATUS_OK);
   const int above = hued(at("uneven.png"), false, 0, 1, 0, 0.65), below = hued(at("uneven.png"), false, 0, 1, 0.8, 1);
   assert_true(above > 5 * below && below > 10);
-  assert_int_equal(picture_curves(at("one.svg"), 600, NULL, "x", "y", 1, &(struct picture_curve){"lonely", 1, high}, NULL), STATUS_OK);
+  assert_int_equal(picture_curves(at("one.svg"), 600, NULL, "x", "y", 1, &(struct picture_curve){"lonely", 1, high},
+                                  NULL),
+                   STATUS_OK);
   assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 0, NULL, NULL), STATUS_USAGE);
-  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 1, &(struct picture_curve){NULL, 1, &low[1]}, NULL), STATUS_USAGE);
+  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 1, &(struct picture_curve){NULL, 1, &low[1]},
+                                  NULL),
+                   STATUS_USAGE);
   assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 9, curves, NULL), STATUS_USAGE);
 }
 
@@ -281,24 +339,27 @@ static void errors_leave_nothing(void **state) {
 
 int main(int count, char **arguments) {
   analysis_init();
-  if (count > 1) snprintf(folder, sizeof folder, "%s", arguments[1]);
+  if (count > 1)
+    snprintf(folder, sizeof folder, "%s", arguments[1]);
   else {
     snprintf(folder, sizeof folder, "pictures.XXXXXX");
-    if (!mkdtemp(folder)) return 1;
+    if (!mkdtemp(folder))
+      return 1;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fragments_are_drawn),
-      cmocka_unit_test(spectra_are_drawn),
-      cmocka_unit_test(maps_are_drawn),
-      cmocka_unit_test(profiles_are_drawn),
-      cmocka_unit_test(curves_are_drawn),
-      cmocka_unit_test(errors_leave_nothing),
+      cmocka_unit_test(fragments_are_drawn), cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(maps_are_drawn),      cmocka_unit_test(profiles_are_drawn),
+      cmocka_unit_test(curves_are_drawn),    cmocka_unit_test(errors_leave_nothing),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png", "two.svg", "spectrum.png", "spectrum.svg", "map.png", "loose.png", "curves.png", "narrow.png", "uneven.png", "one.svg", "nan.png", "profile.png", "flat.svg"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) unlink(at(names[i]));
-    if (sweep(folder) != 0) failed++;
+    const char *names[] = {"one.png", "two.png",   "two.svg",     "spectrum.png", "spectrum.svg",
+                           "map.png", "loose.png", "curves.png",  "narrow.png",   "uneven.png",
+                           "one.svg", "nan.png",   "profile.png", "flat.svg"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+      unlink(at(names[i]));
+    if (sweep(folder) != 0)
+      failed++;
   }
   return failed;
 }

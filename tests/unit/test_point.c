@@ -13,7 +13,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 enum { RUNS = 8, FAILED = 3 };
@@ -31,11 +32,13 @@ static struct store *fill(char path[64], int64_t *point) {
     struct fixture_run f;
     struct estimate estimates[ESTIMATES_COUNT];
     fixture_fill(&f, &scene, *point, session, r, FIXTURE_FRAGMENTS);
-    for (int i = 0; i < FIXTURE_FRAGMENTS; i++) f.fragments[i].count = (uint32_t)(1 + f.fragments[i].mass / 4e-4);
+    for (int i = 0; i < FIXTURE_FRAGMENTS; i++)
+      f.fragments[i].count = (uint32_t)(1 + f.fragments[i].mass / 4e-4);
     OK(estimates_make(FIXTURE_FRAGMENTS, f.fragments, estimates, &error));
     f.run.estimates = estimates;
     f.run.estimate_count = ESTIMATES_COUNT;
-    if (r == FAILED) f.outcome.state = OUTCOME_NOT_FINITE;
+    if (r == FAILED)
+      f.outcome.state = OUTCOME_NOT_FINITE;
     OK(store_add_run(store, &f.run, &error));
   }
   OK(store_flush(store, &error));
@@ -74,9 +77,11 @@ static void runs_that_count_in_order(void **state) {
     assert_near(rows[i].exponent.fit.beta, 1, 0.05 + 5 * rows[i].exponent.fit.standard_error);
   }
   for (int i = 0; i < POINT_ESTIMATES; i++) { /* each by its name */
-    static const char *const names[] = {"beta_least_squares_from_2", "beta_least_squares_from_5", "beta_least_squares_from_10",
-                                        "beta_binned_from_2",        "beta_binned_from_5",        "beta_binned_from_10",
-                                        "beta_masses_from_2",        "beta",                      "beta_masses_from_10"};
+    static const char *const names[] = {"beta_least_squares_from_2",  "beta_least_squares_from_5",
+                                        "beta_least_squares_from_10", "beta_binned_from_2",
+                                        "beta_binned_from_5",         "beta_binned_from_10",
+                                        "beta_masses_from_2",         "beta",
+                                        "beta_masses_from_10"};
     struct pooled_exponent one;
     enum exponent_method method;
     enum estimates_window window;
@@ -88,7 +93,8 @@ static void runs_that_count_in_order(void **state) {
     assert_true(one.fit.beta == rows[i].exponent.fit.beta && one.interval.upper == rows[i].exponent.interval.upper);
     OK(estimates_named(i ? "largest_fraction" : "bet", &is, &method, &window, &error));
     assert_false(is);
-    assert_int_equal(estimates_named(i ? "beta_ks_from_2" : "beta_masses", &is, &method, &window, &error), STATUS_USAGE);
+    assert_int_equal(estimates_named(i ? "beta_ks_from_2" : "beta_masses", &is, &method, &window, &error),
+                     STATUS_USAGE);
   }
   struct point_curve curve;
   OK(point_curve_make(&point, NULL, &curve, &error));
@@ -105,7 +111,8 @@ static void runs_that_count_in_order(void **state) {
   OK(point_read(store, id + 7, 0, &point, &error)); /* no such point */
   assert_int_equal(point.runs.count, 0);
   OK(point_estimates(&point, 10, 0.95, rows, &error));
-  for (int i = 0; i < POINT_ESTIMATES; i++) assert_true(isnan(rows[i].exponent.fit.beta));
+  for (int i = 0; i < POINT_ESTIMATES; i++)
+    assert_true(isnan(rows[i].exponent.fit.beta));
   OK(point_curve_make(&point, "none", &curve, &error));
   series = point_curve_series(&curve);
   assert_true(series.count == 0 && series.fits == 0);

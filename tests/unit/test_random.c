@@ -1,5 +1,5 @@
-/* The generator's published known-answer vectors, our mapping of (seed, purpose, item, draw) onto it (pinned: it is part
- * of what a seed means) and the range of the uniforms. */
+/* The generator's published known-answer vectors, our mapping of (seed, purpose, item, draw) onto it (pinned: it is
+ * part of what a seed means) and the range of the uniforms. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,12 +15,12 @@
 #pragma GCC diagnostic pop
 
 /* Random123's kat_vectors, philox4x64 with 10 rounds: counter, key, answer. */
-static const uint64_t known[3][10] = {
-    {0, 0, 0, 0, 0, 0, 0x16554d9eca36314cU, 0xdb20fe9d672d0fdcU, 0xd7e772cee186176bU, 0x7e68b68aec7ba23bU},
-    {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, 0x87b092c3013fe90bU, 0x438c3c67be8d0224U,
-     0x9cc7d7c69cd777b6U, 0xa09caebf594f0ba0U},
-    {0x243f6a8885a308d3U, 0x13198a2e03707344U, 0xa4093822299f31d0U, 0x082efa98ec4e6c89U, 0x452821e638d01377U,
-     0xbe5466cf34e90c6cU, 0xa528f45403e61d95U, 0x38c72dbd566e9788U, 0xa5a1610e72fd18b5U, 0x57bd43b5e52b7fe6U}};
+static const uint64_t known[3][10] =
+    {{0, 0, 0, 0, 0, 0, 0x16554d9eca36314cU, 0xdb20fe9d672d0fdcU, 0xd7e772cee186176bU, 0x7e68b68aec7ba23bU},
+     {UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, UINT64_MAX, 0x87b092c3013fe90bU, 0x438c3c67be8d0224U,
+      0x9cc7d7c69cd777b6U, 0xa09caebf594f0ba0U},
+     {0x243f6a8885a308d3U, 0x13198a2e03707344U, 0xa4093822299f31d0U, 0x082efa98ec4e6c89U, 0x452821e638d01377U,
+      0xbe5466cf34e90c6cU, 0xa528f45403e61d95U, 0x38c72dbd566e9788U, 0xa5a1610e72fd18b5U, 0x57bd43b5e52b7fe6U}};
 
 static void known_answers(void **state) {
   (void)state;

@@ -1,5 +1,5 @@
-/* Files of a run of either engine: a restart file gives the same bits, and one that is damaged, of another scene or of another
- * CPU class is refused; files are whole or not there, on a full disk and after a kill. */
+/* Files of a run of either engine: a restart file gives the same bits, and one that is damaged, of another scene or of
+ * another CPU class is refused; files are whole or not there, on a full disk and after a kill. */
 #include "tests/run_case.h"
 
 #include <dirent.h>
@@ -78,7 +78,8 @@ static void restart_continues_with_the_same_bits(void **state) {
                                             "loading.ramp=0.5 ms", "loading.strain_end=3 %")};
   const struct sph_inputs sph[] = {
       sphere(),
-      SPH_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float", "fidelity.threads=2"),
+      SPH_CASE("basalt-sphere", "fidelity.particles=500", "stop.end_time=8 us", "fidelity.precision=float",
+               "fidelity.threads=2"),
       SPH_CASE("tensile-rod", "fidelity.particles=600", "stop.end_time=8 us"),
       SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=12 us"),
       SPH_CASE("porous-ice", "fidelity.particles=800", "stop.end_time=15 us"),
@@ -99,8 +100,8 @@ static void refused(const struct engine_kind *kind, const void *inputs, const ch
     fail_msg("no \"%s\" in: %s", why, error.message);
 }
 
-static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other, const struct engine_kind *foreign,
-                               const void *foreign_inputs) {
+static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other,
+                               const struct engine_kind *foreign, const void *foreign_inputs) {
   struct error error = {0};
   char path[200];
   snprintf(path, sizeof path, "%s", in_folder("a.restart"));
@@ -179,9 +180,9 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   struct error error = {0};
   void *run;
   assert_int_equal(kind->prepare(inputs, 5, &run, &error), STATUS_OK);
-  assert_int_equal(kind->write_fields(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
+  assert_int_equal(kind->write_snapshot(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
   assert_non_null(strstr(error.message, "No such file"));
-  assert_int_equal(kind->write_fields(run, "/dev/full/fields.hdf", &error), STATUS_IO);
+  assert_int_equal(kind->write_snapshot(run, "/dev/full/fields.hdf", &error), STATUS_IO);
   assert_int_equal(kind->save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
   signal(SIGXFSZ, SIG_IGN); /* a disk that fills up: a limit on file size gives the same error at the same place */
   struct rlimit before, limit;
@@ -189,7 +190,7 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   limit = before;
   limit.rlim_cur = 10000;
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-  status fields = kind->write_fields(run, in_folder("full.hdf"), &error);
+  status fields = kind->write_snapshot(run, in_folder("full.hdf"), &error);
   status restart = kind->save(run, in_folder("full.restart"), &error);
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
   assert_int_equal(fields, STATUS_IO);
@@ -212,7 +213,8 @@ static int beside(bool *temporary) {
   *temporary = false;
   DIR *list = opendir(folder);
   for (const struct dirent *entry; (entry = readdir(list));) {
-    if (entry->d_name[0] == '.' || strcmp(entry->d_name, "a.restart") == 0) continue;
+    if (entry->d_name[0] == '.' || strcmp(entry->d_name, "a.restart") == 0)
+      continue;
     *temporary |= strcmp(entry->d_name, "a.restart.tmp") == 0;
     count++;
   }
@@ -220,8 +222,9 @@ static int beside(bool *temporary) {
   return count;
 }
 
-/* A process that does nothing but write is killed at twenty moments: the file is always whole, and of the run. What a kill may
- * leave behind is one temporary file beside it, and the next write takes that away; but not one that is being written. */
+/* A process that does nothing but write is killed at twenty moments: the file is always whole, and of the run. What a
+ * kill may leave behind is one temporary file beside it, and the next write takes that away; but not one that is being
+ * written. */
 static void killed_amid_a_write_the_file_is_whole(void **state) {
   (void)state;
   const struct sph_inputs inputs = sphere();
@@ -249,7 +252,7 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   }
   bool temporary;
   assert_true(beside(&temporary) == (temporary ? 1 : 0)); /* twenty kills heap nothing up */
-  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb"); /* of a process that is gone */
+  FILE *stale = fopen(in_folder("a.restart.tmp"), "wb");  /* of a process that is gone */
   fputs("of a write that was never finished", stale);
   fclose(stale);
   assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
@@ -267,7 +270,8 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   assert_true(rival >= 0);
   for (int k = 0; k < 100; k++)
     if (sph_engine.save(run, path, NULL)) {
-      if (rival == 0) _exit(1);
+      if (rival == 0)
+        _exit(1);
       fail();
     }
   if (rival == 0)
@@ -283,9 +287,10 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(restart_continues_with_the_same_bits),          cmocka_unit_test(damaged_or_foreign_restart_is_refused),
-      cmocka_unit_test(restart_of_another_cpu_class_is_refused),       cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing),
-      cmocka_unit_test(killed_amid_a_write_the_file_is_whole)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(restart_continues_with_the_same_bits),
+                                     cmocka_unit_test(damaged_or_foreign_restart_is_refused),
+                                     cmocka_unit_test(restart_of_another_cpu_class_is_refused),
+                                     cmocka_unit_test(failed_writes_are_one_error_and_leave_nothing),
+                                     cmocka_unit_test(killed_amid_a_write_the_file_is_whole)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -62,7 +62,8 @@ static const struct engine_kind tiny = {.name = "tiny", .results_version = 3, .i
 static const struct engine_kind tiny_next = {.name = "tiny", .results_version = 4, .inputs = &inputs, .check = check};
 
 const struct engine_kind *tiny_find(const char *name, struct error *error) {
-  if (strcmp(name, "tiny") == 0) return &tiny;
+  if (strcmp(name, "tiny") == 0)
+    return &tiny;
   status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: tiny", name);
   return NULL;
 }
@@ -70,7 +71,8 @@ const struct engine_kind *tiny_find(const char *name, struct error *error) {
 static struct scene *parsed(const char *text) {
   struct scene *scene = NULL;
   struct error error = {0};
-  if (scene_parse("t", text, &scene, &error)) fail_msg("%s", error.message);
+  if (scene_parse("t", text, &scene, &error))
+    fail_msg("%s", error.message);
   return scene;
 }
 
@@ -85,8 +87,8 @@ static void reads_and_fills_defaults(void **state) {
   char *json = scene_json(scene);
   assert_string_equal(json, "{\"engine\":\"tiny\",\"name\":\"mine\",\"kind\":\"ball\",\"impact\":{\"speed\":10},"
                             "\"ball\":{\"size\":0.03},\"fidelity\":{\"count\":5}}");
-  struct scene *again =
-      parsed(json); /* resolved JSON is a scene document itself: what the store holds can be run again */
+  struct scene *again = parsed(
+      json); /* resolved JSON is a scene document itself: what the store holds can be run again */
   uint8_t one[16], two[16];
   scene_identity(scene, 7, one);
   scene_identity(again, 7, two);
@@ -142,7 +144,8 @@ static void overrides_are_checked(void **state) {
   scene_free(copy);
   copy = scene_copy(scene);
   assert_int_equal(scene_set_text(copy, "kind", "block", &error), STATUS_OK);
-  assert_int_equal(scene_check(copy, &error), STATUS_OK); /* the document's ball.size has no effect now: as if it had not been there */
+  assert_int_equal(scene_check(copy, &error),
+                   STATUS_OK); /* the document's ball.size has no effect now: as if it had not been there */
   struct scene *block = parsed("engine: tiny\nkind: block\n");
   uint8_t one[16], two[16];
   scene_identity(copy, 1, one);
@@ -247,7 +250,8 @@ static void files_and_names(void **state) {
     snprintf(near, sizeof near, "%sx", scene_builtin_name(i));
     assert_int_equal(scene_load(near, NULL, &scene, &error), STATUS_MISSING);
     assert_non_null(strstr(error.message, scene_builtin_name(i)));
-    if (i) assert_true(strcmp(scene_builtin_name(i - 1), scene_builtin_name(i)) < 0);
+    if (i)
+      assert_true(strcmp(scene_builtin_name(i - 1), scene_builtin_name(i)) < 0);
   }
   assert_null(scene_builtin_name(scene_builtin_count()));
 }

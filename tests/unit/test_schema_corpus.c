@@ -3,8 +3,8 @@
  *     test_schema_corpus                              every document of corpus/<kind>/{good,bad,reader}
  *     test_schema_corpus schema scene-dem|scene-sph|campaign    the schema that schemas/ holds a copy of
  *     test_schema_corpus judge scene-dem|scene-sph|campaign FILE...   lines "good FILE" or "bad FILE"
- *     test_schema_corpus generated scene-dem|scene-sph   documents made from the engine's table, one row after another, with
- * the reader's verdict: "good" or "bad", text, "%%" */
+ *     test_schema_corpus generated scene-dem|scene-sph   documents made from the engine's table, one row after another,
+ * with the reader's verdict: "good" or "bad", text, "%%" */
 #include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +31,8 @@ static bool judge(bool scene_kind, const char *path, bool show) {
     code = campaign_load(path, &campaign, &error);
     campaign_free(campaign);
   }
-  if (show && code) fprintf(stderr, "%s\n", error.message);
+  if (show && code)
+    fprintf(stderr, "%s\n", error.message);
   return code == STATUS_OK;
 }
 
@@ -41,36 +42,42 @@ static int judge_folder(const char *kind, const char *folder, bool good, int *co
   snprintf(whole, sizeof whole, "%s/tests/unit/corpus/%s/%s", CLAST_SOURCE_DIR, kind, folder);
   DIR *list = opendir(whole);
   for (const struct dirent *entry; list && (entry = readdir(list));) {
-    if (!strstr(entry->d_name, ".yaml") && !strstr(entry->d_name, ".json")) continue;
+    if (!strstr(entry->d_name, ".yaml") && !strstr(entry->d_name, ".json"))
+      continue;
     snprintf(path, sizeof path, "%s/%.200s", whole, entry->d_name);
     ++*count;
-    if (judge(engine_of(kind) != NULL, path, good) == good) continue;
+    if (judge(engine_of(kind) != NULL, path, good) == good)
+      continue;
     fprintf(stderr, "%s should be %s\n", path, good ? "accepted" : "refused");
     wrong++;
   }
-  if (list) closedir(list);
+  if (list)
+    closedir(list);
   return wrong;
 }
 
 /* Nested block mapping of one or two paths, the second's common words written once. */
-static void write_document(const char *engine, const char *first, const char *first_text, const char *second, const char *second_text,
-                           FILE *out) {
+static void write_document(const char *engine, const char *first, const char *first_text, const char *second,
+                           const char *second_text, FILE *out) {
   fprintf(out, "engine: %s\n", engine);
   int level = 0;
   const char *paths[2] = {first, second}, *texts[2] = {first_text, second_text};
   for (int p = 0; p < 2; p++) {
     const char *at = paths[p];
-    if (!at) continue;
+    if (!at)
+      continue;
     size_t common = 0;
     level = 0;
     if (p == 1 && first)
       for (size_t i = 0; first[i] && first[i] == second[i]; i++)
-        if (first[i] == '.') common = i + 1, level++;
+        if (first[i] == '.')
+          common = i + 1, level++;
     at += common;
     for (;; level++) {
       size_t length = strcspn(at, ".");
       fprintf(out, "%*s%.*s:", 2 * level, "", (int)length, at);
-      if (!at[length]) break;
+      if (!at[length])
+        break;
       fputc('\n', out);
       at += length + 1;
     }
@@ -78,11 +85,13 @@ static void write_document(const char *engine, const char *first, const char *fi
   }
 }
 
-static void emit(const char *engine, const char *first, const char *first_text, const char *second, const char *second_text) {
+static void emit(const char *engine, const char *first, const char *first_text, const char *second,
+                 const char *second_text) {
   char *text = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
-  if (!out) return;
+  if (!out)
+    return;
   write_document(engine, first, first_text, second, second_text, out);
   fclose(out);
   struct scene *scene = NULL;
@@ -95,7 +104,8 @@ static void emit(const char *engine, const char *first, const char *first_text, 
 /* One row with one text, under every state of what it depends on. */
 static void emit_row(const struct engine_kind *engine, const struct field *row, const char *text) {
   emit(engine->name, NULL, NULL, row->path, text);
-  if (!row->when) return;
+  if (!row->when)
+    return;
   char path[128];
   snprintf(path, sizeof path, "%.*s", (int)strcspn(row->when, "="), row->when);
   const struct field *control = field_find(engine->inputs, path, NULL);
@@ -124,7 +134,8 @@ static void generate(const struct engine_kind *engine) {
                             row->number};
     for (size_t k = 0; k < 6 && (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER); k++) {
       char text[32];
-      if (!isfinite(edges[k])) continue;
+      if (!isfinite(edges[k]))
+        continue;
       field_print_number(edges[k], text);
       emit_row(engine, row, text);
     }

@@ -45,7 +45,8 @@ static void whole_range_of_doubles(void **state) {
     assert_true(spectrum_edge(bin) <= masses[i] && masses[i] < spectrum_edge(bin + 1));
   }
   const double none[] = {0, -0.0, -1, NAN, HUGE_VAL, -HUGE_VAL};
-  for (size_t i = 0; i < sizeof none / sizeof *none; i++) assert_int_equal(spectrum_bin(none[i]), SPECTRUM_NO_BIN);
+  for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+    assert_int_equal(spectrum_bin(none[i]), SPECTRUM_NO_BIN);
 }
 
 static void fill_counts_everything_in_any_order(void **state) {
@@ -57,7 +58,8 @@ static void fill_counts_everything_in_any_order(void **state) {
   int64_t count = 0;
   for (int i = 0; i < 5; i++) {
     count += rows[i].count;
-    if (i) assert_true(rows[i].bin > rows[i - 1].bin);
+    if (i)
+      assert_true(rows[i].bin > rows[i - 1].bin);
   }
   assert_int_equal(count, 8);
   assert_int_equal(rows[0].bin, -50);

@@ -7,10 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #include <cmocka.h>
 
-#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/noise.h"
 
@@ -33,8 +32,9 @@ static void artificial_stress_opposes_tension_only(void **state) {
     assert_true(fabs(r[k] - expected[k]) < 1e-14);
 }
 
-/* The fast form, in every class: any stress, spheres and axes of it, none, and what is pressed all round, which has exactly no R.
- * A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here are below 10. */
+/* The fast form, in every class: any stress, spheres and axes of it, none, and what is pressed all round, which has
+ * exactly no R. A dozen rotations with inverses within 2 ulp leave some 1e-15 of the largest; stresses here are
+ * below 10. */
 static void opposed_stress_equals_plain_c(void **state) {
   (void)state;
   enum { COUNT = 203, FIRST = 3 };
@@ -46,8 +46,11 @@ static void opposed_stress_equals_plain_c(void **state) {
     pressure[i] = i % 3 == 0 ? 0 : i % 3 == 1 ? -8 : 4 * noise(&seed);
     factor[i] = 0.5 + 0.25 * (i % 4);
     for (int k = 0; k < 5; k++)
-      stress[k][i] = i % 7 == 0 || (i % 5 == 0 && (k == 1 || k == 2 || k == 4)) || (i % 11 == 0 && k != 1) ? 0 : 3 * noise(&seed);
-    if (i % 13 == 0) stress[0][i] = stress[3][i] = 1;
+      stress[k][i] = i % 7 == 0 || (i % 5 == 0 && (k == 1 || k == 2 || k == 4)) || (i % 11 == 0 && k != 1)
+                         ? 0
+                         : 3 * noise(&seed);
+    if (i % 13 == 0)
+      stress[0][i] = stress[3][i] = 1;
   }
   for (int k = 0; k < 6; k++)
     out[k] = r[k];
@@ -61,10 +64,12 @@ static void opposed_stress_equals_plain_c(void **state) {
     for (int i = FIRST; i < COUNT - 1; i++) {
       double sigma[6], exact[6];
       for (int k = 0; k < 6; k++)
-        sigma[k] = factor[i] * (k < 5 ? stress[k][i] : -(stress[0][i] + stress[3][i])) + (k == 0 || k == 3 || k == 5 ? pressure[i] : 0);
+        sigma[k] = factor[i] * (k < 5 ? stress[k][i] : -(stress[0][i] + stress[3][i])) +
+                   (k == 0 || k == 3 || k == 5 ? pressure[i] : 0);
       reference_sph_opposed(0.3, sigma, exact);
       for (int k = 0; k < 6; k++)
-        if (!(fabs(r[k][i] - exact[k]) < 1e-14)) fail_msg("class %s, particle %d: %g, %g", classes[which], i, r[k][i], exact[k]);
+        if (!(fabs(r[k][i] - exact[k]) < 1e-14))
+          fail_msg("class %s, particle %d: %g, %g", classes[which], i, r[k][i], exact[k]);
       const bool pressed = i % 3 == 1;
       if (pressed)
         for (int k = 0; k < 6; k++)

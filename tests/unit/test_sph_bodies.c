@@ -8,7 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/sph/bodies.h"
+#include "engine/sph/body/bodies.h"
 
 static struct sph_body sphere(double radius, double particles, double density) {
   return (struct sph_body){.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
@@ -81,11 +81,15 @@ static void one_particle_is_a_body(void **state) {
     for (int shape = 0; shape < 3; shape++) {
       struct sph_body one = sphere(2, 1, 1000);
       one.lattice.kind = kind;
-      one.shape = (struct sph_shape){
-          .kind = shape, .centre = {1, 2, 3}, .radius = 1, .length = 2, .axis = {0, 1, 0}, .side = {1, 1, 1}};
-      assert_int_equal(
-          sph_bodies_make(&one, 1, SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION, &p, &range, NULL),
-          STATUS_OK);
+      one.shape = (struct sph_shape){.kind = shape,
+                                     .centre = {1, 2, 3},
+                                     .radius = 1,
+                                     .length = 2,
+                                     .axis = {0, 1, 0},
+                                     .side = {1, 1, 1}};
+      assert_int_equal(sph_bodies_make(&one, 1, SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION, &p, &range,
+                                       NULL),
+                       STATUS_OK);
       assert_true(p->n == 1 && p->distention[0] == 1 && !p->held[0] && p->damping[0] == 0);
       assert_true(fabs(p->mass[0] / (1000 * sph_shape_volume(&one.shape)) - 1) < 1e-14);
       assert_true(sph_shape_inside(&one.shape, (double[3]){p->x[0], p->y[0], p->z[0]}));
@@ -147,11 +151,14 @@ static void projectiles_are_aimed(void **state) {
           }
           assert_true(fabs(length - 1) < 1e-12 && fabs(acos(fmin(1, along)) - angles[a]) < 1e-7);
           /* turned aside, never straight on, and towards +x or +y */
-          if (a) assert_true(fabs(normal[0]) > cos(0.1) ? flight[1] > 0 : flight[0] > -along * normal[0]);
-          if (g && a < 2) assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) <= 0);
+          if (a)
+            assert_true(fabs(normal[0]) > cos(0.1) ? flight[1] > 0 : flight[0] > -along * normal[0]);
+          if (g && a < 2)
+            assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) <= 0);
           for (int k = 0; k < 3; k++)
             flight[k] = -flight[k];
-          if (g) assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
+          if (g)
+            assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
         }
   struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
   double flight[3];

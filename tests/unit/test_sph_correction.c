@@ -1,6 +1,6 @@
-/* The gradient correction between body and debris: what the kernels make of moments that are neither. By hand: with s(t) = t^2 (3 - 2t),
- * t from 0 at a mean eigenvalue of 0.1 (a determinant over its cube of 0.3) to 1 at 0.2 (at 0.6), and both multiplied, B is
- * s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32. */
+/* The gradient correction between body and debris: what the kernels make of moments that are neither. By hand: with
+ * s(t) = t^2 (3 - 2t), t from 0 at a mean eigenvalue of 0.1 (a determinant over its cube of 0.3) to 1 at 0.2 (at 0.6),
+ * and both multiplied, B is s times the inverse plus 1 - s times 1. s(1/4) = 5/32, s(1/2) = 1/2, s(3/4) = 27/32. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,37 +10,40 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/pairs/pairs_kernels.h"
 
-/* Moments are diagonal in axes that are turned out of those of the coordinates; so is B. Eigenvalues size (1, 1 + d, 1 - d): the
- * mean is `size`, the determinant over its cube 1 - d^2. */
+/* Moments are diagonal in axes that are turned out of those of the coordinates; so is B. Eigenvalues size (1, 1 + d, 1
+ * - d): the mean is `size`, the determinant over its cube 1 - d^2. */
 static const struct {
   double size, d_squared, share;
 } cases[] = {
-    {1, 0, 1},               /* inside a body */
-    {0.2, 0, 1},             /* B = 5 */
-    {0.175, 0, 27.0 / 32},   /* 5/32 + 27/32 / 0.175 = 4.9777 */
-    {0.15, 0, 0.5},          /* 1/2 + 1/2 / 0.15 = 3.8333 */
-    {0.125, 0, 5.0 / 32},    /* 27/32 + 5/32 * 8 = 2.09375 */
+    {1, 0, 1},             /* inside a body */
+    {0.2, 0, 1},           /* B = 5 */
+    {0.175, 0, 27.0 / 32}, /* 5/32 + 27/32 / 0.175 = 4.9777 */
+    {0.15, 0, 0.5},        /* 1/2 + 1/2 / 0.15 = 3.8333 */
+    {0.125, 0, 5.0 / 32},  /* 27/32 + 5/32 * 8 = 2.09375 */
     {0.1, 0, 0},
     {0.05, 0, 0},
-    {0, 0, 0},               /* alone: no division by zero */
+    {0, 0, 0}, /* alone: no division by zero */
     {-1, 0, 0},
     {1, 0.4, 1},
-    {1, 0.475, 27.0 / 32},   /* 0.525 = 0.3 + 3/4 0.3 */
-    {1, 0.55, 0.5},          /* 0.45 */
-    {1, 0.625, 5.0 / 32},    /* 0.375 */
+    {1, 0.475, 27.0 / 32}, /* 0.525 = 0.3 + 3/4 0.3 */
+    {1, 0.55, 0.5},        /* 0.45 */
+    {1, 0.625, 5.0 / 32},  /* 0.375 */
     {1, 0.7, 0},
-    {1, 1, 0},               /* flat */
-    {1, 2, 0},               /* a negative determinant */
-    {0.15, 0.55, 0.25},      /* between in both */
+    {1, 1, 0},          /* flat */
+    {1, 2, 0},          /* a negative determinant */
+    {0.15, 0.55, 0.25}, /* between in both */
     {0.175, 0.625, 27.0 / 32 * 5 / 32},
     {0.125, 0.475, 5.0 / 32 * 27 / 32},
 };
 enum { CASES = sizeof cases / sizeof cases[0] }; /* more than two registers of eight, and some left over */
 
-static const double axis[3][3] = {{2.0 / 3, -1.0 / 3, 2.0 / 3}, {2.0 / 3, 2.0 / 3, -1.0 / 3}, {-1.0 / 3, 2.0 / 3, 2.0 / 3}};
-static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2}, at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+static const double axis[3][3] = {{2.0 / 3, -1.0 / 3, 2.0 / 3},
+                                  {2.0 / 3, 2.0 / 3, -1.0 / 3},
+                                  {-1.0 / 3, 2.0 / 3, 2.0 / 3}};
+static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2},
+                 at[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
 
 static void tensor(const double value[3], double out[6]) {
   for (int k = 0; k < 6; k++) {
@@ -50,8 +53,8 @@ static void tensor(const double value[3], double out[6]) {
   }
 }
 
-/* Tolerances: some ten roundings, of the determinant relative to the cube (at least 0.3 of it where it is divided by), of a share
- * whose slope is 15 over the mean's range: below 1e-14 of the largest, which is 5. */
+/* Tolerances: some ten roundings, of the determinant relative to the cube (at least 0.3 of it where it is divided by),
+ * of a share whose slope is 15 over the mean's range: below 1e-14 of the largest, which is 5. */
 static void shares_between_body_and_debris(void **state) {
   (void)state;
   static const char *const classes[] = {"baseline", "v3", "v4"};

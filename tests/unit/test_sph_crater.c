@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/crater.h"
+#include "engine/sph/observe/crater.h"
 
 enum { SIDE = 60, HIGH = 30 };
 static const double dx = 1e-3;
@@ -28,18 +28,22 @@ static struct sph_particles *slab(void) {
 }
 
 static void near(double got, double want, double relative, const char *what) {
-  if (!(fabs(got - want) <= relative * fabs(want))) fail_msg("%s: got %.9g, expected %.9g +- %g", what, got, want, relative);
+  if (!(fabs(got - want) <= relative * fabs(want)))
+    fail_msg("%s: got %.9g, expected %.9g +- %g", what, got, want, relative);
 }
 
-static const struct sph_crater_options options = {
-    .count = SIDE * SIDE * HIGH, .spacing = 1e-3, .ejection_speed = 5, .distention = 2};
+static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
+                                                  .spacing = 1e-3,
+                                                  .ejection_speed = 5,
+                                                  .distention = 2};
 
 static void untouched(void **state) {
   (void)state;
   struct sph_particles *p = slab();
   struct sph_crater c;
   assert_int_equal(sph_crater_find(p, p, &options, &c, NULL), STATUS_OK);
-  assert_true(c.volume == 0 && c.depth == 0 && c.radius == 0 && c.ejected_mass == 0 && c.compaction_volume == 0 && c.compacted_mass == 0);
+  assert_true(c.volume == 0 && c.depth == 0 && c.radius == 0 && c.ejected_mass == 0 && c.compaction_volume == 0 &&
+              c.compacted_mass == 0);
   sph_particles_free(p);
 }
 
@@ -55,14 +59,16 @@ static void thrown_out(void **state) {
       now->z[i] += 1;
       count++;
     }
-    if (hypot(now->x[i] - 24e-3, now->y[i] - 24e-3) < 3e-3 && depth < 5e-3) now->z[i] -= 10e-3; /* pushed in, far off */
+    if (hypot(now->x[i] - 24e-3, now->y[i] - 24e-3) < 3e-3 && depth < 5e-3)
+      now->z[i] -= 10e-3; /* pushed in, far off */
   }
   struct sph_crater c;
   assert_int_equal(sph_crater_find(start, now, &options, &c, NULL), STATUS_OK);
   near(c.ejected_mass, (double)count * 1e-6, 1e-12, "ejected mass");
   near(c.ejected_momentum, (double)count * 20e-6, 1e-12, "ejected momentum");
   near(c.ejecta_volume, (double)count * 1e-9, 1e-12, "ejecta's volume");
-  /* columns of two spacings, highest particle of each: the edge is blurred by a column, and shallow rims are not seen */
+  /* columns of two spacings, highest particle of each: the edge is blurred by a column, and shallow rims are not seen
+   */
   near(c.volume, (double)count * 1e-9, 0.15, "volume");
   near(c.depth, 12e-3, 0.1, "depth");
   near(c.radius, 12e-3, 0.1, "radius");
@@ -89,7 +95,8 @@ static void compacted(void **state) {
   near(c.compacted_mass, (double)count * 1e-6, 1e-12, "compacted mass");
   near(c.compaction_volume, (double)count * 0.5e-9, 1e-12, "closed pores");
   near(c.depth, 10e-3, 0.05, "depth");
-  near(c.volume, c.compaction_volume, 0.2, "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not dug */
+  near(c.volume, c.compaction_volume, 0.2,
+       "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not dug */
   near(c.compaction_depth, 19e-3, 1e-9, "depth of compacted matter"); /* from the first layer to the last of it */
   near(c.compaction_reach, hypot(19e-3, 10e-3), 0.05, "reach");
   struct sph_crater_layer layer[40];
@@ -112,14 +119,16 @@ static void nothing_left(void **state) {
   size_t n = 0;
   for (size_t i = 0; i < start->n; i++)
     if (hypot(hypot(start->x[i], start->y[i]), start->z[i] - 15e-3) < radius) {
-      start->x[n] = now->x[n] = start->x[i], start->y[n] = now->y[n] = start->y[i], start->z[n] = now->z[n] = start->z[i];
+      start->x[n] = now->x[n] = start->x[i], start->y[n] = now->y[n] = start->y[i],
+      start->z[n] = now->z[n] = start->z[i];
       now->vz[n++] = 20;
     }
   struct sph_crater_options ball = options;
   struct sph_crater c;
   ball.count = n;
   assert_int_equal(sph_crater_find(start, now, &ball, &c, NULL), STATUS_OK);
-  near(c.volume, (double)n * 1e-9, 0.15, "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
+  near(c.volume, (double)n * 1e-9, 0.15,
+       "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
   near(c.radius, radius, 0.1, "radius");
   near(c.depth, 2 * radius, 0.05, "depth");
   sph_particles_free(start);
@@ -142,6 +151,8 @@ static void hardly_porous(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out), cmocka_unit_test(nothing_left), cmocka_unit_test(hardly_porous), cmocka_unit_test(compacted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(untouched), cmocka_unit_test(thrown_out),
+                                     cmocka_unit_test(nothing_left), cmocka_unit_test(hardly_porous),
+                                     cmocka_unit_test(compacted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,16 +1,16 @@
-/* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that do not
- * matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
+/* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that
+ * do not matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
 #include "tests/run_case.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "engine/sph/run.h"
-#include "engine/sph/scale.h"
-#include "engine/sph/system_layout.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
+#include "engine/sph/step/system_layout.h"
 
-static const char *const scenes[] = {"basalt-sphere", "tensile-rod", "gabbro-crater", "elastic-bar", "colliding-cylinders",
-                                     "disruption",    "porous-ice",  "porous-plate"};
+static const char *const scenes[] = {"basalt-sphere",       "tensile-rod", "gabbro-crater", "elastic-bar",
+                                     "colliding-cylinders", "disruption",  "porous-ice",    "porous-plate"};
 enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
 /* A small sphere that is over soon. */
@@ -44,10 +44,10 @@ static void builtin_scenes_say_what_they_model(void **state) {
     inputs.fidelity.points = 60;
     inputs.fidelity.graded = false;
     inputs.fidelity.projectile_spacing = fmin(inputs.fidelity.projectile_spacing, 0.1);
-    inputs.impact.gap = sph_scale_spacing(&inputs);
+    inputs.impact.gap = sph_derived_spacing(&inputs);
     inputs.stretch.grip = 3e-3;
     inputs.stretch.flaw_free = 8e-3;
-    inputs.collision.gap = 2 * sph_scale_spacing(&inputs);
+    inputs.collision.gap = 2 * sph_derived_spacing(&inputs);
     struct error error = {0};
     void *made;
     if (sph_engine.prepare(&inputs, 1, &made, &error))
@@ -66,12 +66,14 @@ static void builtin_scenes_say_what_they_model(void **state) {
 static void flaws_are_described(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("porous-ice", "target.material.porosity.distention=3");
-  const double V = sph_scale_target_mass(&inputs) / inputs.target.material.density;
-  double strain = 0, pascal = 0, want = pow(inputs.target.material.weibull.k * V, -1 / inputs.target.material.weibull.m);
+  const double V = sph_derived_target_mass(&inputs) / inputs.target.material.density;
+  double strain = 0, pascal = 0,
+         want = pow(inputs.target.material.weibull.k * V, -1 / inputs.target.material.weibull.m);
   char *text = sph_engine.describe(&inputs);
   const char *at = strstr(text, "the weakest opens at strain ");
   assert_true(at && sscanf(at, "the weakest opens at strain %lf (%lf Pa)", &strain, &pascal) == 2);
-  assert_true(fabs(strain / want - 1) < 0.005 && fabs(pascal / (want * sph_scale_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
+  assert_true(fabs(strain / want - 1) < 0.005 &&
+              fabs(pascal / (want * sph_derived_young_modulus(&inputs.target.material)) - 1) < 0.005); /* 3 digits */
   free(text);
 }
 
@@ -84,10 +86,12 @@ static double described_speed(const struct sph_inputs *inputs) {
   return speed;
 }
 
-/* The order of what options cost, and its size within the factor of two that cores of today differ by (bench_sph measures). */
+/* The order of what options cost, and its size within the factor of two that cores of today differ by (bench_sph
+ * measures). */
 static void cost_follows_the_options(void **state) {
   (void)state;
-  struct sph_inputs plain = SPH_CASE("basalt-sphere", NULL), single = SPH_CASE("basalt-sphere", "fidelity.precision=float");
+  struct sph_inputs plain = SPH_CASE("basalt-sphere", NULL),
+                    single = SPH_CASE("basalt-sphere", "fidelity.precision=float");
   struct sph_inputs corrected = SPH_CASE("basalt-sphere", "method.gradient_correction=true");
   const double speed = described_speed(&plain);
   assert_true(speed > 2e6 && speed < 8e6);
@@ -134,7 +138,8 @@ static void stretch_and_vibration_start(void **state) {
   for (size_t i = 0; i < run->start->n; i++) {
     double z = run->start->z[i];
     assert_true(fabs(run->start->vz[i] - 60 * z) < 1e-12);
-    assert_true(fabs(run->start->vx[i] + sph_scale_poisson_ratio(&rod.target.material) * 60 * run->start->x[i]) < 1e-12);
+    assert_true(fabs(run->start->vx[i] + sph_derived_poisson_ratio(&rod.target.material) * 60 * run->start->x[i]) <
+                1e-12);
     assert_true((run->start->held[i] != 0) == (fabs(z) > 0.02 - rod.stretch.grip));
     held += run->start->held[i] != 0;
   }
@@ -144,7 +149,8 @@ static void stretch_and_vibration_start(void **state) {
   struct sph_inputs bar = SPH_CASE("elastic-bar", "fidelity.particles=1500");
   assert_int_equal(sph_run_create(&bar, 3, &run, NULL), STATUS_OK);
   for (size_t i = 0; i < run->start->n; i++) { /* the mode, and its sides' share: div v = (1 - 2 nu) dv_z/dz */
-    double k = 3.14159265358979323846 / 0.04, aside = -sph_scale_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
+    double k = 3.14159265358979323846 / 0.04,
+           aside = -sph_derived_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
     assert_true(fabs(run->start->vz[i] - 0.1 * sin(k * run->start->z[i])) < 1e-12);
     assert_true(fabs(run->start->vy[i] - aside * run->start->y[i]) < 1e-12);
   }
@@ -157,7 +163,8 @@ static void chunks_and_restarts_do_not_matter(void **state) {
   snprintf(path, sizeof path, "/tmp/clast_sph_engine_%d.restart", (int)getpid());
   struct sph_inputs cases[] = {
       SMALL("stop.end_time=40 us"),
-      SMALL("stop.end_time=40 us", "method.gradient_correction=true"), /* begins with two passes: blocks know their slack by then */
+      SMALL("stop.end_time=40 us",
+            "method.gradient_correction=true"), /* begins with two passes: blocks know their slack by then */
       SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
       SPH_CASE("elastic-bar", "fidelity.particles=600", "stop.end_time=20 us"),
       SPH_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms"),
@@ -201,10 +208,11 @@ static void stop_rules(void **state) {
   assert_int_equal(ran.results.sph.stop_reason, SPH_STOP_QUIET);
   assert_true(ran.results.sph.fracture_ceased && ran.results.sph.first_damage > 0);
   /* looks come every 8 steps, each of less than the Courant limit of matter at rest */
-  double step = inputs.fidelity.cfl * inputs.fidelity.smoothing * sph_scale_smallest_spacing(&inputs) / 0.7 / sph_scale_wave_speed(&inputs.target);
+  double step = inputs.fidelity.cfl * inputs.fidelity.smoothing * sph_derived_smallest_spacing(&inputs) / 0.7 /
+                sph_derived_wave_speed(&inputs.target);
   assert_true(ran.outcome.time - ran.results.sph.cease_time >= inputs.stop.quiet_time);
   assert_true(ran.outcome.time - ran.results.sph.cease_time < inputs.stop.quiet_time + 9 * step);
-  assert_true(ran.outcome.energy_error < 5e-3);   /* the bound for this scene, clamps not credited */
+  assert_true(ran.outcome.energy_error < 5e-3);    /* the bound for this scene, clamps not credited */
   assert_true(ran.outcome.momentum_error < 1e-12); /* pair forces cancel to rounding */
   assert_true(ran.results.sph.largest.bare_fraction <= ran.results.sph.largest.veneer_fraction);
   assert_true(ran.results.sph.largest.veneer_fraction <= ran.results.sph.largest.dynamic_fraction + 0.05);
@@ -217,9 +225,10 @@ static void stop_rules(void **state) {
     assert_true(k == 0 || ran.fragments[k].mass <= ran.fragments[k - 1].mass);
   }
   assert_int_equal(count, ran.results.sph.particles); /* the projectile is in no fragment */
-  assert_true(fabs(mass / sph_scale_target_mass(&inputs) - 1) < 1e-12);
-  const double shares[] = {ran.results.sph.limited.courant, ran.results.sph.limited.force,  ran.results.sph.limited.damage,
-                           ran.results.sph.limited.energy,  ran.results.sph.limited.density};
+  assert_true(fabs(mass / sph_derived_target_mass(&inputs) - 1) < 1e-12);
+  const double shares[] = {ran.results.sph.limited.courant, ran.results.sph.limited.force,
+                           ran.results.sph.limited.damage, ran.results.sph.limited.energy,
+                           ran.results.sph.limited.density};
   for (size_t k = 0; k < 5; k++)
     parts += shares[k];
   assert_true(parts > 0.99 && parts <= 1 + 1e-12);
@@ -235,7 +244,8 @@ static void stop_rules(void **state) {
   assert_true(ran.outcome.time == 2e-5);
   free(ran.fragments);
 
-  inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms", "fragments.static_strength=off"); /* nothing breaks: one piece */
+  inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms",
+                 "fragments.static_strength=off"); /* nothing breaks: one piece */
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
   assert_true(ran.results.sph.fracture_ceased && isnan(ran.results.sph.first_damage));
@@ -256,20 +266,23 @@ static void stop_rules(void **state) {
   free(ran.fragments);
 }
 
-/* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do not see a
- * figure that is ten times too small. */
+/* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
+ * not see a figure that is ten times too small. */
 static void figures_by_hand(void **state) {
   (void)state;
-  const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0", "viscosity.beta=0", /* no heat: u is clamped */
+  const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0",
+                                           "viscosity.beta=0",          /* no heat: u is clamped */
                                            "fidelity.precision=float"), /* momentum that can be seen to be lost */
                                      SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
-                                     SPH_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.6 ms", /* they have stopped each other */
+                                     SPH_CASE("colliding-cylinders", "fidelity.particles=300",
+                                              "stop.end_time=0.6 ms", /* they have stopped each other */
                                               "fidelity.precision=float")};
   for (int c = 0; c < 3; c++) {
     struct sph_run *run;
     struct ran ran = {0};
     struct error error = {0};
-    double energy[2] = {0, 0}, kinetic[2] = {0, 0}, momentum[2][3] = {{0}}, scale[2] = {0, 0}, translation = 0, change = 0, turning[2] = {0, 0};
+    double energy[2] = {0, 0}, kinetic[2] = {0, 0}, momentum[2][3] = {{0}}, scale[2] = {0, 0}, translation = 0,
+           change = 0, turning[2] = {0, 0};
     assert_int_equal(sph_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
     for (int b = 0; b < 2 && c == 0; b++) /* a floor under the density that is reached */
       run->system->solid[b].lowest_density = 0.9 * run->system->solid[b].density;
@@ -284,10 +297,12 @@ static void figures_by_hand(void **state) {
         for (int d = 0; d < 3; d++)
           momentum[k][d] += m * v[d];
         scale[k] += m * sqrt(square);
-        turning[k] += m * (look[k]->x[i] * v[1] - look[k]->y[i] * v[0]); /* the only one that keeps in a slab that repeats along z */
+        turning[k] += m * (look[k]->x[i] * v[1] -
+                           look[k]->y[i] * v[0]); /* the only one that keeps in a slab that repeats along z */
       }
     const struct sph_ledger ledger = sph_system_ledger(run->system);
-    const double input = kinetic[0] + fabs(ledger.work_of_held), drift = fabs(energy[1] - energy[0] - ledger.work_of_held);
+    const double input = kinetic[0] + fabs(ledger.work_of_held),
+                 drift = fabs(energy[1] - energy[0] - ledger.work_of_held);
     if (sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error))
       fail_msg("%s", error.message);
     for (size_t k = 0; k < ran.count; k++)
@@ -296,12 +311,13 @@ static void figures_by_hand(void **state) {
     for (int d = 0; d < 3; d++)
       change += pow(momentum[1][d] - momentum[0][d], 2);
     const struct sph_results *r = &ran.results.sph;
-    print_message("energy_error %.3g, clamped_share %.3g, density_held_share %.3g, momentum_error %.2g\n", ran.outcome.energy_error,
-                  r->clamped_share, r->density_held_share, ran.outcome.momentum_error);
+    print_message("energy_error %.3g, clamped_share %.3g, density_held_share %.3g, momentum_error %.2g\n",
+                  ran.outcome.energy_error, r->clamped_share, r->density_held_share, ran.outcome.momentum_error);
     /* sums in another order: some n^(1/2) roundings of the whole, 1e-14 */
     assert_true(fabs(r->energy_input / input - 1) < 1e-12 && fabs(r->energy.kinetic / kinetic[1] - 1) < 1e-12);
     assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-12 && ran.outcome.energy_error > 1e-7);
-    assert_true(fabs(ran.outcome.kinetic_energy_share - translation / input) < 1e-12 && (c == 2 || translation > 0.01 * input));
+    assert_true(fabs(ran.outcome.kinetic_energy_share - translation / input) < 1e-12 &&
+                (c == 2 || translation > 0.01 * input));
     if (c == 2) {
       const double largest = fmax(scale[0], scale[1]) * sph_run_extent(run);
       assert_true(scale[1] < 0.7 * scale[0] && fabs(ran.outcome.momentum_error / (sqrt(change) / scale[0]) - 1) < 1e-4);
@@ -309,9 +325,11 @@ static void figures_by_hand(void **state) {
     } else if (c == 0) {
       assert_true(ledger.clamped > 0 && fabs(r->clamped_share / (ledger.clamped / input) - 1) < 1e-12);
       const double looks = (double)(sph_system_steps(run->system) * run->start->n);
-      assert_true(ledger.density_held > 0 && fabs(r->density_held_share / ((double)ledger.density_held / looks) - 1) < 1e-12);
-      assert_true(change > 0 && fabs(ran.outcome.momentum_error / (sqrt(change) / fmax(scale[0], scale[1])) - 1) < 1e-4); /* 1e-9 of p, rounded at 1e-14 */
-    } else { /* grips take momentum and do work */
+      assert_true(ledger.density_held > 0 &&
+                  fabs(r->density_held_share / ((double)ledger.density_held / looks) - 1) < 1e-12);
+      assert_true(change > 0 && fabs(ran.outcome.momentum_error / (sqrt(change) / fmax(scale[0], scale[1])) - 1) <
+                                    1e-4); /* 1e-9 of p, rounded at 1e-14 */
+    } else {                               /* grips take momentum and do work */
       assert_true(isnan(ran.outcome.momentum_error) && ledger.work_of_held > 0.001 * input);
       assert_true(r->energy.work_of_held == ledger.work_of_held);
     }
@@ -334,8 +352,10 @@ static void a_share_above_one_is_shown(void **state) {
         run->state.limited[k] = 0;
       run->state.limited[SPH_LIMIT_FORCE] = 3 * sph_system_steps(run->system);
     }
-    if (fault == 2) run->state.limited[SPH_LIMIT_FORCE] = sph_system_steps(run->system); /* all of it */
-    assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL), STATUS_OK);
+    if (fault == 2)
+      run->state.limited[SPH_LIMIT_FORCE] = sph_system_steps(run->system); /* all of it */
+    assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL),
+                     STATUS_OK);
     const double share = ran.results.sph.limited.force;
     assert_true(fault == 0 ? isnan(share) : share == (fault == 1 ? 3 : 1));
     assert_true(fault == 0 || ran.results.sph.limited.courant == 0);
@@ -350,7 +370,8 @@ static void no_angle_of_nowhere(void **state) {
   const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
-  for (size_t i = 0; i < run->system->n; i++) /* all broken: the second fragment is a particle, and one of them is nowhere */
+  for (size_t i = 0; i < run->system->n;
+       i++) /* all broken: the second fragment is a particle, and one of them is nowhere */
     run->system->c.damage[i] = 1;
   run->system->c.x[0] = NAN;
   struct ran ran = {0};
@@ -362,9 +383,12 @@ static void no_angle_of_nowhere(void **state) {
 
 static void seeds_move_flaws(void **state) {
   (void)state;
-  struct sph_inputs inputs = SMALL("stop.end_time=30 us"), poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
-  struct ran a = run_case_run(&sph_engine, &inputs, 1), b = run_case_run(&sph_engine, &inputs, 2), c = run_case_run(&sph_engine, &poisson, 1);
-  assert_true(a.results.sph.mean_damage != b.results.sph.mean_damage && a.results.sph.mean_damage != c.results.sph.mean_damage);
+  struct sph_inputs inputs = SMALL("stop.end_time=30 us"),
+                    poisson = SMALL("stop.end_time=30 us", "fracture.draw=poisson");
+  struct ran a = run_case_run(&sph_engine, &inputs, 1), b = run_case_run(&sph_engine, &inputs, 2),
+             c = run_case_run(&sph_engine, &poisson, 1);
+  assert_true(a.results.sph.mean_damage != b.results.sph.mean_damage &&
+              a.results.sph.mean_damage != c.results.sph.mean_damage);
   assert_true(fabs(a.results.sph.mean_damage - b.results.sph.mean_damage) < 0.3); /* the same body by and large */
   free(a.fragments);
   free(b.fragments);
@@ -391,7 +415,8 @@ static size_t address_space(void) {
   return pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
-/* Lists that outgrow the memory in the middle of a run: an attempt that failed, never a result that is stored for good. */
+/* Lists that outgrow the memory in the middle of a run: an attempt that failed, never a result that is stored for good.
+ */
 static void memory_that_runs_out_is_no_result(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=4000");
@@ -449,9 +474,11 @@ static void empty_layers_are_refused(void **state) {
 /* Matter that flies apart has a larger h, in a slab that repeats no larger one than fits. */
 static void vapour_in_a_slab(void **state) {
   (void)state;
-  const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s", "stop.end_time=10 us");
+  const struct sph_inputs inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "collision.speed=50 km/s",
+                                            "stop.end_time=10 us");
   struct ran ran = run_case_run(&sph_engine, &inputs, 1);
-  if (ran.outcome.state != OUTCOME_COMPLETED) fail_msg("%s", ran.outcome.message);
+  if (ran.outcome.state != OUTCOME_COMPLETED)
+    fail_msg("%s", ran.outcome.message);
   assert_true(ran.outcome.energy_error < 5e-3);
   free(ran.fragments);
 }
@@ -485,8 +512,8 @@ static void extreme(const char *a, const char *b, const char *c, const char *d) 
     assert_true(fine && ran.results.sph.mean_damage == 0);
   if (strcmp(a, "impact.speed=70 km/s") == 0) /* the fastest of impacts on bodies without gravity is no odd case */
     assert_true((fine || !finished) && o->energy_error < 5e-3);
-  print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state, (long long)o->steps,
-                o->largest_fraction, o->energy_error, o->message);
+  print_message("%s %s %s %s: state %d, %lld steps, M_1/M %.3f, energy %.2g %s\n", a, b, c, d, o->state,
+                (long long)o->steps, o->largest_fraction, o->energy_error, o->message);
   free(ran.fragments);
 }
 
@@ -507,18 +534,24 @@ static void ends_of_the_ranges(void **state) {
   extreme("impact.speed=1e6 m/s", NOTHING, NOTHING, NOTHING);
   extreme("target.radius=1e-6", "projectile.radius=2e-7", NOTHING, NOTHING);
   extreme("target.radius=1e6", "projectile.radius=2e5", NOTHING, NOTHING);
-  const char *const m[] = {"target.material.weibull.m=1", "target.material.weibull.m=8.5", "target.material.weibull.m=200"};
-  const char *const k[] = {"target.material.weibull.k=1", "target.material.weibull.k=1e100", "target.material.weibull.k=1e200"};
+  const char *const m[] = {"target.material.weibull.m=1", "target.material.weibull.m=8.5",
+                           "target.material.weibull.m=200"};
+  const char *const k[] = {"target.material.weibull.k=1", "target.material.weibull.k=1e100",
+                           "target.material.weibull.k=1e200"};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       extreme(m[i], k[j], NOTHING, NOTHING);
   extreme("target.radius=1e6", "projectile.radius=2e5", m[2], k[2]);
   extreme("target.radius=1e-6", "projectile.radius=2e-7", m[0], k[0]);
   extreme("fidelity.particles=2", "projectile.radius=3 cm", NOTHING, NOTHING);
-  struct sph_inputs alone = run_case(scene, (const char *const[]){"fidelity.particles=1", "fidelity.projectile_spacing=1", "projectile.radius=3 cm", NULL}).sph;
+  struct sph_inputs alone = run_case(scene,
+                                     (const char *const[]){"fidelity.particles=1", "fidelity.projectile_spacing=1",
+                                                           "projectile.radius=3 cm", NULL})
+                                .sph;
   void *run = NULL;
   struct error error = {0};
-  if (sph_engine.prepare(&alone, 1, &run, &error)) fail_msg("one particle against another: %s", error.message);
+  if (sph_engine.prepare(&alone, 1, &run, &error))
+    fail_msg("one particle against another: %s", error.message);
   sph_engine.free(run);
   extreme("target.material.density=1e-3", NOTHING, NOTHING, NOTHING);
   extreme("target.material.tillotson.A=1e15", NOTHING, NOTHING, NOTHING);

@@ -1,6 +1,6 @@
-/* Files of particles: what is written is what is read, by HDF5's own calls and by ours; their layout is the one that VTK and
- * ParaView open; files cut short, changed or made by others are refused. Pictures from them. With a folder as argument the
- * pictures stay there, to be looked at. */
+/* Files of particles: what is written is what is read, by HDF5's own calls and by ours; their layout is the one that
+ * VTK and ParaView open; files cut short, changed or made by others are refused. Pictures from them. With a folder as
+ * argument the pictures stay there, to be looked at. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -16,13 +16,13 @@
 #include <cairo.h>
 #include <hdf5.h>
 
-#include "analysis/picture.h"
+#include "analysis/pictures/picture.h"
 #include "engine/body.h"
 #include "engine/cloud.h"
 #include "engine/random.h"
-#include "engine/sph/bodies.h"
-#include "engine/sph/inputs.h"
-#include "engine/sph/particle_fields.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/observe/particle_columns.h"
+#include "engine/sph/scene/inputs.h"
 #include "tests/sweep.h"
 
 static char folder[256];
@@ -34,22 +34,32 @@ static const char *at(const char *name) {
   return here;
 }
 
-/* A shattered sphere: an undamaged core, shells of spalls, dust between and at the place of the impact, a projectile. */
+/* A shattered sphere: an undamaged core, shells of spalls, dust between and at the place of the impact, a projectile.
+ */
 static struct sph_particles *shattered(double count) {
-  struct sph_body body[2] = {{.shape = {.kind = SPH_SHAPE_SPHERE, .radius = 0.03}, .density = 2700, .h_over_spacing = NAN},
-                             {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = 0.004, .centre = {0.012, 0, 0.041}}, .density = 1185, .h_over_spacing = NAN}};
+  struct sph_body body[2] = {{.shape = {.kind = SPH_SHAPE_SPHERE, .radius = 0.03},
+                              .density = 2700,
+                              .h_over_spacing = NAN},
+                             {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = 0.004, .centre = {0.012, 0, 0.041}},
+                              .density = 1185,
+                              .h_over_spacing = NAN}};
   body[0].lattice = (struct sph_lattice){.kind = SPH_LATTICE_HEXAGONAL, .particles = count};
   body[1].lattice = (struct sph_lattice){.kind = SPH_LATTICE_CUBIC, .particles = count / 60, .body = 1};
   struct sph_particles *p;
   struct sph_range range[2];
   struct error error = {0};
-  if (sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION, &p, range, &error)) fail_msg("%s", error.message);
+  if (sph_bodies_make(body, 2, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION, &p, range, &error))
+    fail_msg("%s", error.message);
   for (size_t i = 0; i < p->n; i++) {
-    double r[3] = {p->x[i] / 0.03, p->y[i] / 0.03, p->z[i] / 0.03}, size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-    double cells = sin(9 * r[0] + 1) + sin(8 * r[1]) + sin(9 * r[2] + 2), hit = hypot(hypot(r[0] - 0.3, r[1]), r[2] - 0.95);
+    double r[3] = {p->x[i] / 0.03, p->y[i] / 0.03, p->z[i] / 0.03},
+           size = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+    double cells = sin(9 * r[0] + 1) + sin(8 * r[1]) + sin(9 * r[2] + 2),
+           hit = hypot(hypot(r[0] - 0.3, r[1]), r[2] - 0.95);
     double crack = fabs(size - 0.66) < 0.05 || fabs(cells) < 0.3 ? 1 : 0.3 * random_draw(4, 900, i, 0);
-    if (size < 0.61) crack = 0.1 * random_draw(4, 900, i, 0);
-    if (hit < 0.55) crack = 1;
+    if (size < 0.61)
+      crack = 0.1 * random_draw(4, 900, i, 0);
+    if (hit < 0.55)
+      crack = 1;
     p->damage_cbrt[i] = p->body[i] ? 0 : cbrt(crack);
     p->pressure[i] = p->body[i] ? 2e9 : 3e8 * cos(6 * size) * exp(-3 * hit) - 5e6 * (size < 0.6);
     p->energy[i] = 1e5 * exp(-5 * hit);
@@ -68,27 +78,27 @@ static struct sph_particles *shattered(double count) {
   return p;
 }
 
-static struct sph_pieces pieces_of(const struct sph_particles *p) {
-  const struct sph_pieces_body bodies[2] = {{false, NAN}, {true, NAN}};
-  struct sph_pieces_options options = sph_pieces_default();
-  struct sph_pieces pieces;
+static struct sph_fragments pieces_of(const struct sph_particles *p) {
+  const struct sph_fragments_body bodies[2] = {{false, NAN}, {true, NAN}};
+  struct sph_fragments_options options = sph_fragments_default();
+  struct sph_fragments pieces;
   options.link_length = 1.2;
   options.bodies = bodies;
   options.body_count = 2;
-  assert_int_equal(sph_pieces_find(p, &options, &pieces, NULL), STATUS_OK);
+  assert_int_equal(sph_fragments_find(p, &options, &pieces, NULL), STATUS_OK);
   return pieces;
 }
 
-static status write_file(const char *path, const struct sph_particles *p, const struct sph_pieces *pieces, const uint32_t *flaws,
-                         struct error *error) {
+static status write_file(const char *path, const struct sph_particles *p, const struct sph_fragments *pieces,
+                         const uint32_t *flaws, struct error *error) {
   static struct sph_inputs inputs;
-  struct fields_file *file;
+  struct snapshot_file *file;
   field_defaults(&sph_inputs, &inputs);
-  assert_int_equal(fields_file_open("sph", "what it models", 3, 7, &sph_inputs, &inputs, &file, error), STATUS_OK);
-  fields_file_real(file, "run", "time", 2.5e-5);
-  sph_particle_fields_add(file, p, pieces, flaws);
-  status code = fields_file_save(file, path, error);
-  fields_file_close(file);
+  assert_int_equal(snapshot_file_open("sph", "what it models", 3, 7, &sph_inputs, &inputs, &file, error), STATUS_OK);
+  snapshot_file_real(file, "run", "time", 2.5e-5);
+  sph_particle_columns_add(file, p, pieces, flaws);
+  status code = snapshot_file_save(file, path, error);
+  snapshot_file_close(file);
   return code;
 }
 
@@ -107,14 +117,15 @@ static void read_doubles(hid_t file, const char *name, size_t rows, size_t width
 static void what_is_written_is_what_is_read(void **state) {
   (void)state;
   struct sph_particles *p = shattered(6000);
-  struct sph_pieces pieces = pieces_of(p);
+  struct sph_fragments pieces = pieces_of(p);
   uint32_t *flaws = malloc(p->n * sizeof *flaws);
   size_t n = p->n;
   double *values = malloc(9 * (n + 1) * sizeof *values);
   for (size_t i = 0; i < n; i++)
     flaws[i] = (uint32_t)(i % 17);
   struct error error = {0};
-  if (write_file(at("a.hdf"), p, &pieces, flaws, &error)) fail_msg("%s", error.message);
+  if (write_file(at("a.hdf"), p, &pieces, flaws, &error))
+    fail_msg("%s", error.message);
   hid_t file = H5Fopen(at("a.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT);
   assert_true(file >= 0);
   read_doubles(file, "VTKHDF/Points", n, 3, values);
@@ -126,15 +137,20 @@ static void what_is_written_is_what_is_read(void **state) {
   const struct {
     const char *name;
     const double *column;
-  } scalars[] = {{"mass", p->mass},         {"density", p->density}, {"energy", p->energy},
-                 {"pressure", p->pressure}, {"smoothing_length", p->h}, {"distention", p->distention},
+  } scalars[] = {{"mass", p->mass},
+                 {"density", p->density},
+                 {"energy", p->energy},
+                 {"pressure", p->pressure},
+                 {"smoothing_length", p->h},
+                 {"distention", p->distention},
                  {"rest_distention", p->rest_distention}};
   for (size_t k = 0; k < sizeof scalars / sizeof *scalars; k++) {
     char name[100];
     snprintf(name, sizeof name, "VTKHDF/PointData/%s", scalars[k].name);
     read_doubles(file, name, n, 0, values);
     assert_memory_equal(values, scalars[k].column, n * sizeof *values);
-    assert_true(H5Aexists_by_name(file, name, "units", H5P_DEFAULT) > 0 && H5Aexists_by_name(file, name, "long_name", H5P_DEFAULT) > 0);
+    assert_true(H5Aexists_by_name(file, name, "units", H5P_DEFAULT) > 0 &&
+                H5Aexists_by_name(file, name, "long_name", H5P_DEFAULT) > 0);
   }
   read_doubles(file, "VTKHDF/PointData/damage", n, 0, values);
   for (size_t i = 0; i < n; i++)
@@ -159,7 +175,8 @@ static void what_is_written_is_what_is_read(void **state) {
   H5Fclose(file);
 
   struct cloud cloud;
-  if (cloud_read(at("a.hdf"), &cloud, &error)) fail_msg("%s", error.message);
+  if (cloud_read(at("a.hdf"), &cloud, &error))
+    fail_msg("%s", error.message);
   assert_true(cloud_in_file(at("a.hdf")));
   assert_int_equal(cloud.n, n);
   assert_string_equal(cloud.engine, "sph");
@@ -184,7 +201,7 @@ static void what_is_written_is_what_is_read(void **state) {
   struct body body; /* its cells are no polygons */
   assert_int_equal(body_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
   cloud_clear(&cloud);
-  sph_pieces_clear(&pieces);
+  sph_fragments_clear(&pieces);
   sph_particles_free(p);
   free(flaws);
   free(values);
@@ -195,9 +212,10 @@ static void what_is_written_is_what_is_read(void **state) {
 static void layout_is_what_vtk_reads(void **state) {
   (void)state;
   struct sph_particles *p = shattered(6000); /* enough for the compressed columns */
-  struct sph_pieces pieces = pieces_of(p);
+  struct sph_fragments pieces = pieces_of(p);
   assert_int_equal(write_file(at("v.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
-  hid_t file = H5Fopen(at("v.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT), attribute = H5Aopen_by_name(file, "VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
+  hid_t file = H5Fopen(at("v.hdf"), H5F_ACC_RDONLY, H5P_DEFAULT),
+        attribute = H5Aopen_by_name(file, "VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
   hid_t type = H5Aget_type(attribute);
   char text[32] = "";
   assert_int_equal(H5Tis_variable_str(type), 0);
@@ -237,7 +255,7 @@ static void layout_is_what_vtk_reads(void **state) {
   H5Dclose(set);
   H5Fclose(file);
   free(values);
-  sph_pieces_clear(&pieces);
+  sph_fragments_clear(&pieces);
   sph_particles_free(p);
   unlink(at("v.hdf"));
 }
@@ -253,15 +271,18 @@ static void copy_file(const char *from, const char *to, long keep) {
 }
 
 /* Replaces a data set of a good file by another. */
-static void replace(const char *path, const char *name, hid_t type, int rank, hsize_t rows, hsize_t width, const void *values) {
+static void replace(const char *path, const char *name, hid_t type, int rank, hsize_t rows, hsize_t width,
+                    const void *values) {
   hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT), space, layout = H5Pcreate(H5P_DATASET_CREATE);
   hsize_t size[2] = {rows, width}, chunk[2] = {1000, width ? width : 1};
   H5Ldelete(file, name, H5P_DEFAULT);
   space = H5Screate_simple(rank, size, NULL);
-  if (!values) H5Pset_chunk(layout, rank, chunk); /* promises much, stores nothing */
+  if (!values)
+    H5Pset_chunk(layout, rank, chunk); /* promises much, stores nothing */
   hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
   assert_true(set >= 0);
-  if (values) H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
+  if (values)
+    H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values);
   H5Dclose(set);
   H5Pclose(layout);
   H5Sclose(space);
@@ -271,7 +292,7 @@ static void replace(const char *path, const char *name, hid_t type, int rank, hs
 static void damaged_and_foreign_files_are_refused(void **state) {
   (void)state;
   struct sph_particles *p = shattered(500);
-  struct sph_pieces pieces = pieces_of(p);
+  struct sph_fragments pieces = pieces_of(p);
   struct cloud cloud;
   struct error error = {0};
   size_t n = p->n;
@@ -309,7 +330,8 @@ static void damaged_and_foreign_files_are_refused(void **state) {
 #define REFUSED(words)                                                                                                 \
   do {                                                                                                                 \
     assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_CONTENT);                                                 \
-    if (!strstr(error.message, words)) fail_msg("not '%s': %s", words, error.message);                                 \
+    if (!strstr(error.message, words))                                                                                 \
+      fail_msg("not '%s': %s", words, error.message);                                                                  \
     copy_file(good, bad, (long)info.st_size);                                                                          \
   } while (0)
   copy_file(good, bad, (long)info.st_size);
@@ -348,7 +370,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_MISSING);
   assert_int_equal(write_file(at("no/such/folder/x.hdf"), p, &pieces, NULL, &error), STATUS_IO);
   unlink(good);
-  sph_pieces_clear(&pieces);
+  sph_fragments_clear(&pieces);
   sph_particles_free(p);
 }
 
@@ -357,7 +379,8 @@ static unsigned char pixel(const char *path, double x, double y) { /* mean brigh
   assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
   int stride = cairo_image_surface_get_stride(surface), sum = 0;
   const unsigned char *data = cairo_image_surface_get_data(surface);
-  int column = (int)(x * cairo_image_surface_get_width(surface)), line = (int)(y * cairo_image_surface_get_height(surface));
+  int column = (int)(x * cairo_image_surface_get_width(surface)),
+      line = (int)(y * cairo_image_surface_get_height(surface));
   for (int j = -4; j <= 4; j++)
     for (int i = -4; i <= 4; i++)
       sum += data[(line + j) * stride + 4 * (column + i) + 1];
@@ -368,35 +391,48 @@ static unsigned char pixel(const char *path, double x, double y) { /* mean brigh
 static void pictures(void **state) {
   bool keep = *(bool *)*state;
   struct sph_particles *p = shattered(keep ? 60000 : 8000);
-  struct sph_pieces pieces = pieces_of(p);
+  struct sph_fragments pieces = pieces_of(p);
   struct error error = {0};
   assert_int_equal(write_file(at("p.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
   struct cloud cloud;
   assert_int_equal(cloud_read(at("p.hdf"), &cloud, &error), STATUS_OK);
-  struct picture_cloud drawn = {.n = cloud.n, .position = (const double(*)[3])cloud.position, .size = cloud.size, .mass = cloud.mass,
-                                .fragment = cloud.fragment, .part = cloud.part};
+  struct picture_cloud drawn = {.n = cloud.n,
+                                .position = (const double(*)[3])cloud.position,
+                                .size = cloud.size,
+                                .mass = cloud.mass,
+                                .fragment = cloud.fragment,
+                                .part = cloud.part};
   char numbers[200], unit[32], meaning[128];
   picture_particles_numbers(&drawn, numbers, sizeof numbers);
   assert_non_null(strstr(numbers, "of the mass"));
-  struct picture_look look = {.view = PICTURE_CUT, .axis = 1, .plane = 0, .title = "A shattered sphere", .subtitle = numbers};
+  struct picture_look look = {.view = PICTURE_CUT,
+                              .axis = 1,
+                              .plane = 0,
+                              .title = "A shattered sphere",
+                              .subtitle = numbers};
   const struct {
     const char *file, *column;
     enum picture_view view;
     int axis;
-  } wanted[] = {{"cut-damage.png", "damage", PICTURE_CUT, 1},    {"cut-pressure.png", "pressure", PICTURE_CUT, 1},
-                {"cut-fragment.png", NULL, PICTURE_CUT, 1},      {"apart.png", NULL, PICTURE_APART, 1},
-                {"outside-damage.png", "damage", PICTURE_OUTSIDE, 1}, {"cut-distention.png", "distention", PICTURE_CUT, 2},
+  } wanted[] = {{"cut-damage.png", "damage", PICTURE_CUT, 1},
+                {"cut-pressure.png", "pressure", PICTURE_CUT, 1},
+                {"cut-fragment.png", NULL, PICTURE_CUT, 1},
+                {"apart.png", NULL, PICTURE_APART, 1},
+                {"outside-damage.png", "damage", PICTURE_OUTSIDE, 1},
+                {"cut-distention.png", "distention", PICTURE_CUT, 2},
                 {"outside.svg", NULL, PICTURE_CUT, 0}};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     double *column = NULL;
     if (wanted[k].column)
-      assert_int_equal(cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, meaning, &error), STATUS_OK);
+      assert_int_equal(cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, meaning, &error),
+                       STATUS_OK);
     drawn.value = column;
     look.view = wanted[k].view;
     look.axis = wanted[k].axis;
     look.quantity = wanted[k].column;
     look.unit = unit;
-    if (picture_particles(at(wanted[k].file), 900, &drawn, &look, &error)) fail_msg("%s", error.message);
+    if (picture_particles(at(wanted[k].file), 900, &drawn, &look, &error))
+      fail_msg("%s", error.message);
     free(column);
   }
   drawn.value = NULL;
@@ -416,7 +452,7 @@ static void pictures(void **state) {
   for (size_t k = 0; !keep && k < sizeof wanted / sizeof *wanted; k++)
     assert_int_equal(unlink(at(wanted[k].file)), 0);
   cloud_clear(&cloud);
-  sph_pieces_clear(&pieces);
+  sph_fragments_clear(&pieces);
   sph_particles_free(p);
   unlink(at("p.hdf"));
 }
@@ -425,7 +461,8 @@ int main(int argc, char **argv) {
   static bool keep;
   keep = argc > 1;
   snprintf(folder, sizeof folder, "%s", keep ? argv[1] : "/tmp/clast_sph_fields_XXXXXX");
-  if (!keep && !mkdtemp(folder)) return 1;
+  if (!keep && !mkdtemp(folder))
+    return 1;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_written_is_what_is_read),
       cmocka_unit_test(layout_is_what_vtk_reads),
@@ -433,6 +470,7 @@ int main(int argc, char **argv) {
       cmocka_unit_test_prestate(pictures, &keep),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  if (!keep && sweep(folder)) return 1;
+  if (!keep && sweep(folder))
+    return 1;
   return failed;
 }

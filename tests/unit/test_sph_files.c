@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include "engine/cloud.h"
-#include "engine/sph/run.h"
+#include "engine/sph/run/run.h"
 
 static char folder[] = "/tmp/clast_sph_files_XXXXXX";
 
@@ -31,12 +31,16 @@ static struct sph_inputs impact(void) {
 
 static herr_t described(hid_t at, const char *name, const H5O_info_t *info, void *count) {
   const char *const own[] = {"VTKHDF/Connectivity", "VTKHDF/Offsets", "VTKHDF/Types", "VTKHDF/NumberOf"};
-  if (info->type != H5O_TYPE_DATASET) return 0;
+  if (info->type != H5O_TYPE_DATASET)
+    return 0;
   for (int k = 0; k < 4; k++)
-    if (strncmp(name, own[k], strlen(own[k])) == 0) return 0;
+    if (strncmp(name, own[k], strlen(own[k])) == 0)
+      return 0;
   hid_t set = H5Dopen2(at, name, H5P_DEFAULT), type = H5Dget_type(set);
-  if (H5Aexists(set, "long_name") <= 0) fail_msg("/%s has no long_name", name);
-  if (H5Tget_class(type) != H5T_STRING && H5Aexists(set, "units") <= 0) fail_msg("/%s has no units", name);
+  if (H5Aexists(set, "long_name") <= 0)
+    fail_msg("/%s has no long_name", name);
+  if (H5Tget_class(type) != H5T_STRING && H5Aexists(set, "units") <= 0)
+    fail_msg("/%s has no units", name);
   H5Tclose(type);
   H5Dclose(set);
   ++*(size_t *)count;
@@ -61,9 +65,11 @@ static void fields_hold_what_the_run_reports(void **state) {
   snprintf(path, sizeof path, "%s", in_folder("fields.hdf"));
   assert_int_equal(sph_engine.prepare(&inputs, 5, &handle, NULL), STATUS_OK);
   struct sph_run *run = handle;
-  if (sph_engine.write_fields(run, path, &error)) fail_msg("before the first step: %s", error.message);
+  if (sph_engine.write_snapshot(run, path, &error))
+    fail_msg("before the first step: %s", error.message);
   struct ran ran = run_case_end(&sph_engine, run, 1000);
-  if (sph_engine.write_fields(run, path, &error)) fail_msg("%s", error.message);
+  if (sph_engine.write_snapshot(run, path, &error))
+    fail_msg("%s", error.message);
   hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   size_t datasets = 0;
   assert_true(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, described, &datasets, H5O_INFO_BASIC) >= 0);
@@ -72,7 +78,8 @@ static void fields_hold_what_the_run_reports(void **state) {
   assert_true(scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
   H5Fclose(file);
   struct cloud cloud;
-  if (cloud_read(path, &cloud, &error)) fail_msg("%s", error.message);
+  if (cloud_read(path, &cloud, &error))
+    fail_msg("%s", error.message);
   assert_int_equal(cloud.n, run->start->n);
   assert_true(cloud.time == ran.outcome.time && cloud.seed == 5);
   double *column, mass = 0, dust = 0, flaws = 0;
@@ -80,10 +87,12 @@ static void fields_hold_what_the_run_reports(void **state) {
   double *heaviest = calloc(cloud.n, sizeof *heaviest);
   for (size_t i = 0; i < cloud.n; i++) {
     assert_int_equal(cloud.part[i] == 3, i >= run->targets); /* the projectile belongs to nothing */
-    if (cloud.fragment[i] < 0) continue;
+    if (cloud.fragment[i] < 0)
+      continue;
     mass += cloud.mass[i];
     heaviest[cloud.fragment[i]] += cloud.mass[i];
-    if (cloud.part[i] == 2) dust += cloud.mass[i];
+    if (cloud.part[i] == 2)
+      dust += cloud.mass[i];
   }
   assert_true(fabs(heaviest[0] / mass - ran.outcome.largest_fraction) < 1e-12); /* sums in another order */
   assert_true(dust / mass <= ran.outcome.dust_fraction + 1e-12);

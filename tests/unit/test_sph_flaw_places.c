@@ -10,8 +10,8 @@
 #include <cmocka.h>
 
 #include "engine/random.h"
-#include "engine/sph/flaw_places.h"
-#include "engine/sph/nearest.h"
+#include "engine/sph/body/flaw_places.h"
+#include "engine/sph/body/kd_tree.h"
 
 static struct sph_body sphere(double particles) {
   return (struct sph_body){.shape = {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 0.03},
@@ -31,7 +31,8 @@ static struct sph_flaws *flaws_of(const struct sph_body *body, const struct sph_
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .draw = draw, .seed = seed};
   struct sph_flaws *flaws = NULL;
   struct error error = {0};
-  if (sph_flaw_places_make(&law, &body->shape, p, range, middle, &flaws, &error)) fail_msg("%s", error.message);
+  if (sph_flaw_places_make(&law, &body->shape, p, range, middle, &flaws, &error))
+    fail_msg("%s", error.message);
   return flaws;
 }
 
@@ -62,22 +63,22 @@ static void nearest_is_the_nearest(void **state) {
         y[i] = kind == 0 ? random_draw(1, 1, 2, i) : kind == 1 ? (double)(i / 9 % 9) : 3;
         z[i] = kind == 0 ? pow(random_draw(1, 1, 3, i), 4) : kind == 1 ? (double)(i / 81) : 2;
       }
-      struct sph_nearest *tree = NULL;
-      assert_int_equal(sph_nearest_create(n, x, y, z, &tree, NULL), STATUS_OK);
+      struct sph_kd_tree *tree = NULL;
+      assert_int_equal(sph_kd_tree_create(n, x, y, z, &tree, NULL), STATUS_OK);
       for (uint64_t k = 0; k < 300; k++) {
         double q[3] = {random_draw(2, 1, 1, k), random_draw(2, 1, 2, k), random_draw(2, 1, 3, k)};
         for (int d = 0; d < 3 && kind; d++)
           q[d] = floor(q[d] * 20) / 2 - 0.5;
-        assert_int_equal(sph_nearest_find(tree, q), brute(n, x, y, z, q, SIZE_MAX));
-        assert_int_equal(sph_nearest_other(tree, q, k % n), brute(n, x, y, z, q, k % n));
+        assert_int_equal(sph_kd_tree_find(tree, q), brute(n, x, y, z, q, SIZE_MAX));
+        assert_int_equal(sph_kd_tree_other(tree, q, k % n), brute(n, x, y, z, q, k % n));
         const double radius = kind ? 2 : 0.2;
         size_t count = 0;
         for (size_t i = 0; i < n; i++)
           count += pow(q[0] - x[i], 2) + pow(q[1] - y[i], 2) + pow(q[2] - z[i], 2) <= radius * radius;
-        assert_int_equal(sph_nearest_within(tree, q, radius, within, MOST), count);
-        assert_int_equal(sph_nearest_within(tree, q, radius, within, 1), count);
+        assert_int_equal(sph_kd_tree_within(tree, q, radius, within, MOST), count);
+        assert_int_equal(sph_kd_tree_within(tree, q, radius, within, 1), count);
       }
-      sph_nearest_free(tree);
+      sph_kd_tree_free(tree);
     }
 }
 
@@ -257,11 +258,11 @@ static void ends_have_none(void **state) {
  * room). */
 static void graded_particles_have_their_weakest(void **state) {
   (void)state;
-  const struct sph_body body = {
-      .shape = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}},
-      .lattice = {.particles = NAN, .grading = {.fine = 2e-3, .point = {0, 0, 0.1}, .radius = 8e-3, .growth = 0.12}},
-      .density = 2940,
-      .h_over_spacing = NAN};
+  const struct sph_body body =
+      {.shape = {.kind = SPH_SHAPE_BOX, .side = {0.2, 0.2, 0.2}},
+       .lattice = {.particles = NAN, .grading = {.fine = 2e-3, .point = {0, 0, 0.1}, .radius = 8e-3, .growth = 0.12}},
+       .density = 2940,
+       .h_over_spacing = NAN};
   struct sph_range range;
   struct sph_particles *p = make(&body, 0, &range);
   double most = 0, sum[4] = {0};

@@ -1,4 +1,5 @@
-/* Explicit flaws against the Weibull law: ranked thresholds exactly, poisson by its known scatter, extremes without overflow. */
+/* Explicit flaws against the Weibull law: ranked thresholds exactly, poisson by its known scatter, extremes without
+ * overflow. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -58,8 +59,8 @@ static void count_of_flaws(void **state) {
   assert_true(fabs(sum / seeds - mean) < 5 * deviation / sqrt(seeds));
 }
 
-/* Weakest of a Poisson draw is (E/kV)^(1/m), E a unit exponential: CV from gamma functions, 0.140 at m = 8.5, 0.077 at 16,
- * 0.363 at 3. 4000 seeds give the CV to about 1.5 %; 6 % is four times that. `ranked` has none at all. */
+/* Weakest of a Poisson draw is (E/kV)^(1/m), E a unit exponential: CV from gamma functions, 0.140 at m = 8.5, 0.077 at
+ * 16, 0.363 at 3. 4000 seeds give the CV to about 1.5 %; 6 % is four times that. `ranked` has none at all. */
 static void scatter_of_the_weakest(void **state) {
   (void)state;
   const double ms[] = {8.5, 16, 3};
@@ -84,13 +85,15 @@ static void scatter_of_the_weakest(void **state) {
   sph_flaws_free(b);
 }
 
-/* Every m from 1 to 200 and k from 1 to 1e200 that a user may type: ln eps_j = (ln j - ln k - ln V)/m to rounding, against long double. */
+/* Every m from 1 to 200 and k from 1 to 1e200 that a user may type: ln eps_j = (ln j - ln k - ln V)/m to rounding,
+ * against long double. */
 static void extremes_keep_the_law(void **state) {
   (void)state;
   const double ms[] = {1, 3, 8.5, 57, 200}, ks[] = {1, 1e10, 1e34, 1e65, 1e200};
   for (int i = 0; i < 5; i++)
     for (int j = 0; j < 5; j++) {
-      struct sph_flaws *poisson = make(ms[i], ks[j], SPH_FLAWS_POISSON, 1, 50), *flaws = make(ms[i], ks[j], SPH_FLAWS_RANKED, 1, 50);
+      struct sph_flaws *poisson = make(ms[i], ks[j], SPH_FLAWS_POISSON, 1, 50),
+                       *flaws = make(ms[i], ks[j], SPH_FLAWS_RANKED, 1, 50);
       for (size_t f = 0; f < poisson->count; f++)
         assert_true(isfinite(poisson->log_strain[f]));
       qsort(flaws->log_strain, flaws->count, sizeof *flaws->log_strain, ascending);
@@ -103,10 +106,10 @@ static void extremes_keep_the_law(void **state) {
     }
 }
 
-/* Both draws obey n(eps) = k eps^m: flaws below eps in volume V are k V eps^m exactly (ranked) or a Poisson variable of that mean
- * and variance (poisson); and which particle a flaw goes to is uniform. 2000 seeds: a mean of M is known to sqrt(M/2000), a
- * variance to M sqrt(2/2000) and a bit for the Poisson's own kurtosis; five standard errors. The body is large enough (N = 300, hence
- * about 1900 flaws) that the end of the draw never comes before the eps looked at. */
+/* Both draws obey n(eps) = k eps^m: flaws below eps in volume V are k V eps^m exactly (ranked) or a Poisson variable of
+ * that mean and variance (poisson); and which particle a flaw goes to is uniform. 2000 seeds: a mean of M is known to
+ * sqrt(M/2000), a variance to M sqrt(2/2000) and a bit for the Poisson's own kurtosis; five standard errors. The body
+ * is large enough (N = 300, hence about 1900 flaws) that the end of the draw never comes before the eps looked at. */
 static void draws_obey_the_law(void **state) {
   (void)state;
   enum { SEEDS = 2000, N = 300 };
@@ -136,7 +139,8 @@ static void draws_obey_the_law(void **state) {
       chi2 += ((double)in_particle[i] - share) * ((double)in_particle[i] - share) / share;
     }
   }
-  /* four times N-1 degrees of freedom, each with mean 1 and variance 2 (the four nest, at worst adding up: s.d. 4 sqrt(2(N-1))) */
+  /* four times N-1 degrees of freedom, each with mean 1 and variance 2 (the four nest, at worst adding up: s.d. 4
+   * sqrt(2(N-1))) */
   assert_true(fabs(chi2 - 4 * (N - 1)) < 5 * 4 * sqrt(2.0 * (N - 1)));
   struct sph_flaws *ranked = make(m, k, SPH_FLAWS_RANKED, 11, N);
   for (int e = 0; e < 4; e++) {
@@ -148,9 +152,9 @@ static void draws_obey_the_law(void **state) {
   sph_flaws_free(ranked);
 }
 
-/* Flaws per particle: one body of N = 20 000 particles holds about N (ln N + 0.577) flaws, spread at random over particles but for
- * the last that ends the draw: mean lambda and variance lambda up to 5 s.e. (of the variance: lambda sqrt(2/N)), lowest 1 by
- * construction. */
+/* Flaws per particle: one body of N = 20 000 particles holds about N (ln N + 0.577) flaws, spread at random over
+ * particles but for the last that ends the draw: mean lambda and variance lambda up to 5 s.e. (of the variance: lambda
+ * sqrt(2/N)), lowest 1 by construction. */
 static void counts_per_particle(void **state) {
   (void)state;
   const size_t n = 20000;
@@ -185,9 +189,12 @@ static void owner_that_starves_a_particle_is_refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ranked_is_the_law),    cmocka_unit_test(count_of_flaws),
-      cmocka_unit_test(scatter_of_the_weakest), cmocka_unit_test(extremes_keep_the_law),
-      cmocka_unit_test(draws_obey_the_law),   cmocka_unit_test(counts_per_particle),
+      cmocka_unit_test(ranked_is_the_law),
+      cmocka_unit_test(count_of_flaws),
+      cmocka_unit_test(scatter_of_the_weakest),
+      cmocka_unit_test(extremes_keep_the_law),
+      cmocka_unit_test(draws_obey_the_law),
+      cmocka_unit_test(counts_per_particle),
       cmocka_unit_test(owner_that_starves_a_particle_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,8 +3,8 @@
 
 enum { RESULTS_VERSION = 5 };
 #define GOLDEN_SPHERE "11c3db2817bfbc5b886464fc6a6ea8c9"
-#define GOLDEN_ROD "8c38a318f473131409e68ca9404982a8"
-#define GOLDEN_RINGS "afef6015b2971ed38d03ba0a44e3a789"
+#define GOLDEN_ROD    "8c38a318f473131409e68ca9404982a8"
+#define GOLDEN_RINGS  "afef6015b2971ed38d03ba0a44e3a789"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {
   struct ran ran = run_case_run(&sph_engine, inputs, 11);
@@ -16,11 +16,14 @@ static void bits_change_only_with_the_version(void **state) {
   (void)state;
   golden_version(&sph_engine, RESULTS_VERSION);
   struct sph_inputs sphere = SPH_CASE("basalt-sphere", "fidelity.particles=500", "fidelity.projectile_spacing=0.7",
-                                          "stop.end_time=30 us", "fracture.draw=poisson");
-  struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=1200", "stop.end_time=20 us", "fidelity.flaws=compact",
-                                       "target.lattice=irregular", "method.gradient_correction=true");
+                                      "stop.end_time=30 us", "fracture.draw=poisson");
+  struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=1200", "stop.end_time=20 us",
+                                   "fidelity.flaws=compact", "target.lattice=irregular",
+                                   "method.gradient_correction=true");
   struct sph_inputs rings = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "stop.end_time=0.3 ms");
-  assert_int_equal(changed("sphere", &sphere, GOLDEN_SPHERE) + changed("rod", &rod, GOLDEN_ROD) + changed("rings", &rings, GOLDEN_RINGS), 0);
+  assert_int_equal(changed("sphere", &sphere, GOLDEN_SPHERE) + changed("rod", &rod, GOLDEN_ROD) +
+                       changed("rings", &rings, GOLDEN_RINGS),
+                   0);
 }
 
 int main(int count, char **arguments) {

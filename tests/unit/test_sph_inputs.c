@@ -8,12 +8,14 @@
 #include <cmocka.h>
 
 #include "engine/builtin.h"
-#include "engine/sph/inputs.h"
-#include "engine/sph/materials.h"
-#include "engine/sph/scale.h"
+#include "engine/sph/material/materials.h"
+#include "engine/sph/scene/derived.h"
+#include "engine/sph/scene/inputs.h"
 #include "schemas/document.h"
 
-static void complete(void *inputs, const bool *given) { sph_inputs_complete(inputs, given); }
+static void complete(void *inputs, const bool *given) {
+  sph_inputs_complete(inputs, given);
+}
 
 struct read_scene {
   struct sph_inputs inputs;
@@ -99,7 +101,7 @@ static void every_material_is_sound(void **state) {
     char key[100];
     snprintf(key, sizeof key, "\nmaterial: %s\n", name); /* the document says its own name */
     assert_non_null(strstr(sph_materials_text(name), key));
-    double nu = sph_scale_poisson_ratio(&m);
+    double nu = sph_derived_poisson_ratio(&m);
     assert_true(nu > 0 && nu < 0.5);
     assert_true(isnan(m.weibull.m) == isnan(m.weibull.k));
     /* Something must limit tension, or the cold curve reaches -A: flaws or a limit. Rubber is elastic on purpose. */
@@ -110,11 +112,12 @@ static void every_material_is_sound(void **state) {
   assert_int_equal(sph_materials_load("basalt", &basalt, NULL), STATUS_OK);
   assert_int_equal(sph_materials_load("granite", &granite, NULL), STATUS_OK);
   assert_int_equal(sph_materials_load("gabbro", &gabbro, NULL), STATUS_OK);
-  assert_true(basalt.density == 2700 && basalt.tillotson.E0 == 4.87e8 && basalt.weibull.m == 8.5 && basalt.weibull.k == 5e34);
+  assert_true(basalt.density == 2700 && basalt.tillotson.E0 == 4.87e8 && basalt.weibull.m == 8.5 &&
+              basalt.weibull.k == 5e34);
   /* physics notes T1: E 53.06 GPa, c_g 1837 m/s of basalt; granite would have nu 0 without a bulk modulus of its own */
-  assert_true(fabs(sph_scale_young_modulus(&basalt) / 53.06e9 - 1) < 1e-4);
-  assert_true(fabs(sph_scale_crack_speed(&basalt) / 1837 - 1) < 1e-3);
-  assert_true(sph_scale_poisson_ratio(&granite) > 0.2);
+  assert_true(fabs(sph_derived_young_modulus(&basalt) / 53.06e9 - 1) < 1e-4);
+  assert_true(fabs(sph_derived_crack_speed(&basalt) / 1837 - 1) < 1e-3);
+  assert_true(sph_derived_poisson_ratio(&granite) > 0.2);
   assert_true(gabbro.weibull.k == 1.39e18); /* the paper's 1.39e12 is per cm^3 */
   struct error error = {0};
   struct sph_material m;
@@ -130,14 +133,16 @@ static void a_name_gives_the_values(void **state) {
   assert_string_equal(builtin_material_names[in.target.material_name], "basalt");
   assert_string_equal(builtin_material_names[in.projectile.material_name], "nylon");
   assert_true(in.target.material.density == 2700 && in.projectile.material.density == 1185);
-  assert_true(isnan(in.projectile.material.weibull.m) && !sph_scale_cracks(&in.projectile) && sph_scale_cracks(&in.target));
+  assert_true(isnan(in.projectile.material.weibull.m) && !sph_derived_cracks(&in.projectile) &&
+              sph_derived_cracks(&in.target));
 
   in = good("target: {material: {name: ice, weibull: {m: 7}}}"); /* given values stay, the others are ice's */
-  assert_true(in.target.material.density == 917 && in.target.material.weibull.m == 7 && in.target.material.weibull.k == 1.4e38);
+  assert_true(in.target.material.density == 917 && in.target.material.weibull.m == 7 &&
+              in.target.material.weibull.k == 1.4e38);
 
   /* The name set later, as a sweep axis does: all that was not given follows, times and strengths too. */
   struct read_scene r = read_text("target: {radius: 5 cm, material: {weibull: {m: 7}}}");
-  double crossing = sph_scale_crossing(&r.inputs), end = r.inputs.stop.end_time;
+  double crossing = sph_derived_crossing(&r.inputs), end = r.inputs.stop.end_time;
   const struct field *row = field_find(&sph_inputs, "target.material.name", NULL);
   struct field_value value = {.kind = FIELD_TEXT};
   strcpy(value.text, "ice");
@@ -145,7 +150,7 @@ static void a_name_gives_the_values(void **state) {
   r.given[row - sph_inputs.rows] = true;
   complete(&r.inputs, r.given);
   ice = good("target: {radius: 5 cm, material: {name: ice, weibull: {m: 7}}}");
-  assert_true(sph_scale_crossing(&r.inputs) > crossing && r.inputs.stop.end_time > end);
+  assert_true(sph_derived_crossing(&r.inputs) > crossing && r.inputs.stop.end_time > end);
   char *a = field_identity(&sph_inputs, &r.inputs), *b = field_identity(&sph_inputs, &ice);
   assert_string_equal(a, b);
   assert_non_null(strstr(a, "target.material.tillotson.E0=0x")); /* the values are in the identity, not only the name */
@@ -160,7 +165,8 @@ static void missing_values_are_named(void **state) {
   (void)state;
   refused("target: {material: {name: custom, density: 1000}}", "target.material.tillotson.A is needed");
   refused("target: {fracture: on, material: {name: aluminium}}",
-          "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, or set "
+          "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, "
+          "or set "
           "target.fracture: off");
   refused("target: {fracture: on, material: {name: aluminium, weibull: {m: 9}}}", "target.material.weibull.k");
   refused("target: {material: {name: aluminium, weibull: {m: 9}}}", "weibull.m is given without weibull.k");
@@ -170,8 +176,10 @@ static void missing_values_are_named(void **state) {
   refused("projectile: {material: {name: custom}}", "projectile.material.density");
   refused("target: {material: {tillotson: {E_cv: 1 MJ/kg}}}", "E_cv");
   /* off means absent: its parameters are refused */
-  assert_non_null(strstr(read_text("target: {strength: false, material: {yield_stress: 1 GPa}}").report, "target.strength is true"));
-  assert_non_null(strstr(read_text("target: {fracture: off}\nfracture: {growth: linear}").report, "target.fracture is auto or on"));
+  assert_non_null(strstr(read_text("target: {strength: false, material: {yield_stress: 1 GPa}}").report,
+                         "target.strength is true"));
+  assert_non_null(
+      strstr(read_text("target: {fracture: off}\nfracture: {growth: linear}").report, "target.fracture is auto or on"));
   assert_non_null(strstr(read_text("kind: stretch\nprojectile: {radius: 1 cm}").report, "kind is impact"));
   assert_non_null(strstr(read_text("target: {material: {density: 3 GPa}}").report, "kg/m^3"));
   assert_non_null(strstr(read_text("impact: {speed: 3 cm}").report, "m/s"));
@@ -197,11 +205,14 @@ static void what_cannot_be_run_is_refused(void **state) {
   accepted("impact: {angle: 89.9 deg}");
   refused("method: {artificial_stress: 0.3}", "artificial_stress");
   refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
-  refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}", "stretch.grip");
+  refused("kind: stretch\ntarget: {shape: cylinder, radius: 1 cm, length: 1 cm}\nfidelity: {particles: 20}",
+          "stretch.grip");
   refused("fidelity: {projectile_spacing: 0.001}", "too many");
-  refused("fidelity: {projectile_spacing: 0.001}", "raise fidelity.projectile_spacing"); /* a remedy that this protocol has */
+  refused("fidelity: {projectile_spacing: 0.001}",
+          "raise fidelity.projectile_spacing"); /* a remedy that this protocol has */
   refused("{kind: piston, target: {shape: box, strength: false}, fidelity: {points: 10000}}", "lower fidelity.points");
-  refused("{kind: collision, target: {shape: cylinder, radius: 1 cm}, fidelity: {particles: 2e9}}", "lower fidelity.particles or target.length");
+  refused("{kind: collision, target: {shape: cylinder, radius: 1 cm}, fidelity: {particles: 2e9}}",
+          "lower fidelity.particles or target.length");
   refused("fidelity: {graded: true, fine_spacing: 1 cm}", "fine_spacing");
   accepted("impact: {speed: 0}");
   accepted("impact: {speed: 70 km/s}");
@@ -218,23 +229,24 @@ static void what_cannot_be_run_is_refused(void **state) {
 static void sizes_follow(void **state) {
   (void)state;
   struct sph_inputs in = good("impact: {projectile: mass, mass: 0.2 g}");
-  assert_true(fabs(sph_scale_projectile_mass(&in) / 2e-4 - 1) < 1e-12);
+  assert_true(fabs(sph_derived_projectile_mass(&in) / 2e-4 - 1) < 1e-12);
   in = good("impact: {projectile: specific-energy, specific_energy: 3 kJ/kg, speed: 3.2 km/s}");
   double mass = 4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 2700;
-  assert_true(fabs(sph_scale_projectile_mass(&in) / (2 * 3000 * mass / (3200.0 * 3200)) - 1) < 1e-12);
-  assert_true(fabs(sph_scale_specific_energy(&in) / 3000 - 1) < 1e-12);
+  assert_true(fabs(sph_derived_projectile_mass(&in) / (2 * 3000 * mass / (3200.0 * 3200)) - 1) < 1e-12);
+  assert_true(fabs(sph_derived_specific_energy(&in) / 3000 - 1) < 1e-12);
   /* weakest flaw of kV = 5e34 x 1.131e-4 at m = 8.5: E Gamma(1 + 1/8.5) (kV)^(-1/8.5) */
-  assert_true(fabs(in.fragments.static_strength / (53.06e9 * tgamma(1 + 1 / 8.5) * pow(5e34 * mass / 2700, -1 / 8.5)) - 1) < 1e-4);
+  assert_true(fabs(in.fragments.static_strength / (53.06e9 * tgamma(1 + 1 / 8.5) * pow(5e34 * mass / 2700, -1 / 8.5)) -
+                   1) < 1e-4);
 }
 
 /* Pores: by distention or by fraction, as the material gives them or as the scene does; 1 is the solid. */
 static void pores(void **state) {
   (void)state;
   struct sph_inputs in = good("target: {material: {name: porous-ice}}");
-  assert_true(in.target.material.porosity.distention == 1.5 && sph_scale_porous(&in.target));
+  assert_true(in.target.material.porosity.distention == 1.5 && sph_derived_porous(&in.target));
   assert_true(fabs(in.target.material.porosity.fraction - 1.0 / 3) < 1e-15);
-  assert_true(fabs(sph_scale_density(&in.target) - 917 / 1.5) < 1e-12);
-  assert_true(fabs(sph_scale_target_mass(&in) / (4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
+  assert_true(fabs(sph_derived_density(&in.target) - 917 / 1.5) < 1e-12);
+  assert_true(fabs(sph_derived_target_mass(&in) / (4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
   accepted("target: {material: {name: porous-ice}}");
   in = good("target: {material: {name: porous-ice, porosity: {fraction: 0.6}}}");
   assert_true(fabs(in.target.material.porosity.distention - 2.5) < 1e-12);
@@ -242,31 +254,41 @@ static void pores(void **state) {
   assert_true(fabs(in.target.material.porosity.fraction - 0.6) < 1e-12);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}");
   refused("target: {material: {name: porous-ice, porosity: {distention: 2.5, fraction: 0.5}}}", "give one of the two");
-  /* flaws are of the solid: at the same radius 2.5 times as many pores as matter change kV, and with it the static strength */
+  /* flaws are of the solid: at the same radius 2.5 times as many pores as matter change kV, and with it the static
+   * strength */
   struct sph_inputs thin = good("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}"),
                     whole = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
   double kv = 1.4e38 * 4.0 / 3 * 3.14159265358979323846 * 2.7e-5; /* ice's m is 9.6; E of the input's own moduli */
-  double young = sph_scale_young_modulus(&whole.target.material);
+  double young = sph_derived_young_modulus(&whole.target.material);
   assert_true(whole.target.material.weibull.k == 1.4e38 && whole.target.material.weibull.m == 9.6);
-  assert_true(fabs(whole.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv, -1 / 9.6)) - 1) < 1e-12); /* logs of 90 */
-  assert_true(fabs(thin.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv / 2.5, -1 / 9.6)) - 1) < 1e-12);
+  assert_true(fabs(whole.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv, -1 / 9.6)) - 1) <
+              1e-12); /* logs of 90 */
+  assert_true(fabs(thin.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv / 2.5, -1 / 9.6)) - 1) <
+              1e-12);
   in = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
-  assert_true(!sph_scale_porous(&in.target) && sph_scale_density(&in.target) == 917);
+  assert_true(!sph_derived_porous(&in.target) && sph_derived_density(&in.target) == 917);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
   in = good("projectile: {material: {name: pumice, porosity: {distention: 3}}}\nimpact: {projectile: mass, mass: 1 g}");
-  assert_true(fabs(sph_scale_projectile_mass(&in) / 1e-3 - 1) < 1e-12 && in.projectile.material.porosity.curve == SPH_CRUSH_TWO_POWER);
+  assert_true(fabs(sph_derived_projectile_mass(&in) / 1e-3 - 1) < 1e-12 &&
+              in.projectile.material.porosity.curve == SPH_CRUSH_TWO_POWER);
   refused("target: {material: {porosity: {curve: quadratic, distention: 1.5}}}",
-          "target.material.porosity.elastic_pressure is needed by the crush curve, and the material 'basalt' has none: give it, or set "
+          "target.material.porosity.elastic_pressure is needed by the crush curve, and the material 'basalt' has none: "
+          "give it, or set "
           "target.material.porosity.curve: none");
-  accepted("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 MPa, solid_pressure: 1 GPa}}}");
-  refused("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 GPa, solid_pressure: 1 MPa}}}",
+  accepted("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 MPa, solid_pressure: "
+           "1 GPa}}}");
+  refused("target: {material: {porosity: {curve: quadratic, distention: 1.5, elastic_pressure: 1 GPa, solid_pressure: "
+          "1 MPa}}}",
           "target.material.porosity.solid_pressure is 1000000: it must be above elastic_pressure");
   refused("target: {material: {name: pumice, porosity: {distention: 5}}}", "elastic_distention");
   refused("target: {material: {name: porous-ice, porosity: {sound_speed: 5 km/s}}}", "porosity.sound_speed");
   /* off means absent */
-  assert_non_null(strstr(read_text("target: {material: {porosity: {distention: 2}}}").report, "porosity.curve is quadratic or two-power"));
-  assert_non_null(strstr(read_text("target: {material: {name: porous-ice, porosity: {exponent_low: 2}}}").report, "two-power"));
-  assert_non_null(strstr(read_text("target: {material: {name: porous-ice, porosity: {distention: 0.9}}}").report, "at least 1"));
+  assert_non_null(strstr(read_text("target: {material: {porosity: {distention: 2}}}").report,
+                         "porosity.curve is quadratic or two-power"));
+  assert_non_null(
+      strstr(read_text("target: {material: {name: porous-ice, porosity: {exponent_low: 2}}}").report, "two-power"));
+  assert_non_null(
+      strstr(read_text("target: {material: {name: porous-ice, porosity: {distention: 0.9}}}").report, "at least 1"));
   char *identity = field_identity(&sph_inputs, &in);
   assert_null(strstr(identity, "target.material.porosity.distention"));
   free(identity);

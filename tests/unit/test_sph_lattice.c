@@ -8,13 +8,16 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/sph/bodies.h"
-#include "engine/sph/nearest.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/body/kd_tree.h"
 
 static const double pi = 3.14159265358979323846;
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, -2, 3}, .radius = 0.5};
-static const struct sph_shape rod = {
-    .kind = SPH_SHAPE_CYLINDER, .centre = {1, -2, 3}, .radius = 0.5, .length = 2, .axis = {0.6, 0, 0.8}};
+static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,
+                                     .centre = {1, -2, 3},
+                                     .radius = 0.5,
+                                     .length = 2,
+                                     .axis = {0.6, 0, 0.8}};
 static const struct sph_shape cube = {.kind = SPH_SHAPE_BOX, .centre = {1, -2, 3}, .side = {1, 1, 1}};
 static const struct sph_shape brick = {.kind = SPH_SHAPE_BOX, .centre = {0.5, 0.15, 0.1}, .side = {1, 0.3, 0.2}};
 
@@ -25,9 +28,9 @@ static struct sph_points fill(const struct sph_shape *shape, struct sph_lattice 
   return points;
 }
 
-static struct sph_nearest *tree_of(const struct sph_points *points) {
-  struct sph_nearest *tree = NULL;
-  assert_int_equal(sph_nearest_create(points->n, points->x, points->y, points->z, &tree, NULL), STATUS_OK);
+static struct sph_kd_tree *tree_of(const struct sph_points *points) {
+  struct sph_kd_tree *tree = NULL;
+  assert_int_equal(sph_kd_tree_create(points->n, points->x, points->y, points->z, &tree, NULL), STATUS_OK);
   return tree;
 }
 
@@ -44,7 +47,7 @@ struct around {
 };
 
 /* What stands about point i, with all 27 images where `length` says that a direction repeats. */
-static struct around look(const struct sph_points *points, const struct sph_nearest *tree, size_t i,
+static struct around look(const struct sph_points *points, const struct sph_kd_tree *tree, size_t i,
                           const double *length) {
   enum { ROOM = 4096 };
   static uint32_t near[ROOM];
@@ -52,7 +55,8 @@ static struct around look(const struct sph_points *points, const struct sph_near
   struct around around = {.nearest = HUGE_VAL, .steepest = 1};
   for (int image = 0; image < 27; image++) {
     const int shift[3] = {image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1};
-    if (!length && image != 13) continue;
+    if (!length && image != 13)
+      continue;
     double p[3] = {points->x[i], points->y[i], points->z[i]};
     int repeats = 1;
     for (int k = 0; k < 3; k++)
@@ -60,18 +64,22 @@ static struct around look(const struct sph_points *points, const struct sph_near
         repeats &= length[k] > 0;
         p[k] += shift[k] * length[k];
       }
-    if (!repeats) continue;
-    const size_t found = sph_nearest_within(tree, p, 2.6 * h * own, near, ROOM);
+    if (!repeats)
+      continue;
+    const size_t found = sph_kd_tree_within(tree, p, 2.6 * h * own, near, ROOM);
     assert_true(found <= ROOM);
     for (size_t k = 0; k < found; k++) {
       const size_t j = near[k];
       const double r = hypot(hypot(p[0] - points->x[j], p[1] - points->y[j]), p[2] - points->z[j]);
       const double other = points->share ? cbrt(points->share[j]) : 1, both = 0.5 * h * (own + other);
       around.sum += (points->share ? points->share[j] : 1) * pow(points->spacing, 3) * spline(r, both);
-      if (r == 0) continue;
+      if (r == 0)
+        continue;
       around.within += r < 2 * both;
-      if (r < around.nearest) around.nearest = r;
-      if (r < 1.3 * own * points->spacing) around.steepest = fmax(around.steepest, other / own);
+      if (r < around.nearest)
+        around.nearest = r;
+      if (r < 1.3 * own * points->spacing)
+        around.steepest = fmax(around.steepest, other / own);
     }
   }
   return around;
@@ -88,12 +96,15 @@ static void numbers_come_out(void **state) {
   for (int kind = 0; kind < 2; kind++)
     for (int turned = 0; turned < 2; turned++)
       for (int k = 0; k < 11; k++) {
-        struct sph_points p =
-            fill(&sphere, (struct sph_lattice){.kind = kind, .particles = wanted[k], .turned = turned, .seed = 4});
+        struct sph_points p = fill(&sphere, (struct sph_lattice){.kind = kind,
+                                                                 .particles = wanted[k],
+                                                                 .turned = turned,
+                                                                 .seed = 4});
         assert_true(fabs((double)p.n - wanted[k]) <= 0.002 * wanted[k]);
         assert_true(fabs(p.spacing * p.spacing * p.spacing * (double)p.n / sph_shape_volume(&sphere) - 1) < 1e-12);
         sph_lattice_empty(&p);
-        if (wanted[k] < 1000 && !turned) continue; /* few layers: a cylinder's numbers are coarse */
+        if (wanted[k] < 1000 && !turned)
+          continue; /* few layers: a cylinder's numbers are coarse */
         p = fill(&rod, (struct sph_lattice){.kind = kind, .particles = wanted[k], .turned = turned, .seed = 4});
         assert_true(fabs((double)p.n - wanted[k]) <= 0.01 * wanted[k]);
         sph_lattice_empty(&p);
@@ -120,20 +131,21 @@ static void neighbours_of_regular_lattices(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++)
     for (int turned = 0; turned < 2; turned++) {
-      struct sph_points p =
-          fill(&sphere, (struct sph_lattice){.kind = kind, .particles = 4000, .turned = turned, .seed = 9});
-      struct sph_nearest *tree = tree_of(&p);
+      struct sph_points p = fill(&sphere,
+                                 (struct sph_lattice){.kind = kind, .particles = 4000, .turned = turned, .seed = 9});
+      struct sph_kd_tree *tree = tree_of(&p);
       double low = HUGE_VAL, high = 0;
       int inner = 0;
       for (size_t i = 0; i < p.n; i++) {
         assert_true(depth_of(&sphere, &p, i) > -0.05 * p.spacing); /* scaled and centred after the cut */
-        if (depth_of(&sphere, &p, i) < 2.5 * p.spacing) continue;
+        if (depth_of(&sphere, &p, i) < 2.5 * p.spacing)
+          continue;
         const struct around a = look(&p, tree, i, NULL);
         uint32_t near[64];
         const double at[3] = {p.x[i], p.y[i], p.z[i]};
         assert_int_equal(a.within, 56);
         assert_true(fabs(a.nearest / p.nearest - 1) < 1e-9);
-        assert_int_equal(sph_nearest_within(tree, at, p.nearest * 1.001, near, 64), (kind ? 6 : 12) + 1);
+        assert_int_equal(sph_kd_tree_within(tree, at, p.nearest * 1.001, near, 64), (kind ? 6 : 12) + 1);
         low = fmin(low, a.sum);
         high = fmax(high, a.sum);
         inner++;
@@ -142,7 +154,7 @@ static void neighbours_of_regular_lattices(void **state) {
       assert_true(fabs(p.nearest / p.spacing - (kind ? 1 : pow(2, 1. / 6))) < 1e-12);
       assert_true(high - low < 1e-9);    /* a lattice is the same everywhere, to the rounding of places */
       assert_true(fabs(low - 1) < 0.01); /* the spline's own error of summing at this h */
-      sph_nearest_free(tree);
+      sph_kd_tree_free(tree);
       sph_lattice_empty(&p);
     }
 }
@@ -156,7 +168,8 @@ static void moments_tend_to_the_shape(void **state) {
   for (int k = 0; k < 2; k++)
     for (int kind = 0; kind < 3; kind++)
       for (int s = 0; s < 2; s++) {
-        if (kind == SPH_LATTICE_IRREGULAR && k == 1) continue; /* its surface is a layer of its own: only roughly */
+        if (kind == SPH_LATTICE_IRREGULAR && k == 1)
+          continue; /* its surface is a layer of its own: only roughly */
         const struct sph_shape *shape = s ? &rod : &sphere;
         struct sph_points p = fill(shape, (struct sph_lattice){.kind = kind, .particles = numbers[k], .seed = 2});
         double mean[3] = {0}, second[3][3] = {{0}};
@@ -192,7 +205,8 @@ static void cylinders_have_whole_layers(void **state) {
       const double along = 0.6 * (p.x[i] - 1) + 0.8 * (p.z[i] - 3);
       first = fmin(first, along);
       last = fmax(last, along);
-      if (along > first + 1e-9) second = fmin(second, along);
+      if (along > first + 1e-9)
+        second = fmin(second, along);
     }
   assert_true(fabs(first + 1 - (1 - last)) < 1e-12);
   assert_true(fabs((first + 1) - 0.5 * (second - first)) < 1e-12);
@@ -203,16 +217,16 @@ static void cylinders_have_whole_layers(void **state) {
 static void periodic_bodies_have_no_seam(void **state) {
   (void)state;
   for (int kind = 0; kind < 2; kind++) {
-    struct sph_points p =
-        fill(&brick, (struct sph_lattice){.kind = kind, .particles = 3000, .periodic = {true, true, true}});
-    struct sph_nearest *tree = tree_of(&p);
+    struct sph_points p = fill(&brick,
+                               (struct sph_lattice){.kind = kind, .particles = 3000, .periodic = {true, true, true}});
+    struct sph_kd_tree *tree = tree_of(&p);
     for (size_t i = 0; i < p.n; i++) {
       const struct around a = look(&p, tree, i, brick.side);
       assert_true(fabs(a.sum - 1) < 0.012); /* the spline's error on a lattice stretched by up to 6 % */
       assert_true(fabs(a.sum - look(&p, tree, 0, brick.side).sum) < 1e-9);
     }
     assert_true(p.stretch < 1.06);
-    sph_nearest_free(tree);
+    sph_kd_tree_free(tree);
     sph_lattice_empty(&p);
   }
   const struct sph_shape ring = {.kind = SPH_SHAPE_CYLINDER,
@@ -223,17 +237,18 @@ static void periodic_bodies_have_no_seam(void **state) {
                                  .axis = {0, 0, 1}};
   const double length[3] = {0, 0, 0.2};
   struct sph_points p = fill(&ring, (struct sph_lattice){.particles = 5000, .periodic = {false, false, true}});
-  struct sph_nearest *tree = tree_of(&p);
+  struct sph_kd_tree *tree = tree_of(&p);
   int inner = 0;
   for (size_t i = 0; i < p.n; i++) {
     const double r = hypot(p.x[i], p.y[i]);
     assert_true(r > 0.7 - 0.15 * p.spacing && r < 1 + 0.15 * p.spacing && p.z[i] > 0 && p.z[i] < 0.2);
-    if (r < 0.7 + 2.6 * p.spacing || r > 1 - 2.6 * p.spacing) continue;
+    if (r < 0.7 + 2.6 * p.spacing || r > 1 - 2.6 * p.spacing)
+      continue;
     assert_true(fabs(look(&p, tree, i, length).sum - 1) < 0.012);
     inner++;
   }
   assert_true(inner > 50);
-  sph_nearest_free(tree);
+  sph_kd_tree_free(tree);
   sph_lattice_empty(&p);
   assert_true(fabs(sph_lattice_period(SPH_LATTICE_CUBIC, 0.1, 2, 0.42) - 0.5) < 1e-12);
   const double row = 0.1 * pow(2, 1. / 6), layers = 2 * row * sqrt(2. / 3);
@@ -250,23 +265,24 @@ static void periodic_bodies_have_no_seam(void **state) {
   tree = tree_of(&p);
   for (size_t i = 0; i < p.n; i++)
     assert_true(fabs(look(&p, tree, i, bar.side).nearest / row - 1) < 1e-9);
-  sph_nearest_free(tree);
+  sph_kd_tree_free(tree);
   sph_lattice_empty(&p);
 }
 
 static double sum_scatter(const struct sph_shape *shape, const struct sph_points *p, const double *length,
                           double *mean) {
-  struct sph_nearest *tree = tree_of(p);
+  struct sph_kd_tree *tree = tree_of(p);
   double sum = 0, squares = 0;
   int inner = 0;
   for (size_t i = 0; i < p->n; i++) {
-    if (!length && depth_of(shape, p, i) < 2.5 * p->spacing) continue;
+    if (!length && depth_of(shape, p, i) < 2.5 * p->spacing)
+      continue;
     const double one = look(p, tree, i, length).sum - 1;
     sum += one;
     squares += one * one;
     inner++;
   }
-  sph_nearest_free(tree);
+  sph_kd_tree_free(tree);
   *mean = sum / inner;
   return sqrt(squares / inner - *mean * *mean);
 }
@@ -287,7 +303,7 @@ static void irregular_points_are_even(void **state) {
     assert_true(p.x[7] != other.x[7]);
     for (size_t i = 0; i < p.n; i++)
       assert_true(depth_of(shapes[s], &p, i) > 0);
-    struct sph_nearest *tree = tree_of(&p);
+    struct sph_kd_tree *tree = tree_of(&p);
     double sum = 0, squares = 0;
     for (size_t i = 0; i < p.n; i++) {
       const double nearest = look(&p, tree, i, NULL).nearest / p.spacing;
@@ -297,13 +313,14 @@ static void irregular_points_are_even(void **state) {
     }
     assert_true(fabs(sum * p.spacing / p.nearest - 1) < 1e-9);
     assert_true(sqrt(squares - sum * sum) > 0.04); /* no lattice: there it is 0 */
-    sph_nearest_free(tree);
+    sph_kd_tree_free(tree);
     sph_lattice_empty(&p);
     sph_lattice_empty(&again);
     sph_lattice_empty(&other);
   }
-  struct sph_points p = fill(
-      &brick, (struct sph_lattice){.kind = SPH_LATTICE_IRREGULAR, .particles = 2500, .periodic = {true, true, true}});
+  struct sph_points p = fill(&brick, (struct sph_lattice){.kind = SPH_LATTICE_IRREGULAR,
+                                                          .particles = 2500,
+                                                          .periodic = {true, true, true}});
   assert_true(sum_scatter(&brick, &p, brick.side, &mean) < 0.012 && fabs(mean) < 0.01);
   sph_lattice_empty(&p);
 }
@@ -316,7 +333,7 @@ static void graded_points_keep_their_grading(void **state) {
   const struct sph_grading grading = {.fine = 8e-4, .point = {0, 0, 0.1}, .radius = 4e-3, .growth = NAN};
   struct sph_points p = fill(&target, (struct sph_lattice){.particles = 20000, .seed = 3, .grading = grading});
   assert_true(fabs((double)p.n / 20000 - 1) < 0.001);
-  struct sph_nearest *tree = tree_of(&p);
+  struct sph_kd_tree *tree = tree_of(&p);
   enum { SHELLS = 8 };
   double total = 0, sum[SHELLS] = {0}, squares[SHELLS] = {0};
   int count[SHELLS] = {0}, core = 0;
@@ -326,8 +343,10 @@ static void graded_points_keep_their_grading(void **state) {
     assert_true(a.steepest < 1.15);
     total += p.share[i];
     core += d < 4e-3;
-    if (d < 4e-3) assert_true(fabs(s / 8e-4 - 1) < 0.01);
-    if (depth_of(&target, &p, i) < 2.8 * s) continue;
+    if (d < 4e-3)
+      assert_true(fabs(s / 8e-4 - 1) < 0.01);
+    if (depth_of(&target, &p, i) < 2.8 * s)
+      continue;
     const int shell = (int)fmin(SHELLS - 1, fmax(0, log2(d / 2e-3)));
     sum[shell] += a.sum - 1;
     squares[shell] += (a.sum - 1) * (a.sum - 1);
@@ -337,13 +356,14 @@ static void graded_points_keep_their_grading(void **state) {
   assert_true(fabs(core / (2 * pi / 3 * 125) - 1) < 0.15); /* half a sphere of 5 spacings, its surfaces rough */
   int shells = 0;
   for (int k = 0; k < SHELLS; k++) {
-    if (count[k] < 50) continue;
+    if (count[k] < 50)
+      continue;
     shells++;
     const double mean = sum[k] / count[k];
     assert_true(fabs(mean) < 0.03 && sqrt(squares[k] / count[k] - mean * mean) < 0.02);
   }
   assert_true(shells >= 4);
-  sph_nearest_free(tree);
+  sph_kd_tree_free(tree);
   sph_lattice_empty(&p);
   /* a growth that is given decides the number */
   struct sph_grading given = grading;
@@ -396,12 +416,14 @@ static void absurd_lattices_are_refused(void **state) {
     struct sph_points points = {.n = 77};
     struct error error = {0};
     assert_int_equal(sph_lattice_fill(&cases[k].lattice, cases[k].shape, &points, &error), cases[k].code);
-    if (!strstr(error.message, cases[k].says)) fail_msg("'%s' does not say '%s'", error.message, cases[k].says);
+    if (!strstr(error.message, cases[k].says))
+      fail_msg("'%s' does not say '%s'", error.message, cases[k].says);
     assert_true(points.n == 0 && !points.x);
   }
 }
 
-/* Threads, sheets and discs, thinner than a million to one: as asked, or refused; in no time, and never an empty body. */
+/* Threads, sheets and discs, thinner than a million to one: as asked, or refused; in no time, and never an empty body.
+ */
 static void thin_bodies_are_filled_or_refused(void **state) {
   (void)state;
   for (double thin = 1; thin > 1e-9; thin *= 0.02) {
@@ -416,7 +438,8 @@ static void thin_bodies_are_filled_or_refused(void **state) {
       for (int kind = 0; kind < 3; kind++)
         for (int turned = 0; turned < 2; turned++)
           for (double wanted = 3; wanted < 1e4; wanted *= 30) {
-            if (kind == SPH_LATTICE_IRREGULAR && wanted > 100) continue;
+            if (kind == SPH_LATTICE_IRREGULAR && wanted > 100)
+              continue;
             struct sph_points points;
             struct error error = {0};
             const struct sph_lattice lattice = {.kind = kind, .particles = wanted, .turned = turned, .seed = 1};

@@ -7,11 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #include <cmocka.h>
 
-#include "engine/sph/neighbours.h"
-#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/pairs/neighbours.h"
+#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/pair_cloud.h"
 
@@ -80,10 +79,12 @@ static void lists_equal_brute_force(void **state) {
         double square = 0, reach = c->a[3][i] + c->a[3][k];
         for (int d = 0; d < 3; d++) {
           double along = c->a[d][i] - c->a[d][k];
-          if (!isnan(length[d])) along -= length[d] * nearbyint(along / length[d]);
+          if (!isnan(length[d]))
+            along -= length[d] * nearbyint(along / length[d]);
           square += along * along;
         }
-        if (!(square < reach * reach)) continue;
+        if (!(square < reach * reach))
+          continue;
         assert_true(at < lists.count[i]);
         assert_int_equal(j[at++], k);
       }
@@ -114,9 +115,9 @@ static void shared_lists_join_those_of_their_members(void **state) {
     struct sph_neighbours *neighbours = sph_neighbours_create(c->n, CHUNK, share, sph_pairs_kernels_choose());
     uint32_t start[CHUNK + 1], count[CHUNK];
     struct sph_neighbour_lists lists = {.start = start, .count = count};
-    assert_int_equal(
-        sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1, &error),
-        STATUS_OK);
+    assert_int_equal(sph_neighbours_find(neighbours, c->n, place[0], place[1], place[2], c->a[3], usual.periodic, 1,
+                                         &error),
+                     STATUS_OK);
     for (size_t chunk = 0; chunk * CHUNK < c->n; chunk++) {
       const size_t base = chunk * CHUNK, own = c->n - base < CHUNK ? c->n - base : CHUNK;
       assert_true(sph_neighbours_list(neighbours, chunk, &lists));

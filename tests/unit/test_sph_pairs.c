@@ -1,5 +1,5 @@
-/* The sums of the pair loop: kernels of every CPU class and precision against plain C, conservation, and fields whose gradient is
- * known. */
+/* The sums of the pair loop: kernels of every CPU class and precision against plain C, conservation, and fields whose
+ * gradient is known. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs.h"
-#include "engine/sph/pairs_kernels.h"
+#include "engine/sph/pairs/pairs.h"
+#include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/pair_cloud.h"
 #include "tests/pair_sums.h"
@@ -25,7 +25,7 @@ struct summed {
 };
 
 static struct sph_pair_fields fields_of(const struct cloud *c) {
-  struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3],  c->a[4], c->a[5], c->a[6],
+  struct sph_pair_fields f = {c->a[0], c->a[1], c->a[2], c->a[3],  c->a[4], c->a[5],   c->a[6],
                               c->a[7], c->a[8], c->a[9], c->a[10], {0},     c->factor, {0}};
   for (int k = 0; k < 5; k++)
     f.stress[k] = c->stress[k];
@@ -38,8 +38,8 @@ static double acting(const struct cloud *c, int k, size_t i) {
 }
 
 static struct sph_pair_sums sums_of(struct summed *s) {
-  struct sph_pair_sums out = {
-      .ax = s->a[0], .ay = s->a[1], .az = s->a[2], .heating = s->a[12], .signal = s->a[13], .power = s->power};
+  struct sph_pair_sums out =
+      {.ax = s->a[0], .ay = s->a[1], .az = s->a[2], .heating = s->a[12], .signal = s->a[13], .power = s->power};
   for (int k = 0; k < 6; k++)
     out.correction[k] = s->correction[k];
   for (int k = 0; k < 9; k++)
@@ -123,8 +123,10 @@ static void kernels_equal_plain_c(void **state) {
     struct sph_pair_options options = usual;
     options.strength = variant & 1;
     options.volume_weights = variant & 2;
-    if (variant & 4 && variant % 4 != 3) options.periodic[0] = options.periodic[2] = length;
-    if (variant & 8 && options.strength) options.artificial_stress = 0.3;
+    if (variant & 4 && variant % 4 != 3)
+      options.periodic[0] = options.periodic[2] = length;
+    if (variant & 8 && options.strength)
+      options.artificial_stress = 0.3;
     struct summed *exact = reference(c, &options);
     for (int k = 0; k < 3; k++)
       for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
@@ -439,7 +441,8 @@ static void float_is_as_good_far_away(void **state) {
   free(s), free(exact), free(c);
 }
 
-/* Particles some thousand times larger than the smallest: a pair's distance still fits the integers of float records. */
+/* Particles some thousand times larger than the smallest: a pair's distance still fits the integers of float records.
+ */
 static void float_holds_sizes_far_apart(void **state) {
   (void)state;
   for (double ratio = 10; ratio < 1e5; ratio *= 5) {
@@ -481,20 +484,13 @@ static void bits_do_not_depend_on_threads(void **state) {
 }
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kernels_equal_plain_c),
-      cmocka_unit_test(momentum_is_conserved),
-      cmocka_unit_test(work_equals_strain_energy),
-      cmocka_unit_test(corrected_gradient_is_linear),
-      cmocka_unit_test(each_pair_is_summed_once),
-      cmocka_unit_test(angular_momentum_is_conserved),
-      cmocka_unit_test(one_stress_over_a_cut),
-      cmocka_unit_test(debris_is_not_corrected),
-      cmocka_unit_test(viscosity_of_two_by_hand),
-      cmocka_unit_test(not_finite_does_no_harm),
-      cmocka_unit_test(tiny_numbers_stay_the_callers),
-      cmocka_unit_test(coincident_particles_do_no_harm),
-      cmocka_unit_test(float_is_as_good_far_away),
-      cmocka_unit_test(float_holds_sizes_far_apart),
+      cmocka_unit_test(kernels_equal_plain_c),         cmocka_unit_test(momentum_is_conserved),
+      cmocka_unit_test(work_equals_strain_energy),     cmocka_unit_test(corrected_gradient_is_linear),
+      cmocka_unit_test(each_pair_is_summed_once),      cmocka_unit_test(angular_momentum_is_conserved),
+      cmocka_unit_test(one_stress_over_a_cut),         cmocka_unit_test(debris_is_not_corrected),
+      cmocka_unit_test(viscosity_of_two_by_hand),      cmocka_unit_test(not_finite_does_no_harm),
+      cmocka_unit_test(tiny_numbers_stay_the_callers), cmocka_unit_test(coincident_particles_do_no_harm),
+      cmocka_unit_test(float_is_as_good_far_away),     cmocka_unit_test(float_holds_sizes_far_apart),
       cmocka_unit_test(bits_do_not_depend_on_threads),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,15 +10,19 @@
 #include <cmocka.h>
 
 #include "engine/random.h"
-#include "engine/sph/palpha.h"
-#include "engine/sph/tillotson.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/material/tillotson.h"
 
 static const struct sph_material aluminium = {.density = 2700,
                                               .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
-static const struct sph_palpha porous_aluminium = {
-    .distention = 1.275, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
-static const struct sph_material pumice_matrix = {
-    .density = 2327, .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7}};
+static const struct sph_palpha porous_aluminium = {.distention = 1.275,
+                                                   .curve = SPH_CRUSH_QUADRATIC,
+                                                   .elastic_pressure = 80e6,
+                                                   .solid_pressure = 700e6,
+                                                   .sound_speed = 4110};
+static const struct sph_material pumice_matrix = {.density = 2327,
+                                                  .tillotson = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6,
+                                                                1.82e7}};
 static const struct sph_palpha pumice = {.distention = 4.64,
                                          .curve = SPH_CRUSH_TWO_POWER,
                                          .elastic_pressure = 1e6,
@@ -31,18 +35,23 @@ static const struct sph_palpha pumice = {.distention = 4.64,
                                          .exponent_high = 3};
 static const struct sph_material ice = {.density = 917,
                                         .tillotson = {9.47e9, 9.47e9, 0.3, 0.1, 10, 5, 1e7, 7.73e5, 3.04e6}};
-static const struct sph_palpha porous_ice = {
-    .distention = 1.5, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 1e6, .solid_pressure = 100e6, .sound_speed = 1600};
+static const struct sph_palpha porous_ice = {.distention = 1.5,
+                                             .curve = SPH_CRUSH_QUADRATIC,
+                                             .elastic_pressure = 1e6,
+                                             .solid_pressure = 100e6,
+                                             .sound_speed = 1600};
 
 static struct sph_palpha_law law_of(const struct sph_palpha *given, const struct sph_material *solid) {
   struct sph_palpha_law law;
   struct error error = {0};
-  if (sph_palpha_prepare(given, solid, &law, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (sph_palpha_prepare(given, solid, &law, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   return law;
 }
 
 static void near(double got, double want, double tolerance, const char *what) {
-  if (!(fabs(got - want) <= tolerance)) fail_msg("%s: got %.17g, expected %.17g +- %g", what, got, want, tolerance);
+  if (!(fabs(got - want) <= tolerance))
+    fail_msg("%s: got %.17g, expected %.17g +- %g", what, got, want, tolerance);
 }
 
 /* The values are those of the physics notes, to the digits printed there. */
@@ -66,7 +75,8 @@ static void curve_slopes(void **state) {
   for (int l = 0; l < 3; l++)
     for (double p = 1.01e6; p < 8e8; p *= 1.013) {
       const struct sph_palpha *g = &laws[l].given;
-      if (fabs(p / g->elastic_pressure - 1) < 1e-3 || fabs(p / g->solid_pressure - 1) < 1e-3) continue;
+      if (fabs(p / g->elastic_pressure - 1) < 1e-3 || fabs(p / g->solid_pressure - 1) < 1e-3)
+        continue;
       double d = p * 1e-5;
       double got = sph_palpha_crush_slope(&laws[l], p);
       double want = (sph_palpha_crush(&laws[l], p + d) - sph_palpha_crush(&laws[l], p - d)) / (2 * d);
@@ -134,8 +144,10 @@ static void derivatives(void **state) {
           if (fabs(r2.pressure + r1.pressure - 2 * s.pressure) > 1e-3 * fabs(r2.pressure - r1.pressure) + 1e-2)
             continue;
           int branch = s.rest < rest ? (s.distention == 1 ? 2 : 1) : s.pressure < 0 ? 3 : 0;
-          if (s.rest == rest && (r2.rest < rest || u2.rest < rest)) continue; /* at the curve's edge */
-          if (s.rest < rest && (r1.rest == rest || u1.rest == rest)) continue;
+          if (s.rest == rest && (r2.rest < rest || u2.rest < rest))
+            continue; /* at the curve's edge */
+          if (s.rest < rest && (r1.rest == rest || u1.rest == rest))
+            continue;
           seen[branch]++;
           /* P comes out of an iteration to about 1e-12 in alpha, that is 1e-12 K/alpha in P; over 2e-7 rho */
           near(s.by_density, (r2.pressure - r1.pressure) / (2 * dr), 1e-4 * fabs(s.by_density) + 2e-5 * scale,
@@ -146,15 +158,16 @@ static void derivatives(void **state) {
                "dP/du");
           near(s.distention_by_energy, (u2.distention - u1.distention) / span,
                2e-3 * fabs(s.distention_by_energy) + 1e-11, "dalpha/du");
-          double f =
-              1 + (s.distention_by_density + s.pressure / (rho * rho) * s.distention_by_energy) * rho / s.distention;
+          double f = 1 +
+                     (s.distention_by_density + s.pressure / (rho * rho) * s.distention_by_energy) * rho / s.distention;
           near(s.shear_factor, f < 0 ? 0 : f, 1e-6, "f"); /* a little below 0 where heat alone crushes: held at 0 */
           assert_true(f > -0.05 && f <= 1);
           assert_true(s.shear_factor >= 0 && s.shear_factor <= 1);
         }
   }
   for (int b = 0; b < 4; b++)
-    if (seen[b] < 50) fail_msg("branch %d was tried only %d times", b, seen[b]);
+    if (seen[b] < 50)
+      fail_msg("branch %d was tried only %d times", b, seen[b]);
 }
 
 /* The papers' rate, JBM08 eq. 13 as in the physics notes, over a path rho(t) by fine Heun steps; branch by branch. */
@@ -232,11 +245,13 @@ static void load_unload_reload(void **state) {
     for (int i = 0; i <= 400; i++) {
       struct sph_palpha_state s = sph_palpha_update(&law, rest, alpha, from + (to - from) * i / 400, 0);
       assert_true(s.rest <= rest && s.distention <= 1.275 && s.distention >= 1);
-      if (leg > 0) near(s.rest, rest, 1e-12, "nothing crushes a second time");
+      if (leg > 0)
+        near(s.rest, rest, 1e-12, "nothing crushes a second time");
       rest = s.rest, alpha = s.distention;
       if (up && i == 400) {
         near(s.pressure, 312e6, 1e3, "pressure at the top");
-        if (leg == 0) loaded = s.distention;
+        if (leg == 0)
+          loaded = s.distention;
         near(s.distention, loaded, 1e-11, "alpha at the top");
       }
       if (!up && i == 400) {
@@ -245,7 +260,8 @@ static void load_unload_reload(void **state) {
         zero = to;
       }
     }
-    if (leg == 0) assert_true(rest < 1.2 && rest > alpha);
+    if (leg == 0)
+      assert_true(rest < 1.2 && rest > alpha);
   }
   /* the trap: reload by rates with the crush slope from P_e on */
   double a = rest, rho = zero, dr = (top - zero) / 20000;
@@ -254,7 +270,8 @@ static void load_unload_reload(void **state) {
     a += rate(&law, a, rho, 0, p > 80e6 ? -1 : 1, dr, 0);
   }
   double wrong = sph_tillotson(&law.solid, 2700, a * top, 0).pressure / a;
-  if (wrong > 150e6) fail_msg("the trap is no trap: %g MPa", wrong / 1e6);
+  if (wrong > 150e6)
+    fail_msg("the trap is no trap: %g MPa", wrong / 1e6);
 }
 
 static void jump(void **state) {
@@ -266,7 +283,8 @@ static void jump(void **state) {
       double a0 = laws[l].given.distention, rho = laws[l].solid_density * squeeze; /* over the solid's own density */
       struct sph_palpha_state s = sph_palpha_update(&laws[l], a0, a0, rho, 1e4);
       struct sph_pressure solid = sph_tillotson(&laws[l].solid, laws[l].solid_density, rho, 1e4);
-      if (solid.pressure < laws[l].given.solid_pressure) continue;
+      if (solid.pressure < laws[l].given.solid_pressure)
+        continue;
       assert_true(s.distention == 1 && s.rest == 1); /* at once, and for good */
       assert_true(s.shear_factor == 1);
       near(s.pressure, solid.pressure, 1e-9 * solid.pressure, "solid pressure");
@@ -295,11 +313,13 @@ static void solid_limit(void **state) {
       struct sph_pressure solid = sph_tillotson(&aluminium.tillotson, 2700, 2700 * squeeze, u);
       worst = fmax(worst, fabs(s.pressure - solid.pressure) / 7.52e10);
       /* c_e is one number while the solid's c rises by 2 % up to P_s: that is the interpolation's own error */
-      if (squeeze > 1) near(s.sound_speed / solid.sound_speed, 1, 0.03 + 2 * (a0[k] - 1), "sound speed");
+      if (squeeze > 1)
+        near(s.sound_speed / solid.sound_speed, 1, 0.03 + 2 * (a0[k] - 1), "sound speed");
     }
     /* P differs by about K (alpha_0 - 1) while the pores are there, twice that when closed and stiffened */
     assert_true(worst < 3 * (a0[k] - 1));
-    if (k) assert_true(worst < 0.2 * last);
+    if (k)
+      assert_true(worst < 0.2 * last);
     last = worst;
   }
 }
@@ -329,8 +349,10 @@ static void sound_speeds(void **state) {
   near(s.sound_speed, (4110 + sqrt(7.52e10 / 2700)) / 2, 1e-6, "c half way");
   s = sph_palpha_update(&law, 1.275, 1.275, 2700 / 1.275 * 1.15, 3e4);
   struct sph_pressure solid = sph_tillotson(&law.solid, 2700, s.distention * 2700 / 1.275 * 1.15, 3e4);
-  near(s.sound_speed, solid.sound_speed + (4110 - solid.sound_speed) * (s.distention - 1) / 0.275, 1e-6, "c under pressure");
-  near(sph_palpha_update(&p, 4.64, 4.64, 2327 / 4.64, 0).sound_speed, sqrt(2.67e10 / 2327), 1e-9, "c_e not given: the solid's");
+  near(s.sound_speed, solid.sound_speed + (4110 - solid.sound_speed) * (s.distention - 1) / 0.275, 1e-6,
+       "c under pressure");
+  near(sph_palpha_update(&p, 4.64, 4.64, 2327 / 4.64, 0).sound_speed, sqrt(2.67e10 / 2327), 1e-9,
+       "c_e not given: the solid's");
 }
 
 static void compaction_damage(void **state) {
@@ -404,7 +426,8 @@ static void soft_pores_follow_their_branch(void **state) {
       for (int i = 0; i < 100000; i++) /* midpoint rule */
         alpha += step * sph_palpha_elastic_slope(&law, alpha + step / 2 * sph_palpha_elastic_slope(&law, alpha));
       const double got = sph_palpha_elastic(&law, given.distention, given.elastic_pressure);
-      if (!(fabs(got - alpha) < 0.0101 * (given.distention - 1))) fail_msg("c_e %g: alpha %.6g, integrated %.6g", given.sound_speed, got, alpha);
+      if (!(fabs(got - alpha) < 0.0101 * (given.distention - 1)))
+        fail_msg("c_e %g: alpha %.6g, integrated %.6g", given.sound_speed, got, alpha);
       taken++;
     }
   assert_true(taken > 50 && left > 50);
@@ -453,8 +476,10 @@ int main(void) {
                                      cmocka_unit_test(jump),
                                      cmocka_unit_test(solid_limit),
                                      cmocka_unit_test(heat),
-                                     cmocka_unit_test(compaction_damage), cmocka_unit_test(sound_speeds),
+                                     cmocka_unit_test(compaction_damage),
+                                     cmocka_unit_test(sound_speeds),
                                      cmocka_unit_test(random_paths),
-                                     cmocka_unit_test(soft_pores_follow_their_branch), cmocka_unit_test(refused)};
+                                     cmocka_unit_test(soft_pores_follow_their_branch),
+                                     cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,25 +1,37 @@
-/* P-alpha in the moving system: the range loop against the formulas one by one, deviator, yield, damage, limiter, state; and
- * what must not be there without pores. */
+/* P-alpha in the moving system: the range loop against the formulas one by one, deviator, yield, damage, limiter,
+ * state; and what must not be there without pores. */
 #include "tests/sph_case.h"
 
 #include "engine/random.h"
-#include "engine/sph/ranges.h"
-#include "engine/sph/tillotson.h"
+#include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/ranges.h"
 
-static const struct sph_palpha porous_basalt = {
-    .distention = 1.5, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 5e6, .solid_pressure = 3e8, .sound_speed = 1800};
-static const struct sph_palpha two_power = {.distention = 1.5, .curve = SPH_CRUSH_TWO_POWER, .elastic_pressure = 1e6,
-    .solid_pressure = 213e6, .sound_speed = NAN, .elastic_distention = 1.5, .transition_distention = 1.2,
-    .transition_pressure = 68e6, .exponent_low = 12, .exponent_high = 3};
+static const struct sph_palpha porous_basalt = {.distention = 1.5,
+                                                .curve = SPH_CRUSH_QUADRATIC,
+                                                .elastic_pressure = 5e6,
+                                                .solid_pressure = 3e8,
+                                                .sound_speed = 1800};
+static const struct sph_palpha two_power = {.distention = 1.5,
+                                            .curve = SPH_CRUSH_TWO_POWER,
+                                            .elastic_pressure = 1e6,
+                                            .solid_pressure = 213e6,
+                                            .sound_speed = NAN,
+                                            .elastic_distention = 1.5,
+                                            .transition_distention = 1.2,
+                                            .transition_pressure = 68e6,
+                                            .exponent_low = 12,
+                                            .exponent_high = 3};
 
 static void near(double got, double want, double tolerance, const char *what) {
-  if (!(fabs(got - want) <= tolerance)) fail_msg("%s: got %.17g, expected %.17g +- %g", what, got, want, tolerance);
+  if (!(fabs(got - want) <= tolerance))
+    fail_msg("%s: got %.17g, expected %.17g +- %g", what, got, want, tolerance);
 }
 
 /* A cube of basalt with pores (or none), 6^3 particles, strength; flaws too strong to open. */
 static struct sph_system *cube(const struct sph_palpha *porosity, bool strength, bool flaws, size_t *count) {
   struct case_block block = {.count = {6, 6, 6}, .spacing = 1e-3};
-  struct sph_particles *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
+  struct sph_particles *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05,
+                                      SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaws *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
   struct sph_body_physics body = {.material = case_basalt, .strength = strength, .porosity = porosity, .flaws = list};
   struct sph_parameters parameters = sph_parameters_default();
@@ -70,14 +82,16 @@ static void loop_is_the_formula(void **state) {
     call(s, offsetof(struct sph_ranges, palpha));
     for (size_t i = 0; i < n; i++) {
       struct sph_palpha_state want = sph_palpha_update(law, rest[i], alpha[i], rho[i], u[i]);
-      crushed += want.rest < rest[i] && want.rest > 1, solid += want.rest == 1, elastic += want.rest == rest[i] && want.rest > 1;
+      crushed += want.rest < rest[i] && want.rest > 1, solid += want.rest == 1,
+          elastic += want.rest == rest[i] && want.rest > 1;
       near(s->c.distention[i], want.distention, 1e-10, "alpha");
       near(s->c.rest_distention[i], want.rest, 1e-10, "rest distention");
       near(s->c.pressure[i], want.pressure, 1e-9 * (fabs(want.pressure) + 2.67e10), "pressure");
       near(s->c.sound_speed[i], want.sound_speed, 1e-7 * want.sound_speed, "sound speed");
       near(s->c.shear_factor[i], want.shear_factor, 1e-6, "f");
     }
-    if (crushed < 10 || solid < 10 || elastic < 10) fail_msg("%d crushed, %d solid, %d elastic", crushed, solid, elastic);
+    if (crushed < 10 || solid < 10 || elastic < 10)
+      fail_msg("%d crushed, %d solid, %d elastic", crushed, solid, elastic);
     sph_system_free(s);
   }
 }
@@ -118,7 +132,8 @@ static void shear_rate(void **state) {
   call(s, offsetof(struct sph_ranges, elastic_rates));
   double lowest = 1;
   for (size_t i = 0; i < n; i++) {
-    struct sph_palpha_state want = sph_palpha_update(&s->solid[0].porosity, 1.5, 1.5, 1800 * (1 + 0.6 * (double)i / (double)n), 0);
+    struct sph_palpha_state want = sph_palpha_update(&s->solid[0].porosity, 1.5, 1.5,
+                                                     1800 * (1 + 0.6 * (double)i / (double)n), 0);
     near(s->c.stress_rate[1][i], want.shear_factor / want.distention * 2.27e10, 1e-5 * 2.27e10, "shear stress rate");
     lowest = fmin(lowest, want.shear_factor);
   }
@@ -145,7 +160,8 @@ static void yield_falls_with_alpha(void **state) {
 }
 
 /* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change harms nothing. */
-/* Not so tension_limit: it is that of the porous body, whatever its distention, and falls as far as the solid has expanded. */
+/* Not so tension_limit: it is that of the porous body, whatever its distention, and falls as far as the solid has
+ * expanded. */
 static void tension_limit_is_of_the_body(void **state) {
   (void)state;
   size_t n;
@@ -159,7 +175,12 @@ static void tension_limit_is_of_the_body(void **state) {
   }
   call(s, offsetof(struct sph_ranges, tension_limit));
   for (size_t i = 0; i < n; i++)
-    near(s->c.pressure[i], i % 2 == 0 ? 2e5 : i % 3 == 0 ? -1e6 : i % 3 == 1 ? -5e5 : 0, 1e-6, "pressure"); /* a dozen roundings of 1e6 */
+    near(s->c.pressure[i],
+         i % 2 == 0   ? 2e5
+         : i % 3 == 0 ? -1e6
+         : i % 3 == 1 ? -5e5
+                      : 0,
+         1e-6, "pressure"); /* a dozen roundings of 1e6 */
   sph_system_free(s);
 }
 
@@ -171,7 +192,8 @@ static void damage_adds_up(void **state) {
     assert_true(!s->c.tension == !flaws);
     for (int step = 0; step < 3; step++) { /* loaded, unloaded, loaded again */
       for (size_t i = 0; i < n; i++) {
-        if (s->c.tension) s->c.tension[i] = (double)(i % 7) / 6;
+        if (s->c.tension)
+          s->c.tension[i] = (double)(i % 7) / 6;
         s->c.density[i] = (step == 1 ? 1700 : 1800 * (1 + 0.6 * (double)i / (double)n));
       }
       call(s, offsetof(struct sph_ranges, palpha));
@@ -195,8 +217,9 @@ struct impact {
 };
 
 static struct impact impact_of(const struct sph_palpha *target, const struct sph_palpha *projectile, bool strength) {
-  struct case_block blocks[2] = {{.count = {10, 10, 6}, .spacing = 1e-3},
-                                 {.count = {5, 5, 5}, .spacing = 1e-3, .corner = {2.5e-3, 2.5e-3, 6e-3}, .velocity = {0, 0, -1000}}};
+  struct case_block blocks[2] =
+      {{.count = {10, 10, 6}, .spacing = 1e-3},
+       {.count = {5, 5, 5}, .spacing = 1e-3, .corner = {2.5e-3, 2.5e-3, 6e-3}, .velocity = {0, 0, -1000}}};
   struct impact m = {.p = case_make(blocks, 2, 2700, 1.05, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_DISTENTION)};
   for (size_t i = 0; i < m.p->n; i++) {
     const struct sph_palpha *pores = m.p->body[i] ? projectile : target;
@@ -208,7 +231,9 @@ static struct impact impact_of(const struct sph_palpha *target, const struct sph
   const size_t count[2] = {600, 125};
   for (int b = 0; b < 2; b++) {
     m.flaws[b] = strength ? case_flaws(count[b], 1e-300, 1, (uint64_t)b) : NULL;
-    bodies[b] = (struct sph_body_physics){.material = case_basalt, .strength = strength, .flaws = m.flaws[b],
+    bodies[b] = (struct sph_body_physics){.material = case_basalt,
+                                          .strength = strength,
+                                          .flaws = m.flaws[b],
                                           .porosity = b ? projectile : target};
   }
   struct sph_parameters parameters = sph_parameters_default();
@@ -255,8 +280,8 @@ static void solid_bits(void **state) {
   impact_end(&b);
 }
 
-/* Nothing opens a flaw here, so all damage is compaction's: in the porous body alone. Steps keep |dalpha| to 0.01, by the
- * limiter of that name. */
+/* Nothing opens a flaw here, so all damage is compaction's: in the porous body alone. Steps keep |dalpha| to 0.01, by
+ * the limiter of that name. */
 static void beside_a_solid(void **state) {
   (void)state;
   struct impact m = impact_of(&porous_basalt, NULL, true);
@@ -271,7 +296,8 @@ static void beside_a_solid(void **state) {
     for (size_t i = 0; i < 725; i++) {
       most = fmax(most, fabs(m.p->distention[i] - last[i]));
       last[i] = m.p->distention[i];
-      if (!(m.p->rest_distention[i] <= rest[i])) fail_msg("closed pores have opened: %g after %g", m.p->rest_distention[i], rest[i]);
+      if (!(m.p->rest_distention[i] <= rest[i]))
+        fail_msg("closed pores have opened: %g after %g", m.p->rest_distention[i], rest[i]);
       rest[i] = m.p->rest_distention[i];
     }
   }
@@ -287,7 +313,8 @@ static void beside_a_solid(void **state) {
   print_message("%zu of 600 crushed; %d of 150 steps limited by alpha; largest change %.4f\n", crushed, limited, most);
   assert_true(crushed > 20);
   assert_true(limited > 5);
-  if (most > 0.01) fail_msg("alpha changed by %g in a step", most);
+  if (most > 0.01)
+    fail_msg("alpha changed by %g in a step", most);
   struct sph_ledger l = sph_system_ledger(m.s);
   near(case_total(l), 0.5 * 125 * 2.7e-6 * 1e6, 0.005 * 168.75, "energy");
   impact_end(&m);
@@ -332,7 +359,8 @@ static void tends_to_the_solid(void **state) {
     for (size_t i = 0; i < m.p->n; i++)
       far = fmax(far, fabs(m.p->z[i] - solid.p->z[i]));
     print_message("alpha_0 %.4f: particles within %.3g m of the solid's\n", a0[k], far);
-    if (k) assert_true(far < 0.3 * last);
+    if (k)
+      assert_true(far < 0.3 * last);
     last = far;
     impact_end(&m);
   }
@@ -360,10 +388,16 @@ static void refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(loop_is_the_formula), cmocka_unit_test(deviator_follows_alpha), cmocka_unit_test(shear_rate),
-      cmocka_unit_test(yield_falls_with_alpha), cmocka_unit_test(tension_limit_is_of_the_body), cmocka_unit_test(damage_adds_up), cmocka_unit_test(solid_bits),
-      cmocka_unit_test(beside_a_solid), cmocka_unit_test(restart), cmocka_unit_test(tends_to_the_solid),
-      cmocka_unit_test(refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(loop_is_the_formula),
+                                     cmocka_unit_test(deviator_follows_alpha),
+                                     cmocka_unit_test(shear_rate),
+                                     cmocka_unit_test(yield_falls_with_alpha),
+                                     cmocka_unit_test(tension_limit_is_of_the_body),
+                                     cmocka_unit_test(damage_adds_up),
+                                     cmocka_unit_test(solid_bits),
+                                     cmocka_unit_test(beside_a_solid),
+                                     cmocka_unit_test(restart),
+                                     cmocka_unit_test(tends_to_the_solid),
+                                     cmocka_unit_test(refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

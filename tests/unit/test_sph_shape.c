@@ -9,13 +9,16 @@
 #include <cmocka.h>
 
 #include "engine/random.h"
-#include "engine/sph/shape.h"
+#include "engine/sph/body/shape.h"
 
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, 2, 3}, .radius = 2};
-static const struct sph_shape rod = {
-    .kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 1.5, .length = 4, .axis = {1, 2, -2}};
-static const struct sph_shape ring = {
-    .kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 2, .inner_radius = 1, .length = 1, .axis = {0, 0, 5}};
+static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,
+                                     .centre = {1, 2, 3},
+                                     .radius = 1.5,
+                                     .length = 4,
+                                     .axis = {1, 2, -2}};
+static const struct sph_shape ring =
+    {.kind = SPH_SHAPE_CYLINDER, .centre = {1, 2, 3}, .radius = 2, .inner_radius = 1, .length = 1, .axis = {0, 0, 5}};
 static const struct sph_shape box = {.kind = SPH_SHAPE_BOX, .centre = {1, 2, 3}, .side = {1, 2, 3}};
 static const struct sph_shape *const shapes[] = {&sphere, &rod, &ring, &box};
 
@@ -53,7 +56,8 @@ static void volume_is_what_is_inside(void **state) {
 static double inner_volume(const struct sph_shape *s, double depth) {
   struct sph_shape inner = *s;
   inner.radius -= depth;
-  if (s->inner_radius > 0) inner.inner_radius += depth;
+  if (s->inner_radius > 0)
+    inner.inner_radius += depth;
   inner.length -= 2 * depth;
   for (int k = 0; k < 3; k++)
     inner.side[k] -= 2 * depth;

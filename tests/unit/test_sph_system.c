@@ -1,7 +1,7 @@
 /* The moving solid: conservation over a collision that breaks, ledger, limits and rates by hand, what is absent. */
 #include "tests/sph_collision.h"
 
-#include "engine/sph/ranges.h"
+#include "engine/sph/modules/ranges.h"
 
 static void conserved(void **state) {
   (void)state;
@@ -10,8 +10,9 @@ static void conserved(void **state) {
   const struct sph_ledger first = sph_system_ledger(s);
   case_run(s, 6e-6); /* several crossings of the large cube */
   const struct sph_ledger last = sph_system_ledger(s);
-  print_message("%llu steps, damage %.3f, energy %.3e of %.3e J (clamped %.1e)\n", (unsigned long long)sph_system_steps(s),
-                sph_system_damage(s, NULL), case_total(last) - case_total(first), case_total(first), last.clamped);
+  print_message("%llu steps, damage %.3f, energy %.3e of %.3e J (clamped %.1e)\n",
+                (unsigned long long)sph_system_steps(s), sph_system_damage(s, NULL),
+                case_total(last) - case_total(first), case_total(first), last.clamped);
   assert_true(sph_system_damage(s, NULL) > 0.2); /* it does break: at the large one's end of the energy, most of it */
   for (int k = 0; k < 3; k++) /* pair forces are opposite to the last bit: what remains is rounding of the sums */
     assert_true(fabs(last.momentum[k] - first.momentum[k]) < 1e-12 * last.momentum_scale);
@@ -40,8 +41,15 @@ static void ledger_by_hand(void **state) {
   const struct sph_parameters parameters = sph_parameters_default();
   struct sph_system *s = case_system(p, 1, &fluid, &parameters);
   const struct sph_ledger l = sph_system_ledger(s);
-  const double got[] = {l.kinetic, l.internal, l.momentum_scale, l.momentum[0], l.momentum[1], l.momentum[2],
-                        l.angular_momentum[0], l.angular_momentum[1], l.angular_momentum[2]};
+  const double got[] = {l.kinetic,
+                        l.internal,
+                        l.momentum_scale,
+                        l.momentum[0],
+                        l.momentum[1],
+                        l.momentum[2],
+                        l.angular_momentum[0],
+                        l.angular_momentum[1],
+                        l.angular_momentum[2]};
   const double want[] = {kinetic, internal, scale, px, py, pz, lx, ly, lz};
   for (int k = 0; k < 9; k++)
     assert_true(want[k] != 0 && fabs(got[k] / want[k] - 1) < 1e-12); /* the order of sums */
@@ -62,7 +70,8 @@ static void see_sums(struct sph_system *s, const struct sph_solid *body, struct 
   }
 }
 
-/* Every limit of the step as motion_range.h says it, from the columns, while a blow goes on; the step is the least of them. */
+/* Every limit of the step as motion_range.h says it, from the columns, while a blow goes on; the step is the least of
+ * them. */
 static void limits_by_hand(void **state) {
   (void)state;
   struct collision c = collide(1000);
@@ -70,15 +79,18 @@ static void limits_by_hand(void **state) {
   assert_true(s->n <= sizeof seen_signal / sizeof *seen_signal);
   for (size_t b = 0; b < s->body_count; b++)
     s->solid[b].after[s->solid[b].after_count++] = see_sums;
-  double share[3] = {0}; /* of the viscous terms and of shear in the Courant limit: were they missing, it would be seen */
+  double share[3] = {
+      0}; /* of the viscous terms and of shear in the Courant limit: were they missing, it would be seen */
   for (int step = 0; step < 60; step++) {
     case_steps(s, 1);
     double courant = 0, bare = 0, linear = 0, fluid = 0, force = 0, energy = 0, density = 0, damage = 0;
     for (size_t i = 0; i < s->n; i++) {
-      const double h = s->c.h[i], sound = s->c.sound_speed[i], left = 1 - pow(s->c.damage[i], 3), signal = fmax(seen_signal[i], 0);
+      const double h = s->c.h[i], sound = s->c.sound_speed[i], left = 1 - pow(s->c.damage[i], 3),
+                   signal = fmax(seen_signal[i], 0);
       const double speed = sqrt(sound * sound + 4.0 / 3 * case_basalt.shear_modulus * left / s->c.density[i]);
       const double pull = sqrt(pow(s->c.ax[i], 2) + pow(s->c.ay[i], 2) + pow(s->c.az[i], 2));
-      if (seen_signal[i] < 0) continue;
+      if (seen_signal[i] < 0)
+        continue;
       courant = fmax(courant, (speed + 0.6 * (1.5 * sound + 3 * signal)) / (0.3 * h));
       bare = fmax(bare, speed / (0.3 * h)), linear = fmax(linear, (speed + 0.9 * sound) / (0.3 * h));
       fluid = fmax(fluid, (sound + 0.6 * (1.5 * sound + 3 * signal)) / (0.3 * h));
@@ -90,9 +102,12 @@ static void limits_by_hand(void **state) {
     const double *worst = s->now.worst;
     /* the density in c_L is that before half the change of its rate: well below a percent */
     assert_true(fabs(worst[SPH_LIMIT_COURANT] / courant - 1) < 0.01);
-    assert_true(fabs(worst[SPH_LIMIT_FORCE] - force) <= 1e-9 * force && fabs(worst[SPH_LIMIT_ENERGY] - energy) <= 1e-9 * energy);
-    assert_true(fabs(worst[SPH_LIMIT_DENSITY] - density) <= 1e-9 * density && fabs(worst[SPH_LIMIT_DAMAGE] - damage) <= 1e-9 * damage);
-    share[0] = fmax(share[0], 1 - bare / courant), share[1] = fmax(share[1], 1 - linear / courant), share[2] = fmax(share[2], 1 - fluid / courant);
+    assert_true(fabs(worst[SPH_LIMIT_FORCE] - force) <= 1e-9 * force &&
+                fabs(worst[SPH_LIMIT_ENERGY] - energy) <= 1e-9 * energy);
+    assert_true(fabs(worst[SPH_LIMIT_DENSITY] - density) <= 1e-9 * density &&
+                fabs(worst[SPH_LIMIT_DAMAGE] - damage) <= 1e-9 * damage);
+    share[0] = fmax(share[0], 1 - bare / courant), share[1] = fmax(share[1], 1 - linear / courant),
+    share[2] = fmax(share[2], 1 - fluid / courant);
     const double longest = 1 / fmax(worst[SPH_LIMIT_COURANT], fmax(fmax(force, energy), fmax(density, damage)));
     case_steps(s, 1);
     assert_true(fabs(sph_system_last_step(s) / longest - 1) < 1e-9);
@@ -115,7 +130,8 @@ static void h_follows_density(void **state) {
       const double h = s->c.h[i] / s->c.h_initial[i], density = s->c.density[i] / 2700;
       densest = fmax(densest, density), thinnest = fmin(thinnest, density);
       /* the cube root is a series, within (0.1)^4/24 a step at most */
-      if (density > 0.2) assert_true(fabs(h * h * h * density - 1) < 1e-3);
+      if (density > 0.2)
+        assert_true(fabs(h * h * h * density - 1) < 1e-3);
     }
   }
   assert_true(densest > 1.1 && thinnest < 0.9);
@@ -140,14 +156,16 @@ static void fast_damping(void **state) {
   case_steps(s, 40);
   const struct sph_ledger last = sph_system_ledger(s);
   assert_true(sph_system_last_step(s) < courant / 3);
-  /* the larger root at 0.9 is -0.87: after 40 steps 1e-5 of the energy. So near the bound half as much again is booked as damped; sides
-   * have that rate in their outermost layer alone */
-  assert_true(last.kinetic < 1e-4 * first.kinetic && last.damped > 0.9 * first.kinetic && last.damped < 1.6 * first.kinetic);
+  /* the larger root at 0.9 is -0.87: after 40 steps 1e-5 of the energy. So near the bound half as much again is booked
+   * as damped; sides have that rate in their outermost layer alone */
+  assert_true(last.kinetic < 1e-4 * first.kinetic && last.damped > 0.9 * first.kinetic &&
+              last.damped < 1.6 * first.kinetic);
   sph_system_free(s);
   sph_particles_free(p);
 }
 
-/* A block's slack is below what its particles have left, until it is used up and looked up anew: no list misses a pair. */
+/* A block's slack is below what its particles have left, until it is used up and looked up anew: no list misses a pair.
+ */
 static void slack_is_never_overrated(void **state) {
   (void)state;
   struct collision c = collide(1000);
@@ -162,7 +180,8 @@ static void slack_is_never_overrated(void **state) {
     case_steps(s, 1);
     for (size_t k = 0; k < s->block_count; k++) {
       const struct sph_block *b = &s->block[k];
-      if (s->now.listings > listings || b->slack < 0) continue;
+      if (s->now.listings > listings || b->slack < 0)
+        continue;
       assert_true(b->slack <= sph_pairs_slack(s->pairs, b->low, b->high, s->c.x, s->c.y, s->c.z, s->c.h));
       looked_up += b->slack > before[k], kept += b->slack <= before[k];
     }
@@ -173,7 +192,8 @@ static void slack_is_never_overrated(void **state) {
   let_go(&c);
 }
 
-/* Flaws open by eq. 21, of the damaged stress: E eps = lambda(S) - P where pulled, lambda(S) - P/(1-D) where pressed. */
+/* Flaws open by eq. 21, of the damaged stress: E eps = lambda(S) - P where pulled, lambda(S) - P/(1-D) where pressed.
+ */
 static void flaws_open_by_the_damaged_stress(void **state) {
   (void)state;
   struct collision c = collide(0);
@@ -182,8 +202,9 @@ static void flaws_open_by_the_damaged_stress(void **state) {
   static const struct {
     double tension, pressure, damage; /* of the weakest flaw's E eps; D */
     bool opens;
-  } cases[] = {{2, 0.8, 0, true},     {2, 0.8, 0.5, false},   {2, 1.01, 0, false},   {2.7, 0.8, 0.5, true},
-               {0.6, -0.5, 0, true},  {0.6, -0.5, 0.5, true}, {0.6, -0.3, 0.5, false}, {1.01, 0, 0.9, true}, {3, -3, 1, false}};
+  } cases[] = {{2, 0.8, 0, true},       {2, 0.8, 0.5, false}, {2, 1.01, 0, false},
+               {2.7, 0.8, 0.5, true},   {0.6, -0.5, 0, true}, {0.6, -0.5, 0.5, true},
+               {0.6, -0.3, 0.5, false}, {1.01, 0, 0.9, true}, {3, -3, 1, false}};
   double *weakest = malloc(s->n * sizeof *weakest);
   memcpy(weakest, s->c.weakest, s->n * sizeof *weakest);
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
@@ -199,14 +220,16 @@ static void flaws_open_by_the_damaged_stress(void **state) {
     for (size_t b = 0; b < s->block_count; b++)
       s->ranges->crack(s, &s->solid[s->block[b].body], &s->block[b]);
     for (size_t i = 0; i < s->n; i++)
-      if ((s->c.damage_rate[i] > 0) != cases[k].opens) fail_msg("case %zu: rate %g", k, s->c.damage_rate[i]);
+      if ((s->c.damage_rate[i] > 0) != cases[k].opens)
+        fail_msg("case %zu: rate %g", k, s->c.damage_rate[i]);
   }
   free(weakest);
   sph_system_free(s);
   let_go(&c);
 }
 
-/* Damage at its cap has no rate: else it would go on shortening the time step. Below the cap it has, and reaches it, not more. */
+/* Damage at its cap has no rate: else it would go on shortening the time step. Below the cap it has, and reaches it,
+ * not more. */
 static void growth_ends_at_the_cap(void **state) {
   (void)state;
   struct collision c = collide(0);
@@ -225,7 +248,8 @@ static void growth_ends_at_the_cap(void **state) {
         s->ranges->crack(s, &s->solid[s->block[b].body], &s->block[b]);
     }
     for (size_t i = 0; i < s->n; i++) {
-      if (!(s->c.damage_cap[i] < 0.99)) continue; /* all of its flaws are open */
+      if (!(s->c.damage_cap[i] < 0.99))
+        continue; /* all of its flaws are open */
       below_one++;
       assert_true(k < 2 ? s->c.damage_rate[i] > 0 : s->c.damage_rate[i] == 0);
     }
@@ -240,8 +264,9 @@ static void growth_ends_at_the_cap(void **state) {
   let_go(&c);
 }
 
-/* A body that flies fast wears lists out soon, and with room for many steps each of its particles would list most of the others:
- * then lists are made for fewer steps, so that what a pass sums stays near what it must. Bodies at rest list for many. */
+/* A body that flies fast wears lists out soon, and with room for many steps each of its particles would list most of
+ * the others: then lists are made for fewer steps, so that what a pass sums stays near what it must. Bodies at rest
+ * list for many. */
 static void lists_stay_short_in_a_fast_body(void **state) {
   (void)state;
   static const double speeds[] = {0, 5000};
@@ -253,8 +278,8 @@ static void lists_stay_short_in_a_fast_body(void **state) {
     struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
     case_steps(s, 10);
     beyond[k] = sph_pairs_reached(s->pairs) - sph_system_neighbours(s);
-    print_message("%g m/s: for %d steps, %.1f neighbours listed beyond the %.1f\n", speeds[k], (int)s->now.horizon, beyond[k],
-                  sph_system_neighbours(s));
+    print_message("%g m/s: for %d steps, %.1f neighbours listed beyond the %.1f\n", speeds[k], (int)s->now.horizon,
+                  beyond[k], sph_system_neighbours(s));
     assert_true(k ? s->now.horizon < 20 : s->now.horizon == 20);
     sph_system_free(s);
     let_go(&c);
@@ -275,7 +300,8 @@ static void absent(void **state) {
   /* what `clast explain` says a module adds is what it adds */
   assert_int_equal((solid->arena_doubles - whole->arena_doubles) / solid->stride * sizeof(double),
                    sph_weibull_module.bytes + sph_fracture_module.bytes);
-  assert_int_equal((whole->arena_doubles - fluid->arena_doubles) / solid->stride * sizeof(double), sph_elastic_module.bytes);
+  assert_int_equal((whole->arena_doubles - fluid->arena_doubles) / solid->stride * sizeof(double),
+                   sph_elastic_module.bytes);
   assert_true(sph_system_bytes(fluid) < sph_system_bytes(whole) && sph_system_bytes(whole) < sph_system_bytes(solid));
   assert_non_null(solid->c.damage);
   assert_non_null(solid->c.open_rate);
@@ -309,15 +335,19 @@ static void absent(void **state) {
   let_go(&c);
 }
 
-/* A wall of held particles is pushed by a moving block: its work is booked. A damped one gives its energy to `damped`. */
+/* A wall of held particles is pushed by a moving block: its work is booked. A damped one gives its energy to `damped`.
+ */
 static void held(void **state) {
   (void)state;
   const struct case_block block = {{6, 6, 12}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_HELD | SPH_WITH_DAMPING);
   for (size_t i = 0; i < p->n; i++) {
-    if (p->z[i] > 10e-3) p->held[i] = SPH_HELD_Z, p->vz[i] = 40;
-    if (p->z[i] < 6e-3) p->damping[i] = 1e6;
-    if (p->z[i] < 1e-3) p->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
+    if (p->z[i] > 10e-3)
+      p->held[i] = SPH_HELD_Z, p->vz[i] = 40;
+    if (p->z[i] < 6e-3)
+      p->damping[i] = 1e6;
+    if (p->z[i] < 1e-3)
+      p->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
   const struct sph_parameters parameters = sph_parameters_default();
@@ -325,13 +355,16 @@ static void held(void **state) {
   const double first = case_total(sph_system_ledger(s));
   case_run(s, 10e-6);
   const struct sph_ledger last = sph_system_ledger(s);
-  print_message("work of held %.4e, damped %.4e, change %.2e J\n", last.work_of_held, last.damped, case_total(last) - first);
+  print_message("work of held %.4e, damped %.4e, change %.2e J\n", last.work_of_held, last.damped,
+                case_total(last) - first);
   assert_true(last.work_of_held > 10 * first && last.damped > 0.05 * last.work_of_held);
   assert_true(fabs(case_total(last) - first) < 5e-3 * last.work_of_held); /* as the impact's bound */
   sph_system_read(s, p);
   for (size_t i = 0; i < p->n; i++) {
-    if (p->held[i] == SPH_HELD_Z) assert_true(p->vz[i] == 40);
-    if (p->held[i] > SPH_HELD_Z) assert_true(p->vx[i] == 0 && p->vz[i] == 0);
+    if (p->held[i] == SPH_HELD_Z)
+      assert_true(p->vz[i] == 40);
+    if (p->held[i] > SPH_HELD_Z)
+      assert_true(p->vx[i] == 0 && p->vz[i] == 0);
   }
   sph_system_free(s);
   sph_particles_free(p);

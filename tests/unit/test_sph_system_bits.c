@@ -1,4 +1,5 @@
-/* The moving solid to the last bit: after a restart, with any number of threads; and, but for rounding, whatever axes and numbering. */
+/* The moving solid to the last bit: after a restart, with any number of threads; and, but for rounding, whatever axes
+ * and numbering. */
 #include "tests/sph_collision.h"
 
 static size_t everything(const struct sph_system *s, unsigned char **bytes) {
@@ -44,22 +45,32 @@ static void restarted(void **state) {
   let_go(&c);
 }
 
-/* Every module at once, on two chunks of the pair loop: a porous cracking cube, part of it held and part damped, hit by a solid one. */
+/* Every module at once, on two chunks of the pair loop: a porous cracking cube, part of it held and part damped, hit by
+ * a solid one. */
 static struct collision everything_on(int precision) {
-  static const struct sph_palpha pores = {
-      .distention = 1.3, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 5e6, .solid_pressure = 3e8, .sound_speed = 2000};
+  static const struct sph_palpha pores = {.distention = 1.3,
+                                          .curve = SPH_CRUSH_QUADRATIC,
+                                          .elastic_pressure = 5e6,
+                                          .solid_pressure = 3e8,
+                                          .sound_speed = 2000};
   const struct case_block blocks[2] = {{{18, 18, 18}, {0, 0, 0}, {0, 0, 0}, spacing},
                                        {{SMALL, SMALL, SMALL}, {6.3e-3, 7.7e-3, 18.9e-3}, {0, 0, -3000}, spacing}};
   struct collision c = {.parameters = sph_parameters_default()};
-  c.particles = case_make(blocks, 2, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION);
+  c.particles = case_make(blocks, 2, 2700, 1.21,
+                          SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION);
   const size_t target = 18 * 18 * 18;
   for (size_t i = 0; i < target; i++) {
     c.particles->density[i] /= 1.3, c.particles->mass[i] /= 1.3, c.particles->distention[i] = 1.3;
-    if (c.particles->z[i] < 1e-3) c.particles->held[i] = SPH_HELD_X | SPH_HELD_Z;
-    if (c.particles->x[i] < 2e-3) c.particles->damping[i] = 1e6;
+    if (c.particles->z[i] < 1e-3)
+      c.particles->held[i] = SPH_HELD_X | SPH_HELD_Z;
+    if (c.particles->x[i] < 2e-3)
+      c.particles->damping[i] = 1e6;
   }
   c.flaws[0] = case_flaws(target, (double)target * pow(spacing, 3), 7, 0);
-  c.physics[0] = (struct sph_body_physics){.material = case_basalt, .strength = true, .flaws = c.flaws[0], .porosity = &pores};
+  c.physics[0] = (struct sph_body_physics){.material = case_basalt,
+                                           .strength = true,
+                                           .flaws = c.flaws[0],
+                                           .porosity = &pores};
   c.physics[1] = (struct sph_body_physics){.material = case_basalt, .strength = true};
   c.physics[1].material.tension_limit = 1e8;
   c.parameters.artificial_stress = 0.2;
@@ -84,7 +95,8 @@ static void every_module(void **state) {
     case_steps(whole, 45);
     case_steps(again, 45);
     assert_same_bits(whole, again);
-    assert_true(sph_system_damage(whole, NULL) > 0 && whole->now.damped > 0 && whole->now.listings > 1); /* all that did act */
+    assert_true(sph_system_damage(whole, NULL) > 0 && whole->now.damped > 0 &&
+                whole->now.listings > 1); /* all that did act */
     double closed = 0;
     for (size_t i = 0; i < whole->n; i++)
       closed = fmax(closed, 1.3 - whole->c.rest_distention[i]);
@@ -112,7 +124,8 @@ static void no_axis_is_special(void **state) {
       for (int k = 0; k < 3; k++) {
         const int from = scene == TURNED ? (k + 1) % 3 : k, sign = scene == MIRRORED && k == 0 ? -1 : 1;
         at[k][i] = sign * r[from], v[k][i] = sign * w[from];
-        if (scene == TURNED) p->held[i] = (uint8_t)((p->held[i] & ~(1u << k)) | (held >> from & 1u) << k);
+        if (scene == TURNED)
+          p->held[i] = (uint8_t)((p->held[i] & ~(1u << k)) | (held >> from & 1u) << k);
       }
     }
     struct sph_system *s = case_system(p, 2, c.physics, &c.parameters);
@@ -136,7 +149,8 @@ static void no_axis_is_special(void **state) {
         way = fmax(way, fabs(at[1][k][i] - sign * at[0][from][i]));
         speed = fmax(speed, fabs(v[1][k][i] - sign * v[0][from][i]));
         for (int l = 0; l < 3; l++) {
-          const int other = scene == TURNED ? (l + 1) % 3 : l, both = scene == MIRRORED && (k == 0) != (l == 0) ? -1 : 1;
+          const int other = scene == TURNED ? (l + 1) % 3 : l,
+                    both = scene == MIRRORED && (k == 0) != (l == 0) ? -1 : 1;
           stress = fmax(stress, fabs(p->stress[place[k][l]][i] - both * plain->stress[place[from][other]][i]));
         }
       }
@@ -164,18 +178,20 @@ static void threads(void **state) {
   let_go(&c);
 }
 
-/* Ids mean nothing to the physics: the same solid with its particles numbered backwards moves the same, but for the order of
- * sums where the space-filling curve ties (it does not here) -- to the last bit. */
+/* Ids mean nothing to the physics: the same solid with its particles numbered backwards moves the same, but for the
+ * order of sums where the space-filling curve ties (it does not here) -- to the last bit. */
 static void renumbered(void **state) {
   (void)state;
   const struct case_block block = {{6, 5, 4}, {0, 0, 0}, {0, 0, 0}, spacing};
-  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS), *q = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
+  struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS),
+                       *q = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS);
   const size_t n = p->n;
   for (size_t i = 0; i < n; i++)
     p->vx[i] = 30 * sin(900 * p->z[i]), p->vy[i] = 20 * sin(700 * p->x[i]);
   for (size_t i = 0; i < n; i++) {
     const size_t k = n - 1 - i;
-    q->x[i] = p->x[k], q->y[i] = p->y[k], q->z[i] = p->z[k], q->vx[i] = p->vx[k], q->vy[i] = p->vy[k], q->vz[i] = p->vz[k];
+    q->x[i] = p->x[k], q->y[i] = p->y[k], q->z[i] = p->z[k], q->vx[i] = p->vx[k], q->vy[i] = p->vy[k],
+    q->vz[i] = p->vz[k];
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
   const struct sph_parameters parameters = sph_parameters_default();
@@ -186,7 +202,8 @@ static void renumbered(void **state) {
   sph_system_read(b, q);
   for (size_t i = 0; i < n; i++) {
     const size_t k = n - 1 - i;
-    assert_true(p->x[k] == q->x[i] && p->vy[k] == q->vy[i] && p->stress[1][k] == q->stress[1][i] && p->energy[k] == q->energy[i]);
+    assert_true(p->x[k] == q->x[i] && p->vy[k] == q->vy[i] && p->stress[1][k] == q->stress[1][i] &&
+                p->energy[k] == q->energy[i]);
   }
   sph_system_free(a);
   sph_system_free(b);
@@ -196,11 +213,8 @@ static void renumbered(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(restarted),
-      cmocka_unit_test(every_module),
-      cmocka_unit_test(no_axis_is_special),
-      cmocka_unit_test(threads),
-      cmocka_unit_test(renumbered),
+      cmocka_unit_test(restarted), cmocka_unit_test(every_module), cmocka_unit_test(no_axis_is_special),
+      cmocka_unit_test(threads),   cmocka_unit_test(renumbered),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

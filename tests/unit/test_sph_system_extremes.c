@@ -1,23 +1,25 @@
 /* The moving solid at its bounds: speeds, clamps, thin matter, states that cannot go on, systems that are refused. */
 #include "tests/sph_collision.h"
 
-#include "engine/sph/bodies.h"
+#include "engine/sph/body/bodies.h"
 
-/* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition alone, which
- * sees only pairs that already touch, would let it (the energy then grows several times over). */
+/* At 70 km/s, ten times the speed of sound, a body must not leap into another between two steps: the Courant condition
+ * alone, which sees only pairs that already touch, would let it (the energy then grows several times over). */
 static void fast(void **state) {
   (void)state;
   for (int gap = 0; gap < 4; gap++) {
     struct collision c = collide(70000);
     for (size_t i = 0; i < c.particles->n; i++)
-      if (c.particles->body[i] == 1) c.particles->z[i] += 2e-3 + 0.7e-3 * gap; /* out of each other's reach at first */
+      if (c.particles->body[i] == 1)
+        c.particles->z[i] += 2e-3 + 0.7e-3 * gap; /* out of each other's reach at first */
     struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
     const struct sph_ledger first = sph_system_ledger(s);
     case_run(s, 0.4e-6);
     const struct sph_ledger last = sph_system_ledger(s);
-    print_message("70 km/s: %llu steps, energy %.1e of it, kinetic left %.2f\n", (unsigned long long)sph_system_steps(s),
-                  (case_total(last) - case_total(first)) / case_total(first), last.kinetic / first.kinetic);
-    assert_true(last.kinetic < 0.8 * first.kinetic); /* they met */
+    print_message("70 km/s: %llu steps, energy %.1e of it, kinetic left %.2f\n",
+                  (unsigned long long)sph_system_steps(s), (case_total(last) - case_total(first)) / case_total(first),
+                  last.kinetic / first.kinetic);
+    assert_true(last.kinetic < 0.8 * first.kinetic);                                    /* they met */
     assert_true(fabs(case_total(last) - case_total(first)) < 5e-3 * case_total(first)); /* as above */
     sph_system_free(s);
     let_go(&c);
@@ -29,14 +31,15 @@ static void clamps(void **state) {
   (void)state;
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, 0);
-  for (size_t i = 0; i < p->n; i++) { /* tension at u = 0: contraction of a stretched solid takes from u what is not there */
+  for (size_t i = 0; i < p->n;
+       i++) { /* tension at u = 0: contraction of a stretched solid takes from u what is not there */
     p->density[i] = 2600;
     p->vx[i] = 300 * sin(6000 * p->y[i]);
   }
   const struct sph_body_physics fluid = {.material = case_basalt};
   struct sph_parameters parameters = sph_parameters_default();
   parameters.viscosity_alpha = parameters.viscosity_beta = 0; /* no heating: it would hide the clamp */
-  parameters.cfl = 0.03; /* the integrator's own error small beside it */
+  parameters.cfl = 0.03;                                      /* the integrator's own error small beside it */
   struct sph_system *s = case_system(p, 1, &fluid, &parameters);
   const double first = case_total(sph_system_ledger(s));
   case_steps(s, 300);
@@ -71,12 +74,16 @@ static void thin(void **state) {
   sph_particles_free(p);
 }
 
-/* The bound itself: that of a particle alone, m W(0) at the largest h it may have. (Of thinner matter P/rho^2 has no bound: nylon
- * debris at 1e-3 of its density has driven runs apart; that takes tens of thousands of particles.) It is a share of what the body
- * has at rest: matter of many pores keeps its density. */
+/* The bound itself: that of a particle alone, m W(0) at the largest h it may have. (Of thinner matter P/rho^2 has no
+ * bound: nylon debris at 1e-3 of its density has driven runs apart; that takes tens of thousands of particles.) It is a
+ * share of what the body has at rest: matter of many pores keeps its density. */
 static void not_thinner_than_alone(void **state) {
   (void)state;
-  static const struct sph_palpha pores = {.distention = 50, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 1e6, .solid_pressure = 1e8, .sound_speed = NAN};
+  static const struct sph_palpha pores = {.distention = 50,
+                                          .curve = SPH_CRUSH_QUADRATIC,
+                                          .elastic_pressure = 1e6,
+                                          .solid_pressure = 1e8,
+                                          .sound_speed = NAN};
   const struct sph_parameters parameters = sph_parameters_default();
   const double alone = 1 / (acos(-1.0) * pow(parameters.h_highest * SPH_BODIES_H, 3)); /* of the density at rest */
   assert_true(parameters.density_lowest > 0.8 * alone && parameters.density_lowest < 2 * alone);
@@ -101,7 +108,8 @@ static void lost(void **state) {
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   case_steps(s, 5);
   for (size_t i = 0; i < s->n; i++)
-    if (s->id[i] == 123) s->c.energy[i] = NAN;
+    if (s->id[i] == 123)
+      s->c.energy[i] = NAN;
   assert_false(sph_system_step(s, HUGE_VAL));
   print_message("%s\n", sph_system_failure(s));
   assert_non_null(strstr(sph_system_failure(s), "no longer finite"));
@@ -161,12 +169,9 @@ static void refused(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fast),
-      cmocka_unit_test(clamps),
-      cmocka_unit_test(thin),
-      cmocka_unit_test(not_thinner_than_alone),
-      cmocka_unit_test(lost),
-      cmocka_unit_test(refused),
+      cmocka_unit_test(fast), cmocka_unit_test(clamps),
+      cmocka_unit_test(thin), cmocka_unit_test(not_thinner_than_alone),
+      cmocka_unit_test(lost), cmocka_unit_test(refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

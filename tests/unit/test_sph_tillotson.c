@@ -1,8 +1,8 @@
 /* Tillotson: derivatives against finite differences over all branches, continuity across them, known traps. */
 #include "tests/sph_case.h"
 
-#include "engine/sph/ranges.h"
-#include "engine/sph/tillotson.h"
+#include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/ranges.h"
 
 static const double basalt_density = 2700;
 static const struct sph_tillotson basalt = {2.67e10, 2.67e10, 0.5, 1.5, 5, 5, 4.87e8, 4.72e6, 1.82e7};
@@ -32,7 +32,8 @@ enum { MATERIALS = sizeof materials / sizeof *materials };
 /* The equation of state written again from the papers, in long double, for differences that cost no digits. */
 static long double pressure_again(const struct sph_tillotson *t, long double rho0, long double rho, long double u) {
   long double eta = rho / rho0, mu = eta - 1, z = 1 / eta - 1;
-  long double squeezed = (t->a + t->b / (u / (t->E0 * eta * eta) + 1)) * rho * u + t->A * mu + (mu > 0 ? t->B * mu * mu : 0);
+  long double squeezed = (t->a + t->b / (u / (t->E0 * eta * eta) + 1)) * rho * u + t->A * mu +
+                         (mu > 0 ? t->B * mu * mu : 0);
   long double hot = t->a * rho * u + (t->b * rho * u / (u / (t->E0 * eta * eta) + 1) + t->A * mu * expl(-t->beta * z)) *
                                          expl(-t->alpha * z * z);
   if (rho >= rho0 || u <= t->E_iv)
@@ -42,10 +43,10 @@ static long double pressure_again(const struct sph_tillotson *t, long double rho
   return (squeezed * (t->E_cv - u) + hot * (u - t->E_iv)) / (t->E_cv - t->E_iv);
 }
 
-/* Derivatives against central differences of the formula written again in long double. A relative step of 1e-6 loses about
- * (step * exponent)^2 = 1e-9 to truncation (the steepest term is exp(-alpha z^2) with alpha z^2 up to 80 here) and 1e-13 to
- * rounding; 1e-7 of the size of the terms covers that and is far below any wrong term. No step straddles E_iv, E_cv or rho0, where
- * the derivatives jump: that each case stays on one branch is checked. */
+/* Derivatives against central differences of the formula written again in long double. A relative step of 1e-6 loses
+ * about (step * exponent)^2 = 1e-9 to truncation (the steepest term is exp(-alpha z^2) with alpha z^2 up to 80 here)
+ * and 1e-13 to rounding; 1e-7 of the size of the terms covers that and is far below any wrong term. No step straddles
+ * E_iv, E_cv or rho0, where the derivatives jump: that each case stays on one branch is checked. */
 static void derivatives(void **state) {
   (void)state;
   const double densities[] = {0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.999, 1.001, 1.05, 1.2, 2, 4, 10, 100};
@@ -53,8 +54,14 @@ static void derivatives(void **state) {
   for (int k = 0; k < MATERIALS; k++) {
     const struct sph_tillotson *t = &materials[k].t;
     double rho0 = materials[k].density;
-    const double energies[] = {0.01 * t->E_iv, 0.5 * t->E_iv, 0.99 * t->E_iv, 0.9 * t->E_iv + 0.1 * t->E_cv,
-                               0.5 * t->E_iv + 0.5 * t->E_cv, 0.01 * t->E_iv + 0.99 * t->E_cv, 1.01 * t->E_cv, 3 * t->E_cv,
+    const double energies[] = {0.01 * t->E_iv,
+                               0.5 * t->E_iv,
+                               0.99 * t->E_iv,
+                               0.9 * t->E_iv + 0.1 * t->E_cv,
+                               0.5 * t->E_iv + 0.5 * t->E_cv,
+                               0.01 * t->E_iv + 0.99 * t->E_cv,
+                               1.01 * t->E_cv,
+                               3 * t->E_cv,
                                1e3 * t->E_cv};
     for (size_t r = 0; r < sizeof densities / sizeof *densities; r++)
       for (size_t e = 0; e < sizeof energies / sizeof *energies; e++) {
@@ -68,12 +75,15 @@ static void derivatives(void **state) {
         long double by_rho = (pressure_again(t, rho0, rho + dr, u) - pressure_again(t, rho0, rho - dr, u)) / (2 * dr);
         long double by_u = (pressure_again(t, rho0, rho, u + du) - pressure_again(t, rho0, rho, u - du)) / (2 * du);
         double scale = t->A / rho0 + u; /* where terms cancel, compare with the size of the terms */
-        if (fabs(p.pressure - (double)pressure_again(t, rho0, rho, u)) > 1e-13 * (rho * u + t->A * (1 + densities[r] * densities[r])))
+        if (fabs(p.pressure - (double)pressure_again(t, rho0, rho, u)) >
+            1e-13 * (rho * u + t->A * (1 + densities[r] * densities[r])))
           fail_msg("%s: P at eta %g, u %g: %.15g", materials[k].name, densities[r], u, p.pressure);
         if (fabs(p.by_density - (double)by_rho) > 1e-7 * (fabs((double)by_rho) + scale))
-          fail_msg("%s: dP/drho at eta %g, u %g: %.12g against %.12Lg", materials[k].name, densities[r], u, p.by_density, by_rho);
+          fail_msg("%s: dP/drho at eta %g, u %g: %.12g against %.12Lg", materials[k].name, densities[r], u,
+                   p.by_density, by_rho);
         if (fabs(p.by_energy - (double)by_u) > 1e-7 * (fabs((double)by_u) + rho))
-          fail_msg("%s: dP/du at eta %g, u %g: %.12g against %.12Lg", materials[k].name, densities[r], u, p.by_energy, by_u);
+          fail_msg("%s: dP/du at eta %g, u %g: %.12g against %.12Lg", materials[k].name, densities[r], u, p.by_energy,
+                   by_u);
         double c2 = (double)(by_rho + p.pressure / (rho * rho) * by_u), low = t->A / (4 * rho0);
         expect_near(p.sound_speed, sqrt(c2 > low ? c2 : low), 1e-6, "sound speed");
       }
@@ -82,12 +92,13 @@ static void derivatives(void **state) {
     assert_true(branch_seen[b] >= 60);
 }
 
-/* From next to nothing to a hundred times the density, any energy that 70 km/s can make and more: finite, c above its floor, and
- * the loops of all CPU classes give what the formula gives. */
+/* From next to nothing to a hundred times the density, any energy that 70 km/s can make and more: finite, c above its
+ * floor, and the loops of all CPU classes give what the formula gives. */
 static void extremes(void **state) {
   (void)state;
   enum { SIDE = 8 };
-  const double etas[SIDE] = {1e-12, 1e-6, 1e-3, 0.01, 0.1, 1, 10, 100}, energies[SIDE] = {-1e12, -1, -0.0, 0, 1e-300, 1, 2.45e9, 1e12};
+  const double etas[SIDE] = {1e-12, 1e-6, 1e-3, 0.01, 0.1, 1, 10, 100},
+               energies[SIDE] = {-1e12, -1, -0.0, 0, 1e-300, 1, 2.45e9, 1e12};
   static const char *const classes[] = {"baseline", "v3", "v4"};
   const struct case_block block = {.count = {SIDE, SIDE, 1}, .spacing = 1e-3};
   const struct sph_parameters parameters = sph_parameters_default();
@@ -116,11 +127,13 @@ static void extremes(void **state) {
       for (size_t i = 0; i < s->n; i++) {
         const double rho = s->c.density[i], u = fmax(s->c.energy[i], 0), eta = rho / rho0;
         const struct sph_pressure p = sph_tillotson(t, rho0, rho, s->c.energy[i]);
-        const double terms = (t->a + t->b) * rho * u + t->A * (1 + eta) + t->B * (1 + eta * eta); /* mu is rounded as eta is */
+        const double terms = (t->a + t->b) * rho * u + t->A * (1 + eta) +
+                             t->B * (1 + eta * eta); /* mu is rounded as eta is */
         /* products in another order, some of them fused: a few roundings of the terms */
-        if (!(fabs(s->c.pressure[i] - p.pressure) <= 4e-15 * terms) || !(fabs(s->c.sound_speed[i] / p.sound_speed - 1) < 1e-14))
-          fail_msg("%s, %s: eta %g, u %g: P %.17g, not %.17g; c %.17g, not %.17g", classes[which], materials[k].name, eta, u,
-                   s->c.pressure[i], p.pressure, s->c.sound_speed[i], p.sound_speed);
+        if (!(fabs(s->c.pressure[i] - p.pressure) <= 4e-15 * terms) ||
+            !(fabs(s->c.sound_speed[i] / p.sound_speed - 1) < 1e-14))
+          fail_msg("%s, %s: eta %g, u %g: P %.17g, not %.17g; c %.17g, not %.17g", classes[which], materials[k].name,
+                   eta, u, s->c.pressure[i], p.pressure, s->c.sound_speed[i], p.sound_speed);
       }
       sph_system_free(s);
     }
@@ -129,8 +142,9 @@ static void extremes(void **state) {
   unsetenv("CLAST_CPU");
 }
 
-/* P is continuous in u at E_iv and E_cv and in rho at rho0, at any energy. The jump over a relative step of 2e-12 is bounded by
- * the slope: |dP/dlnu| and |dP/dlnrho| stay below 10 (A + rho u), hence 1e-10 of that; a wrong weight jumps by parts of it. */
+/* P is continuous in u at E_iv and E_cv and in rho at rho0, at any energy. The jump over a relative step of 2e-12 is
+ * bounded by the slope: |dP/dlnu| and |dP/dlnrho| stay below 10 (A + rho u), hence 1e-10 of that; a wrong weight jumps
+ * by parts of it. */
 static void continuous(void **state) {
   (void)state;
   const double step = 1e-12;

@@ -18,7 +18,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 static double number(struct store *store, const char *sql) {
@@ -38,7 +39,8 @@ static void sql(const char *path, const char *text) {
   sqlite3 *db = NULL;
   char *message = NULL;
   assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-  if (sqlite3_exec(db, text, NULL, NULL, &message) != SQLITE_OK) fail_msg("%s", message);
+  if (sqlite3_exec(db, text, NULL, NULL, &message) != SQLITE_OK)
+    fail_msg("%s", message);
   sqlite3_close(db);
 }
 
@@ -54,11 +56,13 @@ static void refused(const char *path, status writing, status reading, const char
   error.message[0] = 0;
   if (store_open_writer(path, NULL, &store, NULL, 0, &error) != writing || store)
     fail_msg("writer: %d %s", error.status, error.message);
-  if (writing != STATUS_OK && !strstr(error.message, word)) fail_msg("writer said: %s", error.message);
+  if (writing != STATUS_OK && !strstr(error.message, word))
+    fail_msg("writer said: %s", error.message);
   error.message[0] = 0;
   if (store_open_reader(path, &store, &error) != reading || store)
     fail_msg("reader: %d %s", error.status, error.message);
-  if (reading == STATUS_CONTENT && !strstr(error.message, word)) fail_msg("reader said: %s", error.message);
+  if (reading == STATUS_CONTENT && !strstr(error.message, word))
+    fail_msg("reader said: %s", error.message);
   assert_true(strstr(error.message, path) != NULL);
   assert_true(size_of(path) == before);
 }
@@ -148,7 +152,8 @@ static void old_store_is_brought_forward(void **state) {
   sqlite3_close(db);
   assert_true(size_of(backup) > 10000);
   OK(store_open_reader(path, &store, &error));
-  if (store_check(store, NULL, NULL, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (store_check(store, NULL, NULL, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   store_close(store, NULL);
 }
 
@@ -179,7 +184,8 @@ static int hold(const char *path, pid_t *pid) {
     struct store *store = NULL;
     char byte = store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error) == STATUS_OK ? 'y' : 'n';
     close(end[1]);
-    if (write(ready[1], &byte, 1) != 1 || read(end[0], &byte, 1) < 0) _exit(1);
+    if (write(ready[1], &byte, 1) != 1 || read(end[0], &byte, 1) < 0)
+      _exit(1);
     store_close(store, NULL);
     _exit(0);
   }
@@ -202,7 +208,8 @@ static void second_writer_is_told_who_holds_it(void **state) {
   assert_int_equal(store_open_writer(path, NULL, &store, NULL, 0, &error), STATUS_IO);
   snprintf(word, sizeof word, "process %d", (int)pid);
   gethostname(host, sizeof host - 1);
-  if (!strstr(error.message, word) || !strstr(error.message, host)) fail_msg("said: %s", error.message);
+  if (!strstr(error.message, word) || !strstr(error.message, host))
+    fail_msg("said: %s", error.message);
   OK(store_open_reader(path, &store, &error)); /* readers do not mind */
   assert_near(number(store, "SELECT count(*) FROM run"), 40, 0);
   store_close(store, NULL);

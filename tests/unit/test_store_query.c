@@ -17,7 +17,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 enum { M = 3, K = 2, RUNS = 25 };
@@ -68,7 +69,8 @@ static status keep_row(void *context, size_t count, const struct query_value *va
   rows->count++;
   for (size_t i = 0; i < count; i++) {
     char *end = rows->text + strlen(rows->text);
-    if (strlen(rows->text) > sizeof rows->text - 400) return STATUS_OK;
+    if (strlen(rows->text) > sizeof rows->text - 400)
+      return STATUS_OK;
     if (values[i].kind == QUERY_TEXT)
       snprintf(end, 200, "%s%s", i ? "," : "", values[i].text);
     else
@@ -162,10 +164,10 @@ static void spectra_are_densities(void **state) {
   assert_near(number(store, "SELECT sum(count) FROM spectra WHERE point_id = 3"), RUNS * FIXTURE_FRAGMENTS, 0);
   assert_near(number(store, "SELECT lower FROM spectra WHERE bin = -20"), 1e-2, 0);
   /* scatter of one bin between runs, two-pass, runs without the bin included as zeros */
-  double expected =
-      number(store, "WITH c AS (SELECT ifnull(s.count, 0) AS x FROM run r LEFT JOIN spectrum s ON s.run_id = "
-                    "r.run_id AND s.bin = -15 WHERE r.point_id = 2) SELECT sqrt(sum((x - m) * (x - m)) / 24) "
-                    "FROM c, (SELECT avg(x) AS m FROM c)");
+  double expected = number(store,
+                           "WITH c AS (SELECT ifnull(s.count, 0) AS x FROM run r LEFT JOIN spectrum s ON s.run_id = "
+                           "r.run_id AND s.bin = -15 WHERE r.point_id = 2) SELECT sqrt(sum((x - m) * (x - m)) / 24) "
+                           "FROM c, (SELECT avg(x) AS m FROM c)");
   assert_true(expected > 0);
   assert_near(number(store, "SELECT count_sd FROM spectra WHERE point_id = 2 AND bin = -15"), expected, 1e-12);
   store_close(store, NULL);
@@ -227,7 +229,8 @@ static void only_reading_is_allowed(void **state) {
                                  "SELECT :a",
                                  "UPDATE sqlite_master SET name = 'x'"};
   for (size_t i = 0; i < sizeof refused / sizeof refused[0]; i++)
-    if (ask(store, refused[i], &rows) != STATUS_USAGE) fail_msg("not refused: %s (%s)", refused[i], error.message);
+    if (ask(store, refused[i], &rows) != STATUS_USAGE)
+      fail_msg("not refused: %s (%s)", refused[i], error.message);
   assert_int_not_equal(access("x.db", F_OK), 0);
   OK(ask(store, "SELECT value FROM json_each('[1,2]') -- comment", &rows));
   OK(ask(store, "PRAGMA table_info(run)", &rows));
@@ -261,10 +264,12 @@ static void every_canned_query_runs(void **state) {
   for (size_t i = 0; i < query_canned_count(); i++) {
     const struct query_canned *canned = query_canned_at(i);
     const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};
-    if (strcmp(canned->name, "run-exponents") == 0) continue; /* needs analysis' columns: see test_store_schema */
+    if (strcmp(canned->name, "run-exponents") == 0)
+      continue; /* needs analysis' columns: see test_store_schema */
     memset(&rows, 0, sizeof rows);
     status result = query_run(store, canned->sql, *canned->parameters ? 1 : 0, &parameter, 0, &sink, &error);
-    if (result != STATUS_OK) fail_msg("%s: %s", canned->name, error.message);
+    if (result != STATUS_OK)
+      fail_msg("%s: %s", canned->name, error.message);
     if (rows.count == 0 && strcmp(canned->name, "failures") != 0 && strcmp(canned->name, "censored") != 0 &&
         strcmp(canned->name, "exponents") != 0)
       fail_msg("%s gave nothing", canned->name);
@@ -277,7 +282,8 @@ static void every_canned_query_runs(void **state) {
            number(store, "SELECT largest_fraction_mean FROM points WHERE point_id = 1"),
            number(store, "SELECT largest_fraction_sd FROM points WHERE point_id = 1"),
            number(store, "SELECT largest_fraction_se FROM points WHERE point_id = 1"));
-  if (!strstr(rows.text, first)) fail_msg("%s not in %s", first, rows.text);
+  if (!strstr(rows.text, first))
+    fail_msg("%s not in %s", first, rows.text);
   assert_null(query_canned_find("nonsense", &error));
   assert_non_null(strstr(error.message, "point-stats"));
   store_close(store, NULL);

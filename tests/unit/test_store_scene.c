@@ -8,14 +8,15 @@
 
 #include <sqlite3.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "tests/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 static void line(void *context, const char *text) {
@@ -66,7 +67,8 @@ static void identities_follow_from_the_scenes(void **state) {
   assert_true(scene_builtin_count() > 0);
   populate(fixture_path(path, "scene"));
   OK(store_open_reader(path, &store, &error));
-  if (store_check(store, line, problems, &error) != STATUS_OK) fail_msg("%s", problems);
+  if (store_check(store, line, problems, &error) != STATUS_OK)
+    fail_msg("%s", problems);
   double inputs = 0;
   OK(query_number(store, "SELECT min((SELECT count(*) FROM point_input i WHERE i.point_id = p.point_id)) FROM point p",
                   0, NULL, &inputs, &error));
@@ -76,9 +78,9 @@ static void identities_follow_from_the_scenes(void **state) {
 
 static void a_changed_seed_or_scene_is_found(void **state) {
   (void)state;
-  static const char *const damages[] = {
-      "UPDATE run SET seed = seed + 1 WHERE run_id = 1", "UPDATE run SET identity = randomblob(16) WHERE run_id = 1",
-      "UPDATE point SET scene = '{\"engine\": \"dem\", \"nonsense\": 1}' WHERE point_id = 1"};
+  static const char *const damages[] =
+      {"UPDATE run SET seed = seed + 1 WHERE run_id = 1", "UPDATE run SET identity = randomblob(16) WHERE run_id = 1",
+       "UPDATE point SET scene = '{\"engine\": \"dem\", \"nonsense\": 1}' WHERE point_id = 1"};
   for (size_t i = 0; i < sizeof damages / sizeof damages[0]; i++) {
     char path[64], problems[4000] = "";
     struct store *store = NULL;
@@ -94,14 +96,17 @@ static void a_changed_seed_or_scene_is_found(void **state) {
   }
 }
 
-/* A share above 1, in what all engines report and in an engine's own results; not of runs that do not count, and of no other version. */
+/* A share above 1, in what all engines report and in an engine's own results; not of runs that do not count, and of no
+ * other version. */
 static void results_out_of_range_are_found(void **state) {
   (void)state;
   static const struct {
     const char *damage, *word; /* NULL: none of that kind */
   } cases[] = {
-      {"UPDATE run SET second_fraction = 1.0000001 WHERE run_id = 1", "run 1, out of range: second_fraction is 1.0000001\n"},
-      {"UPDATE result_sph SET limited_courant = 1.5, limited_force = -0.25", ", out of range: limited_courant is 1.5 limited_force is -0.25\n"},
+      {"UPDATE run SET second_fraction = 1.0000001 WHERE run_id = 1",
+       "run 1, out of range: second_fraction is 1.0000001\n"},
+      {"UPDATE result_sph SET limited_courant = 1.5, limited_force = -0.25",
+       ", out of range: limited_courant is 1.5 limited_force is -0.25\n"},
       {"UPDATE result_sph SET limited_courant = NULL, limited_force = 1", NULL},
       {"UPDATE run SET second_fraction = 2, results_version = results_version + 1000", NULL},
       {"UPDATE run SET second_fraction = 2, counts = 0, state = 'energy'", NULL},

@@ -9,7 +9,7 @@
 
 #include <sqlite3.h>
 
-#include "analysis/estimates.h"
+#include "analysis/statistics/estimates.h"
 #include "db/schema.h"
 #include "db/views.h"
 #include "tests/store_fixture.h"
@@ -20,13 +20,15 @@ static sqlite3 *run_text(const char *sql) {
   sqlite3 *db = NULL;
   assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
   char *message = NULL;
-  if (sqlite3_exec(db, sql, NULL, NULL, &message) != SQLITE_OK) fail_msg("%s", message);
+  if (sqlite3_exec(db, sql, NULL, NULL, &message) != SQLITE_OK)
+    fail_msg("%s", message);
   return db;
 }
 
 static int integer(sqlite3 *db, const char *sql) {
   sqlite3_stmt *statement = NULL;
-  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK) fail_msg("%s: %s", sql, sqlite3_errmsg(db));
+  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK)
+    fail_msg("%s: %s", sql, sqlite3_errmsg(db));
   int value = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int(statement, 0) : -1;
   sqlite3_finalize(statement);
   return value;
@@ -46,7 +48,8 @@ static void committed_text_is_the_schema(void **state) {
   size_t size = strlen(made);
   char *committed = calloc(1, size + 2);
   FILE *in = fopen(path, "r");
-  if (!in) fail_msg("schemas/results.sql is missing: run this test with CLAST_REGENERATE=1");
+  if (!in)
+    fail_msg("schemas/results.sql is missing: run this test with CLAST_REGENERATE=1");
   size_t got = fread(committed, 1, size + 1, in);
   fclose(in);
   if (got != size || memcmp(made, committed, size) != 0)
@@ -72,8 +75,9 @@ static void text_makes_the_same_store(void **state) {
       0);
   assert_int_equal(integer(db, "SELECT count(*) FROM real.sqlite_schema WHERE name NOT LIKE 'sqlite_%'"),
                    integer(db, "SELECT count(*) FROM main.sqlite_schema WHERE name NOT LIKE 'sqlite_%'"));
-  assert_int_equal(
-      integer(db, "SELECT count(*) FROM (SELECT * FROM main.column_doc EXCEPT SELECT * FROM real.column_doc)"), 0);
+  assert_int_equal(integer(db,
+                           "SELECT count(*) FROM (SELECT * FROM main.column_doc EXCEPT SELECT * FROM real.column_doc)"),
+                   0);
   assert_int_equal(integer(db, "PRAGMA main.application_id"), integer(db, "PRAGMA real.application_id"));
   assert_int_equal(integer(db, "PRAGMA main.user_version"), integer(db, "PRAGMA real.user_version"));
   sqlite3_close(db);
@@ -105,9 +109,11 @@ static void every_column_is_documented(void **state) {
     if (strncmp(line, "  ", 2) == 0 && strncmp(line, "  PRIMARY KEY", 13) != 0 && line[2] != '(' &&
         !strstr(line, "CREATE VIEW")) {
       const char *comment = strstr(line, " -- ");
-      if (!comment || comment > end) fail_msg("no comment: %.*s", (int)(end - line), line);
+      if (!comment || comment > end)
+        fail_msg("no comment: %.*s", (int)(end - line), line);
     }
-    if (strncmp(end + (*end == '\n'), "CREATE VIEW", 11) == 0) break;
+    if (strncmp(end + (*end == '\n'), "CREATE VIEW", 11) == 0)
+      break;
   }
   free(sql);
 }
@@ -130,7 +136,8 @@ static void names_are_those_of_the_tables(void **state) {
   (void)state;
   for (int i = 0; views_quantities[i]; i++) {
     const struct field *row = field_find(&outcome_table, views_quantities[i], &error);
-    if (!row) fail_msg("%s", error.message);
+    if (!row)
+      fail_msg("%s", error.message);
     assert_true(row->kind == FIELD_INTEGER || (row->kind == FIELD_REAL && !(row->flags & FIELD_MAY_BE_OFF)));
   }
   const struct field *states = field_find(&outcome_table, "state", &error);

@@ -15,7 +15,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 static double number(struct store *store, const char *sql) {
@@ -125,7 +126,8 @@ static void merge_takes_what_is_missing(void **state) {
   assert_near(number(store, "SELECT count(*) FROM session"), 2, 0);
   assert_near(number(store, "SELECT count(*) FROM campaign"), 1, 0);
   char problem[4000] = "";
-  if (store_check(store, line, problem, &error) != STATUS_OK) fail_msg("%s: %s", error.message, problem);
+  if (store_check(store, line, problem, &error) != STATUS_OK)
+    fail_msg("%s: %s", error.message, problem);
   struct fixture_inputs inputs;
   struct scene scene = fixture_scene(&inputs, 7, 1e31);
   uint8_t identity[16];
@@ -141,11 +143,12 @@ static void merge_takes_what_is_missing(void **state) {
   /* a run whose masses differ by one bit is counted, and ours stays */
   sqlite3 *other = NULL;
   assert_int_equal(sqlite3_open(b, &other), SQLITE_OK);
-  assert_int_equal(sqlite3_exec(other,
-                                "UPDATE fragment_mass SET masses = CAST(substr(masses, 1, length(masses) - 1) || x'7f' AS BLOB) "
-                                "WHERE run_id = 3",
-                                NULL, NULL, NULL),
-                   SQLITE_OK);
+  assert_int_equal(
+      sqlite3_exec(other,
+                   "UPDATE fragment_mass SET masses = CAST(substr(masses, 1, length(masses) - 1) || x'7f' AS BLOB) "
+                   "WHERE run_id = 3",
+                   NULL, NULL, NULL),
+      SQLITE_OK);
   sqlite3_close(other);
   store = writer(a);
   OK(store_merge(store, b, &added, &differing, &error));
@@ -184,7 +187,8 @@ static void check_finds(void **state) {
     struct store *store = NULL;
     OK(store_open_reader(path, &store, &error));
     problem[0] = 0;
-    if (store_check(store, line, problem, &error) != STATUS_OK) fail_msg("a whole store: %s", problem);
+    if (store_check(store, line, problem, &error) != STATUS_OK)
+      fail_msg("a whole store: %s", problem);
     store_close(store, NULL);
     sqlite3 *db;
     sqlite3_open(path, &db);
@@ -194,7 +198,8 @@ static void check_finds(void **state) {
     OK(store_open_reader(path, &store, &error));
     problem[0] = 0;
     assert_int_equal(store_check(store, line, problem, &error), STATUS_CONTENT);
-    if (!strstr(problem, faults[i].word)) fail_msg("%s: said '%s'", faults[i].damage, problem);
+    if (!strstr(problem, faults[i].word))
+      fail_msg("%s: said '%s'", faults[i].damage, problem);
     store_close(store, NULL);
   }
 }

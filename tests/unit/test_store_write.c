@@ -16,7 +16,8 @@ static struct error error;
 #define OK(call)                                                                                                       \
   do {                                                                                                                 \
     error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK) fail_msg("%s: %s", #call, error.message);                                                 \
+    if ((call) != STATUS_OK)                                                                                           \
+      fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
 static double number(struct store *store, const char *sql) {
@@ -70,9 +71,8 @@ static void every_value_comes_back(void **state) {
 
   /* masses: little-endian float64, descending; motion: float32, position x second of the second fragment */
   sqlite3_stmt *statement;
-  sqlite3_prepare_v2(store->db,
-                     "SELECT masses, motion FROM fragment_mass JOIN fragment_motion USING (run_id)", -1, &statement,
-                     NULL);
+  sqlite3_prepare_v2(store->db, "SELECT masses, motion FROM fragment_mass JOIN fragment_motion USING (run_id)", -1,
+                     &statement, NULL);
   assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
   double masses[5];
   float motion[55];
@@ -177,9 +177,12 @@ static void failed_and_censored_are_counted_apart(void **state) {
   OK(store_add_point(store, 0, &scene, 1, fixture_axes, &point, &error));
   for (int r = 0; r < 10; r++) {
     fixture_fill(&f, &scene, point, 0, r, 4);
-    if (r == 3) f.outcome.state = OUTCOME_NOT_FINITE;
-    if (r == 4 || r == 5) f.outcome.state = OUTCOME_END_TIME;
-    if (r == 9) f.run.surplus = true;
+    if (r == 3)
+      f.outcome.state = OUTCOME_NOT_FINITE;
+    if (r == 4 || r == 5)
+      f.outcome.state = OUTCOME_END_TIME;
+    if (r == 9)
+      f.run.surplus = true;
     OK(store_add_run(store, &f.run, &error));
   }
   OK(store_flush(store, &error));

@@ -3,12 +3,12 @@
 #include <stdarg.h>
 #include <stddef.h>
 
-#include <cmocka.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <cmocka.h>
 
-#include "campaign/commands/table.h"
+#include "campaign/terminal/table.h"
 
 static char *print_rows(enum table_format format, int rows) {
   char *text = NULL;
@@ -88,10 +88,10 @@ static void test_strings(void **state) {
   } cases[] = {
       {"\xc3\xa9", "\"\xc3\xa9\""},
       {"\xff", "\"\\ufffd\""},
-      {"\xc0\xaf", "\"\\ufffd\\ufffd\""},                     /* overlong */
-      {"\xed\xa0\x80", "\"\\ufffd\\ufffd\\ufffd\""},          /* a lone surrogate */
+      {"\xc0\xaf", "\"\\ufffd\\ufffd\""},                       /* overlong */
+      {"\xed\xa0\x80", "\"\\ufffd\\ufffd\\ufffd\""},            /* a lone surrogate */
       {"\xf4\x90\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""}, /* beyond U+10FFFF */
-      {"a\xe2\x82", "\"a\\ufffd\\ufffd\""},                   /* truncated */
+      {"a\xe2\x82", "\"a\\ufffd\\ufffd\""},                     /* truncated */
       {"\001\n\t\\", "\"\\u0001\\n\\t\\\\\""},
   };
   for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {

@@ -14,14 +14,14 @@
 
 #include <libqhull_r/qhull_ra.h>
 
-#include "engine/dem/lattice.h"
+#include "engine/dem/lattice/lattice.h"
 
 /* ---- the oracle: areas and sides by Delaunay triangles of qhull; circumcentres in long double ---- */
 
 struct oracle {
   size_t n;
-  long double *area;           /* by point; 0 for unbounded cells */
-  double (*side)[64][2];       /* by point: (other point, length), ended by a negative */
+  long double *area;     /* by point; 0 for unbounded cells */
+  double (*side)[64][2]; /* by point: (other point, length), ended by a negative */
 };
 
 static void add_side(struct oracle *o, unsigned i, unsigned j, double length) {
@@ -73,10 +73,12 @@ static void oracle_make(struct oracle *o, double *points, size_t n, size_t wante
       unsigned a = t[e], b = t[(e + 1) % 3], c = t[(e + 2) % 3];
       if (a >= n || b >= n || c >= n)
         continue;
-      long double ex = (long double)points[2 * b] - points[2 * a], ey = (long double)points[2 * b + 1] - points[2 * a + 1];
+      long double ex = (long double)points[2 * b] - points[2 * a],
+                  ey = (long double)points[2 * b + 1] - points[2 * a + 1];
       long double length = sqrtl(ex * ex + ey * ey);
       long double nx = -ey / length, ny = ex / length;
-      long double mx = (points[2 * a] + (long double)points[2 * b]) / 2, my = (points[2 * a + 1] + (long double)points[2 * b + 1]) / 2;
+      long double mx = (points[2 * a] + (long double)points[2 * b]) / 2,
+                  my = (points[2 * a + 1] + (long double)points[2 * b + 1]) / 2;
       long double towards = nx * (points[2 * c] - mx) + ny * (points[2 * c + 1] - my);
       long double part = (nx * (x - mx) + ny * (y - my)) * (towards > 0 ? 1 : -1);
       o->area[a] += part * length / 4;
@@ -148,7 +150,11 @@ static void block_equals_qhull(void **state) {
         double *all = malloc(10 * n * sizeof *all);
         for (size_t i = 0; i < n; i++) {
           double x = points.point[i].x, y = points.point[i].y;
-          const double copies[5][2] = {{x, y}, {-x, y}, {2.0 * points.columns - x, y}, {x, -y}, {x, 2.0 * points.rows - y}};
+          const double copies[5][2] = {{x, y},
+                                       {-x, y},
+                                       {2.0 * points.columns - x, y},
+                                       {x, -y},
+                                       {x, 2.0 * points.rows - y}};
           for (size_t k = 0; k < 5; k++) {
             all[2 * (k * n + i)] = copies[k][0];
             all[2 * (k * n + i) + 1] = copies[k][1];
@@ -177,7 +183,11 @@ static void disc_equals_qhull(void **state) {
   for (size_t r = 0; r < 3; r++)
     for (size_t d = 0; d < 3; d++)
       for (uint64_t seed = 0; seed < 6; seed++) {
-        struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC, .spacing = 1, .disorder = disorders[d], .radius = radii[r], .seed = seed};
+        struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
+                                      .spacing = 1,
+                                      .disorder = disorders[d],
+                                      .radius = radii[r],
+                                      .seed = seed};
         struct dem_lattice_points points;
         assert_int_equal(dem_lattice_fill(&lattice, &points, NULL), STATUS_OK);
         size_t n = (size_t)points.columns * points.rows;
@@ -223,7 +233,8 @@ static void neighbours_share_vertices(void **state) {
     for (uint32_t c = 0; c < t->cell_count; c++) { /* counter-clockwise, convex */
       uint32_t start = t->first_vertex[c], n = t->first_vertex[c + 1] - start;
       for (uint32_t k = 0; k < n; k++) {
-        struct dem_point a = t->vertex[start + k], b = t->vertex[start + (k + 1) % n], d = t->vertex[start + (k + 2) % n];
+        struct dem_point a = t->vertex[start + k], b = t->vertex[start + (k + 1) % n],
+                         d = t->vertex[start + (k + 2) % n];
         double turn = (b.x - a.x) * (d.y - b.y) - (b.y - a.y) * (d.x - b.x);
         assert_true(turn > -1e-13 * lattice.spacing * lattice.spacing);
       }
@@ -268,7 +279,8 @@ static void streams_and_seeds_differ_and_repeat(void **state) {
   uint32_t last = joined->pair[joined->pair_count - 1][0], of_b = b->pair[b->pair_count - 1][0];
   assert_int_equal(last, of_b + a->cell_count);
   assert_true(joined->centroid[last].x == b->centroid[of_b].x);
-  assert_true(joined->first_vertex[joined->cell_count] == a->first_vertex[a->cell_count] + b->first_vertex[b->cell_count]);
+  assert_true(joined->first_vertex[joined->cell_count] ==
+              a->first_vertex[a->cell_count] + b->first_vertex[b->cell_count]);
   dem_tessellation_free(a);
   dem_tessellation_free(b);
   dem_tessellation_free(joined);
@@ -318,10 +330,12 @@ static void nonsense_is_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(block_equals_qhull),          cmocka_unit_test(disc_equals_qhull),
-      cmocka_unit_test(neighbours_share_vertices),   cmocka_unit_test(no_disorder_is_the_square_lattice),
-      cmocka_unit_test(streams_and_seeds_differ_and_repeat), cmocka_unit_test(ten_thousand_cells_in_time),
-      cmocka_unit_test(nonsense_is_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(block_equals_qhull),
+                                     cmocka_unit_test(disc_equals_qhull),
+                                     cmocka_unit_test(neighbours_share_vertices),
+                                     cmocka_unit_test(no_disorder_is_the_square_lattice),
+                                     cmocka_unit_test(streams_and_seeds_differ_and_repeat),
+                                     cmocka_unit_test(ten_thousand_cells_in_time),
+                                     cmocka_unit_test(nonsense_is_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/text_plot.h"
+#include "analysis/pictures/text_plot.h"
 
 static char *plot(int columns, bool unicode, const struct picture_series *series) {
   char *text = NULL;
@@ -26,7 +26,9 @@ static void rows_and_columns(void **state) {
   struct pooled_bin bins[5];
   for (int i = 0; i < 5; i++) { /* a slope of -2: densities 1e8, 1e6 ... */
     double edge = pow(10, i - 4);
-    bins[i] = (struct pooled_bin){10 * (i - 4), edge, edge * 1.2589, 1000 >> (2 * i), pow(10, 8 - 2 * i), 0.3 * pow(10, 8 - 2 * i)};
+    bins[i] = (struct pooled_bin){10 * (i - 4),       edge,
+                                  edge * 1.2589,      1000 >> (2 * i),
+                                  pow(10, 8 - 2 * i), 0.3 * pow(10, 8 - 2 * i)};
   }
   bins[4].standard_error = bins[4].density; /* reaches down to zero */
   struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4};
@@ -40,8 +42,10 @@ static void rows_and_columns(void **state) {
     assert_true(strlen(line) <= 100);
     int at = (int)(strchr(line, '*') - line);
     assert_true(at < last); /* falling */
-    if (rows == 0) assert_int_equal(at, column_of_1e8);
-    if (rows < 4) assert_true(strchr(line, '[') < strchr(line, '*') && strchr(line, '*') <= strchr(line, ']'));
+    if (rows == 0)
+      assert_int_equal(at, column_of_1e8);
+    if (rows < 4)
+      assert_true(strchr(line, '[') < strchr(line, '*') && strchr(line, '*') <= strchr(line, ']'));
     last = at;
     rows++;
   }

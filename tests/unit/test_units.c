@@ -195,12 +195,14 @@ static void numbers_round_trip(void **state) {
     word ^= word << 17;
     double value, back;
     memcpy(&value, &word, sizeof value);
-    if (!(value - value == 0)) continue; /* NaN and infinity are not numbers here */
+    if (!(value - value == 0))
+      continue; /* NaN and infinity are not numbers here */
     char text[32];
     field_print_number(value, text);
     assert_true(strlen(text) < sizeof text);
     assert_int_equal(unit_read(text, "m", &back, NULL), STATUS_OK);
-    if (memcmp(&back, &value, sizeof value) != 0) fail_msg("%a printed as %s came back as %a", value, text, back);
+    if (memcmp(&back, &value, sizeof value) != 0)
+      fail_msg("%a printed as %s came back as %a", value, text, back);
   }
   static const char *const shown[] = {"0",   "5",    "5000", "0.05",    "0.00012", "1.2e-6",
                                       "5e8", "1e30", "1e6",  "1234567", "12.5",    "-3"};

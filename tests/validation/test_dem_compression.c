@@ -1,8 +1,9 @@
 /* Compressive strength test (K99 section 3.2, figures 8 and 9): linear, then abrupt failure; cracks along the load;
- * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: five, and again at half the rate. */
+ * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: five, and again
+ * at half the rate. */
 #include "tests/run_case.h"
 
-#include "engine/dem/run.h"
+#include "engine/dem/run/run.h"
 
 struct figures {
   double modulus, strength, strain, residue, drop, upright, triangle, broken;
@@ -22,8 +23,12 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
   size_t count;
   assert_int_equal(dem_report_finish(run, &outcome, &r, &fragments, &count, NULL), STATUS_OK);
   free(fragments);
-  struct figures f = {.modulus = r.young_modulus, .strength = r.strength, .strain = r.failure_strain,
-                      .upright = r.upright_share, .triangle = r.end_triangle_share, .broken = r.broken_share};
+  struct figures f = {.modulus = r.young_modulus,
+                      .strength = r.strength,
+                      .strain = r.failure_strain,
+                      .upright = r.upright_share,
+                      .triangle = r.end_triangle_share,
+                      .broken = r.broken_share};
   /* Linear: largest departure from the fitted line up to 70 % of the failure strain, over the strength. The line's
    * intercept is what the samples between 10 and 50 % leave. */
   double n = 0, shift = 0;
@@ -46,8 +51,9 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
       f.drop = (run->sample[k].time - run->state.time_peak) / passage;
       break;
     }
-  print_message("%4d %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f %10.2e %10.2e\n", (int)seed, f.modulus, f.strength, f.strain,
-                f.residue, f.drop, f.upright, f.triangle, f.broken, outcome.energy_error, outcome.momentum_error);
+  print_message("%4d %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f %10.2e %10.2e\n", (int)seed, f.modulus, f.strength,
+                f.strain, f.residue, f.drop, f.upright, f.triangle, f.broken, outcome.energy_error,
+                outcome.momentum_error);
   assert_true(outcome.energy_error < 0.05); /* the run's own bound is 0.1 */
   dem_run_free(run);
   return f;
@@ -56,16 +62,16 @@ static struct figures press(const struct dem_inputs *inputs, uint64_t seed) {
 static struct figures press_all(const struct dem_inputs *inputs, uint64_t bodies) {
   struct figures sum = {0};
   double *to = &sum.modulus;
-  print_message("%4s %9s %9s %8s %8s %8s %8s %8s %8s %10s %10s\n", "seed", "K, Pa", "strength", "strain", "bend", "drop", "upright",
-                "triangle", "broken", "energy", "momentum");
+  print_message("%4s %9s %9s %8s %8s %8s %8s %8s %8s %10s %10s\n", "seed", "K, Pa", "strength", "strain", "bend",
+                "drop", "upright", "triangle", "broken", "energy", "momentum");
   for (uint64_t seed = 1; seed <= bodies; seed++) {
     struct figures f = press(inputs, seed);
     const double *from = &f.modulus;
     for (size_t k = 0; k < sizeof f / sizeof(double); k++)
       to[k] += from[k] / (double)bodies;
   }
-  print_message("mean %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f\n", sum.modulus, sum.strength, sum.strain, sum.residue, sum.drop,
-                sum.upright, sum.triangle, sum.broken);
+  print_message("mean %9.4g %9.4g %8.4f %8.4f %8.4f %8.3f %8.3f %8.3f\n", sum.modulus, sum.strength, sum.strain,
+                sum.residue, sum.drop, sum.upright, sum.triangle, sum.broken);
   return sum;
 }
 
@@ -75,9 +81,9 @@ static void failure_is_abrupt_and_cracks_are_upright(void **state) {
   if (!run_case_full())
     inputs.loading.rate *= 2;
   struct figures f = press_all(&inputs, run_case_seeds(1, 5));
-  assert_true(f.residue < 0.1); /* "linear until it fails": within a tenth of the strength up to 70 % of the strain */
-  assert_true(f.drop < 3);      /* "abruptly": half of the stress is gone within a few wave passages */
-  assert_true(f.upright > 0.5); /* isotropic cracks: 1/3 */
+  assert_true(f.residue < 0.1);  /* "linear until it fails": within a tenth of the strength up to 70 % of the strain */
+  assert_true(f.drop < 3);       /* "abruptly": half of the stress is gone within a few wave passages */
+  assert_true(f.upright > 0.5);  /* isotropic cracks: 1/3 */
   assert_true(f.triangle < 0.2); /* "practically intact": 0.02 to 0.1 here; sides free to slide give 0.48 */
   if (run_case_full()) {
     inputs.loading.rate /= 2;

@@ -28,7 +28,8 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
   in.loading.rate = in.loading.strain_end / (10 * wave);
   in.loading.ramp = 5 * wave;
   /* a fifth of the square lattice's limit 2/omega_max = spacing sqrt(rho/modulus) (beams and contacts) or less */
-  in.fidelity.time_step = 0.2 * in.grain.spacing * sqrt(in.grain.density / (beam_modulus + 0.9 * in.grain.young_modulus));
+  in.fidelity.time_step = 0.2 * in.grain.spacing *
+                          sqrt(in.grain.density / (beam_modulus + 0.9 * in.grain.young_modulus));
   struct ran ran = run_case_run(&dem_engine, &in, seed);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
   assert_int_equal(ran.results.dem.stop_reason, 3); /* strain */
@@ -38,12 +39,14 @@ static struct moduli measure(double beam_modulus, bool extension, bool contact, 
 
 static void square_lattice_is_exact(void **state) {
   (void)state;
-  /* Rows of aligned beams of modulus E, nothing across: K = E, nu = 0. What remains are vibrations of the start: 0.2 %. */
+  /* Rows of aligned beams of modulus E, nothing across: K = E, nu = 0. What remains are vibrations of the start: 0.2 %.
+   */
   struct moduli m = measure(5e8, true, true, 0, 1);
   print_message("square lattice pulled: K/E %.6f, nu %.2e\n", m.k / 5e8, m.nu);
   assert_true(fabs(m.k / 5e8 - 1) < 2e-3);
   assert_true(fabs(m.nu) < 1e-6);
-  /* Pressed: contacts of the conservative law have the modulus of the printed one, Y sqrt(pi)/2, in series with none. */
+  /* Pressed: contacts of the conservative law have the modulus of the printed one, Y sqrt(pi)/2, in series with none.
+   */
   m = measure(5e8, false, true, 0, 1);
   double expected = 5e8 + 1e9 * 0.88622692545275801;
   print_message("square lattice pressed: K/(E + Y sqrt(pi)/2) %.6f\n", m.k / expected);
@@ -55,8 +58,8 @@ static void trends(void **state) {
   const double e[MODULI] = {1e8, 2e8, 5e8, 1e9, 2e9, 4e9}; /* figures 5 and 6: 1e9 to 4e10 dyn/cm^2 at Y = 1e10 */
   struct moduli pulled[MODULI] = {0}, pressed[MODULI] = {0}, beams[MODULI] = {0};
   int bodies = (int)run_case_seeds(1, 3);
-  print_message("%10s %12s %12s %12s %8s %8s %8s\n", "E, Pa", "K_ext, Pa", "K_comp, Pa", "K_beams, Pa", "nu_ext", "nu_comp",
-                "nu_beams");
+  print_message("%10s %12s %12s %12s %8s %8s %8s\n", "E, Pa", "K_ext, Pa", "K_comp, Pa", "K_beams, Pa", "nu_ext",
+                "nu_comp", "nu_beams");
   for (int k = 0; k < MODULI; k++) {
     for (int seed = 1; seed <= bodies; seed++) {
       struct moduli m[3] = {measure(e[k], true, true, 1, (uint64_t)seed), measure(e[k], false, true, 1, (uint64_t)seed),
@@ -79,7 +82,8 @@ static void trends(void **state) {
   }
   /* "K is a linear function of E": the slope at large E against the mean slope above 5e8. Overlaps across the load, in
    * a pulled body that contracts, bend it at small E. */
-  double slope_high = (pulled[5].k - pulled[4].k) / (e[5] - e[4]), slope_low = (pulled[4].k - pulled[2].k) / (e[4] - e[2]);
+  double slope_high = (pulled[5].k - pulled[4].k) / (e[5] - e[4]),
+         slope_low = (pulled[4].k - pulled[2].k) / (e[4] - e[2]);
   print_message("slope of K_ext(E): %.4f up to 2e9 Pa, %.4f beyond\n", slope_low, slope_high);
   assert_true(fabs(slope_high / slope_low - 1) < 0.1);
   /* "For large E the elongation and compression curves are parallel" */

@@ -9,9 +9,9 @@
  * CLAST_SEEDS=n changes the number. */
 #include "tests/run_case.h"
 
-#include "analysis/exponent.h"
-#include "analysis/sample.h"
-#include "engine/dem/run.h"
+#include "analysis/statistics/exponent.h"
+#include "analysis/statistics/sample.h"
+#include "engine/dem/run/run.h"
 
 enum { MOST_RUNS = 1000, RESAMPLES = 200, WINDOWS = 3, BANDS = 10 };
 
@@ -44,8 +44,8 @@ static double pooled_beta(size_t n, const uint32_t *runs, void *context) {
 }
 
 static void header(void) {
-  print_message("%-34s %4s %4s %5s %5s %6s %5s | %-38s | %-38s | %s\n", "case", "runs", "done", "M1/M", "dust", "broken", "bend",
-                "least squares, 3 windows", "maximum likelihood, 3 windows", "energy");
+  print_message("%-34s %4s %4s %5s %5s %6s %5s | %-38s | %-38s | %s\n", "case", "runs", "done", "M1/M", "dust",
+                "broken", "bend", "least squares, 3 windows", "maximum likelihood, 3 windows", "energy");
 }
 
 /* Beams along the outgoing wave (within 30 degrees): by distance from the disc's centre, or by height in the block. */
@@ -115,7 +115,8 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
   pool.gathered = malloc((runs * most + 1) * sizeof *pool.gathered);
   assert_non_null(pool.gathered);
   const enum exponent_method methods[2] = {EXPONENT_LEAST_SQUARES, EXPONENT_MASSES};
-  print_message("%-34s %4zu %4d %5.3f %5.3f %6.3f %5.3f |", label, runs, c.completed, c.largest, c.dust, c.broken, c.bend);
+  print_message("%-34s %4zu %4d %5.3f %5.3f %6.3f %5.3f |", label, runs, c.completed, c.largest, c.dust, c.broken,
+                c.bend);
   for (int m = 0; m < 2; m++) {
     for (int w = 0; w < WINDOWS; w++) {
       pool.method = methods[m];
@@ -134,17 +135,19 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
   return c;
 }
 
-/* 2.0 +- 0.3, pooled, for both methods in the paper's own window of one decade and in the longer one. The exponent is an
- * effective one: window and stop time move it by 0.2. Few seeds add two of their own standard errors. */
+/* 2.0 +- 0.3, pooled, for both methods in the paper's own window of one decade and in the longer one. The exponent is
+ * an effective one: window and stop time move it by 0.2. Few seeds add two of their own standard errors. */
 static void gate(const struct spectrum_case *c) {
   for (int m = 0; m < 2; m++)
     for (int w = 0; w < 2; w++) {
       double error = c->beta[m][w].standard_error, room = 0.3 + (run_case_full() ? 0 : 2 * error);
       if (!(error < 0.3 && fabs(c->beta[m][w].estimate - 2) < room))
-        fail_msg("method %d, window %d: beta %.3f +- %.3f is not 2.0 +- %.2f", m, w, c->beta[m][w].estimate, error, room);
+        fail_msg("method %d, window %d: beta %.3f +- %.3f is not 2.0 +- %.2f", m, w, c->beta[m][w].estimate, error,
+                 room);
     }
   assert_int_equal(c->failed, 0);
-  assert_true(c->energy_error < 0.005); /* 30 seeds of each: at most 8e-4, most 3e-4; a stiff or unbooked contact gives 2 % and more */
+  assert_true(c->energy_error <
+              0.005); /* 30 seeds of each: at most 8e-4, most 3e-4; a stiff or unbooked contact gives 2 % and more */
 }
 
 static void explosion(void **state) {
@@ -153,8 +156,8 @@ static void explosion(void **state) {
   struct dem_inputs inputs = DEM_CASE("disc-explosion", NULL);
   struct spectrum_case c = pool("disc-explosion", &inputs, run_case_seeds(3, 30));
   gate(&c);
-  assert_true(c.radial[0] > 0.95);                 /* the mirror spot: "practically all the beams are broken" */
-  assert_true(c.radial[8] > 1.25 * c.radial[6]);   /* "the complete break-off of a boundary layer" */
+  assert_true(c.radial[0] > 0.95);                  /* the mirror spot: "practically all the beams are broken" */
+  assert_true(c.radial[8] > 1.25 * c.radial[6]);    /* "the complete break-off of a boundary layer" */
   assert_true(c.largest > 0.05 && c.largest < 0.3); /* it goes to pieces, not to dust */
 }
 
@@ -173,14 +176,22 @@ static void thresholds_and_choices(void **state) {
   if (!run_case_full())
     return;
   const char *const cases[][2] = {
-      {"threshold.strain=1 %", NULL},           {"threshold.strain=2 %", NULL},
-      {"threshold.strain=4 %", NULL},           {"threshold.strain=6 %", NULL},
-      {"threshold.angle=1 deg", NULL},          {"threshold.angle=2 deg", NULL},
-      {"threshold.angle=7 deg", NULL},          {"threshold.modulus=5", NULL},
-      {"contact.law=printed", NULL},            {"contact.bonded=false", NULL},
-      {"contact.normal_damping=2e4 1/s", NULL}, {"contact.normal_damping=2e4 1/s", "contact.damping_bonded=true"},
-      {"grain.disorder=0.5", NULL},             {"stop.quiet_time=1 ms", NULL},
-      {"fidelity.integrator=gear", NULL},       {"fidelity.time_step=0.5 us", NULL},
+      {"threshold.strain=1 %", NULL},
+      {"threshold.strain=2 %", NULL},
+      {"threshold.strain=4 %", NULL},
+      {"threshold.strain=6 %", NULL},
+      {"threshold.angle=1 deg", NULL},
+      {"threshold.angle=2 deg", NULL},
+      {"threshold.angle=7 deg", NULL},
+      {"threshold.modulus=5", NULL},
+      {"contact.law=printed", NULL},
+      {"contact.bonded=false", NULL},
+      {"contact.normal_damping=2e4 1/s", NULL},
+      {"contact.normal_damping=2e4 1/s", "contact.damping_bonded=true"},
+      {"grain.disorder=0.5", NULL},
+      {"stop.quiet_time=1 ms", NULL},
+      {"fidelity.integrator=gear", NULL},
+      {"fidelity.time_step=0.5 us", NULL},
   };
   for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
     struct dem_inputs inputs = run_case("disc-explosion", (const char *const[]){cases[k][0], cases[k][1], NULL}).dem;

@@ -1,9 +1,9 @@
-/* What pores do to craters. Jutzi & Benz, section 3: porous ice against the same ice without pores at 10 km/s (far less is
- * thrown out; alpha is 1 near the crater only and rises to alpha_0), and a polymer bullet into very porous matter (the crater
- * is made by compaction).
+/* What pores do to craters. Jutzi & Benz, section 3: porous ice against the same ice without pores at 10 km/s (far less
+ * is thrown out; alpha is 1 near the crater only and rises to alpha_0), and a polymer bullet into very porous matter
+ * (the crater is made by compaction).
  *
- * Quick: 2 seeds of 4000 particles. CLAST_FULL=1: 10 seeds of 8000. Each seed is shown, and the ratio with its interval; what
- * is asked is the mean, not every seed (one that goes the other way is a finding). */
+ * Quick: 2 seeds of 4000 particles. CLAST_FULL=1: 10 seeds of 8000. Each seed is shown, and the ratio with its
+ * interval; what is asked is the mean, not every seed (one that goes the other way is a finding). */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,8 +18,8 @@
 #include "engine/fragments.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
-#include "engine/sph/results.h"
-#include "engine/sph/run.h"
+#include "engine/sph/observe/results.h"
+#include "engine/sph/run/run.h"
 
 static bool full(void) {
   const char *text = getenv("CLAST_FULL");
@@ -46,14 +46,16 @@ static struct result run(const char *name, uint64_t seed, const char *particles)
     fail_msg("%s: %s", name, error.message);
   while (!finished)
     assert_int_equal(scene->kind->step(made, 1000, &finished, &error), STATUS_OK);
-  if (scene->kind->finish(made, &r.outcome, &r.sph, &fragments, &count, &error)) fail_msg("%s", error.message);
+  if (scene->kind->finish(made, &r.outcome, &r.sph, &fragments, &count, &error))
+    fail_msg("%s", error.message);
   struct sph_run *inside = made;
   struct sph_crater_options options = sph_report_crater(inside);
   r.layers = sph_crater_profile(inside->start, inside->now, &options, r.axis, sizeof r.axis / sizeof r.axis[0]);
   free(fragments);
   scene->kind->free(made);
   scene_free(scene);
-  if (!(r.outcome.energy_error < 0.005)) fail_msg("%s: energy is off by %g", name, r.outcome.energy_error);
+  if (!(r.outcome.energy_error < 0.005))
+    fail_msg("%s: energy is off by %g", name, r.outcome.energy_error);
   return r;
 }
 
@@ -68,16 +70,19 @@ static void ice(void **state) {
     double of_solid = solid.sph.ejecta.mass_fraction * solid.sph.target_mass, ratio = log(thrown / of_solid);
     sum += ratio;
     squares += ratio * ratio;
-    print_message("seed %2d: ejected %.4f kg of porous ice, %.4f kg of solid ice (%.2f), momentum %.1f and %.1f kg m/s; damage "
-                  "%.2f and %.2f; porous: %.3f kg compacted, crater %.3g m^3, share of compaction %.2f\n",
-                  seed, thrown, of_solid, thrown / of_solid, porous.sph.ejecta.momentum, solid.sph.ejecta.momentum,
-                  porous.sph.mean_damage, solid.sph.mean_damage, porous.sph.compaction.mass_fraction * porous.sph.target_mass,
-                  porous.sph.crater.volume, porous.sph.crater.compaction_share);
+    print_message(
+        "seed %2d: ejected %.4f kg of porous ice, %.4f kg of solid ice (%.2f), momentum %.1f and %.1f kg m/s; damage "
+        "%.2f and %.2f; porous: %.3f kg compacted, crater %.3g m^3, share of compaction %.2f\n",
+        seed, thrown, of_solid, thrown / of_solid, porous.sph.ejecta.momentum, solid.sph.ejecta.momentum,
+        porous.sph.mean_damage, solid.sph.mean_damage, porous.sph.compaction.mass_fraction * porous.sph.target_mass,
+        porous.sph.crater.volume, porous.sph.crater.compaction_share);
     assert_true(isnan(solid.sph.compaction.mass_fraction)); /* nothing to compact */
     for (size_t k = 0; seed == 1 && k < porous.layers; k++)
-      print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention, porous.axis[k].damage);
-    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers are by the
-     * depth at the start, and what stood on top was pushed aside, so that alpha need not rise from layer to layer. */
+      print_message("  depth %.3f m: alpha %.4f, D %.2f\n", porous.axis[k].depth, porous.axis[k].distention,
+                    porous.axis[k].damage);
+    /* alpha = 1 near the crater only: within 3 cm of the first surface, while pores were lost far beyond. Layers are by
+     * the depth at the start, and what stood on top was pushed aside, so that alpha need not rise from layer to layer.
+     */
     assert_true(porous.sph.compaction.mass_fraction > 0 && porous.sph.compaction.depth < 0.03);
     assert_true(porous.sph.compaction.reach > 3 * porous.sph.compaction.depth);
     assert_true(porous.layers > 5);
@@ -96,9 +101,12 @@ static void ice(void **state) {
 static void target(void **state) {
   (void)state;
   struct result r = run("porous-target", 1, full() ? "20000" : "8000");
-  print_message("porous target: crater %.4f m deep, radius %.4f m, %.3g m^3; share of compaction %.3f; ejected %.4f kg, %.3f kg m/s; "
-                "compacted %.4f kg\n", r.sph.crater.depth, r.sph.crater.radius, r.sph.crater.volume, r.sph.crater.compaction_share,
-                r.sph.ejecta.mass_fraction * r.sph.target_mass, r.sph.ejecta.momentum, r.sph.compaction.mass_fraction * r.sph.target_mass);
+  print_message("porous target: crater %.4f m deep, radius %.4f m, %.3g m^3; share of compaction %.3f; ejected %.4f "
+                "kg, %.3f kg m/s; "
+                "compacted %.4f kg\n",
+                r.sph.crater.depth, r.sph.crater.radius, r.sph.crater.volume, r.sph.crater.compaction_share,
+                r.sph.ejecta.mass_fraction * r.sph.target_mass, r.sph.ejecta.momentum,
+                r.sph.compaction.mass_fraction * r.sph.target_mass);
   assert_true(r.sph.crater.compaction_share > 0.5); /* mostly compaction */
   assert_true(r.sph.crater.volume > 0 && r.sph.crater.depth > 0.01);
 }

@@ -1,16 +1,17 @@
 /* The basalt sphere of Benz & Asphaug 1995 [BA95] section 5.2, and how much is left of it against the energy.
  *
- * The paper: a nearly spherical core of 0.35 of the mass (experiment: 0.31), everything near the point of impact broken to
- * less than what is resolved, the second largest fragment a spall nearly opposite; "very similar" for other draws of flaws
- * and half the particles. Quick: a few seeds of a coarse sphere. CLAST_FULL=1: more of each, for engine/sph/VALIDATION.md;
- * CLAST_SEEDS=n changes the number, CLAST_PARTICLES=n the resolution.
+ * The paper: a nearly spherical core of 0.35 of the mass (experiment: 0.31), everything near the point of impact broken
+ * to less than what is resolved, the second largest fragment a spall nearly opposite; "very similar" for other draws of
+ * flaws and half the particles. Quick: a few seeds of a coarse sphere. CLAST_FULL=1: more of each, for
+ * engine/sph/VALIDATION.md; CLAST_SEEDS=n changes the number, CLAST_PARTICLES=n the resolution.
  *
- * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a wrong
- * speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own numbers. */
+ * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a
+ * wrong speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own
+ * numbers. */
 #include "tests/run_case.h"
 
-#include "analysis/sample.h"
-#include "engine/sph/run.h"
+#include "analysis/statistics/sample.h"
+#include "engine/sph/run/run.h"
 
 enum { MOST_RUNS = 1000 };
 static const double radius = 0.03;
@@ -25,23 +26,25 @@ static const char *particles(const char *quick, const char *full) {
 struct sphere {
   struct outcome outcome;
   struct sph_results results;
-  double near_damage;  /* mean damage of what stood within R/2 of the point of impact */
-  double core_offset;  /* m, from the sphere's centre to where the middle of the largest fragment's bare core had been */
+  double near_damage; /* mean damage of what stood within R/2 of the point of impact */
+  double core_offset; /* m, from the sphere's centre to where the middle of the largest fragment's bare core had been */
 };
 
 static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) {
   struct sphere s = {0};
   struct sph_run *run;
   struct fragment *fragments;
-  struct sph_pieces pieces;
+  struct sph_fragments pieces;
   size_t count;
   struct error error = {0};
-  if (sph_run_create(inputs, seed, &run, &error)) fail_msg("%s", error.message);
+  if (sph_run_create(inputs, seed, &run, &error))
+    fail_msg("%s", error.message);
   while (!run->state.finished)
     sph_run_advance(run, 1000);
   assert_int_equal(sph_report_finish(run, &s.outcome, &s.results, &fragments, &count, &error), STATUS_OK);
   free(fragments);
-  assert_int_equal(sph_report_pieces(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces, &error), STATUS_OK);
+  assert_int_equal(sph_report_pieces(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces, &error),
+                   STATUS_OK);
   double near = 0, core = 0, middle[3] = {0, 0, 0};
   for (size_t i = 0; i < run->targets; i++) {
     const double at[3] = {run->start->x[i], run->start->y[i], run->start->z[i]};
@@ -52,7 +55,7 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
       near += 1;
       s.near_damage += pow(run->now->damage_cbrt[i], 3);
     }
-    if (pieces.label[i] == 0 && pieces.part[i] == SPH_PIECES_CORE) {
+    if (pieces.label[i] == 0 && pieces.part[i] == SPH_FRAGMENTS_CORE) {
       core += 1;
       for (int d = 0; d < 3; d++)
         middle[d] += at[d];
@@ -60,14 +63,16 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
   }
   s.near_damage /= near;
   s.core_offset = sqrt(middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2]) / core;
-  sph_pieces_clear(&pieces);
+  sph_fragments_clear(&pieces);
   sph_run_free(run);
-  print_message("%6.3f kJ/kg seed %2d: M1/M %.3f bare %.3f dynamic %.3f M2/M %.3f at %3.0f deg, axes %.2f %.2f, core %.2f R off the "
+  print_message("%6.3f kJ/kg seed %2d: M1/M %.3f bare %.3f dynamic %.3f M2/M %.3f at %3.0f deg, axes %.2f %.2f, core "
+                "%.2f R off the "
                 "centre, near damage %.3f, dust %.3f, ceased %.0f us, energy %.1e, %s\n",
-                s.results.specific_energy / 1e3, (int)seed, s.results.largest.veneer_fraction, s.results.largest.bare_fraction,
-                s.results.largest.dynamic_fraction, s.outcome.second_fraction, s.results.second.angle * 57.295779513082321,
-                s.results.largest.axis_middle, s.results.largest.axis_short, s.core_offset / radius, s.near_damage,
-                s.outcome.dust_fraction, 1e6 * s.results.cease_time, s.outcome.energy_error, s.outcome.message);
+                s.results.specific_energy / 1e3, (int)seed, s.results.largest.veneer_fraction,
+                s.results.largest.bare_fraction, s.results.largest.dynamic_fraction, s.outcome.second_fraction,
+                s.results.second.angle * 57.295779513082321, s.results.largest.axis_middle,
+                s.results.largest.axis_short, s.core_offset / radius, s.near_damage, s.outcome.dust_fraction,
+                1e6 * s.results.cease_time, s.outcome.energy_error, s.outcome.message);
   return s;
 }
 
@@ -87,17 +92,17 @@ static void summary(const char *name, size_t n, const double *values) {
 
 static void pinned(const char *what, double value, double expected, double tolerance) {
   print_message("%-44s %.5f, pinned %.5f within %.0f %%\n", what, value, expected, 100 * tolerance);
-  if (!(fabs(value / expected - 1) < tolerance)) fail_msg("%s: %.5f instead of %.5f", what, value, expected);
+  if (!(fabs(value / expected - 1) < tolerance))
+    fail_msg("%s: %.5f instead of %.5f", what, value, expected);
 }
 
-/* How far damage has come, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of impact and
- * waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the paper's numbers but this
- * engine's of results_version 2, to be pinned anew when physics changes on purpose.
- * What means the same physics moved them by (cfl 0.2, cfl 0.4, precision float, flaws compact):
- *                      3 us: 0 %, +5 %, 0, +1 %      16 us: +0.7, -0.8, 0, +0.4 %      share reached: +0.4, -0.6, +0.1, 0 %
- * What means another one (cracks twice as fast, half as fast, k halved, damage not applied to shear, not to tension):
- *                      3 us: +15, -32, -4, -4, 0 %   16 us: -3, +3, -5, +16, +18 %     share reached: -4, +6, -4, +11, +14 %
- * The tolerances stand between: each of those five is red. */
+/* How far damage has come, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of
+ * impact and waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the
+ * paper's numbers but this engine's of results_version 2, to be pinned anew when physics changes on purpose. What means
+ * the same physics moved them by (cfl 0.2, cfl 0.4, precision float, flaws compact): 3 us: 0 %, +5 %, 0, +1 %      16
+ * us: +0.7, -0.8, 0, +0.4 %      share reached: +0.4, -0.6, +0.1, 0 % What means another one (cracks twice as fast,
+ * half as fast, k halved, damage not applied to shear, not to tension): 3 us: +15, -32, -4, -4, 0 %   16 us: -3, +3,
+ * -5, +16, +18 %     share reached: -4, +6, -4, +11, +14 % The tolerances stand between: each of those five is red. */
 static void damage_on_its_way(void **state) {
   (void)state;
   enum { SEEDS = 3 };
@@ -107,7 +112,8 @@ static void damage_on_its_way(void **state) {
   for (uint64_t seed = 1; seed <= SEEDS; seed++) {
     struct sph_run *run;
     struct error error = {0};
-    if (sph_run_create(&inputs, seed, &run, &error)) fail_msg("%s", error.message);
+    if (sph_run_create(&inputs, seed, &run, &error))
+      fail_msg("%s", error.message);
     for (int k = 0; k < 2; k++) {
       while (!run->state.finished && sph_system_time(run->system) < times[k])
         sph_run_advance(run, 1);
@@ -137,8 +143,8 @@ static void core_and_spall(void **state) {
     bare[r] = s.results.largest.bare_fraction;
     second[r] = s.outcome.second_fraction;
     angle[r] = s.results.second.angle * 57.295779513082321;
-    opposite += angle[r] > 120; /* the quarter of all directions that is farthest from the impact */
-    assert_true(s.near_damage > 0.95);        /* "entirely broken into pieces smaller than what we can resolve" */
+    opposite += angle[r] > 120;        /* the quarter of all directions that is farthest from the impact */
+    assert_true(s.near_damage > 0.95); /* "entirely broken into pieces smaller than what we can resolve" */
     assert_true(s.results.largest.axis_middle > 0.7); /* "nearly spherical": of shards it is less */
   }
   summary("M1/M with veneer", n, largest);
@@ -146,8 +152,8 @@ static void core_and_spall(void **state) {
   summary("M2/M", n, second);
   summary("angle of second, deg", n, angle);
   struct sample_summary m1 = sample_summarise(n, largest, 0.95), without = sample_summarise(n, bare, 0.95);
-  /* 0.31 measured, 0.35 in the paper. A bridge of rock that holds or not moves one run by 0.2, and the veneer of a coarse
-   * sphere is worth up to that: half of 0.31 to 0.35 + 0.2. */
+  /* 0.31 measured, 0.35 in the paper. A bridge of rock that holds or not moves one run by 0.2, and the veneer of a
+   * coarse sphere is worth up to that: half of 0.31 to 0.35 + 0.2. */
   assert_true(m1.mean > 0.155 && m1.mean < 0.55);
   assert_true(m1.mean - without.mean > 0.05); /* one layer round half of the radius: 3 dr/r of it, dr/r > 0.03 at 1e5 */
   assert_true(2 * opposite > n);              /* by chance a quarter of them */
@@ -178,12 +184,14 @@ static struct line through(size_t n, const double *q, const double *fraction, do
   return (struct line){star, fall * star};
 }
 
-/* Largest fragment against specific energy Q. A seed is the same body at every energy: Q* and s are taken for each seed. */
+/* Largest fragment against specific energy Q. A seed is the same body at every energy: Q* and s are taken for each
+ * seed. */
 static void energy_ladder(void **state) {
   (void)state;
   enum { MOST_RUNGS = 12, MOST_SEEDS = 100, WAYS = 4 };
   static const char *const quick[] = {"0.5", "2", "6"};
-  static const char *const all[MOST_RUNGS] = {"0.3", "0.6", "1", "1.5", "2", "2.25", "2.5", "2.75", "3", "4", "6", "10"};
+  static const char *const all[MOST_RUNGS] = {"0.3", "0.6",  "1", "1.5", "2", "2.25",
+                                              "2.5", "2.75", "3", "4",   "6", "10"};
   static const char *const ways[WAYS] = {"M1/M, between two rungs", "M1/M, line up to 4", "M1/M, line up to 6",
                                          "(M1+M2)/M, line up to 6"};
   bool full = run_case_full();
@@ -206,7 +214,8 @@ static void energy_ladder(void **state) {
     }
     summary(energy, n, of_rung);
     mean[k] = sample_summarise(n, of_rung, 0.95).mean;
-    if (k > 0) assert_true(mean[k] < mean[k - 1]);
+    if (k > 0)
+      assert_true(mean[k] < mean[k - 1]);
   }
   for (size_t r = 0; r < n; r++) {
     const struct line lines[WAYS] = {between(rungs, q, largest[r]), through(rungs, q, largest[r], 4000),
@@ -221,8 +230,8 @@ static void energy_ladder(void **state) {
   }
   for (size_t r = 0; r < n; r++) {
     assert_true(star[0][r] > 1 && star[0][r] < 4); /* what small basalt targets are known for */
-    /* 0.35 to 0.5 is published; a spall that parts from the core at one energy is worth a quarter of the mass, in any line of a few
-     * rungs: half to one and a half of that. */
+    /* 0.35 to 0.5 is published; a spall that parts from the core at one energy is worth a quarter of the mass, in any
+     * line of a few rungs: half to one and a half of that. */
     assert_true(slope[2][r] > 0.175 && slope[2][r] < 0.75);
   }
   assert_true(mean[0] > 0.8 && mean[rungs - 1] < 0.35);

@@ -13,10 +13,10 @@
 
 #include <cmocka.h>
 
-#include "engine/dem/breaking.h"
-#include "engine/dem/kernels.h"
-#include "engine/dem/system.h"
-#include "engine/dem/system_layout.h"
+#include "engine/dem/beams/breaking.h"
+#include "engine/dem/step/kernels.h"
+#include "engine/dem/step/system.h"
+#include "engine/dem/step/system_layout.h"
 
 static inline struct dem_parameters fixture_parameters(void) {
   return (struct dem_parameters){.density = 5000.0,
@@ -34,7 +34,8 @@ static inline struct dem_parameters fixture_parameters(void) {
 
 /* |a - b| <= tolerance, or say the values. */
 static inline void fixture_near(double a, double b, double tolerance, const char *what) {
-  if (fabs(a - b) <= tolerance) return;
+  if (fabs(a - b) <= tolerance)
+    return;
   fail_msg("%s: %.17g against %.17g, difference %g, allowed %g", what, a, b, a - b, tolerance);
 }
 
@@ -65,7 +66,8 @@ static inline struct dem_tessellation *fixture_squares(uint32_t columns, uint32_
     t->grid_x[i] = a;
     t->grid_y[i] = b;
     for (int up = 0; up < 2 && bonded; ++up) {
-      if (up ? b + 1 == rows : a + 1 == columns) continue;
+      if (up ? b + 1 == rows : a + 1 == columns)
+        continue;
       t->pair[t->pair_count][0] = i;
       t->pair[t->pair_count][1] = up ? i + columns : i + 1;
       t->side[t->pair_count++] = h;
@@ -88,18 +90,23 @@ static inline void fixture_free(struct dem_tessellation *t) {
 }
 
 static inline struct dem_tessellation *fixture_disc(double radius, double spacing, double disorder, uint64_t seed) {
-  const struct dem_lattice lattice = {
-      .outline = DEM_OUTLINE_DISC, .spacing = spacing, .disorder = disorder, .radius = radius, .seed = seed};
+  const struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
+                                      .spacing = spacing,
+                                      .disorder = disorder,
+                                      .radius = radius,
+                                      .seed = seed};
   struct dem_tessellation *t = NULL;
   struct error error = {0};
-  if (dem_tessellation_make(&lattice, &t, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (dem_tessellation_make(&lattice, &t, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   return t;
 }
 
 static inline struct dem_system *fixture_create(const struct dem_tessellation *t, const struct dem_parameters *p) {
   struct dem_system *system = NULL;
   struct error error = {0};
-  if (dem_system_create(t, p, &system, &error) != STATUS_OK) fail_msg("%s", error.message);
+  if (dem_system_create(t, p, &system, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
   return system;
 }
 

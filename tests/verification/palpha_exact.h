@@ -61,7 +61,8 @@ static double exact_density(const struct exact_matter *m, double alpha, double r
 }
 
 static double exact_crush(const struct exact_matter *m, double alpha_e, double P) {
-  if (P >= m->P_s) return 1;
+  if (P >= m->P_s)
+    return 1;
   return 1 + (alpha_e - 1) * pow((m->P_s - P) / (m->P_s - m->P_e), 2);
 }
 

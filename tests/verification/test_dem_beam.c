@@ -26,8 +26,8 @@ static void stiffness(struct dem_system *s, size_t freedoms, double arm, double 
       set(s, a, sign * step * unit);
       fixture_evaluate(s);
       for (size_t b = 0; b < freedoms; ++b)
-        k[b * freedoms + a] =
-            (sign < 0 ? 0.0 : k[b * freedoms + a]) - sign * force(s, b) * (b % 3 == 2 ? 1.0 / arm : 1.0);
+        k[b * freedoms + a] = (sign < 0 ? 0.0 : k[b * freedoms + a]) -
+                              sign * force(s, b) * (b % 3 == 2 ? 1.0 / arm : 1.0);
       if (sign < 0)
         for (size_t b = 0; b < freedoms; ++b)
           k[b * freedoms + a] = force(s, b) * (b % 3 == 2 ? 1.0 / arm : 1.0);
@@ -52,10 +52,13 @@ static void stiffness_is_timoshenko(void **state) {
                phi = 12.0 * e * i / (0.5 * e * side * l * l);
   const double axial = e * side / l, q = 12.0 * e * i / (l * l * l * (1.0 + phi)), near = (4.0 + phi) / 12.0,
                far = (2.0 - phi) / 12.0;
-  const double expected[6][6] = {
-      /* x1 y1 a1 x2 y2 a2, angles times l */
-      {axial, 0, 0, -axial, 0, 0}, {0, q, q / 2, 0, -q, q / 2},   {0, q / 2, q * near, 0, -q / 2, q * far},
-      {-axial, 0, 0, axial, 0, 0}, {0, -q, -q / 2, 0, q, -q / 2}, {0, q / 2, q * far, 0, -q / 2, q * near}};
+  const double expected[6][6] = {/* x1 y1 a1 x2 y2 a2, angles times l */
+                                 {axial, 0, 0, -axial, 0, 0},
+                                 {0, q, q / 2, 0, -q, q / 2},
+                                 {0, q / 2, q * near, 0, -q / 2, q * far},
+                                 {-axial, 0, 0, axial, 0, 0},
+                                 {0, -q, -q / 2, 0, q, -q / 2},
+                                 {0, q / 2, q * far, 0, -q / 2, q * near}};
   for (size_t a = 0; a < 36; ++a) /* 1e-6: rounding of forces over the step, 1e-16 / 1e-7 and some */
     fixture_near(k[a], expected[a / 6][a % 6], 1e-6 * axial, "stiffness");
   gsl_matrix_view m = gsl_matrix_view_array(k, 6, 6);
@@ -201,7 +204,8 @@ static void square_lattice_modulus(void **state) {
     if (i / n > 0 && i / n < n - 1) /* 1e-9: rounding of lengths over the strain */
       fixture_near(s->c.fy[i], 0.0, 1e-9 * scale, "inner grains balance");
     fixture_near(s->c.fx[i], 0.0, 1e-9 * scale, "no force across");
-    if (i / n == n - 1) top += s->c.fy[i];
+    if (i / n == n - 1)
+      top += s->c.fy[i];
   }
   fixture_near(-top / (n * h) / strain, p.beam_modulus, 1e-9 * p.beam_modulus, "K_ext");
   dem_system_free(s);
@@ -209,8 +213,9 @@ static void square_lattice_modulus(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stiffness_is_timoshenko), cmocka_unit_test(force_is_the_energys_gradient),
-      cmocka_unit_test(rotation_and_swap), cmocka_unit_test(cantilever), cmocka_unit_test(square_lattice_modulus)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(stiffness_is_timoshenko),
+                                     cmocka_unit_test(force_is_the_energys_gradient),
+                                     cmocka_unit_test(rotation_and_swap), cmocka_unit_test(cantilever),
+                                     cmocka_unit_test(square_lattice_modulus)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

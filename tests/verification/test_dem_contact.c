@@ -18,9 +18,12 @@ static struct impact collide(struct dem_parameters p, double v) {
   for (int k = 0; k < 100000; ++k) {
     assert_true(dem_system_step(s));
     const double deep = h - (s->c.x[1] - s->c.x[0]), push = -s->c.fx[0];
-    if (deep > 0.0 && began < 0.0) began = dem_system_time(s) - 0.5 * p.time_step;
-    if (began >= 0.0 && deep > 0.0) out.least_push = fmin(out.least_push, push);
-    if (deep > out.deepest) out.deepest = deep, out.push = push;
+    if (deep > 0.0 && began < 0.0)
+      began = dem_system_time(s) - 0.5 * p.time_step;
+    if (began >= 0.0 && deep > 0.0)
+      out.least_push = fmin(out.least_push, push);
+    if (deep > out.deepest)
+      out.deepest = deep, out.push = push;
     if (began >= 0.0 && deep <= 0.0) {
       out.duration = dem_system_time(s) - 0.5 * p.time_step - began;
       break;
@@ -85,7 +88,8 @@ static void oblique_impact_conserves(void **state) {
     double deepest = 0.0;
     for (int k = 0; k * p.time_step < 1e-3; ++k) {
       assert_true(dem_system_step(s));
-      if (k % 16 == 0) deepest = fmax(deepest, dem_system_ledger(s).contact);
+      if (k % 16 == 0)
+        deepest = fmax(deepest, dem_system_ledger(s).contact);
     }
     assert_true(deepest > 0.05 * before);
     assert_true(s->c.vx[0] < 0.0);

@@ -5,7 +5,7 @@
 #include "tests/verification/dem_fixture.h"
 
 #include "engine/cpu_class.h"
-#include "engine/dem/assemble.h"
+#include "engine/dem/lattice/assemble.h"
 
 enum { GRAINS = 9, PAIRS = GRAINS * (GRAINS - 1) / 2, MOST = 40 };
 
@@ -47,7 +47,8 @@ static long double overlap_area(const struct model *m, uint32_t i, uint32_t j, c
       const int w = (v + 1) % p.count;
       const long double a = ex * (p.y[v] - q.y[k]) - ey * (p.x[v] - q.x[k]);
       const long double b = ex * (p.y[w] - q.y[k]) - ey * (p.x[w] - q.x[k]);
-      if (a >= 0) cut.x[cut.count] = p.x[v], cut.y[cut.count++] = p.y[v];
+      if (a >= 0)
+        cut.x[cut.count] = p.x[v], cut.y[cut.count++] = p.y[v];
       if ((a >= 0) != (b >= 0)) {
         cut.x[cut.count] = p.x[v] + a / (a - b) * (p.x[w] - p.x[v]);
         cut.y[cut.count++] = p.y[v] + a / (a - b) * (p.y[w] - p.y[v]);
@@ -63,8 +64,8 @@ static long double overlap_area(const struct model *m, uint32_t i, uint32_t j, c
   return twice / 2;
 }
 
-/* Timoshenko beam as textbooks write it: EI/l [ (4+P) a^2 + 2 (2-P) a b + (4+P) b^2 ] / (2 (1+P)) with P = 12 EI/(G S l^2),
- * G = E/2 (K99: b = 2a), I = S^3/12; angles from the chord. */
+/* Timoshenko beam as textbooks write it: EI/l [ (4+P) a^2 + 2 (2-P) a b + (4+P) b^2 ] / (2 (1+P)) with P = 12 EI/(G S
+ * l^2), G = E/2 (K99: b = 2a), I = S^3/12; angles from the chord. */
 static long double beam_energy(const struct model *m, size_t pair, const struct place *at) {
   const uint32_t i = m->t->pair[pair][0], j = m->t->pair[pair][1];
   const struct dem_point *a = &m->t->centroid[i], *b = &m->t->centroid[j];
@@ -87,8 +88,10 @@ static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
   double side = 0.0;
   bool bonded = false;
   for (size_t p = 0; p < t->pair_count; ++p)
-    if (t->pair[p][0] == i && t->pair[p][1] == j) side = t->side[p], bonded = m->beam[p];
-  if (!m->present[i] || !m->present[j] || (bonded && !m->p.contact_on_bonded)) return 0;
+    if (t->pair[p][0] == i && t->pair[p][1] == j)
+      side = t->side[p], bonded = m->beam[p];
+  if (!m->present[i] || !m->present[j] || (bonded && !m->p.contact_on_bonded))
+    return 0;
   const long double law = m->p.grain_modulus * (0.5L / di + 0.5L / dj);
   return m->p.contact == DEM_CONTACT_PRINTED ? law : law / dem_assemble_reference_side(side, di, dj);
 }
@@ -97,7 +100,8 @@ static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
 static long double energy(const struct model *m, const struct place *at) {
   long double sum = 0;
   for (size_t p = 0; p < m->t->pair_count; ++p)
-    if (m->beam[p]) sum += beam_energy(m, p, at);
+    if (m->beam[p])
+      sum += beam_energy(m, p, at);
   for (uint32_t i = 0; i < GRAINS && m->p.contact == DEM_CONTACT_CONSERVATIVE; ++i)
     for (uint32_t j = i + 1; j < GRAINS; ++j) {
       const long double kappa = contact_of(m, i, j), area = kappa > 0 ? overlap_area(m, i, j, at) : 0;
@@ -124,11 +128,13 @@ static void expected_forces(const struct model *m, struct place *at, long double
     *freedom(at, k) = here;
     f[k] = (down - up) / (2 * step);
   }
-  if (m->p.contact != DEM_CONTACT_PRINTED) return;
+  if (m->p.contact != DEM_CONTACT_PRINTED)
+    return;
   for (uint32_t i = 0; i < GRAINS; ++i)
     for (uint32_t j = i + 1; j < GRAINS; ++j) {
       const long double law = contact_of(m, i, j), area = law > 0 ? overlap_area(m, i, j, at) : 0;
-      if (!(area > 0)) continue;
+      if (!(area > 0))
+        continue;
       long double slope[6];
       for (size_t k = 0; k < 6; ++k) {
         const size_t which = 3 * (k < 3 ? i : j) + k % 3;
@@ -162,11 +168,12 @@ static double compare(const struct variant *v, int law, double size, double turn
   const double cell = 0.01;
   struct dem_tessellation *t = NULL;
   struct error error = {0};
-  const struct dem_lattice lattice = {
-      .outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
+  const struct dem_lattice lattice =
+      {.outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
   assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
   assert_int_equal(t->cell_count, GRAINS);
-  if (v->no_bonds) t->pair_count = 0;
+  if (v->no_bonds)
+    t->pair_count = 0;
   struct model m = {.t = t, .p = fixture_parameters()};
   m.p.contact = law;
   m.p.contact_on_bonded = v->bonded_contact;
@@ -185,7 +192,8 @@ static double compare(const struct variant *v, int law, double size, double turn
     dem_breaking_cut(s, (int32_t)p);
     m.beam[p] = false;
   }
-  for (uint32_t i = 0; i < 3 && v->held; ++i) /* what holds a grain is no force of its neighbours: the same is reported */
+  for (uint32_t i = 0; i < 3 && v->held;
+       ++i) /* what holds a grain is no force of its neighbours: the same is reported */
     dem_system_hold(s, i, 1u << i | 4u);
   struct place at[GRAINS];
   uint64_t random = seed * 77 + 5;
@@ -234,8 +242,10 @@ static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct
       const long double ex = p.x[c] - p.x[a], ey = p.y[c] - p.y[a], fx = q.x[d] - q.x[b], fy = q.y[d] - q.y[b];
       const long double gx = q.x[b] - p.x[a], gy = q.y[b] - p.y[a], det = ex * fy - ey * fx;
       const long double u = (gx * fy - gy * fx) / det, v = (gx * ey - gy * ex) / det;
-      if (u < 0 || u >= 1 || v < 0 || v >= 1) continue;
-      if (count < 2) x[count] = p.x[a] + u * ex, y[count] = p.y[a] + u * ey;
+      if (u < 0 || u >= 1 || v < 0 || v >= 1)
+        continue;
+      if (count < 2)
+        x[count] = p.x[a] + u * ex, y[count] = p.y[a] + u * ey;
       ++count;
     }
   return count;
@@ -251,10 +261,11 @@ static void damping_and_friction_as_written(void **state) {
         const double cell = 0.01;
         struct dem_tessellation *t = NULL;
         struct error error = {0};
-        const struct dem_lattice lattice = {
-            .outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
+        const struct dem_lattice lattice =
+            {.outline = DEM_OUTLINE_BLOCK, .spacing = cell, .disorder = 1.0, .columns = 3, .rows = 3, .seed = seed};
         assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
-        if (!bonded) t->pair_count = 0;
+        if (!bonded)
+          t->pair_count = 0;
         struct model m = {.t = t, .p = fixture_parameters()};
         m.p.contact = law;
         m.p.beam_modulus = 0.0;
@@ -280,23 +291,31 @@ static void damping_and_friction_as_written(void **state) {
             const long double coefficient = contact_of(&m, i, j), area = overlap_area(&m, i, j, at);
             long double x[2], y[2];
             const int count = crossings(&m, i, j, at, x, y);
-            if (count == 0 && !(area > 0)) continue;
-            if (count != 2) simple = false;
-            if (!simple) continue;
+            if (count == 0 && !(area > 0))
+              continue;
+            if (count != 2)
+              simple = false;
+            if (!simple)
+              continue;
             const long double chord = hypotl(x[1] - x[0], y[1] - y[0]), mx = (x[0] + x[1]) / 2, my = (y[0] + y[1]) / 2;
             const long double tx = (x[1] - x[0]) / chord, ty = (y[1] - y[0]) / chord;
             long double nx = -ty, ny = tx; /* towards i: the way on which the overlap shrinks */
             struct place moved[GRAINS];
             memcpy(moved, at, sizeof at);
             moved[i].x += 1e-9L * cell * nx, moved[i].y += 1e-9L * cell * ny;
-            if (overlap_area(&m, i, j, moved) > area) nx = -nx, ny = -ny;
-            const long double ux = (s->c.vx[j] - s->c.spin[j] * (my - at[j].y)) - (s->c.vx[i] - s->c.spin[i] * (my - at[i].y));
-            const long double uy = (s->c.vy[j] + s->c.spin[j] * (mx - at[j].x)) - (s->c.vy[i] + s->c.spin[i] * (mx - at[i].x));
+            if (overlap_area(&m, i, j, moved) > area)
+              nx = -nx, ny = -ny;
+            const long double ux = (s->c.vx[j] - s->c.spin[j] * (my - at[j].y)) -
+                                   (s->c.vx[i] - s->c.spin[i] * (my - at[i].y));
+            const long double uy = (s->c.vy[j] + s->c.spin[j] * (mx - at[j].x)) -
+                                   (s->c.vy[i] + s->c.spin[i] * (mx - at[i].x));
             const long double mass = (long double)s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);
             const long double elastic = coefficient * area * (law == DEM_CONTACT_PRINTED ? 1 : chord);
             const long double normal = fmaxl(0, elastic + mass * m.p.normal_damping * (ux * nx + uy * ny));
             const long double slip = ux * tx + uy * ty;
-            const long double friction = copysignl(fminl(mass * m.p.tangential_damping * fabsl(slip), m.p.friction * normal), slip);
+            const long double friction = copysignl(fminl(mass * m.p.tangential_damping * fabsl(slip),
+                                                         m.p.friction * normal),
+                                                   slip);
             const long double fx = normal * nx + friction * tx, fy = normal * ny + friction * ty;
             f[3 * i] += fx, f[3 * i + 1] += fy, f[3 * i + 2] += (mx - at[i].x) * fy - (my - at[i].y) * fx;
             f[3 * j] -= fx, f[3 * j + 1] -= fy, f[3 * j + 2] -= (mx - at[j].x) * fy - (my - at[j].y) * fx;
@@ -333,7 +352,8 @@ static void all_forces_are_gradients(void **state) {
           for (uint64_t seed = 1; seed <= 4; ++seed) {
             const double turned = seed % 2 ? 0.0 : 7.0;
             const double error = compare(&variants[v], law, sizes[k], turned, seed);
-            /* the grains are 1e-11 smaller than their cells, differences err by 1e-8 where an overlap's shape changes */
+            /* the grains are 1e-11 smaller than their cells, differences err by 1e-8 where an overlap's shape changes
+             */
             if (!(error <= 1e-7))
               fail_msg("%s, %s, law %d, motion %g, seed %d: forces differ by %g of the largest", classes[c],
                        variants[v].name, law, sizes[k], (int)seed, error);

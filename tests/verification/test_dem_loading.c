@@ -2,10 +2,11 @@
  * stresses of an affine deformation, the mode of a break, energies that are known. */
 #include "tests/verification/dem_fixture.h"
 
-#include "engine/dem/run.h"
+#include "engine/dem/run/run.h"
 #include "tests/run_case.h"
 
-/* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion. */
+/* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion.
+ */
 static void driven_grains_do_work(void **state) {
   (void)state;
   for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; ++integrator)
@@ -41,20 +42,22 @@ static void driven_grains_do_work(void **state) {
 /* Loaded bodies: what held grains feel is what the free ones lose, to rounding; the work is all the energy there is. */
 static void loads_balance(void **state) {
   (void)state;
-  struct dem_inputs cases[] = {
-      DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms"),
-      DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s", "loading.ramp=1 ms")};
+  struct dem_inputs cases[] = {DEM_CASE("compression", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
+                                        "loading.ramp=1 ms"),
+                               DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
+                                        "loading.ramp=1 ms")};
   for (int k = 0; k < 2; ++k) {
     struct ran ran = run_case_run(&dem_engine, &cases[k], 3);
     assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
     assert_true(ran.results.dem.energy.external_work > 0.0);
-    assert_true(ran.outcome.energy_error < 1e-3);   /* Verlet at a tenth of the stability limit, with breaks */
+    assert_true(ran.outcome.energy_error < 1e-3);    /* Verlet at a tenth of the stability limit, with breaks */
     assert_true(ran.outcome.momentum_error < 1e-11); /* sums of 1e4 steps' roundings */
     free(ran.fragments);
   }
 }
 
-/* Sides of a uniaxial load slide along x, those of K99's confined compression do not; neither turns or leaves its line. */
+/* Sides of a uniaxial load slide along x, those of K99's confined compression do not; neither turns or leaves its line.
+ */
 static void sides_are_held_as_described(void **state) {
   (void)state;
   for (int confined = 0; confined < 2; ++confined) {
@@ -90,8 +93,10 @@ static void strains_are_those_put_in(void **state) {
   for (uint32_t i = 0; i < t->cell_count; ++i) {
     run->system->c.x[i] = t->centroid[i].x * (1.0 + lateral);
     run->system->c.y[i] = t->centroid[i].y; /* as the sides do: each row keeps its line */
-    if (t->grid_y[i] == 0) run->system->c.y[i] -= 0.25 * axial * run->gauge_length;
-    if (t->grid_y[i] == 9) run->system->c.y[i] += 0.75 * axial * run->gauge_length;
+    if (t->grid_y[i] == 0)
+      run->system->c.y[i] -= 0.25 * axial * run->gauge_length;
+    if (t->grid_y[i] == 9)
+      run->system->c.y[i] += 0.75 * axial * run->gauge_length;
     run->system->c.fy[i] = t->grid_y[i] == 0 ? 3.0 : t->grid_y[i] == 9 ? -5.0 : 7.0;
   }
   run->sample_interval = 1;
@@ -104,16 +109,16 @@ static void strains_are_those_put_in(void **state) {
   dem_run_free(run);
 }
 
-/* A beam that is drawn out breaks by stretching, one that is turned and hardly stretched by bending; pressed, by neither.
- * The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
+/* A beam that is drawn out breaks by stretching, one that is turned and hardly stretched by bending; pressed, by
+ * neither. The rule is K99's eq 13: strain squared, angle not, the larger angle of the two. */
 static void modes_of_breaking(void **state) {
   (void)state;
   const struct {
     double strain, first, second; /* in thresholds */
     int broken, bending;
-  } cases[] = {{1.01, 0.0, 0.0, 1, 0},  {0.99, 0.0, 0.0, 0, 0},  {0.1, 0.995, 0.0, 1, 1}, {0.1, 0.0, -0.995, 1, 1},
-               {0.1, 0.985, 0.2, 0, 0}, {0.8, 0.37, 0.1, 1, 0},  {0.8, 0.35, 0.1, 0, 0},  {0.6, -0.1, 0.65, 1, 1},
-               {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0},  {-0.1, 3.0, 3.0, 0, 0}};
+  } cases[] = {{1.01, 0.0, 0.0, 1, 0},  {0.99, 0.0, 0.0, 0, 0}, {0.1, 0.995, 0.0, 1, 1}, {0.1, 0.0, -0.995, 1, 1},
+               {0.1, 0.985, 0.2, 0, 0}, {0.8, 0.37, 0.1, 1, 0}, {0.8, 0.35, 0.1, 0, 0},  {0.6, -0.1, 0.65, 1, 1},
+               {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0}, {-0.1, 3.0, 3.0, 0, 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
     struct dem_parameters p = fixture_parameters();
@@ -125,9 +130,12 @@ static void modes_of_breaking(void **state) {
     fixture_evaluate(s);
     const struct dem_break *log;
     const size_t breaks = dem_system_breaks(s, &log);
-    if (breaks != (size_t)cases[k].broken) fail_msg("case %zu: %zu breaks", k, breaks);
-    if (breaks && log[0].bending != cases[k].bending) fail_msg("case %zu: bending %d", k, (int)log[0].bending);
-    if (breaks) fixture_near(log[0].strain, cases[k].strain * p.strain_threshold, 1e-12, "strain logged");
+    if (breaks != (size_t)cases[k].broken)
+      fail_msg("case %zu: %zu breaks", k, breaks);
+    if (breaks && log[0].bending != cases[k].bending)
+      fail_msg("case %zu: bending %d", k, (int)log[0].bending);
+    if (breaks)
+      fixture_near(log[0].strain, cases[k].strain * p.strain_threshold, 1e-12, "strain logged");
     dem_system_free(s);
     fixture_free(t);
   }
@@ -136,7 +144,8 @@ static void modes_of_breaking(void **state) {
 /* A square lattice: every beam has S = l = spacing, and half E S l t^2 at the threshold. */
 static void threshold_energy_of_a_square_lattice(void **state) {
   (void)state;
-  struct dem_inputs inputs = DEM_CASE("block-impact", "body.columns=6", "body.rows=5", "grain.disorder=0", "stop.end_time=2 us");
+  struct dem_inputs inputs = DEM_CASE("block-impact", "body.columns=6", "body.rows=5", "grain.disorder=0",
+                                      "stop.end_time=2 us");
   struct ran ran = run_case_run(&dem_engine, &inputs, 1);
   assert_int_equal(ran.results.dem.beams, 5 * 5 + 6 * 4);
   const double one = 0.5 * inputs.beam.young_modulus * inputs.grain.spacing * inputs.grain.spacing *
@@ -155,8 +164,10 @@ static void grains_have_their_inertia(void **state) {
     long double area = 0, moment = 0;
     for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; ++v) {
       const uint32_t w = v + 1 < t->first_vertex[i + 1] ? v + 1 : t->first_vertex[i];
-      const long double ax = (long double)t->vertex[v].x - t->centroid[i].x, ay = (long double)t->vertex[v].y - t->centroid[i].y;
-      const long double bx = (long double)t->vertex[w].x - t->centroid[i].x, by = (long double)t->vertex[w].y - t->centroid[i].y;
+      const long double ax = (long double)t->vertex[v].x - t->centroid[i].x,
+                        ay = (long double)t->vertex[v].y - t->centroid[i].y;
+      const long double bx = (long double)t->vertex[w].x - t->centroid[i].x,
+                        by = (long double)t->vertex[w].y - t->centroid[i].y;
       const long double twice = ax * by - ay * bx;
       area += twice / 2;
       moment += twice / 12 * (ax * ax + ay * ay + ax * bx + ay * by + bx * bx + by * by);
@@ -169,7 +180,8 @@ static void grains_have_their_inertia(void **state) {
   dem_tessellation_free(t);
 }
 
-/* Thresholds drawn per beam: of a Weibull law ln t has the mean ln t0 - gamma/m and the standard deviation pi/(m sqrt 6). */
+/* Thresholds drawn per beam: of a Weibull law ln t has the mean ln t0 - gamma/m and the standard deviation pi/(m sqrt
+ * 6). */
 static void thresholds_are_weibulls(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.2, 0.01, 1.0, 2);
@@ -225,12 +237,13 @@ static void grains_pass_where_said(void **state) {
 /* Two discs before they meet: all energy is their translation, half of the relative speed each. */
 static void energy_of_two_discs_on_approach(void **state) {
   (void)state;
-  struct dem_inputs inputs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=10 m/s", "stop.end_time=2 us",
-                                      "collision.impact_parameter=0.4");
+  struct dem_inputs inputs = DEM_CASE("disc-collision", "body.diameter=8 cm", "collision.speed=10 m/s",
+                                      "stop.end_time=2 us", "collision.impact_parameter=0.4");
   struct ran ran = run_case_run(&dem_engine, &inputs, 1);
   assert_int_equal(ran.count, 2);
   fixture_near(ran.outcome.kinetic_energy_share, 1.0, 1e-12, "share");
-  fixture_near(ran.results.dem.energy_input, 0.5 * ran.outcome.total_mass * 25.0, 1e-9 * ran.results.dem.energy_input, "input");
+  fixture_near(ran.results.dem.energy_input, 0.5 * ran.outcome.total_mass * 25.0, 1e-9 * ran.results.dem.energy_input,
+               "input");
   const double *a = ran.fragments[0].position, *b = ran.fragments[1].position;
   /* centres 0.4 diameters apart across the approach, to a fraction of a grain: the lattices' outlines are random */
   fixture_near(fabs(a[1] - b[1]), 0.4 * inputs.body.diameter, 0.25 * inputs.grain.spacing, "impact parameter");
@@ -238,9 +251,11 @@ static void energy_of_two_discs_on_approach(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work), cmocka_unit_test(loads_balance),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(driven_grains_do_work),
+                                     cmocka_unit_test(loads_balance),
                                      cmocka_unit_test(sides_are_held_as_described),
-                                     cmocka_unit_test(strains_are_those_put_in), cmocka_unit_test(modes_of_breaking),
+                                     cmocka_unit_test(strains_are_those_put_in),
+                                     cmocka_unit_test(modes_of_breaking),
                                      cmocka_unit_test(threshold_energy_of_a_square_lattice),
                                      cmocka_unit_test(energy_of_two_discs_on_approach),
                                      cmocka_unit_test(grains_have_their_inertia),

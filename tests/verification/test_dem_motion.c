@@ -3,7 +3,7 @@
 #include "tests/bench/dem_disc.h"
 #include "tests/verification/dem_fixture.h"
 
-#include "engine/dem/gear_start.h"
+#include "engine/dem/step/gear_start.h"
 
 #ifndef __SANITIZE_ADDRESS__ /* the sanitizer brings its own */
 static size_t allocations;   /* counted for the test that the step loop allocates nothing */
@@ -31,7 +31,8 @@ static struct dem_system *charged(const struct dem_tessellation *t, const struct
   dem_disc_charge(s, t, p->density, 80.0 * p->density * 0.0314);
   for (uint32_t i = 0; i < t->cell_count; ++i) {
     const struct dem_grain g = dem_system_grain(s, i);
-    if (g.present) dem_system_set_velocity(s, i, g.vx + vx - spin * g.y, g.vy + spin * g.x, g.spin + spin);
+    if (g.present)
+      dem_system_set_velocity(s, i, g.vx + vx - spin * g.y, g.vy + spin * g.x, g.spin + spin);
   }
   return s;
 }
@@ -44,7 +45,8 @@ static struct momenta momenta(const struct dem_system *s) {
   struct momenta m = {0};
   for (uint32_t i = 0; i < s->count; ++i) {
     const struct dem_grain g = dem_system_grain(s, i);
-    if (!g.present) continue;
+    if (!g.present)
+      continue;
     m.px += g.mass * g.vx;
     m.py += g.mass * g.vy;
     const double orbit = g.mass * (g.x * g.vy - g.y * g.vx);
@@ -63,7 +65,8 @@ static void momenta_are_conserved(void **state) {
     struct dem_parameters p = fixture_parameters();
     p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
     p.breaking = kind >= 1;
-    if (kind >= 2) p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
+    if (kind >= 2)
+      p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
     p.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
     struct dem_system *s = charged(t, &p, 3.0, 40.0);
     const struct momenta before = momenta(s);
@@ -127,11 +130,13 @@ static double order(int integrator, double finest, const struct dem_tessellation
     for (uint32_t i = 0; i < t->cell_count; ++i) {
       const double v[3] = {s->c.x[i], s->c.y[i], 0.01 * s->c.angle[i]};
       for (int k = 0; k < 3; ++k) {
-        if (run == 0) exact[3 * i + (size_t)k] = v[k];
+        if (run == 0)
+          exact[3 * i + (size_t)k] = v[k];
         sum += (v[k] - exact[3 * i + (size_t)k]) * (v[k] - exact[3 * i + (size_t)k]);
       }
     }
-    if (run) error[run - 1] = sqrt(sum);
+    if (run)
+      error[run - 1] = sqrt(sum);
     dem_system_free(s);
   }
   free(exact);
@@ -169,14 +174,14 @@ static void gear_has_its_coefficients(void **state) {
       s->c.gear[0][k][1] = start[k];
     s->now.gear_started = 1;
     assert_true(dem_system_step(s));
-    const int pascal[6][6] = {{1, 1, 1, 1, 1, 1}, {0, 1, 2, 3, 4, 5},  {0, 0, 1, 3, 6, 10},
+    const int pascal[6][6] = {{1, 1, 1, 1, 1, 1},  {0, 1, 2, 3, 4, 5}, {0, 0, 1, 3, 6, 10},
                               {0, 0, 0, 1, 4, 10}, {0, 0, 0, 0, 1, 5}, {0, 0, 0, 0, 0, 1}};
     double predicted[6] = {0};
     for (int k = 0; k < 6; ++k)
       for (int j = 0; j < 6; ++j)
         predicted[k] += pascal[k][j] * start[j];
     const double error = 0.5 * dt * dt * s->c.fx[1] / s->mass[1] - predicted[2];
-    const double got[6] = {s->c.x[1],          s->c.vx[1] * dt,     s->c.gear[0][2][1],
+    const double got[6] = {s->c.x[1],          s->c.vx[1] * dt,    s->c.gear[0][2][1],
                            s->c.gear[0][3][1], s->c.gear[0][4][1], s->c.gear[0][5][1]};
     assert_true(fabs(error) > 1e-6);
     for (int k = 0; k < 6; ++k) /* roundings of values of 1e-5, and of the position itself */
@@ -196,7 +201,8 @@ static void ledger_closes(void **state) {
     p.time_step = 2.5e-7;
     p.contact_on_bonded = kind != 3; /* contacts that begin as beams break, at whatever overlap there is */
     p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
-    if (kind == 2) p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
+    if (kind == 2)
+      p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
     struct dem_system *s = charged(t, &p, 0.0, 0.0);
     const double before = fixture_total(dem_system_ledger(s));
     for (int k = 0; k < 8000; ++k)
@@ -339,7 +345,8 @@ static void gear_starts_with_the_derivatives(void **state) {
   assert_true(dem_gear_start(s));
   const double w = sqrt(2.0 * p.beam_modulus / s->mass[0]), turn = w * p.time_step; /* alpha = E for S = l */
   const double u = 0.5 * stretch, v = 0.5 * speed / w; /* of grain 1 about the middle; v in radians of the swing */
-  const double exact[6] = {0, 0, -u * turn * turn / 2, -v * pow(turn, 3) / 6, u * pow(turn, 4) / 24, v * pow(turn, 5) / 120};
+  const double exact[6] =
+      {0, 0, -u * turn * turn / 2, -v * pow(turn, 3) / 6, u * pow(turn, 4) / 24, v * pow(turn, 5) / 120};
   const double order[6] = {0, 0, 1e-12, pow(turn, 4), pow(turn, 3), pow(turn, 2)}; /* of the one-sided differences */
   for (int k = 2; k < 6; ++k) /* the next derivatives' terms stand before them with factors of a few */
     fixture_near(s->c.gear[0][k][1], exact[k], fabs(exact[k]) * (10.0 * order[k] * (1.0 + u / v + v / u) + 1e-6),
@@ -385,7 +392,8 @@ static void far_flung_grain(void **state) {
   struct dem_system *s = fixture_create(t, &p);
   const size_t bytes = dem_system_bytes(s);
   for (size_t k = 0; k < t->pair_count; ++k)
-    if (t->pair[k][0] == 0 || t->pair[k][1] == 0) dem_breaking_cut(s, (int32_t)k);
+    if (t->pair[k][0] == 0 || t->pair[k][1] == 0)
+      dem_breaking_cut(s, (int32_t)k);
   fixture_place(s, 0, 1e6, -1e6, 0.0);
   dem_system_set_velocity(s, 0, 1e4, 0.0, 10.0);
   for (int k = 0; k < 2000; ++k)
@@ -461,7 +469,10 @@ static void extremes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(momenta_are_conserved),
                                      cmocka_unit_test(energy_is_conserved),
-                                     cmocka_unit_test(integrators_have_their_order), cmocka_unit_test(gear_has_its_coefficients), cmocka_unit_test(turning_grains_meet), cmocka_unit_test(gear_starts_with_the_derivatives),
+                                     cmocka_unit_test(integrators_have_their_order),
+                                     cmocka_unit_test(gear_has_its_coefficients),
+                                     cmocka_unit_test(turning_grains_meet),
+                                     cmocka_unit_test(gear_starts_with_the_derivatives),
                                      cmocka_unit_test(ledger_closes),
                                      cmocka_unit_test(rest_is_rest),
                                      cmocka_unit_test(broken_is_unbonded),

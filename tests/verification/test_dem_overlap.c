@@ -82,9 +82,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     ring[1] = ring[0];
     move_ring(&ring[1], 1e-9 * fixture_random(seed), 1e-9 * fixture_random(seed));
     break;
-  case 3: /* the same polygon */
-    ring[1] = ring[0];
-    break;
+  case 3: /* the same polygon */ ring[1] = ring[0]; break;
   case 4: { /* mirrored at one of its sides: touching along a whole side; then pushed in by a sliver */
     const size_t k = (size_t)((double)ring[0].count * 0.4999 * (1.0 + fixture_random(seed)));
     const double x = ring[0].x[k], y = ring[0].y[k], ex = ring[0].x[k + 1] - x, ey = ring[0].y[k + 1] - y;
@@ -196,7 +194,8 @@ static void chord_is_the_gradient(void **state) {
     struct dem_overlap o = {0};
     memcpy(moved, ring, sizeof ring);
     dem_kernels_choose()->overlap(moved, &o);
-    if (o.apart) continue;
+    if (o.apart)
+      continue;
     ++met;
     const double step = 1e-7;
     double change[3];
@@ -223,12 +222,14 @@ static void chord_is_the_gradient(void **state) {
     fixture_near(change[1], -o.chord_x, 2e-5, "dA/dy");
     fixture_near(change[2], -o.moment, 4e-5, "dA/dangle");
     long double px[MOST], py[MOST];
-    if (crossings(ring, px, py) != 2) continue;
+    if (crossings(ring, px, py) != 2)
+      continue;
     /* One chord: the tensor and the moment give its middle, across and along. */
     const double length = hypot(o.chord_x, o.chord_y), tx = o.chord_x / length, ty = o.chord_y / length;
     const double mx = (double)(px[0] + px[1]) / 2 - o.origin_x, my = (double)(py[0] + py[1]) / 2 - o.origin_y;
     fixture_near(length, hypot((double)(px[1] - px[0]), (double)(py[1] - py[0])), 1e-13, "chord");
-    if (length < 1e-3) continue;
+    if (length < 1e-3)
+      continue;
     ++chords;
     const double across = (-ty * (o.xx * tx + o.xy * ty) + tx * (o.xy * tx + o.yy * ty)) / length;
     fixture_near(o.moment / length, mx * tx + my * ty, 1e-11, "middle along"); /* 1e-14 over the shortest chord */
@@ -369,7 +370,8 @@ static void windows_of_odd_shapes(void **state) {
     fixture_evaluate(window);
     fixture_evaluate(general);
     const double force = hypot(general->c.fx[0], general->c.fy[0]);
-    if (force > 0.0) ++*(window->general_count ? &generals : &windows);
+    if (force > 0.0)
+      ++*(window->general_count ? &generals : &windows);
     /* areas are right to 1e-12, see above, and chords are of order one */
     fixture_near(window->c.fx[0], general->c.fx[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force x");
     fixture_near(window->c.fy[0], general->c.fy[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force y");

@@ -1,6 +1,6 @@
-/* Estimators against synthetic spectra whose exponent is known. The biases measured before this program was written (true
- * exponent 2.0, 200 samples) must come out again: the bias of least squares as well as the lack of it in maximum likelihood.
- * Every tolerance is a Monte-Carlo error computed here, times four. */
+/* Estimators against synthetic spectra whose exponent is known. The biases measured before this program was written
+ * (true exponent 2.0, 200 samples) must come out again: the bias of least squares as well as the lack of it in maximum
+ * likelihood. Every tolerance is a Monte-Carlo error computed here, times four. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/exponent.h"
+#include "analysis/statistics/exponent.h"
 #include "engine/random.h"
 
 enum { SAMPLES = 200, MOST = 1001 };
@@ -26,7 +26,8 @@ static size_t draw(enum law law, size_t n, uint64_t sample, double *masses) {
       masses[i] = 1 / (1 - random_draw(20, (uint64_t)law + 100, sample, number++));
     } while (law == CUTOFF_AT_100 && random_draw(21, 0, sample, number++) > exp(-masses[i] / 100));
   }
-  if (law == WITH_GIANT) masses[n++] = 1e4; /* a remnant that belongs to no power law */
+  if (law == WITH_GIANT)
+    masses[n++] = 1e4; /* a remnant that belongs to no power law */
   return n;
 }
 
@@ -42,13 +43,15 @@ static struct result measure(enum exponent_method method, enum law law, size_t n
     struct exponent fit;
     size_t count = draw(law, n, s, masses);
     assert_int_equal(exponent_fit(method, count, masses, window, &fit, NULL), STATUS_OK);
-    if (!isfinite(fit.beta)) continue;
+    if (!isfinite(fit.beta))
+      continue;
     beta[used++] = fit.beta;
     mean += fit.beta;
     quoted += fit.standard_error;
   }
   mean /= used;
-  for (int i = 0; i < used; i++) squares += (beta[i] - mean) * (beta[i] - mean);
+  for (int i = 0; i < used; i++)
+    squares += (beta[i] - mean) * (beta[i] - mean);
   double deviation = sqrt(squares / (used - 1));
   printf("  %-14s law %d n %4zu: %.3f +- %.3f (quoted %.3f), %d samples\n", exponent_method_names[method], (int)law, n,
          mean, deviation, quoted / used, used);
@@ -128,10 +131,13 @@ static void equal_grains_are_discrete(void **state) {
   double mean[4] = {0}, squares[4] = {0};
   static double masses[N];
   for (uint64_t s = 0; s < SETS; s++) {
-    for (uint64_t i = 0; i < N; i++) masses[i] = grains(s, i);
+    for (uint64_t i = 0; i < N; i++)
+      masses[i] = grains(s, i);
     for (int w = 0; w < 4; w++) {
       struct exponent fit;
-      assert_int_equal(exponent_fit(EXPONENT_MASSES, N, masses, (struct exponent_window){lower[w], HUGE_VAL}, &fit, NULL), STATUS_OK);
+      assert_int_equal(exponent_fit(EXPONENT_MASSES, N, masses, (struct exponent_window){lower[w], HUGE_VAL}, &fit,
+                                    NULL),
+                       STATUS_OK);
       mean[w] += fit.beta / SETS;
       squares[w] += fit.beta * fit.beta / SETS;
     }
@@ -146,10 +152,8 @@ static void equal_grains_are_discrete(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(likelihood_is_unbiased),
-      cmocka_unit_test(least_squares_has_its_known_bias),
-      cmocka_unit_test(cutoff_is_found),
-      cmocka_unit_test(ks_pays_with_scatter),
+      cmocka_unit_test(likelihood_is_unbiased),    cmocka_unit_test(least_squares_has_its_known_bias),
+      cmocka_unit_test(cutoff_is_found),           cmocka_unit_test(ks_pays_with_scatter),
       cmocka_unit_test(equal_grains_are_discrete),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

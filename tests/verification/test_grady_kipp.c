@@ -1,9 +1,10 @@
 /* Damage from explicit flaws against Grady & Kipp 1980, without any hydrodynamics: every particle at strain rate x t.
  *
- * Basalt of Benz & Asphaug 1994 (m 8.5, k 5e34 m^-3, E 53.06 GPa, c_g 1837 m/s), 50 000 particles in 1.257e-5 m^3, peak of the mean
- * stress. The numbers were computed once by an independent program (means over 24 seeds); one seed scatters by the range given
- * there, well under the 1 % allowed here (4 % for `count` at 360/s, whose range is +-2 %). The isolated law is met only where
- * 0.7 < c_g t_f / R_s < 5, and the particle form differs from it by construction: that is why the table, not the law, is the target. */
+ * Basalt of Benz & Asphaug 1994 (m 8.5, k 5e34 m^-3, E 53.06 GPa, c_g 1837 m/s), 50 000 particles in 1.257e-5 m^3, peak
+ * of the mean stress. The numbers were computed once by an independent program (means over 24 seeds); one seed scatters
+ * by the range given there, well under the 1 % allowed here (4 % for `count` at 360/s, whose range is +-2 %). The
+ * isolated law is met only where 0.7 < c_g t_f / R_s < 5, and the particle form differs from it by construction: that
+ * is why the table, not the law, is the target. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -30,7 +31,8 @@ static double peak_stress(const struct sph_flaws *flaws, double rate, int growth
     double sum = 0, log_strain = log(rate * (step + 0.5) * dt);
     for (size_t i = 0; i < PARTICLES; i++) {
       size_t total = flaws->first[i + 1] - flaws->first[i];
-      state[i] = grady_kipp_grow(state[i], grady_kipp_open(flaws, i, log_strain), total, growth, cap, crack_speed / radius, dt);
+      state[i] = grady_kipp_grow(state[i], grady_kipp_open(flaws, i, log_strain), total, growth, cap,
+                                 crack_speed / radius, dt);
       sum += state[i] * state[i] * state[i];
     }
     double stress = young * rate * (step + 1) * dt * (1 - sum / PARTICLES);
@@ -60,15 +62,16 @@ static void particle_table(void **state) {
   assert_int_equal(sph_flaws_make(&law, PARTICLES, NULL, NULL, 0, &flaws, NULL), STATUS_OK);
   for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
     double peak = peak_stress(flaws, rows[r].rate, rows[r].growth, rows[r].cap);
-    print_message("rate %6g /s growth %d cap %d: peak %.2f MPa, table %.2f\n", rows[r].rate, rows[r].growth, rows[r].cap, peak,
-                  rows[r].peak);
+    print_message("rate %6g /s growth %d cap %d: peak %.2f MPa, table %.2f\n", rows[r].rate, rows[r].growth,
+                  rows[r].cap, peak, rows[r].peak);
     assert_true(fabs(peak / rows[r].peak - 1) < rows[r].tolerance);
   }
   sph_flaws_free(flaws);
 }
 
-/* The isolated law itself, by its closed form and by integrating D = integral n'(t') (c_g (t - t'))^3 4pi/3 as it is defined:
- * the table's first column and fragment sizes. The closed form is exact; the last printed digit is the tolerance. */
+/* The isolated law itself, by its closed form and by integrating D = integral n'(t') (c_g (t - t'))^3 4pi/3 as it is
+ * defined: the table's first column and fragment sizes. The closed form is exact; the last printed digit is the
+ * tolerance. */
 static void isolated_law(void **state) {
   (void)state;
   static const struct {
@@ -85,7 +88,8 @@ static void isolated_law(void **state) {
       double t = tf * a / 400, sum = 0;
       for (int b = 0; b < 400; b++) {
         double born = t * (b + 0.5) / 400;
-        sum += k * m * pow(rate, m) * pow(born, m - 1) * 4 * acos(-1.0) / 3 * pow(crack_speed * (t - born), 3) * t / 400;
+        sum += k * m * pow(rate, m) * pow(born, m - 1) * 4 * acos(-1.0) / 3 * pow(crack_speed * (t - born), 3) * t /
+               400;
       }
       double stress = young * rate * t * (1 - sum);
       highest = stress > highest ? stress : highest;
@@ -114,11 +118,13 @@ static void pieces(void **state) {
   assert_true(fabs(sph_fracture_largest_tension(0, 2, 0, 0, 0, 0) - 2) < 1e-14);
   assert_true(sph_fracture_largest_tension(-4, 0, 0, -4, 0, -4) == -4);
   double n[3] = {2.0 / 7, 3.0 / 7, 6.0 / 7};
-  assert_true(fabs(sph_fracture_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) - 1) <
-              1e-14);
+  assert_true(
+      fabs(sph_fracture_largest_tension(n[0] * n[0], n[0] * n[1], n[0] * n[2], n[1] * n[1], n[1] * n[2], n[2] * n[2]) -
+           1) < 1e-14);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(pieces), cmocka_unit_test(isolated_law), cmocka_unit_test(particle_table)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(pieces), cmocka_unit_test(isolated_law),
+                                     cmocka_unit_test(particle_table)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

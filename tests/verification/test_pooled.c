@@ -1,5 +1,5 @@
-/* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every run
- * too; the interval from resampling runs covers; cut-offs are found when there, and not when not. */
+/* Pooling over runs: each run bounded by its own largest fragment gives the true exponent back, with a giant in every
+ * run too; the interval from resampling runs covers; cut-offs are found when there, and not when not. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -39,7 +39,8 @@ static struct pooled_runs make(struct made *made, uint64_t ensemble, double cuto
       } while (random_draw(42, ensemble, r, number++) > exp(-made->masses[at] / cutoff));
       at++;
     }
-    if (giant) made->masses[at++] = 3e4 * (1 + random_draw(43, ensemble, r, 0));
+    if (giant)
+      made->masses[at++] = 3e4 * (1 + random_draw(43, ensemble, r, 0));
     qsort(made->masses + made->first[r], at - made->first[r], sizeof(double), descending);
   }
   made->first[RUNS] = at;
@@ -59,7 +60,8 @@ static void true_exponent_with_an_interval(void **state) {
         struct pooled_runs runs = make(&made, e, HUGE_VAL, giant);
         struct pooled_exponent out;
         assert_int_equal(pooled_exponent(&runs, methods[m], 1, 100, 0.95, e, &out, NULL), STATUS_OK);
-        if (methods[m] == EXPONENT_MASSES) assert_int_equal(out.fit.n, made.first[RUNS] - RUNS); /* all but the largest */
+        if (methods[m] == EXPONENT_MASSES)
+          assert_int_equal(out.fit.n, made.first[RUNS] - RUNS); /* all but the largest */
         mean += out.fit.beta / ENSEMBLES;
         squares += out.fit.beta * out.fit.beta / ENSEMBLES;
         quoted += out.fit.standard_error / ENSEMBLES;
@@ -72,7 +74,8 @@ static void true_exponent_with_an_interval(void **state) {
       /* n is about 1800: the bias 1/n is below the Monte-Carlo error. */
       assert_true(fabs(mean - 2) < 4 * error + 1.0 / 1500);
       assert_true(fabs(quoted / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
-      assert_true(fabs(resampled / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES) + 1.0 / RUNS /* (n-1)/n of the variance */);
+      assert_true(fabs(resampled / deviation - 1) <
+                  4 / sqrt(2.0 * ENSEMBLES) + 1.0 / RUNS /* (n-1)/n of the variance */);
       assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* percentile intervals at 30 runs */
     }
   }
@@ -113,8 +116,8 @@ static void cutoffs_are_told_apart(void **state) {
     lognormal += rivals.lognormal_p < 0.05;
   }
   double deviation = sqrt(squares - mean * mean);
-  printf("  cut-off found in %d of %d, false alarms %d and %d (lognormal); beta %.3f +- %.3f\n", needed, ENSEMBLES, alarms,
-         lognormal, mean, deviation);
+  printf("  cut-off found in %d of %d, false alarms %d and %d (lognormal); beta %.3f +- %.3f\n", needed, ENSEMBLES,
+         alarms, lognormal, mean, deviation);
   assert_int_equal(needed, ENSEMBLES);
   /* nominal 5 % of 60 = 3 +- 1.7 */
   assert_true(alarms <= 3 + 4 * 1.7 && lognormal <= 3 + 4 * 1.7);
@@ -170,8 +173,10 @@ static void empty_and_bad(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(true_exponent_with_an_interval), cmocka_unit_test(other_methods_pool_too),
-      cmocka_unit_test(cutoffs_are_told_apart),         cmocka_unit_test(spectrum_density_and_error),
+      cmocka_unit_test(true_exponent_with_an_interval),
+      cmocka_unit_test(other_methods_pool_too),
+      cmocka_unit_test(cutoffs_are_told_apart),
+      cmocka_unit_test(spectrum_density_and_error),
       cmocka_unit_test(empty_and_bad),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -10,15 +10,17 @@
 #include <stdio.h>
 
 #include "analysis/analysis.h"
-#include "analysis/cutoff.h"
-#include "analysis/power_law.h"
-#include "analysis/tempered.h"
+#include "analysis/statistics/cutoff.h"
+#include "analysis/statistics/power_law.h"
+#include "analysis/statistics/tempered.h"
 #include "engine/random.h"
 
 /* The sample mean of a cut exponential, straight from its definition; the fit must return the rate. */
 static double exact_mean(double k, double span) {
-  if (isinf(span)) return 1 / k;
-  if (k == 0) return span / 2;
+  if (isinf(span))
+    return 1 / k;
+  if (k == 0)
+    return span / 2;
   return 1 / k - span / expm1(k * span);
 }
 
@@ -28,7 +30,8 @@ static void masses_any_exponent(void **state) {
   for (size_t s = 0; s < 4; s++) {
     for (size_t b = 0; b < sizeof betas / sizeof *betas; b++) {
       double k = betas[b] - 1;
-      if (isinf(spans[s]) && k <= 0) continue;
+      if (isinf(spans[s]) && k <= 0)
+        continue;
       struct power_law_group group = {100, exact_mean(k, spans[s]), spans[s]};
       struct power_law fit = power_law_fit(1, &group, 0);
       /* The definition itself loses digits for small k: 1e-16 of 1/k over the slope of the mean, span^2/12. */
@@ -49,7 +52,8 @@ static void bins_any_exponent(void **state) {
   for (size_t s = 0; s < 4; s++) {
     for (size_t b = 0; b < 6; b++) {
       double y = (betas[b] - 1) * h, mean = 0, sum = 0;
-      if (isinf(spans[s]) && y <= 0) continue;
+      if (isinf(spans[s]) && y <= 0)
+        continue;
       int bins = isinf(spans[s]) ? 2000 : (int)spans[s];
       for (int j = 0; j < bins; j++) { /* the share of each bin: integral of m^-beta over it */
         sum += exp(-y * j);
@@ -58,7 +62,8 @@ static void bins_any_exponent(void **state) {
       struct power_law_group group = {50, mean / sum, spans[s]};
       struct power_law fit = power_law_fit(1, &group, h);
       assert_true(fabs(fit.beta - betas[b]) < 1e-10);
-      if (!isinf(spans[s])) assert_true(fabs(fit.log_likelihood + 50 * (y * mean / sum + log(sum))) < 1e-9);
+      if (!isinf(spans[s]))
+        assert_true(fabs(fit.log_likelihood + 50 * (y * mean / sum + log(sum))) < 1e-9);
     }
   }
 }
@@ -79,7 +84,8 @@ static void groups_are_one_sample(void **state) {
 
 static void normalisation_is_incomplete_gamma(void **state) {
   (void)state;
-  /* Z = integral over m > a of (m/a)^-beta exp(-(m-a)/xc) dm/m... = e^s s^k Gamma(-k, s), also for negative arguments. */
+  /* Z = integral over m > a of (m/a)^-beta exp(-(m-a)/xc) dm/m... = e^s s^k Gamma(-k, s), also for negative arguments.
+   */
   const double ks[] = {-1.5, -0.3, 0.5, 1, 1.7, 3}, rates[] = {1e-6, 1e-3, 0.1, 1, 20};
   for (size_t i = 0; i < 6; i++) {
     for (size_t j = 0; j < 5; j++) {
@@ -87,7 +93,8 @@ static void normalisation_is_incomplete_gamma(void **state) {
       double exact = s + k * log(s) + log(gsl_sf_gamma_inc(-k, s));
       double ours = tempered_log_normalisation(TEMPERED_CUTOFF, k, s, HUGE_VAL, NULL, NULL);
       /* quadrature error, and GSL's own near-cancellation at small s (its stated error grows to 1e-10) */
-      if (!(fabs(ours - exact) < 1e-9 * (1 + fabs(exact)))) fail_msg("k %g s %g: %.15g, exact %.15g", k, s, ours, exact);
+      if (!(fabs(ours - exact) < 1e-9 * (1 + fabs(exact))))
+        fail_msg("k %g s %g: %.15g, exact %.15g", k, s, ours, exact);
     }
   }
   /* Without the factor the closed form of the pure law. */
@@ -115,7 +122,8 @@ static void moments_are_derivatives(void **state) {
     assert_true(fabs(covariance[0] - (up - 2 * here + down) / (step * step)) < 1e-4);
     up = tempered_log_normalisation(which, k, s + step, 7, NULL, NULL);
     down = tempered_log_normalisation(which, k, s - step, 7, NULL, NULL);
-    assert_true(fabs(mean[1] + (up - down) / (2 * step)) < 1e-4 * mean[1]); /* h reaches e^7: third derivative times step^2 */
+    assert_true(fabs(mean[1] + (up - down) / (2 * step)) <
+                1e-4 * mean[1]); /* h reaches e^7: third derivative times step^2 */
   }
 }
 
@@ -123,12 +131,14 @@ static void pure_sample_needs_no_factor(void **state) {
   (void)state;
   /* Evenly spaced quantiles of a pure law with its upper tail thickened: s = 0 must be returned as such. */
   double u[200];
-  for (int i = 0; i < 200; i++) u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
+  for (int i = 0; i < 200; i++)
+    u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
   struct tempered_group group = tempered_group(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
   struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
   assert_true(fit.rate == 0 && isnan(fit.rate_error));
   double mean = 0;
-  for (int i = 0; i < 200; i++) mean += u[i] / 200;
+  for (int i = 0; i < 200; i++)
+    mean += u[i] / 200;
   assert_true(fabs(fit.beta - 1 - 1 / mean) < 1e-13);
 }
 
@@ -142,8 +152,12 @@ static void units_do_not_matter(void **state) {
   }
   for (int method = 0; method < EXPONENT_METHODS; method++) {
     struct exponent a, b;
-    assert_int_equal(exponent_fit((enum exponent_method)method, 300, masses, (struct exponent_window){1.1, 40}, &a, NULL), 0);
-    assert_int_equal(exponent_fit((enum exponent_method)method, 300, scaled, (struct exponent_window){1.1e-5, 40e-5}, &b, NULL), 0);
+    assert_int_equal(exponent_fit((enum exponent_method)method, 300, masses, (struct exponent_window){1.1, 40}, &a,
+                                  NULL),
+                     0);
+    assert_int_equal(exponent_fit((enum exponent_method)method, 300, scaled, (struct exponent_window){1.1e-5, 40e-5},
+                                  &b, NULL),
+                     0);
     assert_int_equal(a.n, b.n);
     assert_true(fabs(a.beta - b.beta) < 1e-6); /* the cut-off's Newton stops at 1e-7 of the standard error */
   }
@@ -170,7 +184,8 @@ static void search_of_the_lower_end(void **state) {
   assert_true(bootstrap.beta_error > 0.9 * fit.standard_error && bootstrap.beta_error < 4 * fit.standard_error);
   double good, bad;
   assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &good, NULL), STATUS_OK);
-  for (int i = 0; i < 400; i++) masses[i] = exp(2 * random_draw(4, 3, (uint64_t)i, 0)) + 3; /* no power law anywhere */
+  for (int i = 0; i < 400; i++)
+    masses[i] = exp(2 * random_draw(4, 3, (uint64_t)i, 0)) + 3; /* no power law anywhere */
   assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &bad, NULL), STATUS_OK);
   printf("  exact p: power law %.2f, none %.2f\n", good, bad);
   assert_true(good > 0.1 && bad < 0.1);
@@ -180,14 +195,10 @@ static void search_of_the_lower_end(void **state) {
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_any_exponent),
-      cmocka_unit_test(bins_any_exponent),
-      cmocka_unit_test(groups_are_one_sample),
-      cmocka_unit_test(normalisation_is_incomplete_gamma),
-      cmocka_unit_test(moments_are_derivatives),
-      cmocka_unit_test(pure_sample_needs_no_factor),
-      cmocka_unit_test(units_do_not_matter),
-      cmocka_unit_test(search_of_the_lower_end),
+      cmocka_unit_test(masses_any_exponent),     cmocka_unit_test(bins_any_exponent),
+      cmocka_unit_test(groups_are_one_sample),   cmocka_unit_test(normalisation_is_incomplete_gamma),
+      cmocka_unit_test(moments_are_derivatives), cmocka_unit_test(pure_sample_needs_no_factor),
+      cmocka_unit_test(units_do_not_matter),     cmocka_unit_test(search_of_the_lower_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/sample.h"
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 static double normal(uint64_t stream, uint64_t sample, uint64_t i) {
@@ -31,7 +31,8 @@ static void summaries_are_exact(void **state) {
   /* Student t, 4 degrees of freedom, 97.5 %: 2.776445105 (tables). */
   assert_true(fabs(s.half_width / (2.776445105198 * sqrt(0.5)) - 1) < 1e-10);
   s = sample_summarise(1, values, 0.95);
-  assert_true(s.n == 1 && s.mean == 1e9 + 1 && s.median == s.mean && isnan(s.standard_deviation) && isnan(s.half_width));
+  assert_true(s.n == 1 && s.mean == 1e9 + 1 && s.median == s.mean && isnan(s.standard_deviation) &&
+              isnan(s.half_width));
   s = sample_summarise(0, NULL, 0.95);
   assert_true(s.n == 0 && isnan(s.mean) && isnan(s.minimum));
 }
@@ -53,7 +54,8 @@ static double coverage(bool bimodal, size_t n0, double half_width, int trials, d
     held += fabs(s.mean - (bimodal ? 0.1 : 0)) <= half_width;
     *mean_length += (double)length / trials;
   }
-  printf("  %s n0 %zu: coverage %.3f, stops at %.0f\n", bimodal ? "90/10 " : "normal", n0, (double)held / trials, *mean_length);
+  printf("  %s n0 %zu: coverage %.3f, stops at %.0f\n", bimodal ? "90/10 " : "normal", n0, (double)held / trials,
+         *mean_length);
   return (double)held / trials;
 }
 
@@ -97,7 +99,8 @@ struct clusters {
 static double mean_of(size_t n, const uint32_t *runs, void *context) {
   const double *values = ((struct clusters *)context)->values;
   double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += values[runs[i]];
+  for (size_t i = 0; i < n; i++)
+    sum += values[runs[i]];
   return sum / (double)n;
 }
 
@@ -107,8 +110,10 @@ static void bootstrap_knows_the_error_of_a_mean(void **state) {
   double values[RUNS], ratio = 0;
   int held = 0;
   for (uint64_t trial = 0; trial < TRIALS; trial++) {
-    for (uint64_t i = 0; i < RUNS; i++) values[i] = normal(77, trial, i);
-    struct sample_interval b = sample_bootstrap(RUNS, trial < 20 ? RESAMPLES : 200, 5, 0.95, mean_of, &(struct clusters){values});
+    for (uint64_t i = 0; i < RUNS; i++)
+      values[i] = normal(77, trial, i);
+    struct sample_interval b = sample_bootstrap(RUNS, trial < 20 ? RESAMPLES : 200, 5, 0.95, mean_of,
+                                                &(struct clusters){values});
     struct sample_summary s = sample_summarise(RUNS, values, 0.95);
     assert_true(fabs(b.estimate - s.mean) < 1e-14);
     ratio += b.standard_error / s.standard_error / TRIALS;
@@ -117,7 +122,8 @@ static void bootstrap_knows_the_error_of_a_mean(void **state) {
   /* The bootstrap's variance of a mean is (n-1)/n of the unbiased one; 200 resamples know an error to 5 %. */
   printf("  bootstrap error over standard error %.4f, coverage %.3f\n", ratio, (double)held / TRIALS);
   assert_true(fabs(ratio - sqrt(1 - 1.0 / RUNS)) < 4 * 0.05 / sqrt(TRIALS));
-  assert_true(fabs((double)held / TRIALS - 0.94) < 0.01 + 4 * sqrt(0.94 * 0.06 / TRIALS)); /* percentile, n = 50: .93-.95 */
+  assert_true(fabs((double)held / TRIALS - 0.94) <
+              0.01 + 4 * sqrt(0.94 * 0.06 / TRIALS)); /* percentile, n = 50: .93-.95 */
 }
 
 static void bootstrap_repeats_its_bits(void **state) {

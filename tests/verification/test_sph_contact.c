@@ -1,9 +1,9 @@
-/* One material runs into another: plane nylon on plane basalt at 3.2 km/s, without strength, against the exact answer. Between the two
- * shocks there is one pressure and one velocity, where both materials' Hugoniots meet (impedance matching); so much momentum goes over
- * per area and time. Densities stand 1 : 2.3: the case for `volume_weights`. */
+/* One material runs into another: plane nylon on plane basalt at 3.2 km/s, without strength, against the exact answer.
+ * Between the two shocks there is one pressure and one velocity, where both materials' Hugoniots meet (impedance
+ * matching); so much momentum goes over per area and time. Densities stand 1 : 2.3: the case for `volume_weights`. */
 #include "tests/sph_solid.h"
 
-static struct sph_material nylon(void) { /* engine/sph/materials/nylon.yaml */
+static struct sph_material nylon(void) { /* engine/sph/material/builtin/nylon.yaml */
   return (struct sph_material){.density = 1185,
                                .tillotson = {1.01e10, 3.38e10, 0.6, 2, 10, 5, 7e6, 2e6, 2.4e6},
                                .tension_limit = NAN,
@@ -40,7 +40,8 @@ static void nylon_on_basalt(void **state) {
     solid_start(&c);
     const struct sph_ledger start = sph_system_ledger(c.system);
     const double area = c.body[0].shape.side[1] * c.body[0].shape.side[2];
-    const double end = 0.8 * fmin(length / solid_hugoniot(&target, velocity).shock, thickness / solid_hugoniot(&projectile, speed - velocity).shock);
+    const double end = 0.8 * fmin(length / solid_hugoniot(&target, velocity).shock,
+                                  thickness / solid_hugoniot(&projectile, speed - velocity).shock);
     enum { SAMPLES = 20 };
     double st = 0, sy = 0, stt = 0, sty = 0, mean[2][3] = {{0}};
     for (int sample = 0; sample < SAMPLES; sample++) {
@@ -49,14 +50,16 @@ static void nylon_on_basalt(void **state) {
       solid_until(&c, t);
       solid_read(&c);
       for (size_t i = 0; i < p->n; i++)
-        if (!p->body[i]) momentum -= p->mass[i] * p->vx[i];
+        if (!p->body[i])
+          momentum -= p->mass[i] * p->vx[i];
       st += t, sy += momentum, stt += t * t, sty += t * momentum;
     }
     const double force = (SAMPLES * sty - st * sy) / (SAMPLES * stt - st * st);
     const double contact = length - velocity * end; /* where it stands now */
     for (size_t i = 0; i < p->n; i++) {
       const double beyond = fabs(p->x[i] - contact);
-      if (beyond < 6 * spacing || beyond > 14 * spacing) continue;
+      if (beyond < 6 * spacing || beyond > 14 * spacing)
+        continue;
       mean[p->body[i]][0]++, mean[p->body[i]][1] -= p->vx[i], mean[p->body[i]][2] += p->pressure[i];
     }
     const double pushed = force / area / pressure - 1;
@@ -64,10 +67,11 @@ static void nylon_on_basalt(void **state) {
     for (int k = 0; k < 2; k++)
       off[k][0] = mean[k][1] / mean[k][0] / velocity - 1, off[k][1] = mean[k][2] / mean[k][0] / pressure - 1;
     const double error = solid_energy_error(&c, start) / start.kinetic;
-    print_message("%-9s, correction %-3s, volume weights %-3s, n %zu: force %+.2f %%; velocity %+.2f, %+.2f %%; pressure %+.2f, %+.2f %%; energy "
+    print_message("%-9s, correction %-3s, volume weights %-3s, n %zu: force %+.2f %%; velocity %+.2f, %+.2f %%; "
+                  "pressure %+.2f, %+.2f %%; energy "
                   "error %.1e\n",
-                  cubic ? "cubic" : "hexagonal", form & 1 ? "on" : "off", form & 2 ? "on" : "off", p->n, 100 * pushed, 100 * off[0][0],
-                  100 * off[1][0], 100 * off[0][1], 100 * off[1][1], error);
+                  cubic ? "cubic" : "hexagonal", form & 1 ? "on" : "off", form & 2 ? "on" : "off", p->n, 100 * pushed,
+                  100 * off[0][0], 100 * off[1][0], 100 * off[0][1], 100 * off[1][1], error);
     assert_true(fabs(error) < 0.005); /* the bound for impacts; the others are that for shocks, and half of it */
     assert_true(fabs(pushed) < 0.01);
     for (int k = 0; k < 2; k++)

@@ -1,10 +1,11 @@
-/* A hot ball of basalt expands into the void: how much of its energy is motion after some time, against the same flow in one dimension,
- * by shells (von Neumann & Richtmyer 1950, J. Appl. Phys. 21, 232) with the same equation of state. Matter without strength that does not
- * pull, as debris. Here neighbours are lost on all sides, h grows, and Tillotson's hot branches are at work.
+/* A hot ball of basalt expands into the void: how much of its energy is motion after some time, against the same flow
+ * in one dimension, by shells (von Neumann & Richtmyer 1950, J. Appl. Phys. 21, 232) with the same equation of state.
+ * Matter without strength that does not pull, as debris. Here neighbours are lost on all sides, h grows, and
+ * Tillotson's hot branches are at work.
  *
  * CLAST_FULL=1: up to 64 000 particles. */
-#include "engine/sph/bodies.h"
-#include "engine/sph/tillotson.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/tillotson.h"
 #include "tests/sph_case.h"
 
 static const double radius = 1e-2;
@@ -15,10 +16,12 @@ static double pressure_of(double density, double u) {
 
 enum { TIMES = 3 };
 
-/* Shares of the energy that are motion at `times`. Shells of even width at the start; those within `inner` radii are hot. */
+/* Shares of the energy that are motion at `times`. Shells of even width at the start; those within `inner` radii are
+ * hot. */
 static void by_shells(int shells, double u0, double inner, const double times[TIMES], double share[TIMES]) {
   const size_t n = (size_t)shells;
-  double *r = calloc(n + 1, sizeof *r), *v = calloc(n + 1, sizeof *v), *m = calloc(n, sizeof *m), *u = calloc(n, sizeof *u);
+  double *r = calloc(n + 1, sizeof *r), *v = calloc(n + 1, sizeof *v), *m = calloc(n, sizeof *m),
+         *u = calloc(n, sizeof *u);
   double *volume = calloc(n, sizeof *volume), *q = calloc(n, sizeof *q), *p = calloc(n, sizeof *p);
   const double third = 4.0 / 3 * acos(-1.0);
   double total = 0, time = 0, before = 0;
@@ -26,7 +29,8 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
     r[k] = radius * (double)k / (double)n;
   for (size_t k = 0; k < n; k++) {
     volume[k] = third * (pow(r[k + 1], 3) - pow(r[k], 3));
-    m[k] = case_basalt.density * volume[k], u[k] = r[k + 1] <= inner * radius * (1 + 1e-9) ? u0 : 0, total += m[k] * u[k];
+    m[k] = case_basalt.density * volume[k], u[k] = r[k + 1] <= inner * radius * (1 + 1e-9) ? u0 : 0,
+    total += m[k] * u[k];
     p[k] = pressure_of(case_basalt.density, u[k]);
   }
   for (int next = 0; next < TIMES;) {
@@ -45,7 +49,8 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
     for (size_t k = 1; k <= n; k++)
       r[k] += dt * v[k];
     for (size_t k = 0; k < n; k++) {
-      const double now = third * (pow(r[k + 1], 3) - pow(r[k], 3)), change = now - volume[k], closing = fmin(v[k + 1] - v[k], 0);
+      const double now = third * (pow(r[k + 1], 3) - pow(r[k], 3)), change = now - volume[k],
+                   closing = fmin(v[k + 1] - v[k], 0);
       const double c = sph_tillotson(&case_basalt.tillotson, case_basalt.density, m[k] / volume[k], u[k]).sound_speed;
       q[k] = m[k] / now * closing * (2 * closing - 0.5 * c);
       const double old = u[k], first = p[k];
@@ -69,15 +74,22 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
 }
 
 /* The same by particles; returns how many. */
-static size_t by_particles(double wanted, double u0, double inner, bool corrected, const double times[TIMES], double share[TIMES], double *error) {
-  struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius}, .density = case_basalt.density, .h_over_spacing = NAN};
+static size_t by_particles(double wanted, double u0, double inner, bool corrected, const double times[TIMES],
+                           double share[TIMES], double *error) {
+  struct sph_body body = {.shape = {.kind = SPH_SHAPE_SPHERE, .radius = radius},
+                          .density = case_basalt.density,
+                          .h_over_spacing = NAN};
   struct sph_particles *particles = NULL;
   struct sph_range range;
   struct error why = {0};
   body.lattice.particles = wanted;
-  if (sph_bodies_make(&body, 1, 0, &particles, &range, &why) != STATUS_OK) fail_msg("%s", why.message);
+  if (sph_bodies_make(&body, 1, 0, &particles, &range, &why) != STATUS_OK)
+    fail_msg("%s", why.message);
   for (size_t i = 0; i < particles->n; i++)
-    particles->energy[i] = pow(particles->x[i], 2) + pow(particles->y[i], 2) + pow(particles->z[i], 2) <= pow(inner * radius, 2) ? u0 : 0;
+    particles->energy[i] = pow(particles->x[i], 2) + pow(particles->y[i], 2) + pow(particles->z[i], 2) <=
+                                   pow(inner * radius, 2)
+                               ? u0
+                               : 0;
   struct sph_body_physics debris = {.material = case_basalt};
   debris.material.tension_limit = 0;
   struct sph_parameters parameters = sph_parameters_default();
@@ -103,9 +115,9 @@ static double largest_miss(const double share[TIMES], const double exact[TIMES])
   return miss;
 }
 
-/* Measured with 8000 particles: a ball within 0.6 (2e7 J/kg) and 8.2 % (1e8) of the exact shares, with the gradient correction within 0.2
- * and 0.5 %; one that is hot within half its radius, whose outer half a shock throws off, within 7.6 and 5.8 %: a shock front is some 3h
- * wide, the ball's radius 11h. Asked for is somewhat more. */
+/* Measured with 8000 particles: a ball within 0.6 (2e7 J/kg) and 8.2 % (1e8) of the exact shares, with the gradient
+ * correction within 0.2 and 0.5 %; one that is hot within half its radius, whose outer half a shock throws off,
+ * within 7.6 and 5.8 %: a shock front is some 3h wide, the ball's radius 11h. Asked for is somewhat more. */
 static void motion_of_a_hot_ball(void **state) {
   (void)state;
   static const struct {
@@ -121,17 +133,19 @@ static void motion_of_a_hot_ball(void **state) {
     double exact[2][TIMES];
     for (int k = 0; k < 2; k++)
       by_shells(200 << k, balls[b].energy, balls[b].hot, times, exact[k]);
-    print_message("%.0e J/kg within %.1f R: %.4f %.4f %.4f of it is motion\n", balls[b].energy, balls[b].hot, exact[1][0], exact[1][1], exact[1][2]);
+    print_message("%.0e J/kg within %.1f R: %.4f %.4f %.4f of it is motion\n", balls[b].energy, balls[b].hot,
+                  exact[1][0], exact[1][1], exact[1][2]);
     assert_true(largest_miss(exact[0], exact[1]) < 2e-3);
     for (double wanted = 1000; wanted <= finest; wanted *= 8)
       for (int corrected = 0; corrected < 2; corrected++) {
         double share[TIMES], error;
         const size_t n = by_particles(wanted, balls[b].energy, balls[b].hot, corrected, times, share, &error);
         const double miss = largest_miss(share, exact[1]);
-        print_message("  %zu particles, correction %s: %.4f %.4f %.4f, within %.2f %%; energy error %.1e\n", n, corrected ? "on " : "off", share[0],
-                      share[1], share[2], 100 * miss, error);
+        print_message("  %zu particles, correction %s: %.4f %.4f %.4f, within %.2f %%; energy error %.1e\n", n,
+                      corrected ? "on " : "off", share[0], share[1], share[2], 100 * miss, error);
         assert_true(fabs(error) < 0.005); /* the bound for impacts */
-        if (wanted > 1000) assert_true(miss < balls[b].most[corrected]);
+        if (wanted > 1000)
+          assert_true(miss < balls[b].most[corrected]);
       }
   }
 }

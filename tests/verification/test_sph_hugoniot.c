@@ -7,8 +7,8 @@
  * the middle, which the start heats too much (wall heating, Noh 1987: an error of every scheme with artificial
  * viscosity).
  *
- * The same by a piston, a slab of held particles moving in; on the hexagonal lattice (along x) with the gradient correction, without
- * which squeezed matter slips in between the unshocked rows of the piston, and Us is 1 % high.
+ * The same by a piston, a slab of held particles moving in; on the hexagonal lattice (along x) with the gradient
+ * correction, without which squeezed matter slips in between the unshocked rows of the piston, and Us is 1 % high.
  *
  * And a slow uniaxial compression through yield: slopes K + 4 mu/3, then K.
  *
@@ -86,7 +86,8 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
     }
     double last_place = 0, last_velocity = up;
     for (size_t k = (size_t)(slab / width) + 1; k < columns; k++) {
-      if (column[k].n <= 0) continue;
+      if (column[k].n <= 0)
+        continue;
       const double place = column[k].place / column[k].n, velocity = column[k].velocity / column[k].n;
       if (velocity < up / 2) {
         front = last_place + (place - last_place) * (last_velocity - up / 2) / (last_velocity - velocity);
@@ -97,8 +98,9 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
     }
     st += t, sx += front, stt += t * t, stx += t * front;
   }
-  struct shock s = {
-      .speed = (SAMPLES * stx - st * sx) / (SAMPLES * stt - st * st), .steps = sph_system_steps(c.system), .n = p->n};
+  struct shock s = {.speed = (SAMPLES * stx - st * sx) / (SAMPLES * stt - st * st),
+                    .steps = sph_system_steps(c.system),
+                    .n = p->n};
   const double from = slab + 15 * h, to = front - 12 * h;
   double count = 0, squares = 0;
   assert_true(to - from > 10 * h);
@@ -140,9 +142,10 @@ static void shocks(void **state) {
   const double spacings = SOLID_SLOW ? 70 : solid_full() ? 200 : 110;
   for (size_t f = 0; f < sizeof forms / sizeof *forms; f++)
     for (int k = 0; k < 2; k++) {
-      if (!solid_full() && (forms[f].full || (k ? forms[f].aluminium_only : forms[f].basalt_only))) continue;
-      const struct shock s =
-          drive(&material[k], 1000, spacings, forms[f].lattice, forms[f].piston, forms[f].correction);
+      if (!solid_full() && (forms[f].full || (k ? forms[f].aluminium_only : forms[f].basalt_only)))
+        continue;
+      const struct shock s = drive(&material[k], 1000, spacings, forms[f].lattice, forms[f].piston,
+                                   forms[f].correction);
       const struct solid_jump want = solid_hugoniot(&material[k], 1000);
       const double speed = s.speed / want.shock - 1, pressure = s.plateau.pressure / want.pressure - 1;
       const double density = s.plateau.density / want.density - 1, energy = s.plateau.energy / want.energy - 1;
@@ -153,7 +156,8 @@ static void shocks(void **state) {
                     100 * speed, s.plateau.pressure / 1e9, 100 * pressure, 100 * s.scatter, s.plateau.density,
                     100 * density, s.plateau.energy, 100 * energy, s.energy_error);
       assert_true(fabs(s.energy_error) < 0.005); /* the bound for impacts */
-      if (forms[f].full || SOLID_SLOW) continue;
+      if (forms[f].full || SOLID_SLOW)
+        continue;
       assert_true(fabs(speed) < (forms[f].correction ? 0.005 : 0.01)); /* 1 % is the issue's */
       assert_true(fabs(pressure) < 0.01);
       assert_true(fabs(density) < 0.01);
@@ -162,24 +166,25 @@ static void shocks(void **state) {
     }
 }
 
-/* Shocks that squeeze matter to half and less: layers stand deep within the kernel there, and density by continuity falls behind that of
- * the particles. What is asked is that this does not grow. */
+/* Shocks that squeeze matter to half and less: layers stand deep within the kernel there, and density by continuity
+ * falls behind that of the particles. What is asked is that this does not grow. */
 static void strong(void **state) {
   (void)state;
-  static const struct {
-    double up, pressure;
-  } cases[] = {{5000, 0.01}, {10000, 0.02}, {20000, 0.05}};
+  static const struct { double up, pressure; } cases[] = {{5000, 0.01}, {10000, 0.02}, {20000, 0.05}};
   const struct sph_material m = solid_aluminium();
   for (int k = 0; k < 3; k++) {
     const struct shock s = drive(&m, cases[k].up, SOLID_SLOW ? 70 : 110, SPH_LATTICE_CUBIC, false, true);
     const struct solid_jump want = solid_hugoniot(&m, cases[k].up);
     const double speed = s.speed / want.shock - 1, pressure = s.plateau.pressure / want.pressure - 1;
-    print_message("aluminium squeezed %.2f-fold: Us %+.2f %%, P %+.2f %%, rho %+.2f %%, u %+.2f %%; energy error %.1e\n",
-                  want.density / m.density, 100 * speed, 100 * pressure, 100 * (s.plateau.density / want.density - 1),
-                  100 * (s.plateau.energy / want.energy - 1), s.energy_error);
+    print_message(
+        "aluminium squeezed %.2f-fold: Us %+.2f %%, P %+.2f %%, rho %+.2f %%, u %+.2f %%; energy error %.1e\n",
+        want.density / m.density, 100 * speed, 100 * pressure, 100 * (s.plateau.density / want.density - 1),
+        100 * (s.plateau.energy / want.energy - 1), s.energy_error);
     assert_true(fabs(s.energy_error) < 0.005);
-    if (SOLID_SLOW) continue;
-    assert_true(fabs(speed) < 0.01 && fabs(pressure) < cases[k].pressure && fabs(s.plateau.energy / want.energy - 1) < 0.01);
+    if (SOLID_SLOW)
+      continue;
+    assert_true(fabs(speed) < 0.01 && fabs(pressure) < cases[k].pressure &&
+                fabs(s.plateau.energy / want.energy - 1) < 0.01);
   }
 }
 
@@ -217,7 +222,8 @@ static void ramp(bool correction) {
   memcpy(rest, p->x, p->n * sizeof *rest);
   for (size_t i = 0; i < p->n; i++) {
     p->vx[i] = -rate * (p->x[i] - length / 2);
-    if (p->x[i] < grip || p->x[i] > length - grip) p->held[i] = SPH_HELD_X;
+    if (p->x[i] < grip || p->x[i] > length - grip)
+      p->held[i] = SPH_HELD_X;
   }
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
@@ -237,8 +243,10 @@ static void ramp(bool correction) {
         count++;
       }
     stress /= count;
-    if (strain > 0.2 * yield_strain && strain < 0.9 * yield_strain) line_add(&elastic, strain, stress);
-    if (strain > 1.3 * yield_strain) line_add(&plastic, strain, stress);
+    if (strain > 0.2 * yield_strain && strain < 0.9 * yield_strain)
+      line_add(&elastic, strain, stress);
+    if (strain > 1.3 * yield_strain)
+      line_add(&plastic, strain, stress);
   }
   const double before = line_slope(&elastic), after = line_slope(&plastic);
   const double work = sph_system_ledger(c.system).work_of_held - (sph_system_ledger(c.system).kinetic - start.kinetic);
@@ -264,7 +272,7 @@ static void yield_ramp(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(jump_conditions), cmocka_unit_test(shocks), cmocka_unit_test(strong),
-                                     cmocka_unit_test(yield_ramp)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(jump_conditions), cmocka_unit_test(shocks),
+                                     cmocka_unit_test(strong), cmocka_unit_test(yield_ramp)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,11 +6,12 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/palpha.h"
+#include "engine/sph/material/palpha.h"
 #include "palpha_exact.h"
 
 static void near(double got, double want, double tolerance, const char *what) {
-  if (!(fabs(got - want) <= tolerance)) fail_msg("%s: got %.9g, expected %.9g +- %g", what, got, want, tolerance);
+  if (!(fabs(got - want) <= tolerance))
+    fail_msg("%s: got %.9g, expected %.9g +- %g", what, got, want, tolerance);
 }
 
 /* To the digits printed there. */
@@ -45,8 +46,11 @@ static void engine_agrees(void **state) {
   (void)state;
   const struct exact_matter *m = &exact_porous_aluminium;
   struct sph_material solid = {.density = 2700, .tillotson = {7.52e10, 6.5e10, 0.5, 1.63, 5, 5, 5e6, 3e6, 1.39e7}};
-  struct sph_palpha given = {
-      .distention = 1.275, .curve = SPH_CRUSH_QUADRATIC, .elastic_pressure = 80e6, .solid_pressure = 700e6, .sound_speed = 4110};
+  struct sph_palpha given = {.distention = 1.275,
+                             .curve = SPH_CRUSH_QUADRATIC,
+                             .elastic_pressure = 80e6,
+                             .solid_pressure = 700e6,
+                             .sound_speed = 4110};
   struct sph_palpha_law law;
   assert_int_equal(sph_palpha_prepare(&given, &solid, &law, NULL), STATUS_OK);
   for (double piston = 20; piston < 1500; piston *= 1.2) {

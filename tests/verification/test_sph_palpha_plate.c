@@ -1,9 +1,9 @@
-/* Scene porous-plate (T5): a piston drives a shock into porous aluminium without strength. What the run reports, and what the
- * engine says that it should be, against jump conditions solved apart from the engine (palpha_exact.h): front speeds, the plateau
- * behind the shock, the precursor, the energy; converging. By default 100 and 200 points along the bar; with CLAST_FULL=1
- * 200, 400 and 800. */
-#include "engine/sph/materials.h"
-#include "engine/sph/plane_shock.h"
+/* Scene porous-plate (T5): a piston drives a shock into porous aluminium without strength. What the run reports, and
+ * what the engine says that it should be, against jump conditions solved apart from the engine (palpha_exact.h): front
+ * speeds, the plateau behind the shock, the precursor, the energy; converging. By default 100 and 200 points along the
+ * bar; with CLAST_FULL=1 200, 400 and 800. */
+#include "engine/sph/material/materials.h"
+#include "engine/sph/material/plane_shock.h"
 #include "palpha_exact.h"
 #include "tests/run_case.h"
 
@@ -17,7 +17,8 @@ static void near(double got, double want, double relative, const char *what) {
 static struct sph_material aluminium(double distention) {
   struct sph_material m;
   struct error error = {0};
-  if (sph_materials_load("porous-aluminium", &m, &error)) fail_msg("%s", error.message);
+  if (sph_materials_load("porous-aluminium", &m, &error))
+    fail_msg("%s", error.message);
   m.porosity.distention = distention;
   return m;
 }
@@ -44,15 +45,19 @@ static void exact_answers_agree(void **state) {
       struct error error = {0};
       matter.alpha0 = distention;
       exact_piston(&matter, piston, &precursor, &shock);
-      if (sph_plane_shock(&material, distention > 1, piston, &got, &error)) fail_msg("%s", error.message);
+      if (sph_plane_shock(&material, distention > 1, piston, &got, &error))
+        fail_msg("%s", error.message);
       assert_true(got.has_shock);
       assert_int_equal(got.has_precursor, distention > 1 && shock.speed < precursor.speed);
-      if (got.has_precursor) front_is(&got.precursor, &precursor);
-      if (got.has_precursor || !(distention > 1)) front_is(&got.shock, &shock);
+      if (got.has_precursor)
+        front_is(&got.precursor, &precursor);
+      if (got.has_precursor || !(distention > 1))
+        front_is(&got.shock, &shock);
     }
 }
 
-/* A piston slower than the precursor's matter crushes nothing; a very fast one leaves no precursor: then the jump is from rest. */
+/* A piston slower than the precursor's matter crushes nothing; a very fast one leaves no precursor: then the jump is
+ * from rest. */
 static void slow_and_fast_pistons(void **state) {
   (void)state;
   struct sph_material m = aluminium(1.275);
@@ -67,7 +72,8 @@ static void slow_and_fast_pistons(void **state) {
   assert_true(!got.has_precursor && got.has_shock && got.shock.distention == 1 && got.shock.speed > 4110);
   near(got.shock.pressure, got.first_density * got.shock.speed * 4000, 1e-9, "momentum across a shock from rest");
   near(got.shock.energy, 4000. * 4000 / 2, 1e-9, "energy across a shock from rest");
-  near(exact_solid_pressure(&exact_porous_aluminium, got.shock.density, got.shock.energy), got.shock.pressure, 1e-9, "its pressure");
+  near(exact_solid_pressure(&exact_porous_aluminium, got.shock.density, got.shock.energy), got.shock.pressure, 1e-9,
+       "its pressure");
   /* a solid: the known Hugoniot state of Melosh's aluminium */
   assert_int_equal(sph_plane_shock(&m, false, 1000, &got, &error), STATUS_OK);
   near(got.shock.speed, 6753.5, 1e-4, "Us of solid aluminium");
@@ -85,11 +91,13 @@ static struct sph_results run(int points, double piston) {
   struct ran ran = run_case_run(&sph_engine, &inputs, 1);
   const struct sph_results r = ran.results.sph;
   free(ran.fragments);
-  print_message("%3d points, %g m/s: Us %.1f (%.1f) rho %.2f (%.2f) P %.2f (%.2f) MPa alpha %.5f (%.5f) precursor %.1f (%.1f) m/s "
+  print_message("%3d points, %g m/s: Us %.1f (%.1f) rho %.2f (%.2f) P %.2f (%.2f) MPa alpha %.5f (%.5f) precursor %.1f "
+                "(%.1f) m/s "
                 "%.2f MPa; energy %.1e; %lld steps\n",
-                points, piston, r.shock.speed, r.shock.speed_exact, r.shock.density, r.shock.density_exact, r.shock.pressure / 1e6,
-                r.shock.pressure_exact / 1e6, r.shock.distention, r.shock.distention_exact, r.precursor.speed,
-                r.precursor.speed_exact, r.precursor.pressure / 1e6, ran.outcome.energy_error, (long long)ran.outcome.steps);
+                points, piston, r.shock.speed, r.shock.speed_exact, r.shock.density, r.shock.density_exact,
+                r.shock.pressure / 1e6, r.shock.pressure_exact / 1e6, r.shock.distention, r.shock.distention_exact,
+                r.precursor.speed, r.precursor.speed_exact, r.precursor.pressure / 1e6, ran.outcome.energy_error,
+                (long long)ran.outcome.steps);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
   assert_true(ran.outcome.energy_error < 0.005); /* of the work done: the bound */
   assert_int_equal(r.particles, points * 25);
@@ -101,8 +109,9 @@ static struct sph_results run(int points, double piston) {
   return r;
 }
 
-/* The issue's bounds at 400 points and more: Us 1 %, plateau 1 %, alpha 0.005, precursor 2 %. Of 200 points only 24 lie between
- * piston and weak shock, which viscosity spreads over about ten, and P follows rho with K/P = 38 times its error. */
+/* The issue's bounds at 400 points and more: Us 1 %, plateau 1 %, alpha 0.005, precursor 2 %. Of 200 points only 24 lie
+ * between piston and weak shock, which viscosity spreads over about ten, and P follows rho with K/P = 38 times its
+ * error. */
 static void check(const struct sph_results *r, int points) {
   const bool coarse = points < 400;
   near(r->shock.speed, r->shock.speed_exact, 0.01, "Us");
@@ -111,12 +120,17 @@ static void check(const struct sph_results *r, int points) {
   near(r->shock.distention, r->shock.distention_exact, 0.005 / r->shock.distention_exact, "alpha behind the shock");
   near(r->precursor.speed, r->precursor.speed_exact, 0.005, "precursor");
   near(r->precursor.pressure, r->precursor.pressure_exact, 0.01, "pressure of the precursor");
-  near(r->precursor.distention, r->precursor.distention_exact, 1e-4, "alpha of the precursor"); /* of 1.1e-3 that it changes */
+  near(r->precursor.distention, r->precursor.distention_exact, 1e-4,
+       "alpha of the precursor"); /* of 1.1e-3 that it changes */
 }
 
 /* Error of what only the curve decides: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
-static double weak_error(const struct sph_results *r) { return fabs(r->shock.distention - r->shock.distention_exact); }
-static double precursor_error(const struct sph_results *r) { return fabs(r->precursor.speed - r->precursor.speed_exact); }
+static double weak_error(const struct sph_results *r) {
+  return fabs(r->shock.distention - r->shock.distention_exact);
+}
+static double precursor_error(const struct sph_results *r) {
+  return fabs(r->precursor.speed - r->precursor.speed_exact);
+}
 
 static void both_states(void **state) {
   (void)state;
@@ -131,10 +145,12 @@ static void both_states(void **state) {
   }
 }
 
-/* alpha_0 = 1 is the solid: one front, no distention; and a piston that is too slow for a shock leaves only the elastic front. */
+/* alpha_0 = 1 is the solid: one front, no distention; and a piston that is too slow for a shock leaves only the elastic
+ * front. */
 static void solid_and_elastic(void **state) {
   (void)state;
-  struct sph_inputs inputs = SPH_CASE("porous-plate", "fidelity.points=100", "target.material.porosity.distention=1", "piston.speed=1 km/s");
+  struct sph_inputs inputs = SPH_CASE("porous-plate", "fidelity.points=100", "target.material.porosity.distention=1",
+                                      "piston.speed=1 km/s");
   struct ran ran = run_case_run(&sph_engine, &inputs, 1);
   free(ran.fragments);
   const struct sph_results solid = ran.results.sph;

@@ -4,11 +4,11 @@
  * prevents it.
  *
  * Whole means: every particle still has its neighbours, that is, no two that were nearest neighbours at rest are
- * further than twice that apart. Rebound: the rings have parted, out of each other's reach, and fly apart. The unit of length is 1 cm, K =
- * 1e7 Pa, density 1000 kg/m^3.
+ * further than twice that apart. Rebound: the rings have parted, out of each other's reach, and fly apart. The unit of
+ * length is 1 cm, K = 1e7 Pa, density 1000 kg/m^3.
  *
- * CLAST_FULL=1: ten particles across a ring as in the paper, four else. The work of the artificial stress is in the internal
- * energy: without it 9 % of the kinetic energy were missing. */
+ * CLAST_FULL=1: ten particles across a ring as in the paper, four else. The work of the artificial stress is in the
+ * internal energy: without it 9 % of the kinetic energy were missing. */
 #include "tests/sph_solid.h"
 
 struct rings {
@@ -25,8 +25,8 @@ struct rings {
 static struct rings collide(double epsilon, double across, bool correction) {
   const double cm = 0.01, spacing = cm / across, sound = 100, speed = 0.059 * sound;
   struct solid_case c = solid_make(2);
-  const double height =
-      sph_lattice_period(SPH_LATTICE_HEXAGONAL, spacing, 2, 5.5 * SPH_BODIES_H * spacing * (1 + c.parameters.skin));
+  const double height = sph_lattice_period(SPH_LATTICE_HEXAGONAL, spacing, 2,
+                                           5.5 * SPH_BODIES_H * spacing * (1 + c.parameters.skin));
   for (int b = 0; b < 2; b++) {
     c.physics[b].material = (struct sph_material){
         .density = 1000,
@@ -63,13 +63,15 @@ static struct rings collide(double epsilon, double across, bool correction) {
   for (uint32_t i = 0; i < c.range[0].n; i++)
     for (uint32_t j = i + 1; j < c.range[0].n && pairs < MOST; j++) {
       const double dx = p->x[i] - p->x[j], dy = p->y[i] - p->y[j], dz = p->z[i] - p->z[j];
-      if (dx * dx + dy * dy + dz * dz < near * near) pair[pairs][0] = i, pair[pairs++][1] = j;
+      if (dx * dx + dy * dy + dz * dz < near * near)
+        pair[pairs][0] = i, pair[pairs++][1] = j;
     }
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
   struct rings r = {.n = p->n, .clumping = 1};
   for (int part = 1; part <= 10; part++) {
-    solid_until(&c, part * (SOLID_SLOW ? 11 : 17) * cm / sound); /* 170 lengths over the sound speed: collided, bounced, parted; at 110 they fly apart, but touch */
+    solid_until(&c, part * (SOLID_SLOW ? 11 : 17) * cm / sound); /* 170 lengths over the sound speed: collided, bounced,
+                                                                    parted; at 110 they fly apart, but touch */
     solid_read(&c);
     size_t broken = 0;
     for (size_t k = 0; k < pairs; k++) {
@@ -108,24 +110,27 @@ static void rubber_rings(void **state) {
   const double across = SOLID_SLOW ? 3 : solid_full() ? 10 : 4;
   for (int correction = 0; correction < (solid_full() ? 2 : 1); correction++)
     for (int k = 0; k < 2; k++) {
-      if (SOLID_SLOW && k) break;
+      if (SOLID_SLOW && k)
+        break;
       const struct rings r = collide(k ? 0 : 0.3, across, correction);
       print_message("epsilon %.1f, correction %s, %zu particles: neighbours between %.2f and %.2f apart, %.1f %% "
                     "lost; bounce %.3f, %.1f h apart, kinetic energy "
                     "left %.2f, energy error %.1e (clamped %.1e)\n",
                     k ? 0 : 0.3, correction ? "on" : "off", r.n, r.clumping, r.stretch, 100 * r.broken, -r.speed, r.gap,
                     r.kinetic, r.energy_error, r.clamped);
-      if (SOLID_SLOW) break; /* three particles across bend too softly to say more than that nothing goes wrong */
+      if (SOLID_SLOW)
+        break; /* three particles across bend too softly to say more than that nothing goes wrong */
       if (k) {
         assert_true(r.broken > 0.01); /* whole layers of neighbours have lost each other */
         assert_true(r.clumping < 0.5);
-        assert_true(r.gap < 2);      /* what is left of them sticks together */
+        assert_true(r.gap < 2); /* what is left of them sticks together */
       } else {
         assert_true(fabs(r.energy_error - r.clamped) < 5e-4); /* second order in the step; measured: 2e-5 */
-        assert_true(r.clamped < 0.05);                          /* cold rubber held at u = 0; measured: 0.032 */
+        assert_true(r.clamped < 0.05);                        /* cold rubber held at u = 0; measured: 0.032 */
         assert_true(r.broken == 0);
-        assert_true(r.gap > 2);       /* parted: out of each other's reach */
-        assert_true(r.speed < -0.65); /* and fly apart, at 0.765: what lacks is the viscosity's and the rings' ringing */
+        assert_true(r.gap > 2); /* parted: out of each other's reach */
+        assert_true(r.speed <
+                    -0.65); /* and fly apart, at 0.765: what lacks is the viscosity's and the rings' ringing */
       }
     }
 }

@@ -12,7 +12,7 @@
  * is shared in.
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
-#include "engine/sph/flaw_places.h"
+#include "engine/sph/body/flaw_places.h"
 #include "tests/grady_kipp.h"
 #include "tests/sph_solid.h"
 
@@ -22,8 +22,10 @@ static struct solid_case rod(double particles) {
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.body[0].shape =
-      (struct sph_shape){.kind = SPH_SHAPE_CYLINDER, .radius = radius, .length = length, .axis = {0, 0, 1}};
+  c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
+                                       .radius = radius,
+                                       .length = length,
+                                       .axis = {0, 0, 1}};
   c.body[0].lattice.particles = particles;
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
   const struct sph_middle middle = {.axis = {0, 0, 1}, .half = length / 2 - 3 * c.range[0].h};
@@ -67,7 +69,8 @@ static struct front run_crack(double particles, bool correction, int growth, boo
     p->mass[i] *= 1 - (1 - 2 * nu) * strain;
     p->stress[0][i] = p->stress[3][i] = -stress / 3;
     p->stress[5][i] = 2 * stress / 3;
-    if (hypot(p->x[i], p->y[i]) < 3e-3 && fabs(p->z[i]) < spacing) p->damage_cbrt[i] = 1;
+    if (hypot(p->x[i], p->y[i]) < 3e-3 && fabs(p->z[i]) < spacing)
+      p->damage_cbrt[i] = 1;
   }
   c.parameters.gradient_correction = correction;
   c.parameters.growth = growth;
@@ -86,7 +89,8 @@ static struct front run_crack(double particles, bool correction, int growth, boo
       if (p->damage_cbrt[i] > 0.79 && fabs(p->z[i]) < 5e-3) { /* D > 1/2 */
         const int a = (int)(hypot(p->x[i], p->y[i]) / shell),
                   b = (int)((atan2(p->y[i], p->x[i]) / (2 * acos(-1.0)) + 0.5) * SECTORS);
-        if (a < SHELLS) arrival[a][b % SECTORS] = fmin(arrival[a][b % SECTORS], sph_system_time(c.system));
+        if (a < SHELLS)
+          arrival[a][b % SECTORS] = fmin(arrival[a][b % SECTORS], sph_system_time(c.system));
       }
   }
   /* The front reaches a shell when half of the sectors have been reached. */
@@ -142,7 +146,8 @@ static void crack_speed(void **state) {
     print_message("%-28s %6zu particles: %.0f m/s (%+.1f %% of c_g), %.0f over the second half; tilted by %.2f "
                   "degrees, %.2f spacings thick\n",
                   forms[k].name, f.n, f.speed, 100 * (f.speed / cg - 1), f.late, f.tilt, f.thickness);
-    if (k > 1 || SOLID_SLOW) continue;          /* reported */
+    if (k > 1 || SOLID_SLOW)
+      continue;                                 /* reported */
     assert_true(fabs(f.speed / cg - 1) < 0.05); /* the paper's and the issue's */
     assert_true(f.late < 2650); /* the Rayleigh wave of basalt, nu = 0.169: 0.904 of 2900 m/s, which no crack outruns */
     assert_true(f.tilt < 5);    /* across the load */
@@ -166,10 +171,11 @@ static double particle_form(const struct sph_flaws *flaws, const unsigned char *
   for (int step = 0; step < 600; step++) {
     double sum = 0, n = 0;
     for (size_t i = 0; i < flaws->particles; i++) {
-      if (!in[i]) continue;
-      d[i] =
-          grady_kipp_grow(d[i], grady_kipp_open(flaws, i, log(rate * (step + 0.5) * dt)),
-                            flaws->first[i + 1] - flaws->first[i], SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, growth_rate, dt);
+      if (!in[i])
+        continue;
+      d[i] = grady_kipp_grow(d[i], grady_kipp_open(flaws, i, log(rate * (step + 0.5) * dt)),
+                             flaws->first[i + 1] - flaws->first[i], SPH_GROWTH_CUBE_ROOT, SPH_CAP_BA95, growth_rate,
+                             dt);
       sum += 1 - d[i] * d[i] * d[i];
       n++;
     }
@@ -211,7 +217,8 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   const double end = 4 * tf;
   for (int step = 0; sph_system_time(c.system) < end; step++) {
     solid_step(&c, end);
-    if (step % 4) continue;
+    if (step % 4)
+      continue;
     solid_read(&c);
     double sum = 0;
     for (size_t i = 0; i < p->n; i++)
@@ -246,7 +253,8 @@ static void rates(void **state) {
                     rate[k], (int)seed, r[k].n, r[k].peak / 1e6, r[k].grady_kipp / 1e6, r[k].particles / 1e6,
                     r[k].broken, r[k].cracks, r[k].energy_error);
       assert_true(fabs(r[k].energy_error) < 0.005);
-      if (!SOLID_SLOW) assert_true(r[k].peak > r[k].grady_kipp && r[k].peak < r[k].particles);
+      if (!SOLID_SLOW)
+        assert_true(r[k].peak > r[k].grady_kipp && r[k].peak < r[k].particles);
     }
     /* "significantly larger network of cracks": half as much again, where seeds scatter by a tenth */
     assert_true(SOLID_SLOW || (r[1].cracks > 1.5 * r[0].cracks && r[1].peak > r[0].peak));

@@ -67,7 +67,8 @@ static double turn(bool correction, bool inside_only, double *turned) {
   for (int k = 0; k < 6; k++)
     size += first[k] * first[k] * (k == 1 || k == 2 || k == 4 ? 2 : 1);
   for (size_t i = 0; i < p->n; i++) {
-    if (inside_only && x[i] * x[i] + y[i] * y[i] + p->z[i] * p->z[i] > pow(radius - 2 * h, 2)) continue;
+    if (inside_only && x[i] * x[i] + y[i] * y[i] + p->z[i] * p->z[i] > pow(radius - 2 * h, 2))
+      continue;
     double off = 0;
     for (int k = 0; k < 6; k++)
       off += pow(p->stress[k][i] - want[k], 2) * (k == 1 || k == 2 || k == 4 ? 2 : 1);
@@ -128,9 +129,11 @@ static void spinning_sphere(void **state) {
       print_message("free sphere after %4.1f turns, correction %s: angular momentum %.5f of the first, energy error "
                     "%.1e (%.1e by u >= 0)\n",
                     turns, correction ? "on" : "off", kept, energy_error, clamped);
-      if (correction) assert_true(fabs(kept - 1) < 0.01); /* the issue's */
-      assert_true(fabs(energy_error - clamped) < 0.005);  /* booked, or not there */
-      if (SOLID_SLOW) break;
+      if (correction)
+        assert_true(fabs(kept - 1) < 0.01);              /* the issue's */
+      assert_true(fabs(energy_error - clamped) < 0.005); /* booked, or not there */
+      if (SOLID_SLOW)
+        break;
     }
 }
 
@@ -161,7 +164,8 @@ static void impact(bool correction, int precision) {
                              .volume = 4.0 / 3 * acos(-1.0) * pow(radius, 3),
                              .draw = SPH_FLAWS_RANKED,
                              .seed = 3};
-  if (sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error)) fail_msg("%s", error.message);
+  if (sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error))
+    fail_msg("%s", error.message);
   c.physics[0].flaws = flaws;
   const double velocity[3] = {2000 * flight[0], 2000 * flight[1], 2000 * flight[2]};
   sph_bodies_move(c.particles, c.range[1], velocity);
@@ -188,7 +192,8 @@ static void impact(bool correction, int precision) {
   /* float: each pair's forces are rounded at 6e-8 of them, thousands of steps; still a random walk, not a drift */
   assert_true(worst_momentum < (precision == SPH_FLOAT ? 1e-4 : 1e-12));
   assert_true(worst_energy < 0.005);
-  if (correction) assert_true(spun < 1e-3); /* exact but for the change of B in a step; 2.6e-2 without */
+  if (correction)
+    assert_true(spun < 1e-3); /* exact but for the change of B in a step; 2.6e-2 without */
   assert_true(fabs(sph_system_ledger(c.system).clamped) < 0.001 * start.kinetic);
   sph_flaws_free(flaws);
   solid_end(&c);

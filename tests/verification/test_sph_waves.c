@@ -80,7 +80,8 @@ static void plane_waves(void **state) {
           const int which = lattice ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL;
           const double periods = round(24 / sph_lattice_period(which, 1, along, 0.1));
           struct wave w[4];
-          if (lattice && along > 0) continue; /* the cubic lattice looks alike along all axes */
+          if (lattice && along > 0)
+            continue; /* the cubic lattice looks alike along all axes */
           if (!solid_full() && (correction || along == 1))
             continue; /* to save time: nothing that the others do not have */
           print_message("%-9s correction %-3s %s along %c:", lattice ? "cubic" : "hexagonal", correction ? "on" : "off",
@@ -156,8 +157,11 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   c.physics[0].strength = true;
   c.parameters.gradient_correction = correction;
   struct sph_body *b = &c.body[0];
-  b->shape = (struct sph_shape){
-      .kind = SPH_SHAPE_CYLINDER, .centre = {0, 0, length / 2}, .radius = radius, .length = length, .axis = {0, 0, 1}};
+  b->shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
+                                .centre = {0, 0, length / 2},
+                                .radius = radius,
+                                .length = length,
+                                .axis = {0, 0, 1}};
   b->lattice.spacing = radius / radius_over_h / SPH_BODIES_H;
   b->lattice.periodic[2] = true;
   c.parameters.periodic[2] = length;
@@ -203,7 +207,8 @@ static void bar_wave(void **state) {
                     correction ? "on " : "off", 2.5 * (1 << l), w[l].n, w[l].speed, 100 * (w[l].speed / exact - 1),
                     w[l].speed * bar / exact, w[l].decay);
     }
-    if (levels < 3) continue;
+    if (levels < 3)
+      continue;
     const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
     const double limit = w[levels - 1].speed + (w[levels - 1].speed - w[levels - 2].speed) / (pow(2, order) - 1);
     print_message("  order %.2f; extrapolated with it %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));

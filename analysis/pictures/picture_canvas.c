@@ -1,0 +1,142 @@
+#include "analysis/pictures/picture_canvas.h"
+
+#include <cairo-svg.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static bool ends_in(const char *path, const char *ending) {
+  size_t a = strlen(path), b = strlen(ending);
+  return a > b && strcmp(path + a - b, ending) == 0;
+}
+
+static status from_cairo(cairo_status_t code, const char *path, struct error *error) {
+  if (code == CAIRO_STATUS_SUCCESS)
+    return STATUS_OK;
+  if (code == CAIRO_STATUS_NO_MEMORY)
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for the picture", path);
+  return status_fail(error, STATUS_IO, "%s: cannot write the picture: %s. Is its folder there, writable and not full?",
+                     path, cairo_status_to_string(code));
+}
+
+status picture_canvas_named(const char *path, struct error *error) {
+  if (ends_in(path, ".png") || ends_in(path, ".svg"))
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png or .svg", path);
+}
+
+status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
+                           struct error *error) {
+  *canvas = (struct picture_canvas){.path = path, .png = ends_in(path, ".png")};
+  status code = picture_canvas_named(path, error);
+  if (code)
+    return code;
+  if (!(width >= 200 && width <= 8000 && height >= 50 && height <= 16000))
+    return status_fail(error, STATUS_USAGE, "%s: a picture is 200 to 8000 wide, not %g x %g", path, width, height);
+  int length = snprintf(canvas->temporary, sizeof canvas->temporary, "%s.%ld.part", path, (long)getpid());
+  if (length < 0 || (size_t)length >= sizeof canvas->temporary)
+    return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
+  canvas->surface = canvas->png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height))
+                                : cairo_svg_surface_create(canvas->temporary, width, height);
+  canvas->cairo = cairo_create(canvas->surface);
+  code = from_cairo(cairo_status(canvas->cairo), path, error);
+  if (code) {
+    cairo_destroy(canvas->cairo);
+    cairo_surface_destroy(canvas->surface);
+    unlink(canvas->temporary);
+    return code;
+  }
+  cairo_set_source_rgb(canvas->cairo, 1, 1, 1);
+  cairo_paint(canvas->cairo);
+  cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
+  return STATUS_OK;
+}
+
+status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error) {
+  if (!code)
+    code = from_cairo(cairo_status(canvas->cairo), canvas->path, error);
+  cairo_destroy(canvas->cairo);
+  if (!code && canvas->png)
+    code = from_cairo(cairo_surface_write_to_png(canvas->surface, canvas->temporary), canvas->path, error);
+  cairo_surface_finish(canvas->surface);
+  if (!code)
+    code = from_cairo(cairo_surface_status(canvas->surface), canvas->path, error);
+  cairo_surface_destroy(canvas->surface);
+  if (!code && rename(canvas->temporary, canvas->path) != 0)
+    code = status_fail(error, STATUS_IO, "%s: cannot write the picture: %s", canvas->path, strerror(errno));
+  if (code)
+    unlink(canvas->temporary);
+  return code;
+}
+
+static void choose_font(cairo_t *cairo, double size, bool bold) {
+  cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, size);
+}
+
+double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text) {
+  cairo_text_extents_t extents;
+  choose_font(cairo, size, bold);
+  cairo_text_extents(cairo, text, &extents);
+  return extents.x_advance;
+}
+
+void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
+                         const char *text) {
+  double width = picture_canvas_text_width(cairo, size, bold, text);
+  cairo_move_to(cairo, x - (align == PICTURE_CENTRE ? width / 2 : align == PICTURE_RIGHT ? width : 0), y);
+  cairo_show_text(cairo, text);
+}
+
+static double companded(double linear) {
+  double c = fmin(fmax(linear, 0), 1);
+  return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
+}
+
+/* Ottosson, "A perceptual color space for image processing" (2020). */
+void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha) {
+  double a = chroma * cos(hue * M_PI / 180), b = chroma * sin(hue * M_PI / 180);
+  double l = lightness + 0.3963377774 * a + 0.2158037573 * b, m = lightness - 0.1055613458 * a - 0.0638541728 * b;
+  double s = lightness - 0.0894841775 * a - 1.2914855480 * b;
+  l *= l * l, m *= m * m, s *= s * s;
+  cairo_set_source_rgba(cairo, companded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+                        companded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+                        companded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), alpha);
+}
+
+void picture_canvas_series(cairo_t *cairo, size_t series, double alpha) {
+  static const double hues[PICTURE_CANVAS_SERIES] = {255, 30, 145, 320, 85, 200, 0, 285};
+  picture_canvas_colour(cairo, 0.55, 0.15, hues[series % PICTURE_CANVAS_SERIES], alpha);
+}
+
+double picture_canvas_round_length(double length) {
+  double decade = pow(10, floor(log10(length)));
+  double part = length / decade;
+  return decade * (part >= 5 ? 5 : part >= 2 ? 2 : 1);
+}
+
+void picture_canvas_length_text(double metres, char *text, size_t size) {
+  if (metres >= 1000)
+    snprintf(text, size, "%g km", metres / 1000);
+  else if (metres >= 1)
+    snprintf(text, size, "%g m", metres);
+  else if (metres >= 0.01)
+    snprintf(text, size, "%g cm", metres * 100);
+  else if (metres >= 0.001)
+    snprintf(text, size, "%g mm", metres * 1000);
+  else
+    snprintf(text, size, "%g \xc2\xb5m", metres * 1e6);
+}
+
+void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent) {
+  char text[16];
+  snprintf(text, sizeof text, exponent < 0 ? "\xe2\x88\x92%d" : "%d", exponent < 0 ? -exponent : exponent);
+  double base = picture_canvas_text_width(cairo, size, false, "10"),
+         raised = picture_canvas_text_width(cairo, 0.72 * size, false, text);
+  double left = x - (align == PICTURE_CENTRE ? (base + raised) / 2 : align == PICTURE_RIGHT ? base + raised : 0);
+  picture_canvas_text(cairo, left, y, size, PICTURE_LEFT, false, "10");
+  picture_canvas_text(cairo, left + base, y - 0.38 * size, 0.72 * size, PICTURE_LEFT, false, text);
+}

@@ -1,0 +1,41 @@
+/* What all pictures share: the file, text, colours, ticks. For the picture_*.c files only. */
+#ifndef CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
+#define CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
+
+#include <cairo.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "schemas/status.h"
+
+struct picture_canvas {
+  cairo_t *cairo; /* white page, origin top left, units pixels or points */
+  cairo_surface_t *surface;
+  bool png;
+  const char *path;
+  char temporary[4096];
+};
+/* STATUS_USAGE unless the name ends in .png or .svg. */
+status picture_canvas_named(const char *path, struct error *error);
+status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
+                           struct error *error);
+/* Writes and renames when code is STATUS_OK, else removes what was begun; returns code or what went wrong. */
+status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error);
+
+enum picture_align { PICTURE_LEFT, PICTURE_CENTRE, PICTURE_RIGHT };
+void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
+                         const char *text);
+double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
+/* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
+void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
+/* Of one of several series, told apart by hue. */
+enum { PICTURE_CANVAS_SERIES = 8 };
+void picture_canvas_series(cairo_t *cairo, size_t series, double alpha);
+/* The next of 1, 2, 5 x 10^n at or below. */
+double picture_canvas_round_length(double length);
+/* "5 cm", "2 m", "500 µm". */
+void picture_canvas_length_text(double metres, char *text, size_t size);
+/* 10 with a raised exponent, centred at x (or ending there). */
+void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent);
+
+#endif

@@ -1,0 +1,295 @@
+/* A body in pieces: one hue per large fragment, pale tints for small ones, light grey for dust, a dark outline round
+ * every fragment, cracks inside them. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/pictures/picture.h"
+#include "analysis/pictures/picture_bars.h"
+#include "analysis/pictures/picture_canvas.h"
+
+enum { LARGE = 10 }; /* cells: below, a fragment is hardly resolved and gets a pale tint */
+
+/* Cells sorted by fragment: cells of fragment f are order[start[f]] ... order[start[f + 1] - 1]. */
+struct grouping {
+  size_t fragments;
+  uint32_t *start, *order;
+};
+
+static void grouping_free(struct grouping *grouping) {
+  free(grouping->start);
+  free(grouping->order);
+}
+
+static status group(const struct picture_body *body, struct grouping *out) {
+  *out = (struct grouping){0};
+  for (size_t i = 0; i < body->cells; i++)
+    if (body->fragment[i] >= out->fragments)
+      out->fragments = (size_t)body->fragment[i] + 1;
+  if (out->fragments > body->cells)
+    return STATUS_USAGE; /* labels are numbers of fragments, each with a cell */
+  out->start = calloc(out->fragments + 2, sizeof *out->start);
+  out->order = calloc(body->cells + 1, sizeof *out->order);
+  if (!out->start || !out->order)
+    return STATUS_MEMORY;
+  for (size_t i = 0; i < body->cells; i++)
+    out->start[body->fragment[i] + 2]++;
+  for (size_t f = 2; f < out->fragments + 2; f++)
+    out->start[f] += out->start[f - 1];
+  for (size_t i = 0; i < body->cells; i++)
+    out->order[out->start[body->fragment[i] + 1]++] = (uint32_t)i;
+  return STATUS_OK;
+}
+
+static void centre_of(const struct picture_body *body, size_t cell, double centre[2]) {
+  centre[0] = centre[1] = 0;
+  uint32_t first = body->first_vertex[cell], end = body->first_vertex[cell + 1];
+  for (uint32_t v = first; v < end; v++) {
+    centre[0] += body->vertex[v][0] / (end - first);
+    centre[1] += body->vertex[v][1] / (end - first);
+  }
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static void cover(double view[4], const double point[2]) {
+  for (int axis = 0; axis < 2; axis++) {
+    view[axis] = fmin(view[axis], point[axis]);
+    view[axis + 2] = fmax(view[axis + 2], point[axis]);
+  }
+}
+
+/* Everything, unless far-flung bits would shrink the picture: then all large fragments and 96 % of the cells. */
+static status choose_view(const struct picture_body *body, double view[4]) {
+  double *along = malloc((body->cells + 1) * sizeof *along);
+  struct grouping grouping;
+  status code = group(body, &grouping);
+  if (!code && !along)
+    code = STATUS_MEMORY;
+  double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, bulk[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (size_t i = 0; i < body->cells && !code; i++) {
+    uint32_t f = body->fragment[i];
+    bool large = grouping.start[f + 1] - grouping.start[f] >= LARGE;
+    for (uint32_t v = body->first_vertex[i]; v < body->first_vertex[i + 1]; v++) {
+      cover(all, body->vertex[v]);
+      if (large)
+        cover(bulk, body->vertex[v]);
+    }
+  }
+  for (int axis = 0; axis < 2 && !code; axis++) {
+    for (size_t i = 0; i < body->cells; i++) {
+      double centre[2];
+      centre_of(body, i, centre);
+      along[i] = centre[axis];
+    }
+    qsort(along, body->cells, sizeof *along, ascending);
+    size_t out = body->cells / 50;
+    bulk[axis] = fmin(bulk[axis], along[out]);
+    bulk[axis + 2] = fmax(bulk[axis + 2], along[body->cells - 1 - out]);
+  }
+  free(along);
+  grouping_free(&grouping);
+  if (code)
+    return code;
+  bool near = all[2] - all[0] <= 1.25 * (bulk[2] - bulk[0]) && all[3] - all[1] <= 1.25 * (bulk[3] - bulk[1]);
+  memcpy(view, near ? all : bulk, 4 * sizeof *view);
+  double margin = 0.02 * fmax(view[2] - view[0], view[3] - view[1]);
+  if (!(margin > 0))
+    margin = 1;
+  for (int axis = 0; axis < 2; axis++) {
+    view[axis] -= margin;
+    view[axis + 2] += margin;
+  }
+  return STATUS_OK;
+}
+
+static void path_of(cairo_t *cairo, const struct picture_body *body, uint32_t cell) {
+  cairo_new_sub_path(cairo); /* else a line would join it to the cell before */
+  for (uint32_t v = body->first_vertex[cell]; v < body->first_vertex[cell + 1]; v++)
+    cairo_line_to(cairo, body->vertex[v][0], body->vertex[v][1]);
+  cairo_close_path(cairo);
+}
+
+/* Golden-angle steps of hue: neighbours in rank, which often lie side by side, are far apart in colour. */
+static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker, double alpha) {
+  double hue = fmod(252 + 137.50776 * (double)fragment, 360), wave = 0.045 * ((double)(fragment % 3) - 1);
+  if (cells == 1)
+    picture_canvas_colour(cairo, 0.905 - darker, 0.003, 250, alpha);
+  else if (cells < LARGE)
+    picture_canvas_colour(cairo, 0.86 - darker, 0.055, hue, alpha);
+  else
+    picture_canvas_colour(cairo, 0.70 + wave - darker, 0.125, hue, alpha);
+}
+
+/* All cells of a fragment: a wide dark stroke first, the fill and a thin stroke of its own colour over it. What is left
+ * of the dark is the outline of the whole, and no background shines through between cells. */
+static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const struct grouping *g, size_t f,
+                          double cell) {
+  size_t count = g->start[f + 1] - g->start[f];
+  if (count == 0)
+    return;
+  for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
+    path_of(cairo, body, g->order[i]);
+  colour(cairo, f, count, count == 1 ? 0.18 : 0.42, 1);
+  cairo_set_line_width(cairo, cell * (count == 1 ? 0.10 : 0.17));
+  cairo_stroke(cairo);
+  colour(cairo, f, count, 0, 1);
+  cairo_set_line_width(cairo, cell * 0.03);
+  for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++) {
+    path_of(cairo, body, g->order[i]);
+    cairo_fill_preserve(cairo);
+    cairo_stroke(cairo);
+  }
+  if (count == 1)
+    return;
+  for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
+    path_of(cairo, body, g->order[i]);
+  colour(cairo, f, count, 0.14, 0.55); /* grain boundaries */
+  cairo_set_line_width(cairo, cell * 0.028);
+  cairo_stroke(cairo);
+}
+
+/* The side of `cell` that faces `other`: the one whose middle lies nearest to the other's centre. */
+static void draw_crack(cairo_t *cairo, const struct picture_body *body, uint32_t cell, uint32_t other) {
+  double centre[2], best = HUGE_VAL;
+  centre_of(body, other, centre);
+  uint32_t first = body->first_vertex[cell], end = body->first_vertex[cell + 1], from = first, to = first;
+  for (uint32_t v = first; v < end; v++) {
+    uint32_t w = v + 1 < end ? v + 1 : first;
+    double distance = hypot((body->vertex[v][0] + body->vertex[w][0]) / 2 - centre[0],
+                            (body->vertex[v][1] + body->vertex[w][1]) / 2 - centre[1]);
+    if (distance < best) {
+      best = distance;
+      from = v;
+      to = w;
+    }
+  }
+  cairo_move_to(cairo, body->vertex[from][0], body->vertex[from][1]);
+  cairo_line_to(cairo, body->vertex[to][0], body->vertex[to][1]);
+}
+
+static double area_of(const struct picture_body *body, size_t cell) {
+  double area = 0;
+  uint32_t first = body->first_vertex[cell], end = body->first_vertex[cell + 1];
+  for (uint32_t v = first; v < end; v++) {
+    const double *a = body->vertex[v], *b = body->vertex[v + 1 < end ? v + 1 : first];
+    area += (a[0] * b[1] - a[1] * b[0]) / 2;
+  }
+  return fabs(area);
+}
+
+static double typical_cell(const struct picture_body *body) {
+  double area = 0;
+  for (size_t i = 0; i < body->cells; i++)
+    area += area_of(body, i);
+  return sqrt(area / (double)body->cells);
+}
+
+void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size) {
+  struct grouping grouping;
+  size_t single = 0, fragments = 0;
+  double total = 0, largest = 0;
+  text[0] = 0;
+  if (body->cells == 0)
+    return;
+  if (group(body, &grouping) == STATUS_OK) {
+    for (size_t f = 0; f < grouping.fragments; f++) {
+      double area = 0;
+      for (uint32_t i = grouping.start[f]; i < grouping.start[f + 1]; i++)
+        area += area_of(body, grouping.order[i]);
+      fragments += grouping.start[f + 1] > grouping.start[f];
+      single += grouping.start[f + 1] - grouping.start[f] == 1;
+      total += area;
+      largest = fmax(largest, area);
+    }
+    snprintf(text, size, "%zu %s in %zu fragment%s, %zu of them single; largest %.1f %% of the area", body->cells,
+             cells, fragments, fragments == 1 ? "" : "s", single, 100 * largest / total);
+  }
+  grouping_free(&grouping);
+}
+
+static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
+                         double top, double width, double height, double font) {
+  const struct picture_body *body = &panel->body;
+  struct grouping grouping;
+  status code = group(body, &grouping);
+  if (code)
+    goto cleanup;
+  double scale = fmin(width / (view[2] - view[0]), height / (view[3] - view[1])), cell = typical_cell(body);
+  cairo_save(cairo);
+  cairo_rectangle(cairo, left, top, width, height);
+  cairo_clip(cairo);
+  cairo_translate(cairo, left + width / 2, top + height / 2);
+  cairo_scale(cairo, scale, -scale);
+  cairo_translate(cairo, -(view[0] + view[2]) / 2, -(view[1] + view[3]) / 2);
+  for (size_t f = grouping.fragments; f-- > 0;)
+    draw_fragment(cairo, body, &grouping, f, cell); /* the largest on top */
+  for (size_t i = 0; i < body->cracks; i++)
+    if (body->fragment[body->crack[i][0]] == body->fragment[body->crack[i][1]])
+      draw_crack(cairo, body, body->crack[i][0], body->crack[i][1]);
+  cairo_set_source_rgb(cairo, 0.12, 0.08, 0.08);
+  cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_width(cairo, 0.11 * cell);
+  cairo_stroke(cairo);
+  cairo_restore(cairo);
+  picture_bars_length(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
+  cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
+  if (panel->caption)
+    picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,
+                        panel->caption);
+cleanup:
+  grouping_free(&grouping);
+  return code;
+}
+
+static status fail(const char *path, status code, struct error *error) {
+  return status_fail(error, code, "%s: %s", path,
+                     code == STATUS_MEMORY ? "no memory for the picture"
+                                           : "fragment numbers beyond the number of cells");
+}
+
+status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
+                         const struct picture_panel *panel, struct error *error) {
+  double view[3][4], tallest = 0, font = width / (panels > 1 ? 62 : 46);
+  if (panels < 1 || panels > 3)
+    return status_fail(error, STATUS_USAGE, "%s: one to three panels, not %zu", path, panels);
+  double gap = 0.03 * width, each = (width - gap * (double)(panels + 1)) / (double)panels;
+  for (size_t p = 0; p < panels; p++) {
+    const struct picture_body *body = &panel[p].body;
+    if (body->cells == 0)
+      return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
+    memcpy(view[p], panel[p].view, sizeof view[p]);
+    status code = view[p][2] > view[p][0] ? STATUS_OK : choose_view(body, view[p]);
+    if (code)
+      return fail(path, code, error);
+    double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
+    if (!isfinite(tall))
+      return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);
+    tallest = fmax(tallest, tall);
+  }
+  tallest = fmin(tallest, 1.5 * each);
+  double top = font * (0.8 + (title ? 1.9 : 0) + (subtitle ? 1.6 : 0));
+  struct picture_canvas canvas;
+  status code = picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error);
+  if (code)
+    return code;
+  cairo_set_source_rgb(canvas.cairo, 0.1, 0.1, 0.1);
+  double line = 1.9 * font;
+  if (title)
+    picture_canvas_text(canvas.cairo, gap, line, 1.35 * font, PICTURE_LEFT, true, title);
+  if (title)
+    line += 1.6 * font;
+  cairo_set_source_rgb(canvas.cairo, 0.35, 0.35, 0.35);
+  if (subtitle)
+    picture_canvas_text(canvas.cairo, gap, line, font, PICTURE_LEFT, false, subtitle);
+  for (size_t p = 0; p < panels && !code; p++) {
+    code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
+    if (code)
+      fail(path, code, error);
+  }
+  return picture_canvas_close(&canvas, code, error);
+}

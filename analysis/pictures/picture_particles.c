@@ -1,0 +1,404 @@
+/* Particles as discs: cuts, views from outside, fragments drawn apart. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/pictures/picture.h"
+#include "analysis/pictures/picture_bars.h"
+#include "analysis/pictures/picture_canvas.h"
+
+enum { RESOLVED = 10 }; /* particles: below, a fragment is hardly resolved and gets a pale tint */
+
+static const double REACH = 0.80;  /* disc radius over size: a little more than touching, so that a cut has no holes */
+static const double SPREAD = 0.75; /* apart: fragments' distances from the middle grow by this share */
+
+struct disc {
+  double x, y, radius, depth; /* m; larger depth is drawn later */
+  uint32_t id;
+};
+
+struct scene {
+  const struct picture_cloud *cloud;
+  const struct picture_look *look;
+  size_t fragments, discs;
+  uint32_t *count; /* particles by fragment */
+  double *mass;    /* kg by fragment */
+  double (*centre)[3];
+  double middle[3]; /* m: of the heaviest fragment, or of all */
+  struct disc *disc;
+  double low, high, scale; /* of the colours; values are divided by `scale` */
+  double view[4];
+  char label[160];
+  enum picture_ramp ramp;
+};
+
+/* ---- fragments ---- */
+
+static status gather(struct scene *s) {
+  const struct picture_cloud *c = s->cloud;
+  double total = 0, all[3] = {0, 0, 0};
+  for (size_t i = 0; i < c->n; i++)
+    if (c->fragment[i] >= (int64_t)s->fragments)
+      s->fragments = (size_t)c->fragment[i] + 1;
+  s->count = calloc(s->fragments + 1, sizeof *s->count);
+  s->mass = calloc(s->fragments + 1, sizeof *s->mass);
+  s->centre = calloc(s->fragments + 1, sizeof *s->centre);
+  s->disc = malloc((c->n + 1) * sizeof *s->disc);
+  if (!s->count || !s->mass || !s->centre || !s->disc)
+    return STATUS_MEMORY;
+  for (size_t i = 0; i < c->n; i++) {
+    total += c->mass[i];
+    for (int d = 0; d < 3; d++)
+      all[d] += c->mass[i] * c->position[i][d];
+    if (c->fragment[i] < 0)
+      continue;
+    size_t f = (size_t)c->fragment[i];
+    s->count[f]++;
+    s->mass[f] += c->mass[i];
+    for (int d = 0; d < 3; d++)
+      s->centre[f][d] += c->mass[i] * c->position[i][d];
+  }
+  for (size_t f = 0; f < s->fragments; f++)
+    for (int d = 0; d < 3; d++)
+      s->centre[f][d] /= s->count[f] ? s->mass[f] : 1;
+  bool core = s->fragments > 0 && s->count[0] >= RESOLVED;
+  for (int d = 0; d < 3; d++)
+    s->middle[d] = core ? s->centre[0][d] : all[d] / total;
+  return STATUS_OK;
+}
+
+static bool resolved(const struct scene *s, size_t i) {
+  return s->cloud->fragment[i] >= 0 && s->count[s->cloud->fragment[i]] >= RESOLVED;
+}
+
+void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size) {
+  struct scene s = {.cloud = cloud};
+  double total = 0, dust = 0;
+  size_t searched = 0, pieces = 0;
+  text[0] = 0;
+  if (cloud->n && gather(&s) == STATUS_OK) {
+    for (size_t i = 0; i < cloud->n; i++) {
+      if (cloud->part[i] == 3)
+        continue;
+      searched++;
+      total += cloud->mass[i];
+      if (cloud->part[i] == 2)
+        dust += cloud->mass[i];
+    }
+    for (size_t f = 0; f < s.fragments; f++)
+      pieces += s.count[f] > 1;
+    if (total > 0)
+      snprintf(
+          text, size,
+          "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% dust",
+          searched, pieces, pieces == 1 ? "" : "s", s.fragments ? 100 * s.mass[0] / total : 0,
+          s.fragments > 1 && s.count[1] > 1 ? 100 * s.mass[1] / total : 0, 100 * dust / total);
+  }
+  free(s.count);
+  free(s.mass);
+  free(s.centre);
+  free(s.disc);
+}
+
+/* ---- what is seen ---- */
+
+static int by_depth(const void *a, const void *b) {
+  const struct disc *p = a, *q = b;
+  if (p->depth != q->depth)
+    return p->depth < q->depth ? -1 : 1;
+  return p->id < q->id ? -1 : p->id > q->id;
+}
+
+static void choose_discs(struct scene *s) {
+  const struct picture_cloud *c = s->cloud;
+  const struct picture_look *look = s->look;
+  int along = look->axis, right = along == 0 ? 1 : 0, up = along == 2 ? 1 : 2;
+  double plane = isfinite(look->plane) ? look->plane : s->middle[along],
+         toward = along == 1 ? -1 : 1; /* x right, z up: y goes away */
+  for (size_t i = 0; i < c->n; i++) {
+    double at[3], radius = REACH * c->size[i];
+    memcpy(at, c->position[i], sizeof at);
+    if (look->view == PICTURE_APART) {
+      if (c->part[i] >= 2 || c->fragment[i] < 0)
+        continue;
+      for (int d = 0; d < 3; d++)
+        at[d] += SPREAD * (s->centre[c->fragment[i]][d] - s->middle[d]);
+    }
+    double depth = toward * at[along];
+    if (look->view == PICTURE_CUT) {
+      double off = at[along] - plane;
+      if (fabs(off) >= radius)
+        continue;
+      depth = -fabs(off) / c->size[i];
+      radius = sqrt(radius * radius - off * off);
+    }
+    s->disc[s->discs++] = (struct disc){at[right], at[up], radius, depth, (uint32_t)i};
+  }
+  qsort(s->disc, s->discs, sizeof *s->disc, by_depth);
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static void cover(double view[4], double x, double y, double radius) {
+  view[0] = fmin(view[0], x - radius);
+  view[1] = fmin(view[1], y - radius);
+  view[2] = fmax(view[2], x + radius);
+  view[3] = fmax(view[3], y + radius);
+}
+
+/* All fragments that are resolved and nine tenths of the rest, so that jets do not shrink the body. */
+static status choose_view(struct scene *s) {
+  double *sorted = malloc((s->discs + 1) * sizeof *sorted), all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  double *view = s->view;
+  if (!sorted)
+    return STATUS_MEMORY;
+  memcpy(view, all, sizeof all);
+  for (size_t k = 0; k < s->discs; k++) {
+    const struct disc *d = &s->disc[k];
+    cover(all, d->x, d->y, d->radius);
+    if (resolved(s, d->id))
+      cover(view, d->x, d->y, d->radius);
+  }
+  for (int axis = 0; axis < 2; axis++) {
+    for (size_t k = 0; k < s->discs; k++)
+      sorted[k] = axis ? s->disc[k].y : s->disc[k].x;
+    qsort(sorted, s->discs, sizeof *sorted, ascending);
+    size_t out = s->discs / 20;
+    view[axis] = fmin(view[axis], sorted[out]);
+    view[axis + 2] = fmax(view[axis + 2], sorted[s->discs - 1 - out]);
+  }
+  free(sorted);
+  double margin = 0.06 * fmax(view[2] - view[0], view[3] - view[1]);
+  for (int axis = 0; axis < 2; axis++) {
+    view[axis] = fmax(view[axis] - margin, all[axis] - margin / 6);
+    view[axis + 2] = fmin(view[axis + 2] + margin, all[axis + 2] + margin / 6);
+  }
+  return STATUS_OK;
+}
+
+/* Pa: MPa or GPa and so on by the size of what is shown. */
+static void choose_unit(struct scene *s, double largest) {
+  static const struct {
+    double factor;
+    const char *letter;
+  } prefix[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}};
+  const char *unit = s->look->unit ? s->look->unit : "1", *letter = "";
+  s->scale = 1;
+  for (size_t k = 0;
+       k < 3 && strcmp(unit, "1") != 0 && strcmp(unit, "m") != 0 && strncmp(unit, "kg", 2) != 0 && s->scale == 1; k++)
+    if (largest >= prefix[k].factor) {
+      s->scale = prefix[k].factor;
+      letter = prefix[k].letter;
+    }
+  snprintf(s->label, sizeof s->label, strcmp(unit, "1") == 0 ? "%s" : "%s (%s%s)",
+           s->look->quantity ? s->look->quantity : "", letter, unit);
+}
+
+static status choose_colours(struct scene *s) {
+  const double *value = s->cloud->value;
+  size_t count = 0;
+  if (!value)
+    return STATUS_OK;
+  double *sorted = malloc((s->discs + 1) * sizeof *sorted);
+  if (!sorted)
+    return STATUS_MEMORY;
+  for (int all = 0; all < 2 && count == 0; all++) /* a projectile, hot and dense, does not set the range for the body */
+    for (size_t k = 0; k < s->discs; k++)
+      if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != 3))
+        sorted[count++] = value[s->disc[k].id];
+  qsort(sorted, count, sizeof *sorted, ascending);
+  double least = count ? sorted[0] : 0, most = count ? sorted[count - 1] : 1;
+  bool share = s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
+  s->low = share ? 0 : count ? sorted[count / 100] : 0;
+  s->high = share ? 1 : count ? sorted[count - 1 - count / 100] : 1;
+  s->ramp = share && s->look->quantity && strcmp(s->look->quantity, "damage") == 0 ? PICTURE_RAMP_DAMAGE
+                                                                                   : PICTURE_RAMP_RISING;
+  if (s->low < 0 && s->high > 0) {
+    s->ramp = PICTURE_RAMP_SIGNED;
+    s->high = fmax(s->high, -s->low);
+    s->low = -s->high;
+  }
+  free(sorted);
+  choose_unit(s, fmax(fabs(s->low), fabs(s->high)));
+  return STATUS_OK;
+}
+
+/* ---- ink ---- */
+
+/* Golden-angle steps of hue, as for bodies of grains; `light` from -1 (far) to 1 (near). */
+static void fragment_colour(cairo_t *cairo, const struct scene *s, size_t i, double light) {
+  int64_t f = s->cloud->fragment[i], part = s->cloud->part[i];
+  if (part == 3 || f < 0)
+    picture_canvas_colour(cairo, 0.55 + 0.1 * light, 0.01, 250, 1);
+  else if (part == 2)
+    picture_canvas_colour(cairo, 0.90 + 0.03 * light, 0.004, 250, 1);
+  else {
+    double hue = fmod(252 + 137.50776 * (double)f, 360), wave = 0.03 * ((double)(f % 3) - 1);
+    bool large = s->count[f] >= RESOLVED;
+    picture_canvas_colour(cairo, (large ? 0.68 : 0.84) + wave + 0.14 * light + (part == 1 ? 0.05 : 0),
+                          (large ? 0.125 : 0.05) * (part == 1 ? 0.75 : 1), hue, 1);
+  }
+}
+
+static void draw_discs(cairo_t *cairo, const struct scene *s) {
+  const double *value = s->cloud->value;
+  bool cut = s->look->view == PICTURE_CUT;
+  double near = s->discs ? s->disc[s->discs - 1].depth : 0, far = s->discs ? s->disc[s->discs / 50].depth : 0;
+  for (size_t k = 0; k < s->discs; k++) {
+    const struct disc *d = &s->disc[k];
+    double light = cut || !(near > far) ? 0 : fmin(fmax(2 * (d->depth - far) / (near - far) - 1, -1), 1);
+    if (!cut) { /* a dark rim round what stands before other things */
+      cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
+      cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
+      cairo_fill(cairo);
+    }
+    if (!value)
+      fragment_colour(cairo, s, d->id, light);
+    else if (!isfinite(value[d->id]))
+      cairo_set_source_rgb(cairo, 1, 0, 1);
+    else {
+      double share = s->high > s->low ? (value[d->id] - s->low) / (s->high - s->low) : 0.5;
+      picture_bars_colour(cairo, s->ramp, fmin(fmax(share, 0), 1));
+    }
+    cairo_arc(cairo, d->x, d->y, d->radius, 0, 2 * M_PI);
+    cairo_fill(cairo);
+  }
+}
+
+/* Which way is which: two short arrows in the lower left corner. */
+static void axes(cairo_t *cairo, int along, double x, double y, double font) {
+  static const char *const names[] = {"x", "y", "z"};
+  const char *right = names[along == 0 ? 1 : 0], *up = names[along == 2 ? 1 : 2];
+  double length = 2.2 * font, head = 0.35 * font;
+  cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
+  cairo_set_line_width(cairo, 0.10 * font);
+  cairo_move_to(cairo, x + length, y);
+  cairo_line_to(cairo, x, y);
+  cairo_line_to(cairo, x, y - length);
+  cairo_move_to(cairo, x + length - head, y - head);
+  cairo_line_to(cairo, x + length, y);
+  cairo_line_to(cairo, x + length - head, y + head);
+  cairo_move_to(cairo, x - head, y - length + head);
+  cairo_line_to(cairo, x, y - length);
+  cairo_line_to(cairo, x + head, y - length + head);
+  cairo_stroke(cairo);
+  picture_canvas_text(cairo, x + length + 0.4 * font, y + 0.3 * font, 0.95 * font, PICTURE_LEFT, false, right);
+  picture_canvas_text(cairo, x, y - length - 0.4 * font, 0.95 * font, PICTURE_CENTRE, false, up);
+}
+
+/* The heaviest fragments with their shares of the mass. */
+static void legend(cairo_t *cairo, const struct scene *s, double x, double y, double font) {
+  enum { MOST = 8 };
+  double total = 0, dust = 0;
+  size_t sample = 0;
+  for (size_t i = 0; i < s->cloud->n; i++) {
+    if (s->cloud->part[i] != 3)
+      total += s->cloud->mass[i];
+    if (s->cloud->part[i] == 2)
+      dust += s->cloud->mass[i];
+  }
+  for (size_t f = 0; f < MOST && f < s->fragments && s->count[f] >= RESOLVED; f++, y += 1.6 * font) {
+    char text[48];
+    for (sample = 0;
+         sample < s->cloud->n && !(s->cloud->fragment[sample] == (int64_t)f && s->cloud->part[sample] == 0);)
+      sample++;
+    if (sample == s->cloud->n)
+      continue;
+    fragment_colour(cairo, s, sample, 0);
+    cairo_rectangle(cairo, x, y, font, font);
+    cairo_fill(cairo);
+    snprintf(text, sizeof text, "%.3g %%", 100 * s->mass[f] / total);
+    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+    picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
+  }
+  if (dust > 0 && total > 0) {
+    char text[48];
+    picture_canvas_colour(cairo, 0.90, 0.004, 250, 1);
+    cairo_rectangle(cairo, x, y, font, font);
+    cairo_fill(cairo);
+    snprintf(text, sizeof text, "%.3g %% dust", 100 * dust / total);
+    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+    picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
+  }
+}
+
+static status draw(const char *path, double width, struct scene *s, struct error *error) {
+  const struct picture_look *look = s->look;
+  double font = width / 52, gap = 1.5 * font,
+         wide = width - 2 * gap - 9 * font; /* the bar or the legend on the right */
+  double tall = wide * (s->view[3] - s->view[1]) / (s->view[2] - s->view[0]);
+  if (!isfinite(tall))
+    return status_fail(error, STATUS_USAGE, "%s: the particles have no extent to draw", path);
+  tall = fmin(fmax(tall, 14 * font), 1.1 * wide);
+  double scale = fmin(wide / (s->view[2] - s->view[0]), tall / (s->view[3] - s->view[1]));
+  double top = font * (1.2 + (look->title ? 1.9 : 0) + (look->subtitle ? 1.6 : 0));
+  struct picture_canvas canvas;
+  status code = picture_canvas_open(&canvas, path, width, top + tall + 5 * font, error);
+  if (code)
+    return code;
+  cairo_t *cairo = canvas.cairo;
+  cairo_save(cairo);
+  cairo_rectangle(cairo, gap, top, wide, tall);
+  cairo_clip(cairo);
+  cairo_translate(cairo, gap + wide / 2, top + tall / 2);
+  cairo_scale(cairo, scale, -scale);
+  cairo_translate(cairo, -(s->view[0] + s->view[2]) / 2, -(s->view[1] + s->view[3]) / 2);
+  draw_discs(cairo, s);
+  cairo_restore(cairo);
+  double line = 1.9 * font;
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  if (look->title)
+    picture_canvas_text(cairo, gap, line, 1.35 * font, PICTURE_LEFT, true, look->title);
+  if (look->title)
+    line += 1.6 * font;
+  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
+  if (look->subtitle)
+    picture_canvas_text(cairo, gap, line, 0.95 * font, PICTURE_LEFT, false, look->subtitle);
+  axes(cairo, look->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
+  picture_bars_length(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
+  if (s->cloud->value)
+    picture_bars_colours(cairo, s->ramp, gap + wide + 1.2 * font, top, 1.2 * font, fmin(tall, 26 * font), font,
+                         s->low / s->scale, s->high / s->scale, s->label);
+  else
+    legend(cairo, s, gap + wide + 1.2 * font, top, font);
+  return picture_canvas_close(&canvas, STATUS_OK, error);
+}
+
+status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
+                         const struct picture_look *look, struct error *error) {
+  struct scene s = {.cloud = cloud, .look = look};
+  status code = STATUS_OK;
+  if (look->axis < 0 || look->axis > 2)
+    return status_fail(error, STATUS_USAGE, "%s: there is no axis %d", path, look->axis);
+  for (size_t i = 0; i < cloud->n; i++)
+    if (cloud->fragment[i] >= (int64_t)cloud->n)
+      return status_fail(error, STATUS_USAGE, "%s: fragment numbers beyond the number of particles", path);
+  if (cloud->n && (code = gather(&s)))
+    goto cleanup;
+  if (cloud->n)
+    choose_discs(&s);
+  if (s.discs == 0) {
+    code = status_fail(error, STATUS_USAGE,
+                       look->view == PICTURE_CUT ? "%s: the plane meets no particle"
+                                                 : "%s: there is no particle to draw",
+                       path);
+    goto done;
+  }
+  if ((code = choose_view(&s)) || (code = choose_colours(&s)))
+    goto cleanup;
+  code = draw(path, width, &s, error);
+  goto done;
+cleanup:
+  if (code)
+    status_fail(error, code, "%s: no memory for the picture", path);
+done:
+  free(s.count);
+  free(s.mass);
+  free(s.centre);
+  free(s.disc);
+  return code;
+}

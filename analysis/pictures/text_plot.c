@@ -1,0 +1,148 @@
+#include "analysis/pictures/text_plot.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LEAST_COLUMNS = 72, FRONT = 38, MOST_PLOT = 200 };
+
+enum mark { BLANK, GRID, FIT, ERROR_BAR, ERROR_LEFT, ERROR_RIGHT, POINT };
+
+static const char *glyph(enum mark mark, bool unicode) {
+  static const char *const fancy[] =
+      {" ", "\xe2\x94\x8a", "\xc2\xb7", "\xe2\x94\x80", "\xe2\x94\x9c", "\xe2\x94\xa4", "\xe2\x97\x8f"};
+  static const char *const plain[] = {" ", ".", ":", "-", "[", "]", "*"};
+  return (unicode ? fancy : plain)[mark];
+}
+
+struct scale {
+  double low, high; /* log10 of density */
+  int columns;
+};
+
+static int place(const struct scale *scale, double log_density) {
+  double share = (log_density - scale->low) / (scale->high - scale->low);
+  int at = (int)lround(share * (scale->columns - 1));
+  return at < 0 ? 0 : at >= scale->columns ? scale->columns - 1 : at;
+}
+
+/* log10 of the fit's density at a mass, normalised to the fragments it was made from; NaN outside its window. */
+static double fit_at(const struct picture_fit *fit, double mass) {
+  if (!isfinite(fit->beta) || mass < fit->lower || mass >= fit->upper || !(fit->fragments_per_run > 0))
+    return NAN;
+  double k = fit->beta - 1, span = isinf(fit->upper) ? 700 : log(fit->upper / fit->lower);
+  double integral = fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k;
+  return log10(fit->fragments_per_run / (fit->lower * integral)) - fit->beta * log10(mass / fit->lower);
+}
+
+static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_bin *bin,
+                const struct picture_fit *fit) {
+  unsigned char line[MOST_PLOT] = {0};
+  for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++)
+    line[place(scale, decade)] = GRID;
+  double middle = sqrt(bin->lower * bin->upper), fitted = fit ? fit_at(fit, middle) : (double)NAN;
+  int point = place(scale, log10(bin->density));
+  if (bin->standard_error > 0) {
+    double below = bin->density - bin->standard_error;
+    int left = below > 0 ? place(scale, log10(below)) : 0,
+        right = place(scale, log10(bin->density + bin->standard_error));
+    for (int i = left; i <= right; i++)
+      line[i] = ERROR_BAR;
+    if (below > 0)
+      line[left] = ERROR_LEFT;
+    line[right] = ERROR_RIGHT;
+  }
+  if (isfinite(fitted) && fitted >= scale->low && fitted <= scale->high)
+    line[place(scale, fitted)] = FIT;
+  line[point] = POINT;
+  fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->density);
+  if (isfinite(bin->standard_error))
+    fprintf(out, " %4.0f%%  ", 100 * bin->standard_error / bin->density);
+  else
+    fprintf(out, " %5s  ", "-");
+  int end = scale->columns; /* no blanks at the end of a line */
+  while (end > 0 && line[end - 1] == BLANK)
+    end--;
+  for (int i = 0; i < end; i++)
+    fputs(glyph((enum mark)line[i], unicode), out);
+  fputc('\n', out);
+}
+
+/* The decades over the grid lines, as many as fit. */
+static void heading(FILE *out, const struct scale *scale, const char *mass_unit) {
+  char unit[32], line[MOST_PLOT + 16];
+  snprintf(unit, sizeof unit, "from %s", mass_unit);
+  memset(line, ' ', sizeof line);
+  int free_from = 0;
+  for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++) {
+    char text[16];
+    int length = snprintf(text, sizeof text, "1e%d", decade), at = place(scale, decade);
+    if (at < free_from || at + length > scale->columns + 2)
+      continue;
+    memcpy(line + at, text, (size_t)length);
+    free_from = at + length + 2;
+  }
+  size_t end = sizeof line - 1;
+  while (end > 0 && line[end - 1] == ' ')
+    end--;
+  line[end] = 0;
+  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-", line);
+}
+
+/* The two signs that labels use, spelt out where only ASCII may be printed. */
+static void write_label(FILE *out, const char *label, bool unicode) {
+  for (const char *c = label; *c; c++) {
+    if (!unicode && strncmp(c, "\xce\xb2", 2) == 0)
+      fputs("beta", out), c++;
+    else if (!unicode && strncmp(c, "\xc2\xb1", 2) == 0)
+      fputs("+-", out), c++;
+    else if (unicode || (unsigned char)*c < 0x80)
+      fputc(*c, out);
+  }
+}
+
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
+                        const struct picture_series *series) {
+  struct scale scale = {HUGE_VAL, -HUGE_VAL, 0};
+  for (size_t b = 0; b < series->count; b++) {
+    if (!(series->bins[b].density > 0))
+      continue;
+    scale.low = fmin(scale.low, log10(series->bins[b].density));
+    scale.high = fmax(scale.high, log10(series->bins[b].density));
+  }
+  if (!(scale.high >= scale.low))
+    return;
+  scale.low -= 0.3; /* room for an error bar of a factor two */
+  scale.high += 0.1;
+  if (columns < LEAST_COLUMNS)
+    columns = LEAST_COLUMNS;
+  scale.columns = columns - FRONT < MOST_PLOT ? columns - FRONT : MOST_PLOT;
+  heading(out, &scale, mass_unit);
+  for (size_t b = 0; b < series->count; b++)
+    if (series->bins[b].density > 0)
+      row(out, &scale, unicode, &series->bins[b], series->fits ? &series->fit[0] : NULL);
+  if (!series->fits || !series->fit[0].label)
+    return;
+  fprintf(out, "%s ", glyph(FIT, unicode));
+  write_label(out, series->fit[0].label, unicode);
+  fputc('\n', out);
+}
+
+void text_plot_sparkline(size_t n, const double *values, double low, double high, bool unicode, char *text) {
+  size_t at = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (!isfinite(values[i])) {
+      text[at++] = ' ';
+      continue;
+    }
+    double share = high > low ? (values[i] - low) / (high - low) : 0.5;
+    int eighth = (int)floor(fmin(fmax(share, 0), 1) * 7.999);
+    if (unicode) { /* U+2581 .. U+2588 */
+      text[at++] = '\xe2';
+      text[at++] = '\x96';
+      text[at++] = (char)(0x81 + eighth);
+    } else {
+      text[at++] = (char)('0' + eighth);
+    }
+  }
+  text[at] = 0;
+}

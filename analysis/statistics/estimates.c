@@ -1,0 +1,166 @@
+#include "analysis/statistics/estimates.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
+static const char *const window_docs =
+    "fragments of 2 elements (grains or particles) and more (from 1.5 mean element masses), the largest left out\n"
+    "of 5 elements and more (from 4.5 mean element masses), the largest left out\n"
+    "of 10 elements and more (from 9.5 mean element masses), the largest left out";
+static const char
+    *const method_docs = "unweighted least squares of log density on non-empty log bins: the paper's way, biased low\n"
+                         "maximum likelihood on the stored bins\n"
+                         "maximum likelihood on masses in a bounded window\n"
+                         "the same, its lower end by Kolmogorov-Smirnov distance\n"
+                         "power law with exponential cut-off, maximum likelihood on masses";
+
+#define AT(member) offsetof(struct estimate, member)
+#define REAL(name, unit_, member, least, doc_, source_)                                                                \
+  {                                                                                                                    \
+    .path = name, .kind = FIELD_REAL, .unit = unit_, .offset = AT(member), .minimum = least, .maximum = HUGE_VAL,      \
+    .number = NAN, .flags = FIELD_MAY_BE_OFF, .doc = doc_, .source = source_                                           \
+  }
+static const struct field rows_of_table[] = {
+    {.path = "window",
+     .kind = FIELD_CHOICE,
+     .offset = AT(window),
+     .choices = estimates_window_names,
+     .choice_docs = window_docs,
+     .minimum = 0,
+     .maximum = ESTIMATES_WINDOWS - 1,
+     .doc = "Window of masses the estimate was made in."},
+    {.path = "method",
+     .kind = FIELD_CHOICE,
+     .offset = AT(fit.method),
+     .choices = exponent_method_names,
+     .choice_docs = method_docs,
+     .minimum = 0,
+     .maximum = EXPONENT_METHODS - 1,
+     .doc = "How the exponent was estimated."},
+    {.path = "headline",
+     .kind = FIELD_BOOLEAN,
+     .offset = AT(headline),
+     .minimum = 0,
+     .maximum = 1,
+     .doc = "The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and "
+            "more, the "
+            "largest fragment left out."},
+    REAL("lower", "kg", fit.lower, 0, "Lower end of the window really used (2D: kg per metre of thickness).", NULL),
+    REAL("upper", "kg", fit.upper, 0, "Upper end, itself outside: the mass of the largest fragment, or a bin edge.",
+         NULL),
+    {.path = "n",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     .offset = AT(fit.n),
+     .minimum = 0,
+     .maximum = 9007199254740992.0,
+     .doc = "Fragments in the window."},
+    REAL("beta", "1", fit.beta, -HUGE_VAL,
+         "Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off "
+         "when "
+         "there are too few fragments.",
+         "Kun & Herrmann (1999) section 3.3"),
+    REAL("standard_error", "1", fit.standard_error, 0,
+         "Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too "
+         "small by a third); pooled over a point from resampling its runs.",
+         NULL),
+    REAL("cutoff_mass", "kg", fit.cutoff_mass, 0,
+         "m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.", NULL),
+    REAL("ks_distance", "1", fit.ks_distance, 0,
+         "Largest distance between the distribution functions of sample and fit; methods masses and ks only.",
+         "Clauset, Shalizi & Newman (2009)"),
+    REAL("log_likelihood", "1", fit.log_likelihood, -HUGE_VAL,
+         "Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.", NULL),
+};
+const struct field_table estimates_table = FIELD_TABLE(rows_of_table, struct estimate, "estimate",
+                                                       "Exponents of fragment spectra, by method and window.");
+
+double estimates_window_elements(enum estimates_window window) {
+  switch (window) {
+  case ESTIMATES_FROM_2: return 1.5;
+  case ESTIMATES_FROM_5: return 4.5;
+  case ESTIMATES_FROM_10: return 9.5;
+  case ESTIMATES_WINDOWS: break;
+  }
+  return NAN;
+}
+
+static const struct {
+  enum exponent_method method;
+  enum estimates_window window;
+} wanted[ESTIMATES_COUNT] = {
+    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_2},  {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_5},
+    {EXPONENT_LEAST_SQUARES, ESTIMATES_FROM_10}, {EXPONENT_BINNED, ESTIMATES_FROM_2},
+    {EXPONENT_BINNED, ESTIMATES_FROM_5},         {EXPONENT_BINNED, ESTIMATES_FROM_10},
+    {EXPONENT_MASSES, ESTIMATES_FROM_2},         {EXPONENT_MASSES, ESTIMATES_FROM_5},
+    {EXPONENT_MASSES, ESTIMATES_FROM_10},        {EXPONENT_KS, ESTIMATES_FROM_2},
+    {EXPONENT_CUTOFF, ESTIMATES_FROM_5},
+};
+
+status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
+                      struct error *error) {
+  double few[512], *masses = few, total = 0, elements = 0, largest = 0;
+  if (n > sizeof few / sizeof *few && !(masses = malloc(n * sizeof *masses)))
+    return status_fail(error, STATUS_MEMORY, "estimates: no memory for %zu masses", n);
+  size_t resolved = 0;
+  for (size_t i = 0; i < n; i++) {
+    total += fragments[i].mass;
+    elements += fragments[i].count;
+    if (fragments[i].count > 1)
+      masses[resolved++] = fragments[i].mass;
+    largest = fmax(largest, fragments[i].mass);
+  }
+  double element = total / elements;
+  status code = STATUS_OK;
+  for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
+    struct estimate *row = &rows[i];
+    double lower = estimates_window_elements(wanted[i].window) * element;
+    *row = (struct estimate){.window = (int)wanted[i].window,
+                             .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&
+                                         wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,
+                             .fit = {.method = (int)wanted[i].method,
+                                     .lower = lower,
+                                     .upper = largest,
+                                     .beta = NAN,
+                                     .standard_error = NAN,
+                                     .cutoff_mass = NAN,
+                                     .ks_distance = NAN,
+                                     .log_likelihood = NAN}};
+    if (!(largest > lower))
+      continue; /* nothing but dust */
+    code = exponent_fit(wanted[i].method, resolved, masses, (struct exponent_window){lower, largest}, &row->fit, error);
+    if (isinf(row->fit.cutoff_mass))
+      row->fit.cutoff_mass = NAN;
+  }
+  if (masses != few)
+    free(masses);
+  return code;
+}
+
+status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window,
+                       struct error *error) {
+  *is = strncmp(name, "beta", strlen("beta")) == 0;
+  *method = (enum exponent_method)ESTIMATES_HEADLINE_METHOD;
+  *window = (enum estimates_window)ESTIMATES_HEADLINE_WINDOW;
+  if (!*is || strcmp(name, "beta") == 0)
+    return STATUS_OK;
+  char all[512];
+  size_t used = 0;
+  for (int m = EXPONENT_LEAST_SQUARES; m <= EXPONENT_MASSES; m++)
+    for (int w = 0; w < ESTIMATES_WINDOWS; w++) {
+      char known[64];
+      snprintf(known, sizeof known, "beta_%s_%s", exponent_method_names[m], estimates_window_names[w]);
+      *method = (enum exponent_method)m;
+      *window = (enum estimates_window)w;
+      if (strcmp(name, known) == 0)
+        return STATUS_OK;
+      if (used < sizeof all)
+        used += (size_t)snprintf(all + used, sizeof all - used, ", %s", known);
+    }
+  return status_fail(error, STATUS_USAGE,
+                     "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW, which is one of%s", name,
+                     all + 1);
+}

@@ -1,0 +1,207 @@
+#include "analysis/statistics/exponent.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/statistics/cutoff.h"
+#include "analysis/statistics/power_law.h"
+#include "analysis/statistics/tempered.h"
+
+const char *const exponent_method_names[] = {"least_squares", "binned", "masses", "ks", "cutoff", NULL};
+
+void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
+  *first = spectrum_bin(window.lower);
+  if (spectrum_edge(*first) < window.lower)
+    (*first)++;
+  *end = isinf(window.upper) ? INT32_MAX : spectrum_bin(window.upper);
+}
+
+/* K99 section 3.3: log10 of the density of a bin, count over width, against log10 of its middle; every non-empty bin
+ * counts the same. The standard error is the ordinary one of a slope, from the scatter of the points about the line. */
+static void least_squares(size_t n, const struct spectrum_bin_row *bins, int first, int end, struct exponent *out) {
+  double points = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (bins[i].bin < first || bins[i].bin >= end || bins[i].count <= 0)
+      continue;
+    double low = spectrum_edge(bins[i].bin), high = spectrum_edge(bins[i].bin + 1);
+    double x = (bins[i].bin + 0.5) / SPECTRUM_BINS_PER_DECADE, y = log10((double)bins[i].count / (high - low));
+    points++; /* Welford's update: no cancellation */
+    double dx = x - mean_x, dy = y - mean_y;
+    mean_x += dx / points;
+    mean_y += dy / points;
+    xx += dx * (x - mean_x);
+    xy += dx * (y - mean_y);
+    yy += dy * (y - mean_y);
+  }
+  if (points < EXPONENT_LEAST_BINS)
+    return;
+  double slope = xy / xx;
+  out->beta = -slope;
+  out->standard_error = sqrt(fmax(yy - slope * xy, 0) / (points - 2) / xx);
+}
+
+static void binned(size_t n, const struct spectrum_bin_row *bins, int first, int end, struct exponent *out) {
+  struct power_law_group group = {.span = end == INT32_MAX ? HUGE_VAL : (double)end - first};
+  for (size_t i = 0; i < n; i++) {
+    if (bins[i].bin < first || bins[i].bin >= end)
+      continue;
+    group.weight += (double)bins[i].count;
+    group.mean += (double)bins[i].count * (bins[i].bin - first);
+  }
+  if (group.weight < EXPONENT_LEAST_FRAGMENTS)
+    return;
+  group.mean /= group.weight;
+  struct power_law fit = power_law_fit(1, &group, log(10) / SPECTRUM_BINS_PER_DECADE);
+  out->beta = fit.beta;
+  out->standard_error = fit.standard_error;
+  out->log_likelihood = fit.log_likelihood;
+}
+
+static status check(enum exponent_method method, struct exponent_window window, struct exponent *out,
+                    struct error *error) {
+  *out = (struct exponent){.method = (int)method,
+                           .lower = window.lower,
+                           .upper = window.upper,
+                           .beta = NAN,
+                           .standard_error = NAN,
+                           .cutoff_mass = NAN,
+                           .ks_distance = NAN,
+                           .log_likelihood = NAN};
+  if (method < 0 || method >= EXPONENT_METHODS)
+    return status_fail(error, STATUS_USAGE, "exponent: there is no method number %d", (int)method);
+  if (!(window.lower > 0) || !isfinite(window.lower) || !(window.upper > window.lower))
+    return status_fail(error, STATUS_USAGE, "exponent: window [%g, %g) kg: expected 0 < lower < upper", window.lower,
+                       window.upper);
+  return STATUS_OK;
+}
+
+status exponent_fit_bins(enum exponent_method method, size_t n, const struct spectrum_bin_row *bins,
+                         struct exponent_window window, struct exponent *out, struct error *error) {
+  status code = check(method, window, out, error);
+  if (code)
+    return code;
+  int first, end;
+  exponent_bins_inside(window, &first, &end);
+  out->lower = spectrum_edge(first);
+  if (end != INT32_MAX)
+    out->upper = spectrum_edge(end);
+  for (size_t i = 0; i < n; i++)
+    if (bins[i].bin >= first && bins[i].bin < end)
+      out->n += bins[i].count;
+  if (end <= first)
+    return STATUS_OK;
+  if (method == EXPONENT_LEAST_SQUARES)
+    least_squares(n, bins, first, end, out);
+  else if (method == EXPONENT_BINNED)
+    binned(n, bins, first, end, out);
+  else
+    return status_fail(error, STATUS_USAGE, "exponent: method '%s' needs masses, not bins",
+                       exponent_method_names[method]);
+  return STATUS_OK;
+}
+
+static status fit_from_masses_by_bins(enum exponent_method method, size_t n, const double *masses,
+                                      struct exponent_window window, struct exponent *out, struct error *error) {
+  struct spectrum_bin_row few[256], *rows = few; /* 25 decades without an allocation */
+  size_t count = spectrum_fill(n, masses, few, 256);
+  if (count > 256) {
+    rows = malloc(count * sizeof *rows);
+    if (!rows)
+      return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu bins", count);
+    spectrum_fill(n, masses, rows, count);
+  }
+  status code = exponent_fit_bins(method, count, rows, window, out, error);
+  if (rows != few)
+    free(rows);
+  return code;
+}
+
+static int descending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x < y) - (x > y);
+}
+
+/* The masses inside the window, descending; *count of them. NULL only when memory is short. */
+static double *select_sorted(size_t n, const double *masses, double lower, double upper, size_t *count) {
+  double *inside = malloc((n ? n : 1) * sizeof *inside);
+  if (!inside)
+    return NULL;
+  size_t m = 0;
+  int sorted = 1;
+  for (size_t i = 0; i < n; i++) {
+    if (!(masses[i] >= lower && masses[i] < upper) || isinf(masses[i]))
+      continue;
+    inside[m] = masses[i];
+    if (m && inside[m] > inside[m - 1])
+      sorted = 0;
+    m++;
+  }
+  if (!sorted)
+    qsort(inside, m, sizeof *inside, descending);
+  *count = m;
+  return inside;
+}
+
+/* Pure power law on the window of *out; u: ln(m/lower), descending. */
+static void pure(size_t n, const double *u, double span, struct exponent *out) {
+  struct power_law_group group = {.weight = (double)n, .span = span};
+  for (size_t i = 0; i < n; i++)
+    group.mean += u[i];
+  group.mean /= group.weight;
+  struct power_law fit = power_law_fit(1, &group, 0);
+  out->beta = fit.beta;
+  out->standard_error = fit.standard_error;
+  out->log_likelihood = fit.log_likelihood;
+  if (!isfinite(fit.beta))
+    return;
+  double distance = 0;
+  for (size_t i = 0; i < n; i++) { /* i fragments lie above u[i] */
+    double below = power_law_below(fit.beta, u[i], span), number = (double)n;
+    distance = fmax(distance, fmax(fabs((double)(n - i) / number - below), fabs((double)(n - 1 - i) / number - below)));
+  }
+  out->ks_distance = distance;
+}
+
+static void tempered(size_t n, const double *u, double span, struct exponent *out) {
+  struct tempered_group group = tempered_group(TEMPERED_CUTOFF, n, u, span);
+  struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
+  out->beta = fit.beta;
+  out->standard_error = fit.standard_error;
+  out->log_likelihood = fit.log_likelihood;
+  if (isfinite(fit.beta))
+    out->cutoff_mass = fit.rate > 0 ? out->lower / fit.rate : HUGE_VAL;
+}
+
+status exponent_fit(enum exponent_method method, size_t n, const double *masses, struct exponent_window window,
+                    struct exponent *out, struct error *error) {
+  status code = check(method, window, out, error);
+  if (code)
+    return code;
+  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_BINNED)
+    return fit_from_masses_by_bins(method, n, masses, window, out, error);
+
+  size_t count = 0;
+  double *inside = select_sorted(n, masses, window.lower, window.upper, &count);
+  if (!inside)
+    return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
+  if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
+    double lower = cutoff_lower(count, inside);
+    if (isfinite(lower))
+      out->lower = lower;
+    while (count > 0 && inside[count - 1] < out->lower)
+      count--;
+  }
+  out->n = (int64_t)count;
+  if (count >= EXPONENT_LEAST_FRAGMENTS) {
+    double span = isinf(window.upper) ? HUGE_VAL : log(window.upper / out->lower);
+    for (size_t i = 0; i < count; i++)
+      inside[i] = log(inside[i] / out->lower);
+    if (method == EXPONENT_CUTOFF)
+      tempered(count, inside, span, out);
+    else
+      pure(count, inside, span, out);
+  }
+  free(inside);
+  return STATUS_OK;
+}

@@ -1,0 +1,70 @@
+/* `clast help [COMMAND]`: the list of commands, one command's help, or the manual page. */
+#include "campaign/terminal/help.h"
+
+#include <string.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/terminal/manual.h"
+
+const char help_purpose[] = "Runs ensembles of fragmentation simulations and keeps every result in one SQLite file.";
+const char help_first_steps[] = "clast scenes                                   # what can be broken\n"
+                                "clast simulate disc-explosion --picture a.png  # one run, drawn\n"
+                                "clast run campaign.yaml                        # many runs; the same command resumes";
+const char help_streams[] = "Data goes to stdout, remarks and errors to stderr.";
+
+struct options {
+  bool man;
+};
+
+void help_overview(FILE *out) {
+  fprintf(out, "usage: clast COMMAND [OPTIONS] ...\n\n%s\n\nfirst steps:\n", help_purpose);
+  option_lines(help_first_steps, out);
+  const char *group = "";
+  for (size_t i = 0; i < commands_count(); i++) {
+    const struct command *command = commands_all()[i];
+    if (strcmp(command->group, group) != 0)
+      fprintf(out, "\n%s:\n", command->group);
+    group = command->group;
+    fprintf(out, "  %-11s %s\n", command->name, command->summary);
+  }
+  fprintf(out, "\n`clast COMMAND --help` tells more, with examples. %s\n", help_streams);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  if (options->man && line->count > 0)
+    return status_fail(error, STATUS_USAGE, "--man prints the manual page of all commands; leave out \"%.64s\"",
+                       line->arguments[0]);
+  if (options->man) {
+    manual_write(stdout);
+    return STATUS_OK;
+  }
+  if (line->count == 0) {
+    help_overview(stdout);
+    return STATUS_OK;
+  }
+  const struct command *command = commands_find(line->arguments[0], error);
+  if (!command)
+    return STATUS_USAGE;
+  option_help(command, stdout);
+  return STATUS_OK;
+}
+
+static const struct option_row rows[] = {
+    {"man", 0, OPTION_FLAG, NULL, offsetof(struct options, man), 0, 0, NULL,
+     "Print the manual page clast(1), every command in one text, as roff."},
+};
+
+const struct command help_command = {
+    .name = "help",
+    .group = "about clast",
+    .arguments = "[COMMAND]",
+    .summary = "this list, the help of one command, or the manual page",
+    .doc = "Lists the commands, or prints one command's usage, options, examples and exit codes, or the manual page.",
+    .examples = "clast help run\nclast help --man | man -l -",
+    .maximum_arguments = 1,
+    .options = rows,
+    .option_count = sizeof rows / sizeof rows[0],
+    .options_size = sizeof(struct options),
+    .run = run,
+};

@@ -1,0 +1,144 @@
+/* The manual page from the command tables: every command, option, example and exit code as --help has them. Its own
+ * words are only those that no table holds: NAME, ENVIRONMENT, FILES. */
+#include "campaign/terminal/manual.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "campaign/build_facts.h"
+#include "campaign/commands/commands.h"
+#include "campaign/terminal/help.h"
+
+struct entry {
+  const char *name, *meaning;
+};
+
+static const struct entry environment[] = {
+    {"CLAST_CPU", "baseline, v3 (AVX2, FMA) or v4 (AVX-512): the class of CPU whose bits are wanted; one that the\n"
+                  "machine does not have is not used. Without it: the best it has. Bits are the same within a class."},
+    {"NO_COLOR", "When it is set and not empty, nothing is coloured."},
+    {"TERM", "When it is unset or dumb, nothing is coloured, and progress is plain lines instead of a bar."},
+};
+
+static const struct entry files[] = {
+    {"CAMPAIGN.yaml", "What to vary, how many seeds, which store. `clast schema campaign` prints its JSON Schema."},
+    {"SCENE.yaml", "One simulation, wherever a SCENE is asked for. `clast scenes NAME` prints one to start from."},
+    {"STORE.db", "Every result, an SQLite 3 file, made by `clast run`; while it is written, `STORE.db-wal` and\n"
+                 "`STORE.db-shm` are parts of it."},
+    {"STORE-fields/", "Fields (HDF5) of the runs that the campaign keeps them of."},
+};
+
+enum text { PROSE, LITERAL };
+
+/* Without these escapes roff takes the character for its own, or a UTF-8 terminal shows one that cannot be pasted into
+ * a shell. In prose `...` is bold, a hyphen between letters stays one, and lines run on but for indented ones. */
+static void print_text(const char *text, enum text kind, FILE *out) {
+  static const char *const escapes[128] = {['\\'] = "\\(rs", ['-'] = "\\-",   ['\''] = "\\(aq", ['"'] = "\\(dq",
+                                           ['`'] = "\\(ga",  ['^'] = "\\(ha", ['~'] = "\\(ti"};
+  bool code = false, indented = false;
+  for (const char *c = text; *c; c++) {
+    const char *escape = (unsigned char)*c < 128 ? escapes[(unsigned char)*c] : NULL;
+    bool literal = kind == LITERAL || code || indented;
+    bool within_word = c > text && isalpha((unsigned char)c[-1]) && isalpha((unsigned char)c[1]);
+    if (*c == '.' && (c == text || c[-1] == '\n'))
+      fputs("\\&", out);
+    if (*c == '\n') {
+      indented = c[1] == ' ';
+      fputc(kind == LITERAL || indented ? '\n' : ' ', out);
+    } else if (*c == '`' && kind == PROSE)
+      fputs((code = !code) ? "\\fB" : "\\fR", out);
+    else if (escape && (literal || !within_word || *c != '-'))
+      fputs(escape, out);
+    else
+      fputc(*c, out);
+  }
+}
+
+static void print_entry(const char *name, const char *meaning, FILE *out) {
+  fputs(".TP 15\n\\fB", out);
+  print_text(name, LITERAL, out);
+  fputs("\\fR\n", out);
+  print_text(meaning, PROSE, out);
+  fputc('\n', out);
+}
+
+static void print_entries(const char *section, size_t count, const struct entry *entries, FILE *out) {
+  fprintf(out, ".SH %s\n", section);
+  for (size_t i = 0; i < count; i++)
+    print_entry(entries[i].name, entries[i].meaning, out);
+}
+
+static void print_examples(const char *lines, FILE *out) {
+  fputs(".RS 4\n.EX\n", out);
+  print_text(lines, LITERAL, out);
+  fputs("\n.EE\n.RE\n", out);
+}
+
+static void print_option(const struct option_row *row, FILE *out) {
+  fputs(".TP 15\n", out);
+  if (row->letter)
+    fprintf(out, "\\fB\\-%c\\fR, ", row->letter);
+  fputs("\\fB\\-\\-", out);
+  print_text(row->name, LITERAL, out);
+  fputs(row->argument ? "\\fR \\fI" : "", out);
+  print_text(row->argument ? row->argument : "", LITERAL, out);
+  fputs("\\fR\n", out);
+  print_text(row->doc, PROSE, out);
+  if (row->initial && *row->initial) {
+    fputs(" (default ", out);
+    print_text(row->initial, LITERAL, out);
+    fputc(')', out);
+  }
+  fputc('\n', out);
+}
+
+static void print_command(const struct command *command, FILE *out) {
+  fprintf(out, ".SS clast %s%s%s", command->name, command->option_count ? " [OPTIONS]" : "",
+          *command->arguments ? " " : "");
+  print_text(command->arguments, LITERAL, out);
+  fputc('\n', out);
+  print_text(command->doc, PROSE, out);
+  fputc('\n', out);
+  for (size_t i = 0; i < command->option_count; i++)
+    print_option(&command->options[i], out);
+  fputs(".PP\nExamples:\n", out);
+  print_examples(command->examples, out);
+}
+
+void manual_write(FILE *out) {
+  fputs(".\\\" Made by `clast help --man` from the tables of the commands: change those.\n"
+        ".TH CLAST 1 " BUILD_DATE " \"clast " BUILD_VERSION "\" \"User Commands\"\n"
+        ".nr HY 0\n.ad l\n" /* a name is never broken, so that it can be searched for */
+        ".SH NAME\nclast \\- ensembles of brittle-fragmentation simulations\n"
+        ".SH SYNOPSIS\n\\fBclast\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR] ...\n"
+        ".br\n\\fBclast\\fR \\fICOMMAND\\fR \\fB\\-\\-help\\fR\n.br\n\\fBclast \\-\\-version\\fR\n"
+        ".SH DESCRIPTION\n",
+        out);
+  print_text(help_purpose, PROSE, out);
+  fputs("\n.PP\nFirst steps:\n", out);
+  print_examples(help_first_steps, out);
+  fputs(".PP\n", out);
+  print_text(help_streams, PROSE, out);
+  fputs("\n.SH COMMANDS\n.PD 0\n", out);
+  for (size_t i = 0; i < commands_count(); i++)
+    print_entry(commands_all()[i]->name, commands_all()[i]->summary, out);
+  fputs(".PD\n", out);
+  const char *group = "";
+  for (size_t i = 0; i < commands_count(); i++) {
+    const struct command *command = commands_all()[i];
+    if (strcmp(command->group, group) != 0) {
+      fputs(".SH ", out);
+      for (const char *c = command->group; *c; c++)
+        fputc(toupper((unsigned char)*c), out);
+      fputc('\n', out);
+    }
+    group = command->group;
+    print_command(command, out);
+  }
+#define EXIT_ENTRY(constant, value, name, meaning) {#value, meaning},
+  static const struct entry exits[] = {STATUS_LIST(EXIT_ENTRY)};
+  print_entries("EXIT STATUS", sizeof exits / sizeof exits[0], exits, out);
+  print_entries("ENVIRONMENT", sizeof environment / sizeof environment[0], environment, out);
+  print_entries("FILES", sizeof files / sizeof files[0], files, out);
+  fputs(".SH SEE ALSO\n\\fBsqlite3\\fR(1), \\fBmpirun\\fR(1)\n", out);
+}

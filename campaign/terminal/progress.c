@@ -1,0 +1,149 @@
+#include "campaign/terminal/progress.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+struct progress {
+  FILE *out;
+  enum progress_style style;
+  bool colour, drawn;
+  int columns;
+  double last_time; /* of the last line or redraw */
+  int last_share;   /* twentieths said so far (plain) */
+};
+
+enum progress_style progress_style_of(FILE *out) {
+  const char *term = getenv("TERM");
+  return isatty(fileno(out)) && term && *term && strcmp(term, "dumb") != 0 ? PROGRESS_BAR : PROGRESS_PLAIN;
+}
+
+struct progress *progress_create(FILE *out, enum progress_style style, bool colour, int columns) {
+  struct progress *progress = calloc(1, sizeof *progress);
+  if (progress)
+    *progress = (struct progress){out, style, colour, false, columns, -HUGE_VAL, -1};
+  return progress;
+}
+
+static int width(const struct progress *progress) {
+  struct winsize size;
+  if (progress->columns > 0)
+    return progress->columns;
+  if (ioctl(fileno(progress->out), TIOCGWINSZ, &size) == 0 && size.ws_col >= 20)
+    return size.ws_col;
+  return 80;
+}
+
+int progress_duration(double seconds, char *buffer, size_t size) {
+  if (!(seconds >= 0) || isinf(seconds))
+    return snprintf(buffer, size, "?");
+  if (seconds < 9.95)
+    return snprintf(buffer, size, "%.1f s", seconds);
+  long long whole = llround(fmin(seconds, 1e15));
+  if (whole < 60)
+    return snprintf(buffer, size, "%lld s", whole);
+  if (whole < 3600)
+    return snprintf(buffer, size, "%lld min %02lld s", whole / 60, whole % 60);
+  if (whole < 48 * 3600)
+    return snprintf(buffer, size, "%lld h %02lld min", whole / 3600, whole / 60 % 60);
+  return snprintf(buffer, size, "%lld d %02lld h", whole / 86400, whole / 3600 % 24);
+}
+
+/* The facts, without bar: "120 of 400 runs, 2 failed, 4 running, 3.1 runs/s, 1 min 30 s left, largest_fraction 0.312 +-
+ * 0.008" */
+static void facts(const struct progress_state *state, char *buffer, size_t size) {
+  char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "";
+  progress_duration(state->seconds_left, left, sizeof left);
+  if (state->failed)
+    snprintf(failed, sizeof failed, ", %lld failed", (long long)state->failed);
+  if (state->rate > 0)
+    snprintf(rate, sizeof rate, state->rate < 10 ? ", %.2g runs/s" : ", %.0f runs/s", state->rate);
+  if (state->seconds_left >= 0)
+    snprintf(time, sizeof time, ", %s left", left);
+  if (state->quantity && isfinite(state->mean)) {
+    if (isfinite(state->half_width))
+      snprintf(mean, sizeof mean, ", %.60s %.4g ± %.2g", state->quantity, state->mean, state->half_width);
+    else
+      snprintf(mean, sizeof mean, ", %.60s %.4g", state->quantity, state->mean);
+  }
+  snprintf(buffer, size, "%lld of %s%lld runs%s, %d running%s%s%s", (long long)state->done,
+           state->total_is_minimum ? "at least " : "", (long long)state->total, failed, (int)state->running, rate, time,
+           mean);
+}
+
+static double share_of(const struct progress_state *state) {
+  return state->total > 0 ? fmin((double)state->done / (double)state->total, 1) : 1;
+}
+
+/* Cut to `columns` characters (not bytes: the text holds a plus-minus sign). */
+static void cut(char *text, int columns) {
+  int seen = 0;
+  for (char *c = text; *c; c++) {
+    if (((unsigned char)*c & 0xC0) == 0x80)
+      continue; /* the rest of a character */
+    if (seen++ == columns) {
+      *c = '\0';
+      return;
+    }
+  }
+}
+
+static void draw_bar(struct progress *progress, const struct progress_state *state) {
+  enum { BAR = 20 };
+  char text[512], bar[BAR * 3 + 1] = "";
+  int full = (int)floor(share_of(state) * BAR);
+  for (int i = 0; i < BAR; i++)
+    strcat(bar, i < full ? "━" : "╌");
+  facts(state, text, sizeof text);
+  int room = width(progress) - 1 - BAR - 6; /* the last column stays free: some terminals wrap there */
+  cut(text, room > 0 ? room : 0);
+  const char *on = progress->colour ? (state->failed ? "\033[33m" : "\033[32m") : "",
+             *off = progress->colour ? "\033[0m" : "";
+  fprintf(progress->out, "\r\033[K%s%s%s %3d%% %s", on, bar, off, (int)floor(share_of(state) * 100), text);
+  fflush(progress->out);
+  progress->drawn = true;
+}
+
+void progress_update(struct progress *progress, const struct progress_state *state, double now, bool last) {
+  if (progress->style == PROGRESS_BAR) {
+    if (!last && now - progress->last_time < 0.1)
+      return;
+    draw_bar(progress, state);
+    progress->last_time = now;
+    return;
+  }
+  int share = (int)floor(share_of(state) * 20);
+  bool first = progress->last_share < 0; /* nothing is said before something has happened */
+  if (first)
+    progress->last_time = now;
+  if (!last && (first || share <= progress->last_share) && now - progress->last_time < 60) {
+    if (first)
+      progress->last_share = share;
+    return;
+  }
+  char text[512];
+  facts(state, text, sizeof text);
+  fprintf(progress->out, "%3d%%  %s\n", (int)floor(share_of(state) * 100), text);
+  fflush(progress->out);
+  progress->last_share = share;
+  progress->last_time = now;
+}
+
+void progress_note(struct progress *progress, const char *text) {
+  if (progress->drawn)
+    fputs("\r\033[K", progress->out);
+  progress->drawn = false;
+  fprintf(progress->out, "%s\n", text);
+  fflush(progress->out);
+}
+
+void progress_free(struct progress *progress) {
+  if (!progress)
+    return;
+  if (progress->drawn)
+    fputc('\n', progress->out);
+  fflush(progress->out);
+  free(progress);
+}

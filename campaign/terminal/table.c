@@ -1,0 +1,383 @@
+/* Three formats behind one row-by-row interface. */
+#include "campaign/terminal/table.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on columns is 2000 */
+
+struct column {
+  char *name, *unit;
+  size_t width; /* of the aligned table, in characters */
+  bool text;    /* aligned left */
+};
+
+struct table {
+  enum table_format format;
+  FILE *out;
+  struct column *columns;
+  size_t column_count, cell;
+  uint64_t rows;
+  char **kept; /* the aligned table's first rows: cells not yet printed */
+  bool *kept_text;
+  size_t kept_count;
+  bool out_of_memory, broken;
+  int write_error;
+};
+
+struct table *table_new(enum table_format format, FILE *out) {
+  static const struct table failed = {.out_of_memory = true, .broken = true};
+  struct table *table = calloc(1, sizeof *table);
+  if (!table)
+    return (struct table *)&failed; /* only ever read: every call below returns at once when broken */
+  table->format = format;
+  table->out = out;
+  return table;
+}
+
+bool table_broken(const struct table *table) {
+  return table->broken;
+}
+
+static void fail(struct table *table) {
+  table->out_of_memory = true;
+  table->broken = true;
+}
+
+static char *copy(struct table *table, const char *text) {
+  char *made = strdup(text);
+  if (!made)
+    fail(table);
+  return made;
+}
+
+void table_column(struct table *table, const char *name, const char *unit) {
+  if (table->broken)
+    return;
+  struct column *columns = realloc(table->columns, (table->column_count + 1) * sizeof *columns);
+  if (!columns || table->column_count == COLUMNS_MAXIMUM) {
+    if (columns)
+      table->columns = columns;
+    fail(table);
+    return;
+  }
+  table->columns = columns;
+  columns[table->column_count] = (struct column){.name = copy(table, name)};
+  if (unit && strcmp(unit, "1") != 0 && *unit)
+    columns[table->column_count].unit = copy(table, unit);
+  table->column_count++;
+}
+
+/* Characters, not bytes: continuation bytes of UTF-8 do not count. */
+static size_t width_of(const char *text) {
+  size_t width = 0;
+  for (; *text; text++)
+    width += (*text & 0xC0) != 0x80;
+  return width;
+}
+
+static void pad(struct table *table, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    fputc(' ', table->out);
+}
+
+static void print_aligned(struct table *table, size_t column, const char *text, const char *unit, bool left) {
+  size_t width = width_of(text) + (unit ? width_of(unit) + 3 : 0);
+  size_t gap = table->columns[column].width > width ? table->columns[column].width - width : 0;
+  bool last = column + 1 == table->column_count;
+  if (!left)
+    pad(table, gap);
+  fputs(text, table->out);
+  if (unit)
+    fprintf(table->out, " [%s]", unit);
+  if (left && !last)
+    pad(table, gap);
+  fputs(last ? "\n" : "  ", table->out);
+}
+
+static void print_kept(struct table *table) {
+  for (size_t c = 0; c < table->column_count; c++) {
+    struct column *column = &table->columns[c];
+    column->width = width_of(column->name) + (column->unit ? width_of(column->unit) + 3 : 0);
+    for (size_t i = c; i < table->kept_count; i += table->column_count) {
+      size_t width = width_of(table->kept[i]);
+      column->width = width > column->width ? width : column->width;
+      column->text |= table->kept_text[i];
+    }
+  }
+  for (size_t c = 0; c < table->column_count; c++)
+    print_aligned(table, c, table->columns[c].name, table->columns[c].unit, table->columns[c].text);
+  for (size_t i = 0; i < table->kept_count; i++) {
+    size_t c = i % table->column_count;
+    print_aligned(table, c, table->kept[i], NULL, table->columns[c].text);
+    free(table->kept[i]);
+  }
+  free(table->kept);
+  free(table->kept_text);
+  table->kept = NULL;
+  table->kept_text = NULL;
+  table->kept_count = 0;
+}
+
+static void csv_text(const char *text, FILE *out) {
+  if (!strpbrk(text, ",\"\r\n") && *text && *text != ' ') {
+    fputs(text, out);
+    return;
+  }
+  fputc('"', out);
+  for (; *text; text++) {
+    if (*text == '"')
+      fputc('"', out);
+    fputc(*text, out);
+  }
+  fputc('"', out);
+}
+
+/* Length of the well-formed UTF-8 sequence at `text`, 0 when there is none (overlong, surrogate, truncated, too large).
+ */
+static size_t utf8_length(const unsigned char *text) {
+  unsigned char a = text[0];
+  size_t length = a < 0x80 ? 1 : a >= 0xC2 && a < 0xE0 ? 2 : a >= 0xE0 && a < 0xF0 ? 3 : a >= 0xF0 && a < 0xF5 ? 4 : 0;
+  for (size_t i = 1; i < length; i++)
+    if ((text[i] & 0xC0) != 0x80)
+      return 0;
+  if ((a == 0xE0 && text[1] < 0xA0) || (a == 0xED && text[1] > 0x9F) || (a == 0xF0 && text[1] < 0x90) ||
+      (a == 0xF4 && text[1] > 0x8F))
+    return 0;
+  return length;
+}
+
+void table_json_string(const char *text, FILE *out) {
+  fputc('"', out);
+  for (const unsigned char *c = (const unsigned char *)text; *c;) {
+    size_t length = utf8_length(c);
+    if (length == 0) {
+      fputs("\\ufffd", out);
+      c++;
+      continue;
+    }
+    if (*c == '"' || *c == '\\')
+      fprintf(out, "\\%c", *c);
+    else if (*c == '\n')
+      fputs("\\n", out);
+    else if (*c == '\t')
+      fputs("\\t", out);
+    else if (*c < 0x20 || *c == 0x7F)
+      fprintf(out, "\\u%04x", (unsigned)*c);
+    else
+      fwrite(c, 1, length, out);
+    c += length;
+  }
+  fputc('"', out);
+}
+
+static void header(struct table *table) {
+  if (table->format == TABLE_TEXT) {
+    print_kept(table);
+  } else if (table->format == TABLE_CSV) {
+    for (size_t c = 0; c < table->column_count; c++) {
+      csv_text(table->columns[c].name, table->out);
+      fputs(c + 1 < table->column_count ? "," : "\r\n", table->out);
+    }
+  } else {
+    fputc('[', table->out);
+  }
+}
+
+/* What a write to `out` failed with: a pipe whose reader went away says so for ever, errno may be gone by now. */
+static int failure_of(FILE *out, int code) {
+  struct pollfd pipe_end = {.fd = fileno(out), .events = POLLOUT};
+  if (poll(&pipe_end, 1, 0) == 1 && (pipe_end.revents & POLLERR))
+    return EPIPE;
+  return code ? code : EIO;
+}
+
+static void check_output(struct table *table) {
+  if (ferror(table->out)) {
+    table->write_error = failure_of(table->out, errno);
+    table->broken = true;
+  }
+}
+
+/* One cell. kind: 't' text, 'n' number (text holds its digits), '-' missing. `shown` is for people. */
+static void cell(struct table *table, char kind, const char *text, const char *shown) {
+  if (table->broken || table->column_count == 0)
+    return;
+  size_t column = table->cell;
+  bool streaming = table->format != TABLE_TEXT || table->rows >= SAMPLE_ROWS;
+  if (table->rows == 0 && column == 0 && table->format != TABLE_TEXT)
+    header(table);
+  if (table->format == TABLE_TEXT && !streaming) {
+    size_t room = table->column_count * SAMPLE_ROWS;
+    if (!table->kept) {
+      table->kept = calloc(room, sizeof *table->kept);
+      table->kept_text = calloc(room, sizeof *table->kept_text);
+    }
+    char *made = table->kept && table->kept_text ? copy(table, shown) : NULL;
+    if (!made) {
+      fail(table);
+      return;
+    }
+    table->kept_text[table->kept_count] = kind == 't';
+    table->kept[table->kept_count++] = made;
+  } else if (table->format == TABLE_TEXT) {
+    if (table->rows == SAMPLE_ROWS && column == 0)
+      header(table);
+    print_aligned(table, column, shown, NULL, table->columns[column].text);
+  } else if (table->format == TABLE_CSV) {
+    if (kind == 't')
+      csv_text(text, table->out);
+    else if (kind == 'n')
+      fputs(text, table->out);
+    fputs(column + 1 < table->column_count ? "," : "\r\n", table->out);
+  } else {
+    fputs(column == 0 ? (table->rows ? ",\n {" : "\n {") : ", ", table->out);
+    table_json_string(table->columns[column].name, table->out);
+    fputs(": ", table->out);
+    if (kind == 't')
+      table_json_string(text, table->out);
+    else
+      fputs(kind == 'n' ? text : "null", table->out);
+    if (column + 1 == table->column_count)
+      fputc('}', table->out);
+  }
+  if (++table->cell == table->column_count) {
+    table->cell = 0;
+    table->rows++;
+    check_output(table);
+  }
+}
+
+void table_missing(struct table *table) {
+  cell(table, '-', "", "-");
+}
+
+void table_text(struct table *table, const char *text) {
+  if (!text) {
+    table_missing(table);
+    return;
+  }
+  if (table->format != TABLE_TEXT || !strpbrk(text, "\n\r\t\033")) {
+    cell(table, 't', text, *text ? text : "");
+    return;
+  }
+  char *line = copy(table, text); /* a row stays one line, and no text from a file drives the terminal */
+  if (!line)
+    return;
+  for (char *c = line; *c; c++)
+    if ((unsigned char)*c < 0x20)
+      *c = ' ';
+  cell(table, 't', line, line);
+  free(line);
+}
+
+void table_integer(struct table *table, int64_t number) {
+  char digits[32];
+  snprintf(digits, sizeof digits, "%" PRId64, number);
+  cell(table, 'n', digits, digits);
+}
+
+void table_boolean(struct table *table, bool value) {
+  if (table->format == TABLE_JSON)
+    cell(table, 'n', value ? "true" : "false", "");
+  else
+    cell(table, 't', value ? "true" : "false", value ? "yes" : "no");
+}
+
+void table_real(struct table *table, double number) {
+  table_fixed(table, number, -1);
+}
+
+void table_fixed(struct table *table, double number, int decimals) {
+  if (isnan(number)) {
+    table_missing(table);
+    return;
+  }
+  if (isinf(number)) { /* JSON has no infinity: the largest double would lie, so it is a text */
+    const char *name = number > 0 ? "Infinity" : "-Infinity";
+    cell(table, table->format == TABLE_JSON ? 't' : 'n',
+         table->format == TABLE_CSV ? (number > 0 ? "inf" : "-inf") : name, number > 0 ? "inf" : "-inf");
+    return;
+  }
+  char digits[40], shown[40];
+  for (int precision = 15; precision <= 17; precision++) {
+    snprintf(digits, sizeof digits, "%.*g", precision, number);
+    if (strtod(digits, NULL) == number)
+      break;
+  }
+  if (decimals < 0 || fabs(number) > 1e6)
+    snprintf(shown, sizeof shown, "%.5g", number);
+  else
+    snprintf(shown, sizeof shown, "%.*f", decimals, number);
+  cell(table, 'n', digits, shown);
+}
+
+static status verdict(int write_error, struct error *error) {
+  if (write_error == 0 || write_error == EPIPE)
+    return STATUS_OK;
+  return status_fail(error, STATUS_IO, "cannot write to standard output: %s", strerror(write_error));
+}
+
+status table_flush(FILE *out, struct error *error) {
+  errno = 0;
+  if (fflush(out) == 0 && !ferror(out))
+    return STATUS_OK;
+  int code = failure_of(out, errno);
+  clearerr(out);
+  return verdict(code, error);
+}
+
+void table_drop(struct table *table) {
+  if (!table->out)
+    return; /* the one that could not be made */
+  for (size_t i = 0; i < table->kept_count; i++)
+    free(table->kept[i]);
+  for (size_t c = 0; c < table->column_count; c++) {
+    free(table->columns[c].name);
+    free(table->columns[c].unit);
+  }
+  free(table->kept);
+  free(table->kept_text);
+  free(table->columns);
+  free(table);
+}
+
+status table_end(struct table *table, struct error *error) {
+  bool out_of_memory = table->out_of_memory;
+  if (!table->out)
+    return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
+  if (!table->broken) {
+    bool nothing_yet = table->rows == 0 || (table->format == TABLE_TEXT && table->rows <= SAMPLE_ROWS);
+    if (nothing_yet)
+      header(table);
+    if (table->format == TABLE_JSON)
+      fputs(table->rows ? "\n]\n" : "]\n", table->out);
+    errno = 0;
+    (void)fflush(table->out); /* sets the stream's error flag */
+    check_output(table);
+  }
+  int write_error = table->write_error;
+  clearerr(table->out); /* reported here, once */
+  table_drop(table);
+  if (out_of_memory)
+    return status_fail(error, STATUS_MEMORY, "out of memory while printing a table");
+  return verdict(write_error, error);
+}
+
+status table_choose(const struct table_options *options, enum table_format *format, struct error *error) {
+  if (options->json && options->csv)
+    return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
+  *format = options->json ? TABLE_JSON : options->csv ? TABLE_CSV : TABLE_TEXT;
+  return STATUS_OK;
+}
+
+status table_text_only(const struct table_options *options, const char *what, struct error *error) {
+  if (options->json || options->csv)
+    return status_fail(error, STATUS_USAGE, "%s is text, not a table: leave --%s out", what,
+                       options->json ? "json" : "csv");
+  return STATUS_OK;
+}

@@ -1,0 +1,64 @@
+/* Rows on stdout, three ways: an aligned table for people, CSV (RFC 4180) and JSON (one array of objects) for programs.
+ *
+ * Cells are added in column order, row after row. CSV and JSON are written row by row as they come; the aligned table
+ * keeps the first rows to find its widths. CSV and JSON carry numbers so that they read back as the same bits; the
+ * aligned table shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null
+ * in JSON, "-" in the table. */
+#ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
+#define CLAST_CAMPAIGN_TERMINAL_TABLE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "schemas/status.h"
+
+enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON };
+
+struct table;
+
+/* Never NULL: a failed allocation is remembered and returned by table_end. `out` is borrowed. */
+struct table *table_new(enum table_format format, FILE *out);
+
+/* Before the first cell. unit: NULL or "1" for none. Texts are copied. */
+void table_column(struct table *table, const char *name, const char *unit);
+
+void table_text(struct table *table, const char *text); /* NULL: missing */
+void table_real(struct table *table, double number);
+/* The same with so many decimals in the aligned table. */
+void table_fixed(struct table *table, double number, int decimals);
+void table_integer(struct table *table, int64_t number);
+void table_boolean(struct table *table, bool value);
+void table_missing(struct table *table);
+
+/* Writes what is left, frees the table. STATUS_IO when stdout could not take it (disk full); a reader that went away
+ * (EPIPE: `| head`) is fine. */
+status table_end(struct table *table, struct error *error);
+
+void table_drop(struct table *table); /* frees it, prints nothing that was not printed yet */
+
+/* True once the reader has gone away or writing failed: no need to make more rows. */
+bool table_broken(const struct table *table);
+
+/* One JSON string with its quotes, escaped; bytes that are no UTF-8 become U+FFFD. */
+void table_json_string(const char *text, FILE *out);
+
+/* Flush stdout; the same verdict as table_end. For commands that print text. */
+status table_flush(FILE *out, struct error *error);
+
+/* Options every command with a table has. */
+struct table_options {
+  bool json, csv;
+};
+/* clang-format off */
+#define TABLE_OPTIONS(type_, member_)                                                                                  \
+  {"json", 0, OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct table_options, json), 0, 0, NULL,          \
+   "Print JSON: one array of objects, SI units."},                                                                     \
+  {"csv", 0, OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct table_options, csv), 0, 0, NULL,            \
+   "Print CSV with a header line, SI units."}
+/* clang-format on */
+status table_choose(const struct table_options *options, enum table_format *format, struct error *error);
+/* For what is text whatever is asked for: STATUS_USAGE when a format was. */
+status table_text_only(const struct table_options *options, const char *what, struct error *error);
+
+#endif

@@ -1,0 +1,101 @@
+#include "engine/atomic_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Opens a new file beside `path`: FILE.tmp, which its writer locks. A lock dies with its process, so that what one left
+ * behind that was killed is taken over by the next writer of the same file; where another is at it now (or where there
+ * are no locks) it is FILE.PID.tmp. NULL: errno says why. */
+static FILE *begin(const char *path, char *temporary, size_t room) {
+  snprintf(temporary, room, "%s.tmp", path);
+  int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  struct stat mine, there;
+  if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &mine) == 0 && stat(temporary, &there) == 0 &&
+      mine.st_dev == there.st_dev && mine.st_ino == there.st_ino && /* not renamed by its writer since it was opened */
+      ftruncate(file, 0) == 0)
+    return fdopen(file, "wb");
+  if (file >= 0)
+    close(file);
+  snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+  return fopen(temporary, "wb");
+}
+
+status atomic_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error) {
+  size_t length = strlen(path) + 32;
+  char *temporary = malloc(length);
+  if (!temporary)
+    return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+  status code = STATUS_OK;
+  FILE *file = begin(path, temporary, length);
+  bool good = file && fwrite(bytes, 1, size, file) == size && fflush(file) == 0 && fsync(fileno(file)) == 0 &&
+              rename(temporary, path) == 0;
+  if (!good)
+    code = status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(errno));
+  if (!good && file)
+    unlink(temporary);
+  if (file)
+    fclose(file); /* all of it is on the disk; only now the lock goes */
+  free(temporary);
+  return code;
+}
+
+status atomic_file_try(const char *path, const char *what, struct error *error) {
+  size_t length = strlen(path) + 32;
+  char *temporary = malloc(length);
+  if (!temporary)
+    return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
+  struct stat there;
+  int why = stat(path, &there) == 0 && S_ISDIR(there.st_mode) ? EISDIR : 0;
+  FILE *file = why ? NULL : begin(path, temporary, length);
+  if (!file && !why)
+    why = errno;
+  if (file) {
+    unlink(temporary);
+    fclose(file);
+  }
+  free(temporary);
+  return why ? status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why)) : STATUS_OK;
+}
+
+status atomic_file_read(const char *path, const char *what, unsigned char **bytes, size_t *size, struct error *error) {
+  *bytes = NULL;
+  *size = 0;
+  FILE *file = fopen(path, "rb");
+  if (!file)
+    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "cannot read the %s '%s': %s", what, path,
+                       strerror(errno));
+  status code = STATUS_OK;
+  size_t capacity = 0, used = 0, got = 1;
+  unsigned char *buffer = NULL;
+  while (got > 0) {
+    if (used == capacity) {
+      capacity = capacity ? 2 * capacity : 1 << 16;
+      unsigned char *larger = realloc(buffer, capacity);
+      if (!larger) {
+        code = status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
+        goto cleanup;
+      }
+      buffer = larger;
+    }
+    got = fread(buffer + used, 1, capacity - used, file);
+    used += got;
+  }
+  if (ferror(file)) {
+    code = status_fail(error, STATUS_IO, "cannot read the %s '%s': %s", what, path, strerror(errno));
+    goto cleanup;
+  }
+  *bytes = buffer;
+  *size = used;
+  buffer = NULL;
+cleanup:
+  free(buffer);
+  fclose(file);
+  return code;
+}

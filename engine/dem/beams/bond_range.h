@@ -1,0 +1,255 @@
+/* Tessellation pairs: beam and contact of eight pairs at a time.
+ *
+ * The beam is co-rotational (K99 eqs 7-12 with the physics notes' correction of eq 12): with phi the chord's angle
+ * against its initial one and Theta = theta - phi,
+ *   U = alpha (l - l0)^2 / 2 + delta l0^2 (Theta_1 - Theta_2)^2 / 2 + beta l0^2 Theta_1 Theta_2 / 2,
+ *   M_1 = -dU/dTheta_1 = -beta l0^2 Theta_2 / 2 + delta l0^2 (Theta_2 - Theta_1), M_2 by swap,
+ *   F_1 = alpha (l - l0) e + (M_1 + M_2)/l e_perp, F_2 = -F_1   (from dphi/dx = e_perp / l):
+ * a potential force that conserves momentum and angular momentum.
+ *
+ * The contact's window: of either grain the common side, the side before it and the side after it (vertices 0..3). It
+ * gives the overlap of the whole polygons exactly when, for either grain, its vertices 0 and 3 are outside the other's
+ * common side while 1 or 2 is inside: then all its other vertices are outside too (distance to a line has one minimum
+ * round a convex outline), so none of its other sides reaches the half-plane that the other grain lies in. If this does
+ * not hold and no common side separates the grains, the lane goes to the general overlap.
+ */
+#ifndef CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
+#define CLAST_ENGINE_DEM_BEAMS_BOND_RANGE_H
+
+#include "engine/dem/beams/breaking.h"
+#include "engine/dem/contacts/contact_law.h"
+
+/* Sides nearer to one line than this share of their length are in one line: above the rounding of positions. */
+static const double bond_same_line = 1e-12;
+
+enum bond_work { BOND_FORCES, BOND_MEASURE };
+
+struct bond_ends { /* gathered states of the grains at either end */
+  lanes_d x[2], y[2], angle[2], cosine[2], sine[2];
+};
+
+LANES_INLINE void bond_rotate(lanes_d c, lanes_d s, const double *x, const double *y, lanes_d *rx, lanes_d *ry) {
+  const lanes_d bx = lanes_load(x), by = lanes_load(y);
+  *rx = c * bx - s * by;
+  *ry = s * bx + c * by;
+}
+
+LANES_INLINE lanes_d bond_length(lanes_d x, lanes_d y) {
+  return lanes_sqrt(x * x + lanes_rounded(y * y));
+}
+
+/* Angle whose sine is s, |s| <= 1/8: series to s^17, next term below 1e-18. */
+LANES_INLINE lanes_d bond_arcsine(lanes_d s) {
+  const lanes_d z = s * s;
+  return s + s * z *
+                 (1.0 / 6.0 +
+                  z * (3.0 / 40.0 +
+                       z * (5.0 / 112.0 +
+                            z * (35.0 / 1152.0 +
+                                 z * (63.0 / 2816.0 +
+                                      z * (231.0 / 13312.0 + z * (143.0 / 10240.0 + z * (6435.0 / 557056.0))))))));
+}
+
+/* Contact by the window; returns lanes that need the general overlap, *touching lanes have their sums in *sums. */
+LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, const struct bond_ends *ends,
+                                 lanes_d apart_x, lanes_d apart_y, struct contact_sums *sums, lanes_d *origin_x,
+                                 lanes_d *origin_y, lanes_i *touching, bool velocities) {
+  const lanes_i active = lanes_load(block->stiffness + at) > 0.0;
+  /* Vertices 0..3 of either window; the origin is the middle of grain 1's common side. */
+  lanes_d x[2][4], y[2][4], ex[2][3], ey[2][3], cross[2][3], half_x[2], half_y[2];
+  lanes_d middle_x[2], middle_y[2];
+  for (int k = 0; k < 2; ++k) {
+    const lanes_d c = ends->cosine[k], s = ends->sine[k];
+    bond_rotate(c, s, block->middle_x[k] + at, block->middle_y[k] + at, &middle_x[k], &middle_y[k]);
+    bond_rotate(c, s, block->half_x[k] + at, block->half_y[k] + at, &half_x[k], &half_y[k]);
+    bond_rotate(c, s, block->before_x[k] + at, block->before_y[k] + at, &x[k][0], &y[k][0]);
+    bond_rotate(c, s, block->after_x[k] + at, block->after_y[k] + at, &x[k][3], &y[k][3]);
+    x[k][1] = -half_x[k], y[k][1] = -half_y[k];
+    x[k][2] = half_x[k], y[k][2] = half_y[k];
+  }
+  const lanes_d shift_x = apart_x + middle_x[1] - middle_x[0], shift_y = apart_y + middle_y[1] - middle_y[0];
+  *origin_x = middle_x[0];
+  *origin_y = middle_y[0];
+  for (int v = 0; v < 4; ++v)
+    x[1][v] += shift_x, y[1][v] += shift_y;
+  for (int k = 0; k < 2; ++k) {
+    for (int e = 0; e < 3; ++e) {
+      ex[k][e] = x[k][e + 1] - x[k][e];
+      ey[k][e] = y[k][e + 1] - y[k][e];
+    }
+    ex[k][1] = 2.0 * half_x[k], ey[k][1] = 2.0 * half_y[k];
+    for (int e = 0; e < 3; ++e)
+      cross[k][e] = x[k][e] * ey[k][e] - y[k][e] * ex[k][e];
+  }
+  /* out[k][e][v]: vertex v of the other grain against side e of grain k, times the side's length; > 0 is outside. */
+  lanes_d out[2][3][4];
+  for (int k = 0; k < 2; ++k)
+    for (int v = 0; v < 4; ++v)
+      out[k][1][v] = x[1 - k][v] * ey[k][1] - y[1 - k][v] * ex[k][1] - cross[k][1];
+  lanes_i separated = ~active, exact = active;
+  for (int k = 0; k < 2; ++k) {
+    const lanes_d nearest = lanes_min(out[k][1][1], out[k][1][2]);
+    const lanes_d end = lanes_min(out[k][1][0], out[k][1][3]);
+    separated |= (nearest >= 0.0) & (nearest <= end);
+    exact &= (nearest < 0.0) & (end >= 0.0);
+  }
+  *touching = exact & ~separated;
+  const lanes_i general = ~separated & ~exact;
+  *sums = (struct contact_sums){0};
+  if (!lanes_any(*touching))
+    return general;
+  for (int k = 0; k < 2; ++k)
+    for (int e = 0; e < 3; e += 2)
+      for (int v = 0; v < 4; ++v)
+        out[k][e][v] = x[1 - k][v] * ey[k][e] - y[1 - k][v] * ex[k][e] - cross[k][e];
+  /* Clip side a of grain 1 and side b of grain 2 against each other's half-planes: in either case the crossing is at
+   * distance / difference of distances. */
+  lanes_d enter[2][3], leave[2][3];
+  for (int k = 0; k < 2; ++k)
+    for (int e = 0; e < 3; ++e)
+      enter[k][e] = lanes_all(0.0), leave[k][e] = lanes_all(1.0);
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b < 3; ++b) {
+      const lanes_d on_a = out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]);
+      const lanes_d on_b = out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]);
+      lanes_i start_a = out[1][b][a] > 0.0, end_a = out[1][b][a + 1] > 0.0;
+      lanes_d start_b = lanes_mask(out[0][a][b] > 0.0, on_b);
+      if (a + b == 2 && a != 1) { /* sides that can lie in one line (a square lattice): counted once, as grain 1's */
+        const lanes_d same_a = bond_same_line * (ex[1][b] * ex[1][b] + ey[1][b] * ey[1][b]);
+        const lanes_d same_b = bond_same_line * (ex[0][a] * ex[0][a] + ey[0][a] * ey[0][a]);
+        const lanes_i along_a = (lanes_abs(out[1][b][a]) <= same_a) & (lanes_abs(out[1][b][a + 1]) <= same_a);
+        const lanes_i along_b = (lanes_abs(out[0][a][b]) <= same_b) & (lanes_abs(out[0][a][b + 1]) <= same_b);
+        start_a &= ~along_a, end_a &= ~along_a;
+        start_b = lanes_select(along_b, lanes_all(2.0), start_b);
+      }
+      enter[0][a] = lanes_max(enter[0][a], lanes_mask(start_a, on_a));
+      leave[0][a] = lanes_min(leave[0][a], lanes_select(end_a, on_a, lanes_all(1.0)));
+      enter[1][b] = lanes_max(enter[1][b], start_b);
+      leave[1][b] = lanes_min(leave[1][b], lanes_select(out[0][a][b + 1] > 0.0, on_b, lanes_all(1.0)));
+    }
+  }
+  for (int k = 0; k < 2; ++k)
+    for (int e = 0; e < 3; ++e)
+      contact_add_piece(sums, enter[k][e], leave[k][e], x[k][e], y[k][e], ex[k][e], ey[k][e], k == 0, velocities);
+  return general;
+}
+
+/* Lengths and directions at rest, as bond_range will compute them: strain and angle start at exactly zero. */
+LANES_INLINE void bond_rest(struct dem_system *s) {
+  for (size_t b = 0; b < s->now.bond_blocks; ++b) {
+    struct dem_bond_block *block = &s->bond[b];
+    for (int at = 0; at < DEM_BLOCK; at += LANES) {
+      const lanes_d dx = lanes_gather(s->c.x, block->second + at) - lanes_gather(s->c.x, block->first + at);
+      const lanes_d dy = lanes_gather(s->c.y, block->second + at) - lanes_gather(s->c.y, block->first + at);
+      const lanes_d length = bond_length(dx, dy), inverse = 1.0 / length;
+      lanes_store(block->length + at, length);
+      lanes_store(block->reference_x + at, lanes_rounded(dx * inverse));
+      lanes_store(block->reference_y + at, lanes_rounded(dy * inverse));
+    }
+  }
+}
+
+LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool contact, bool velocities) {
+  const struct dem_columns *c = &s->c;
+  double *restrict fx = c->fx, *restrict fy = c->fy, *restrict torque = c->torque;
+  for (size_t b = 0; b < s->now.bond_blocks; ++b) {
+    struct dem_bond_block *block = &s->bond[b];
+    for (int at = 0; at < DEM_BLOCK; at += LANES) {
+      const uint32_t *index[2] = {block->first + at, block->second + at};
+      struct bond_ends ends;
+      for (int k = 0; k < 2; ++k) {
+        ends.x[k] = lanes_gather(c->x, index[k]);
+        ends.y[k] = lanes_gather(c->y, index[k]);
+        ends.angle[k] = lanes_gather(c->angle, index[k]);
+        if (contact) {
+          ends.cosine[k] = lanes_gather(c->cosine, index[k]);
+          ends.sine[k] = lanes_gather(c->sine, index[k]);
+        }
+      }
+      const lanes_d dx = ends.x[1] - ends.x[0], dy = ends.y[1] - ends.y[0];
+      const lanes_d length = bond_length(dx, dy), inverse = 1.0 / length;
+      const lanes_d ux = lanes_rounded(dx * inverse), uy = lanes_rounded(dy * inverse);
+      lanes_d sine, forward;
+      for (;;) {
+        const lanes_d rx = lanes_load(block->reference_x + at), ry = lanes_load(block->reference_y + at);
+        sine = rx * (uy - ry) - ry * (ux - rx); /* = r x u, and exactly zero for u = r */
+        forward = rx * ux + ry * uy;
+        const lanes_i turned = (lanes_abs(sine) > 0.125) | (forward < 0.0);
+        if (work == BOND_MEASURE || __builtin_expect(!lanes_any(turned), 1))
+          break; /* measuring changes nothing: the last evaluation has already turned what had to turn */
+        for (int lane = 0; lane < LANES; ++lane)
+          if (turned[lane])
+            dem_breaking_turn(block, at + lane, ux[lane], uy[lane], sine[lane], forward[lane]);
+      }
+      const lanes_d phi = lanes_load(block->reference_angle + at) + bond_arcsine(sine);
+      const lanes_d theta_1 = ends.angle[0] - phi, theta_2 = ends.angle[1] - phi;
+      const lanes_d stretch = length - lanes_load(block->length + at);
+      if (work == BOND_FORCES) {
+        const lanes_d bending = lanes_max(lanes_abs(theta_1), lanes_abs(theta_2));
+        const lanes_d criterion = stretch * stretch * lanes_load(block->weight_strain + at) +
+                                  bending * lanes_load(block->weight_angle + at); /* K99 eq 13 */
+        const lanes_i broken = (criterion >= 1.0) & (stretch > 0.0);
+        if (__builtin_expect(lanes_any(broken), 0))
+          for (int lane = 0; lane < LANES; ++lane)
+            if (broken[lane])
+              dem_breaking_lane(s, block, at + lane, length[lane], ux[lane], uy[lane], theta_1[lane], theta_2[lane]);
+      }
+      const lanes_d axial = lanes_load(block->axial + at);
+      const lanes_d along = lanes_load(block->cross + at), diagonal = lanes_load(block->diagonal + at);
+      if (work == BOND_MEASURE) {
+        const lanes_d energy = 0.5 * axial * stretch * stretch +
+                               0.5 * diagonal * (theta_1 - theta_2) * (theta_1 - theta_2) + along * theta_1 * theta_2;
+        lanes_store(s->sums.beam + at, lanes_load(s->sums.beam + at) + energy);
+      }
+      const lanes_d m1 = diagonal * (theta_2 - theta_1) - along * theta_2;
+      const lanes_d m2 = diagonal * (theta_1 - theta_2) - along * theta_1;
+      const lanes_d tension = axial * stretch, shear = (m1 + m2) * inverse;
+      lanes_d force_x = tension * ux - shear * uy, force_y = tension * uy + shear * ux;
+      lanes_d torque_1 = m1, torque_2 = m2;
+      if (contact) {
+        struct contact_sums sums;
+        struct contact_pairs pairs = {.apart_x = dx, .apart_y = dy, .stiffness = lanes_load(block->stiffness + at)};
+        lanes_i touching;
+        const lanes_i general = bond_window(block, at, &ends, dx, dy, &sums, &pairs.origin_x, &pairs.origin_y,
+                                            &touching, velocities);
+        if (lanes_any(general))
+          for (int lane = 0; lane < LANES; ++lane)
+            if (general[lane])
+              s->general[s->general_count++] = DEM_FROM_BOND | (uint32_t)(b * DEM_BLOCK + (size_t)(at + lane));
+        if (work == BOND_MEASURE) {
+          const lanes_d area = lanes_mask(touching, 0.5 * sums.twice_area);
+          lanes_store(s->sums.contact + at, lanes_load(s->sums.contact + at) + 0.5 * pairs.stiffness * area * area);
+          for (int lane = 0; lane < LANES; ++lane)
+            s->sums.overlaps += area[lane] > 0.0;
+        } else if (lanes_any(touching)) {
+          if (velocities) {
+            pairs.normal_damping = lanes_load(block->normal_damping + at);
+            pairs.tangential_damping = lanes_load(block->tangential_damping + at);
+            for (int k = 0; k < 2; ++k) {
+              pairs.vx[k] = lanes_gather(c->guess_vx, index[k]);
+              pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
+              pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
+            }
+          }
+          const struct contact_force f = contact_force(&sums, &pairs, touching, &s->p, velocities, &s->sums, at);
+          force_x += f.x;
+          force_y += f.y;
+          torque_1 += f.torque[0];
+          torque_2 += f.torque[1];
+        }
+      }
+      if (work == BOND_FORCES)
+        for (int lane = 0; lane < LANES; ++lane) {
+          const uint32_t i = index[0][lane], j = index[1][lane];
+          fx[i] += force_x[lane];
+          fy[i] += force_y[lane];
+          torque[i] += torque_1[lane];
+          fx[j] -= force_x[lane];
+          fy[j] -= force_y[lane];
+          torque[j] += torque_2[lane];
+        }
+    }
+  }
+}
+
+#endif

@@ -1,0 +1,26 @@
+/* What happens to single lanes of the bond blocks: rarely, so outside of the wide loops. */
+#ifndef CLAST_ENGINE_DEM_BEAMS_BREAKING_H
+#define CLAST_ENGINE_DEM_BEAMS_BREAKING_H
+
+#include "engine/dem/step/system_layout.h"
+
+/* A beam's criterion is met: log it, book its energy, set its elastic constants to zero (K99 section 2.3), and let the
+ * pair's contact and damping act if they were off while it was bonded. (ux, uy) is the chord's direction. */
+void dem_breaking_lane(struct dem_system *system, struct dem_bond_block *block, int lane, double length, double ux,
+                       double uy, double theta_first, double theta_second);
+
+/* Take the beam's elastic constants away without a log entry (removed grains). */
+void dem_breaking_cut(struct dem_system *system, int32_t pair);
+
+/* Point an unused lane at the ghosts, with every constant zero. */
+void dem_breaking_clear(const struct dem_system *system, struct dem_bond_block *block, int lane);
+
+/* Measure the chord's angle from its present direction (sine and cosine are against the old one): keeps it unwrapped
+ * and small. */
+void dem_breaking_turn(struct dem_bond_block *block, int lane, double ux, double uy, double sine, double cosine);
+
+/* Contact coefficients of a tessellation pair as they act now: zero while a bonded pair's are switched off. */
+void dem_breaking_contact(const struct dem_system *system, int32_t pair, double *stiffness, double *normal,
+                          double *tangential);
+
+#endif

@@ -1,0 +1,277 @@
+#include "engine/dem/lattice/assemble.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/dem/beams/breaking.h"
+#include "engine/random.h"
+
+/* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions, where a
+ * window is seldom exact: their contact goes by the near list. */
+static const double shortest_window = 0.05;
+double dem_assemble_reference_side(double side, double diameter_i, double diameter_j) {
+  const double usual = 0.27 * (diameter_i + diameter_j);
+  return side > 0.0 ? fmax(side, 0.5 * usual) : usual;
+}
+
+/* Grains are this much smaller than their cells, so that rounding gives no overlap at rest: a gap of 1e-11 cells. */
+static const double shrink = 1e-11;
+
+static void *zeroed(size_t count, size_t size) {
+  const size_t bytes = ((count ? count : 1) * size + 63) / 64 * 64;
+  void *block = aligned_alloc(64, bytes);
+  if (block)
+    memset(block, 0, bytes);
+  return block;
+}
+
+static bool allocate(struct dem_system *s, size_t vertices) {
+  double **const columns[] = {&s->c.x,          &s->c.y,
+                              &s->c.angle,      &s->c.cosine,
+                              &s->c.sine,       &s->c.vx,
+                              &s->c.vy,         &s->c.spin,
+                              &s->c.fx,         &s->c.fy,
+                              &s->c.torque,     &s->c.mobility_x,
+                              &s->c.mobility_y, &s->c.mobility_angle,
+                              &s->c.guess_vx,   &s->c.guess_vy,
+                              &s->c.guess_spin, &s->c.list_x,
+                              &s->c.list_y,     &s->c.list_angle,
+                              &s->c.skin,       &s->radius};
+  const size_t basic = sizeof columns / sizeof *columns, gear = s->p.integrator == DEM_GEAR ? 12 : 0;
+  s->arena_doubles = (basic + gear) * s->padded;
+  s->arena = zeroed(s->arena_doubles, sizeof *s->arena);
+  const size_t n = s->count, pairs = s->pair_count;
+  s->mass = zeroed(n, sizeof *s->mass);
+  s->inertia = zeroed(n, sizeof *s->inertia);
+  s->diameter = zeroed(n, sizeof *s->diameter);
+  s->first_vertex = zeroed(n + 1, sizeof *s->first_vertex);
+  s->outline_x = zeroed(vertices, sizeof *s->outline_x);
+  s->outline_y = zeroed(vertices, sizeof *s->outline_y);
+  s->first_partner = zeroed(n + 2, sizeof *s->first_partner);
+  s->partner = zeroed(2 * pairs, sizeof *s->partner);
+  s->partner_pair = zeroed(2 * pairs, sizeof *s->partner_pair);
+  s->freedoms = zeroed(n, 1);
+  s->present = zeroed(n, 1);
+  s->held_vx = zeroed(n, sizeof *s->held_vx);
+  s->held_vy = zeroed(n, sizeof *s->held_vy);
+  s->held_spin = zeroed(n, sizeof *s->held_spin);
+  s->held = zeroed(n, sizeof *s->held);
+  s->pair = zeroed(pairs, sizeof *s->pair);
+  s->pair_stiffness = zeroed(pairs, sizeof *s->pair_stiffness);
+  s->pair_normal = zeroed(pairs, sizeof *s->pair_normal);
+  s->pair_tangential = zeroed(pairs, sizeof *s->pair_tangential);
+  s->alive = zeroed(pairs, 1);
+  s->windowed = zeroed(pairs, 1);
+  s->bond_capacity = (pairs + DEM_BLOCK - 1) / DEM_BLOCK;
+  s->pair_lane = zeroed(pairs, sizeof *s->pair_lane);
+  s->lane_pair = zeroed(s->bond_capacity * DEM_BLOCK, sizeof *s->lane_pair);
+  s->bond = zeroed(s->bond_capacity, sizeof *s->bond);
+  s->log = zeroed(pairs, sizeof *s->log);
+  s->near_capacity = (4 * n + DEM_BLOCK) / DEM_BLOCK * DEM_BLOCK;
+  s->near = zeroed(s->near_capacity / DEM_BLOCK, sizeof *s->near);
+  s->near_pair = zeroed(s->near_capacity, sizeof *s->near_pair);
+  s->general_capacity = s->bond_capacity * DEM_BLOCK + s->near_capacity;
+  s->general = zeroed(s->general_capacity, sizeof *s->general);
+  s->cell_capacity = 8 * n + 64;
+  for (s->cell_buckets = 64; s->cell_buckets < 2 * n;)
+    s->cell_buckets *= 2;
+  s->cell_head = malloc(s->cell_buckets * sizeof *s->cell_head);
+  s->cell_grain = malloc(s->cell_capacity * sizeof *s->cell_grain);
+  s->cell_next = malloc(s->cell_capacity * sizeof *s->cell_next);
+  s->cell_key = malloc(s->cell_capacity * sizeof *s->cell_key);
+  s->cell_low = malloc(n * sizeof *s->cell_low);
+  if (!s->arena || !s->mass || !s->inertia || !s->diameter || !s->first_vertex || !s->outline_x || !s->outline_y ||
+      !s->first_partner || !s->partner || !s->partner_pair || !s->freedoms || !s->present || !s->held_vx ||
+      !s->held_vy || !s->held_spin || !s->held || !s->pair || !s->pair_stiffness || !s->pair_normal ||
+      !s->pair_tangential || !s->alive || !s->windowed || !s->pair_lane || !s->lane_pair || !s->bond || !s->log ||
+      !s->near || !s->near_pair || !s->general || !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key ||
+      !s->cell_low)
+    return false;
+  double *next = s->arena;
+  for (size_t k = 0; k < basic; ++k, next += s->padded)
+    *columns[k] = next;
+  for (int k = 0; k < 3 && gear; ++k)
+    for (int order = 2; order < 6; ++order, next += s->padded)
+      s->c.gear[k][order] = next;
+  return true;
+}
+
+static status grains(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
+  double total = 0.0;
+  for (size_t i = 0; i < s->count; ++i) {
+    const uint32_t first = t->first_vertex[i], sides = t->first_vertex[i + 1] - first;
+    if (sides < 3 || sides > DEM_MAX_VERTICES)
+      return status_fail(error, STATUS_CONTENT, "grain %zu has %u sides; 3 to %d can be used.", i, sides,
+                         DEM_MAX_VERTICES);
+    if (!(t->area[i] > 0.0 && t->area[i] < 1e30 && t->polar_moment[i] > 0.0 && t->polar_moment[i] < 1e30))
+      return status_fail(error, STATUS_CONTENT,
+                         "grain %zu has area %g m2 and polar moment %g m4; both must be positive.", i, t->area[i],
+                         t->polar_moment[i]);
+    s->c.x[i] = t->centroid[i].x;
+    s->c.y[i] = t->centroid[i].y;
+    s->mass[i] = s->p.density * t->area[i];
+    s->inertia[i] = s->p.density * t->polar_moment[i];
+    s->c.mobility_x[i] = s->c.mobility_y[i] = 1.0 / s->mass[i];
+    s->c.mobility_angle[i] = 1.0 / s->inertia[i];
+    s->diameter[i] = 2.0 * sqrt(t->area[i] / 3.14159265358979323846);
+    s->present[i] = 1;
+    total += s->diameter[i];
+    /* Far from the origin rounding is larger than the usual gap. */
+    const double far = fabs(t->centroid[i].x) + fabs(t->centroid[i].y) + s->diameter[i];
+    const double keep = 1.0 - fmax(shrink, 8.0 * DBL_EPSILON * far / s->diameter[i]);
+    s->first_vertex[i + 1] = first - t->first_vertex[0] + sides;
+    for (uint32_t v = 0; v < sides; ++v) {
+      const size_t at = s->first_vertex[i] + v;
+      s->outline_x[at] = keep * (t->vertex[first + v].x - t->centroid[i].x);
+      s->outline_y[at] = keep * (t->vertex[first + v].y - t->centroid[i].y);
+      s->radius[i] = fmax(s->radius[i], hypot(s->outline_x[at], s->outline_y[at]));
+      if (!(s->radius[i] < 1e30))
+        return status_fail(error, STATUS_CONTENT, "grain %zu has a vertex that is no finite number.", i);
+    }
+  }
+  s->mean_diameter = total / (double)s->count;
+  for (size_t i = s->count; i < s->padded; ++i) {
+    s->c.skin[i] = 1.0;
+    s->c.x[i] = (double)(i - s->count); /* one metre apart: unused lanes see a beam of length one */
+  }
+  return STATUS_OK;
+}
+
+/* The side of cell i that is also a side of cell j, by its two vertices; false if there is none. */
+static bool common_side(const struct dem_tessellation *t, uint32_t i, uint32_t j, double tolerance, uint32_t *side_i,
+                        uint32_t *side_j) {
+  const uint32_t fi = t->first_vertex[i], ni = t->first_vertex[i + 1] - fi;
+  const uint32_t fj = t->first_vertex[j], nj = t->first_vertex[j + 1] - fj;
+  for (uint32_t a = 0; a < ni; ++a)
+    for (uint32_t b = 0; b < nj; ++b) {
+      const struct dem_point *p = &t->vertex[fi + a], *q = &t->vertex[fi + (a + 1) % ni];
+      const struct dem_point *r = &t->vertex[fj + b], *u = &t->vertex[fj + (b + 1) % nj];
+      if (fabs(p->x - u->x) <= tolerance && fabs(p->y - u->y) <= tolerance && fabs(q->x - r->x) <= tolerance &&
+          fabs(q->y - r->y) <= tolerance) {
+        *side_i = a;
+        *side_j = b;
+        return true;
+      }
+    }
+  return false;
+}
+
+/* The window of one grain: the vertices before, at either end of, and after its common side. */
+static void window(struct dem_system *s, struct dem_bond_block *block, size_t lane, int k, uint32_t grain,
+                   uint32_t side) {
+  const uint32_t first = s->first_vertex[grain], sides = s->first_vertex[grain + 1] - first;
+  double x[4], y[4];
+  for (uint32_t v = 0; v < 4; ++v) {
+    const uint32_t at = first + (side + sides - 1 + v) % sides;
+    x[v] = s->outline_x[at];
+    y[v] = s->outline_y[at];
+  }
+  const double mx = 0.5 * (x[1] + x[2]), my = 0.5 * (y[1] + y[2]), hx = 0.5 * (x[2] - x[1]), hy = 0.5 * (y[2] - y[1]);
+  block->middle_x[k][lane] = mx;
+  block->middle_y[k][lane] = my;
+  block->half_x[k][lane] = hx;
+  block->half_y[k][lane] = hy;
+  block->before_x[k][lane] = x[0] - mx;
+  block->before_y[k][lane] = y[0] - my;
+  block->after_x[k][lane] = x[3] - mx;
+  block->after_y[k][lane] = y[3] - my;
+}
+
+/* Thresholds of a beam: Weibull with the printed threshold as its scale, so that modulus -> infinity gives K99. */
+static double threshold(const struct dem_system *s, double scale, size_t pair, uint64_t draw) {
+  if (isnan(s->p.threshold_modulus))
+    return scale;
+  const double u = random_draw(s->p.seed, RANDOM_THRESHOLD, pair, draw);
+  return scale * pow(-log1p(-u), 1.0 / s->p.threshold_modulus);
+}
+
+static status bonds(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
+  const struct dem_parameters *p = &s->p;
+  for (size_t k = 0; k < s->pair_count; ++k) {
+    const uint32_t i = t->pair[k][0], j = t->pair[k][1];
+    if (i >= j || j >= s->count)
+      return status_fail(error, STATUS_CONTENT,
+                         "pair %zu joins grains %u and %u: the first must be lower, both below %zu.", k, i, j,
+                         s->count);
+    const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i], length = hypot(dx, dy), side = t->side[k];
+    if (!(side > 0.0 && side < 1e30 && length > 0.0))
+      return status_fail(error, STATUS_CONTENT, "pair %zu has a common side of %g m and centres %g m apart.", k, side,
+                         length);
+    s->pair[k][0] = i;
+    s->pair[k][1] = j;
+    ++s->first_partner[i + 2];
+    ++s->first_partner[j + 2];
+    s->alive[k] = 1;
+    s->pair_lane[k] = (int32_t)k;
+    s->lane_pair[k] = (int32_t)k;
+    struct dem_bond_block *block = &s->bond[k / DEM_BLOCK];
+    const size_t lane = k % DEM_BLOCK;
+    dem_breaking_clear(s, block, (int)lane);
+    block->first[lane] = i;
+    block->second[lane] = j;
+    /* K99 eqs 7-12 with b = 2a and I = S^3/12. */
+    const double a = length / (p->beam_modulus * side), b = 2.0 * a;
+    const double c = length * length * length / (p->beam_modulus * side * side * side / 12.0);
+    const double beta = p->beam_modulus > 0.0 ? 1.0 / (b + c / 12.0) : 0.0;
+    const double delta = p->beam_modulus > 0.0 ? beta * (b / c + 1.0 / 3.0) : 0.0;
+    block->reference_x[lane] = dx / length;
+    block->reference_y[lane] = dy / length;
+    block->length[lane] = length; /* bond_rest makes these three the step's own to the last bit */
+    block->axial[lane] = p->beam_modulus * side / length;
+    block->cross[lane] = 0.5 * beta * length * length;
+    block->diagonal[lane] = delta * length * length;
+    if (p->breaking) {
+      const double strain = length * threshold(s, p->strain_threshold, k, 0);
+      block->weight_strain[lane] = fmin(DBL_MAX, 1.0 / (strain * strain));
+      block->weight_angle[lane] = fmin(DBL_MAX, 1.0 / threshold(s, p->angle_threshold, k, 1));
+    }
+    const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
+    const double effective = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);  /* K99 eq 6 */
+    s->pair_stiffness[k] = p->grain_modulus * per_length /
+                           (p->contact == DEM_CONTACT_PRINTED
+                                ? 1.0
+                                : dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]));
+    s->pair_normal[k] = effective * p->normal_damping;
+    s->pair_tangential[k] = effective * p->tangential_damping;
+    if (p->contact == DEM_CONTACT_OFF)
+      continue;
+    const double size = 0.5 * (s->diameter[i] + s->diameter[j]);
+    uint32_t side_i, side_j;
+    if (side < shortest_window * size || !common_side(t, i, j, 1e-9 * size, &side_i, &side_j))
+      continue;
+    s->windowed[k] = 1;
+    window(s, block, lane, 0, i, side_i);
+    window(s, block, lane, 1, j, side_j);
+    dem_breaking_contact(s, (int32_t)k, &block->stiffness[lane], &block->normal_damping[lane],
+                         &block->tangential_damping[lane]);
+  }
+  for (size_t lane = s->pair_count; lane < s->bond_capacity * DEM_BLOCK; ++lane) {
+    s->lane_pair[lane] = DEM_NO_PAIR;
+    dem_breaking_clear(s, &s->bond[lane / DEM_BLOCK], (int)(lane % DEM_BLOCK));
+  }
+  s->now.bond_blocks = s->bond_capacity;
+  for (size_t i = 0; i < s->count; ++i)
+    s->first_partner[i + 2] += s->first_partner[i + 1];
+  for (size_t k = 0; k < s->pair_count; ++k)
+    for (int end = 0; end < 2; ++end) {
+      const uint32_t at = s->first_partner[s->pair[k][end] + 1]++;
+      s->partner[at] = s->pair[k][1 - end];
+      s->partner_pair[at] = (uint32_t)k;
+    }
+  return STATUS_OK;
+}
+
+status dem_assemble(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
+  if (t->cell_count == 0 || t->cell_count > 0x0fffffffu || t->pair_count > 0x3fffffffu)
+    return status_fail(error, STATUS_CONTENT, "a system needs 1 to 2^28 grains; there are %zu.", t->cell_count);
+  s->count = t->cell_count;
+  s->pair_count = t->pair_count;
+  s->padded = (s->count + 2 + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
+  s->ghost = (uint32_t)s->count;
+  if (!allocate(s, t->first_vertex[t->cell_count] - t->first_vertex[0]))
+    return status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
+  status done = grains(s, t, error);
+  return done == STATUS_OK ? bonds(s, t, error) : done;
+}

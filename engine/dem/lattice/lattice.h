@@ -1,0 +1,44 @@
+/* The points of a vectorizable random lattice, and the Voronoi cell of one of them, in lattice units (spacing 1).
+ *
+ * One point per grid square, thrown uniformly into the concentric square of side `disorder` (K99 section 2.1: "randomly
+ * and independently in each square of the grid with a maximal distance a from the center", a between 0 and the
+ * spacing). K99's words leave open whether that region is a disc or a square; a disc of radius a = spacing would leave
+ * the grid square, against "in each square", so it is the square of side a, which at a = spacing fills the grid square
+ * exactly. No place in the plane is then further than sqrt(2) from a point, hence a cell reaches at most sqrt(2) from
+ * its point, and neighbours lie at most three squares apart. */
+#ifndef CLAST_ENGINE_DEM_LATTICE_LATTICE_H
+#define CLAST_ENGINE_DEM_LATTICE_LATTICE_H
+
+#include <stdbool.h>
+
+#include "engine/dem/lattice/tessellation.h"
+
+struct dem_lattice_points {
+  uint32_t columns, rows;  /* squares */
+  bool walled;             /* cells end at the rectangle [0, columns] x [0, rows] */
+  struct dem_point *point; /* columns x rows, row by row */
+};
+
+/* For a disc the lattice is square, centred on the middle of a square, and reaches far enough beyond the disc that no
+ * cell of it is unbounded. STATUS_MEMORY. */
+status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_points *points, struct error *error);
+
+enum { DEM_LATTICE_CORNERS = 40 };
+
+/* A cell while it is cut: corners counter-clockwise relative to its point; `across` names what lies beyond the side
+ * from corner k to k + 1: the index of another point, or -1..-4 for the left, lower, right, upper wall. */
+struct dem_lattice_cell {
+  int count;
+  double x[DEM_LATTICE_CORNERS], y[DEM_LATTICE_CORNERS];
+  int64_t across[DEM_LATTICE_CORNERS];
+};
+/* False when the cell has more corners than a cell can have (never seen: each of its at most 48 candidates would have
+ * to be a neighbour). */
+bool dem_lattice_cell(const struct dem_lattice_points *points, uint32_t column, uint32_t row,
+                      struct dem_lattice_cell *cell);
+
+/* The corner between the sides shared with a and b of the cell of point i: the same bits whichever of the cells that
+ * meet there asks, and in whatever order. */
+struct dem_point dem_lattice_corner(const struct dem_lattice_points *points, int64_t i, int64_t a, int64_t b);
+
+#endif

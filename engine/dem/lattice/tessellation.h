@@ -1,0 +1,48 @@
+/* Grains from a vectorizable random lattice: Voronoi cells by half-plane clipping, cut by the body's outline.
+ * K99 section 2.1; physics: one point per grid square, at most `disorder` x spacing from the square's centre. */
+#ifndef CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
+#define CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+struct dem_point {
+  double x, y;
+};
+
+/* A convex polygon's counter-clockwise vertices. */
+struct dem_tessellation {
+  size_t cell_count;
+  uint32_t *first_vertex;   /* cell_count + 1 */
+  struct dem_point *vertex; /* m, world frame, counter-clockwise per cell; no side shorter than 1e-12 x spacing */
+  struct dem_point *centroid;
+  double *area;              /* m^2 */
+  double *polar_moment;      /* m^4: second moment of area about the centroid */
+  uint32_t *grid_x, *grid_y; /* the lattice square of the cell's point */
+  size_t pair_count;
+  uint32_t (*pair)[2]; /* neighbours, first < second, sorted */
+  double *side;        /* m, length of the common side of each pair */
+};
+
+enum dem_outline { DEM_OUTLINE_DISC, DEM_OUTLINE_BLOCK };
+
+struct dem_lattice {
+  enum dem_outline outline;
+  double spacing;          /* m, grid constant */
+  double disorder;         /* 0..1: a over spacing; 0 = square lattice */
+  double radius;           /* disc: cells whose centroid lies within it */
+  uint32_t columns, rows;  /* block: cells clipped by the rectangle columns x rows spacings */
+  struct dem_point origin; /* centre of the disc, lower left corner of the block */
+  uint64_t seed;
+  uint64_t stream; /* which body of the scene: bodies of one seed differ */
+};
+
+status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tessellation **out, struct error *error);
+/* Two bodies side by side as one; no pairs between them. Frees neither input. */
+status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
+                             struct dem_tessellation **out, struct error *error);
+void dem_tessellation_free(struct dem_tessellation *tessellation); /* NULL is fine */
+
+#endif

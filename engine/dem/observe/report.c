@@ -1,0 +1,138 @@
+/* From the final state to the outcome, the results and the fragments. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/dem/run/run.h"
+
+/* Grains that are left, by their order; their fragments by the beams that hold. `label` (by grain, may be NULL) is the
+ * fragment's number, UINT32_MAX for the explosive. */
+status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
+                            struct error *error) {
+  const struct dem_tessellation *t = run->tessellation;
+  size_t n = t->cell_count, present = 0, links = 0;
+  *fragments = NULL;
+  *count = 0;
+  status code = STATUS_OK;
+  struct fragment_member *member = malloc(n * sizeof *member);
+  uint32_t *number = malloc(n * sizeof *number), *grain = malloc(n * sizeof *grain), *found = malloc(n * sizeof *found);
+  uint32_t(*link)[2] = malloc((t->pair_count ? t->pair_count : 1) * sizeof *link);
+  if (!member || !number || !grain || !found || !link) {
+    code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
+    goto cleanup;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    number[i] = UINT32_MAX;
+    if (!g.present)
+      continue;
+    number[i] = (uint32_t)present;
+    grain[present] = i;
+    member[present++] = (struct fragment_member){.mass = g.mass,
+                                                 .position = {g.x, g.y, 0},
+                                                 .velocity = {g.vx, g.vy, 0},
+                                                 .spin = g.spin,
+                                                 .moment_of_inertia = g.moment_of_inertia};
+  }
+  for (size_t p = 0; p < t->pair_count; p++)
+    if (dem_system_beam_alive(run->system, p) && number[t->pair[p][0]] != UINT32_MAX &&
+        number[t->pair[p][1]] != UINT32_MAX) {
+      link[links][0] = number[t->pair[p][0]];
+      link[links++][1] = number[t->pair[p][1]];
+    }
+  code = fragments_find_plane(present, member, links, (const uint32_t(*)[2])link, found, fragments, count, error);
+  if (code)
+    goto cleanup;
+  for (size_t k = 0; k < *count; k++)
+    (*fragments)[k].first = grain[(*fragments)[k].first];
+  if (label)
+    for (size_t i = 0; i < n; i++)
+      label[i] = number[i] == UINT32_MAX ? UINT32_MAX : found[number[i]];
+cleanup:
+  free(member);
+  free(number);
+  free(grain);
+  free(found);
+  free(link);
+  return code;
+}
+
+static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, double energy_input,
+                         struct dem_results *results) {
+  const struct dem_tessellation *t = run->tessellation;
+  *results = (struct dem_results){
+      .stop_reason = run->state.stop,
+      .broken_share = NAN,
+      .first_break = NAN,
+      .last_break = NAN,
+      .energy_input = energy_input,
+      .threshold_energy = NAN,
+      .stable_time_step = run->stable_time_step,
+      .overlap_share = dem_system_overlap_share(run->system),
+      .energy = {ledger->kinetic, ledger->beam, ledger->contact, ledger->damping, ledger->friction, ledger->broken_beam,
+                 ledger->external_work},
+      .young_modulus = NAN,
+      .poisson_ratio = NAN,
+      .strength = NAN,
+      .failure_strain = NAN,
+      .final_strain = NAN,
+      .upright_share = NAN,
+      .end_triangle_share = NAN,
+  };
+  dem_describe_sound_speeds(&run->inputs, &results->sound_speed_extension, &results->sound_speed_compression);
+  if (run->inputs.threshold.breaking)
+    results->threshold_energy = dem_describe_threshold_energy(&run->inputs, t);
+  results->grains = (int64_t)t->cell_count - (run->charge != UINT32_MAX);
+  for (size_t p = 0; p < t->pair_count; p++)
+    results->beams += t->pair[p][0] != run->charge && t->pair[p][1] != run->charge;
+  const struct dem_break *log;
+  size_t breaks = dem_system_breaks(run->system, &log);
+  results->broken = (int64_t)breaks;
+  for (size_t k = 0; k < breaks; k++)
+    results->broken_bend += log[k].bending;
+  results->broken_stretch = results->broken - results->broken_bend;
+  if (results->beams > 0)
+    results->broken_share = (double)results->broken / (double)results->beams;
+  if (breaks > 0) {
+    results->first_break = log[0].time;
+    results->last_break = log[breaks - 1].time;
+  }
+  if (run->inputs.kind == DEM_UNIAXIAL || run->inputs.kind == DEM_COMPRESSION)
+    dem_loading_results(run, results);
+}
+
+static double not_infinite(double value) {
+  return isfinite(value) ? value : (double)NAN;
+}
+
+status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
+                         struct fragment **fragments, size_t *count, struct error *error) {
+  status code = dem_report_fragments(run, NULL, fragments, count, error);
+  if (code)
+    return code;
+  struct dem_ledger ledger = dem_system_ledger(run->system);
+  double input = run->state.energy_input + fabs(ledger.external_work);
+  fill_results(run, &ledger, input, results);
+
+  *outcome = (struct outcome){.state = run->state.finished ? run->state.outcome_state : OUTCOME_END_TIME,
+                              .steps = (int64_t)dem_system_steps(run->system),
+                              .time = dem_system_time(run->system),
+                              .time_step = run->inputs.fidelity.time_step};
+  snprintf(outcome->message, sizeof outcome->message, "%s",
+           run->state.finished ? run->state.message : "not finished: results of a snapshot");
+  outcome_fragments(outcome, *count, *fragments);
+  outcome->energy_error = input > 0 ? not_infinite(fabs(dem_run_closed(&ledger) - run->state.closed_start) / input)
+                                    : (double)NAN;
+  double momentum[2], magnitude, translation = 0;
+  dem_run_momentum(run, momentum, &magnitude);
+  /* forces inside the body cancel: what held grains feel is what the free ones lose */
+  double px = momentum[0] - run->state.momentum_start[0] + run->state.impulse[0];
+  double py = momentum[1] - run->state.momentum_start[1] + run->state.impulse[1];
+  outcome->momentum_error = magnitude > 0 ? not_infinite(hypot(px, py) / magnitude) : (double)NAN;
+  for (size_t k = 0; k < *count; k++) {
+    const double *v = (*fragments)[k].velocity;
+    translation += 0.5 * (*fragments)[k].mass * (v[0] * v[0] + v[1] * v[1]);
+  }
+  outcome->kinetic_energy_share = input > 0 ? not_infinite(translation / input) : (double)NAN;
+  return STATUS_OK;
+}

@@ -1,0 +1,70 @@
+#include "engine/dem/observe/results.h"
+
+#include <math.h>
+
+static const char *const reasons[] = {"running", "quiet", "end-time", "strain", "failure", "fault", NULL};
+
+#define ROW(path_, kind_, unit_, ...)                                                                                  \
+  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct dem_results, path_), __VA_ARGS__ }
+#define COUNT(path_, doc_) ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, .doc = doc_)
+#define REAL(path_, unit_, low, ...)                                                                                   \
+  ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, .number = NAN, .flags = FIELD_MAY_BE_OFF,         \
+      __VA_ARGS__)
+
+static const struct field rows[] = {
+    ROW(stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
+        .choice_docs = "the run has not ended\n"
+                       "no beam broke for the scene's quiet time\n"
+                       "the hard end came\n"
+                       "the final strain was reached\n"
+                       "the stress fell below the scene's residual share of its maximum\n"
+                       "a numerical fault: the outcome's state says which",
+        .doc = "Why the run ended."),
+    COUNT(grains, "Grains, the explosive one left out."),
+    COUNT(beams, "Beams at the start, those of the explosive left out."),
+    COUNT(broken, "Beams broken."),
+    COUNT(broken_stretch, "Beams broken with the stretching term of the breaking rule the larger one."),
+    COUNT(broken_bend, "Beams broken with the bending term the larger one."),
+    REAL(broken_share, "1", 0, .doc = "Broken beams over all beams."),
+    REAL(first_break, "s", 0, .doc = "Time of the first break; off when none broke."),
+    REAL(last_break, "s", 0, .doc = "Time of the last break; off when none broke."),
+    REAL(energy_input, "J/m", 0,
+         .doc = "Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load."),
+    REAL(threshold_energy, "J/m", 0, .doc = "Energy that would bring every beam to the stretching threshold."),
+    REAL(stable_time_step, "s", 0, .doc = "Stability limit 2/omega_max of the body as it starts."),
+    REAL(sound_speed_extension, "m/s", 0,
+         .doc = "Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value)."),
+    REAL(sound_speed_compression, "m/s", 0,
+         .doc = "Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave."),
+    REAL(overlap_share, "1", 0, .doc = "Neighbour pairs that overlap over all neighbour pairs, at the end."),
+    REAL(energy.kinetic, "J/m", 0, .doc = "Kinetic energy at the end."),
+    REAL(energy.beam, "J/m", -HUGE_VAL, .doc = "Energy stored in beams at the end."),
+    REAL(energy.contact, "J/m", -HUGE_VAL,
+         .doc =
+             "Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return)."),
+    REAL(energy.damping, "J/m", -HUGE_VAL, .doc = "Energy taken by damping."),
+    REAL(energy.friction, "J/m", -HUGE_VAL, .doc = "Energy taken by friction."),
+    REAL(energy.broken_beam, "J/m", -HUGE_VAL,
+         .doc =
+             "Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts "
+             "store that begin with a break."),
+    REAL(energy.external_work, "J/m", -HUGE_VAL, .doc = "Work done by moving boundaries."),
+    REAL(young_modulus, "Pa", -HUGE_VAL, .doc = "K: slope of stress against strain under uniaxial load.",
+         .source = "K99 section 3.1"),
+    REAL(poisson_ratio, "1", -HUGE_VAL, .doc = "nu: minus the slope of lateral against axial strain.",
+         .source = "K99 section 3.1"),
+    REAL(strength, "Pa", 0, .doc = "Largest stress under load.", .source = "K99 section 3.2"),
+    REAL(failure_strain, "1", 0, .doc = "Strain at the largest stress.", .source = "K99 section 3.2"),
+    REAL(final_strain, "1", 0, .doc = "Strain at the end of the loading."),
+    REAL(upright_share, "1", 0,
+         .doc =
+             "Compression: broken beams whose crack (the common side) lies within 30 degrees of the load's direction, "
+             "over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3."),
+    REAL(end_triangle_share, "1", 0,
+         .doc = "Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the "
+                "same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.",
+         .source = "K99 figure 8"),
+};
+
+const struct field_table dem_results = FIELD_TABLE(rows, struct dem_results, "dem results",
+                                                   "What engine dem reports beyond the common outcome.");

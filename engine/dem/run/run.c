@@ -1,0 +1,229 @@
+#include "engine/dem/run/run.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { CHECK_INTERVAL = 100 }; /* steps between looks at the energy ledger, which costs about a step */
+
+double dem_run_closed(const struct dem_ledger *l) {
+  return l->kinetic + l->beam + l->contact + l->broken_beam + l->damping + l->friction - l->external_work;
+}
+
+void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude) {
+  momentum[0] = momentum[1] = *magnitude = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    if (!g.present)
+      continue;
+    if (!(run->held[i] & 1))
+      momentum[0] += g.mass * g.vx;
+    if (!(run->held[i] & 2))
+      momentum[1] += g.mass * g.vy;
+    *magnitude += g.mass * hypot(g.vx, g.vy);
+  }
+}
+
+void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...) {
+  if (run->state.finished && (stop != DEM_STOP_FAULT || run->state.stop == DEM_STOP_FAULT))
+    return;
+  run->state.finished = 1;
+  run->state.stop = stop;
+  run->state.outcome_state = outcome_state;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(run->state.message, sizeof run->state.message, format, arguments);
+  va_end(arguments);
+}
+
+static struct dem_parameters parameters_of(const struct dem_inputs *in, uint64_t seed) {
+  return (struct dem_parameters){
+      .density = in->grain.density,
+      .grain_modulus = in->grain.young_modulus,
+      .beam_modulus = in->beam.young_modulus,
+      .contact = in->contact.law,
+      .contact_on_bonded = in->contact.bonded,
+      .normal_damping = in->contact.normal_damping,
+      .tangential_damping = in->contact.tangential_damping,
+      .friction = in->contact.friction,
+      .damping_on_bonded = in->contact.damping_bonded,
+      .breaking = in->threshold.breaking,
+      .strain_threshold = in->threshold.strain,
+      .angle_threshold = in->threshold.angle,
+      .threshold_modulus = in->threshold.modulus,
+      .seed = seed,
+      .integrator = in->fidelity.integrator,
+      .time_step = in->fidelity.time_step,
+  };
+}
+
+static bool loaded(const struct dem_run *run) {
+  return run->inputs.kind == DEM_UNIAXIAL || run->inputs.kind == DEM_COMPRESSION;
+}
+
+static void held_force(const struct dem_run *run, double force[2]) {
+  force[0] = force[1] = 0;
+  const uint32_t *layers[2] = {run->lower, run->upper};
+  const size_t counts[2] = {run->lower_count, run->upper_count};
+  for (int l = 0; l < 2; l++)
+    for (size_t k = 0; k < counts[l]; k++) {
+      double fx, fy, torque;
+      dem_system_force(run->system, layers[l][k], &fx, &fy, &torque);
+      if (run->held[layers[l][k]] & 1)
+        force[0] += fx;
+      if (run->held[layers[l][k]] & 2)
+        force[1] += fy;
+    }
+}
+
+/* Largest way of a grain in one step over the mean diameter: whoever goes farther than `largest_way` can pass through a
+ * neighbour without ever being seen to overlap it, and no ledger would tell. */
+static const double largest_way = 0.5;
+
+static double longest_way(const struct dem_run *run) {
+  double fastest = 0, area = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    fastest = g.present ? fmax(fastest, hypot(g.vx, g.vy)) : fastest;
+    area += run->tessellation->area[i];
+  }
+  double diameter = sqrt(4 / 3.14159265358979323846 * area / (double)run->tessellation->cell_count);
+  return fastest * run->inputs.fidelity.time_step / diameter;
+}
+
+static void check_speed(struct dem_run *run) {
+  double way = longest_way(run);
+  if (run->inputs.contact.law != DEM_CONTACT_OFF && way > largest_way)
+    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_TIME_STEP,
+                "at %.6g s a grain moves by %.3g grain diameters in a time step and could pass through others unseen: "
+                "give a fidelity.time_step below %.3g s",
+                dem_system_time(run->system), way, run->inputs.fidelity.time_step * largest_way / way);
+}
+
+status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
+  *out = NULL;
+  status code = dem_inputs_check(inputs, error);
+  if (code)
+    return code;
+  struct dem_run *run = calloc(1, sizeof *run);
+  if (!run)
+    return status_fail(error, STATUS_MEMORY, "no memory for a run");
+  run->inputs = *inputs;
+  run->seed = seed;
+  run->charge = UINT32_MAX;
+  struct dem_parameters parameters = parameters_of(inputs, seed);
+  struct dem_ledger ledger;
+  double magnitude;
+  if ((code = dem_protocol_body(inputs, seed, &run->tessellation, error)) ||
+      (code = dem_system_create(run->tessellation, &parameters, &run->system, error)))
+    goto cleanup;
+  run->held = calloc(run->tessellation->cell_count, 1);
+  if (!run->held) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for %zu grains", run->tessellation->cell_count);
+    goto cleanup;
+  }
+  run->stable_time_step = dem_system_stable_time_step(run->system);
+  if (inputs->fidelity.time_step > run->stable_time_step) {
+    code = status_fail(error, STATUS_CONTENT,
+                       "fidelity.time_step is %.4g s, but this body is unstable above %.4g s (2 over its highest "
+                       "frequency): give a shorter step, at most half of that for good energy",
+                       inputs->fidelity.time_step, run->stable_time_step);
+    goto cleanup;
+  }
+  if ((code = dem_protocol_start(run, error)))
+    goto cleanup;
+  ledger = dem_system_ledger(run->system);
+  run->state.closed_start = dem_run_closed(&ledger);
+  dem_run_momentum(run, run->state.momentum_start, &magnitude);
+  check_speed(run);
+  *out = run;
+  run = NULL;
+cleanup:
+  dem_run_free(run);
+  return code;
+}
+
+void dem_run_free(struct dem_run *run) {
+  if (!run)
+    return;
+  dem_system_free(run->system);
+  dem_tessellation_free(run->tessellation);
+  free(run->held);
+  free(run->lower);
+  free(run->upper);
+  free(run->left);
+  free(run->right);
+  free(run->sample);
+  free(run);
+}
+
+/* Energy put in so far: what a drift is measured against. */
+static double input_now(const struct dem_run *run, const struct dem_ledger *ledger) {
+  return run->state.energy_input + fabs(ledger->external_work);
+}
+
+static void check_energy(struct dem_run *run) {
+  struct dem_ledger ledger = dem_system_ledger(run->system);
+  double closed = dem_run_closed(&ledger), input = input_now(run, &ledger);
+  if (!isfinite(closed)) {
+    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s",
+                dem_system_time(run->system));
+    return;
+  }
+  double drift = fabs(closed - run->state.closed_start), bound = run->inputs.fidelity.energy_bound;
+  /* Under a load the work starts from nothing: judge once the sides move at their full speed. */
+  if (loaded(run) && dem_system_time(run->system) < run->inputs.loading.ramp)
+    return;
+  if (!field_is_off(bound) && input > 0 && drift > bound * input)
+    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_ENERGY,
+                "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound "
+                "%.3g: give a shorter time step",
+                dem_system_time(run->system), drift / input, bound);
+}
+
+static void check_stop(struct dem_run *run) {
+  double time = dem_system_time(run->system), last = dem_system_last_break(run->system);
+  double half_step = 0.5 * run->inputs.fidelity.time_step;
+  if (loaded(run))
+    return; /* loading.c ends these */
+  const struct dem_break *log;
+  bool broke = dem_system_breaks(run->system, &log) > 0;
+  if (broke && time - last >= run->inputs.stop.quiet_time - half_step)
+    dem_run_end(run, DEM_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
+  else if (time >= run->inputs.stop.end_time - half_step) {
+    if (broke)
+      dem_run_end(run, DEM_STOP_END_TIME, OUTCOME_END_TIME,
+                  "beams still broke %.3g s before the hard end: raise stop.end_time", time - last);
+    else /* nothing ever broke: there is no fracture that could still go on */
+      dem_run_end(run, DEM_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
+  }
+}
+
+void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
+  double dt = run->inputs.fidelity.time_step;
+  bool is_loaded = loaded(run);
+  for (uint64_t k = 0; k < max_steps && !run->state.finished; k++) {
+    if (is_loaded)
+      dem_loading_drive(run);
+    if (!dem_system_step(run->system)) {
+      dem_run_end(run, DEM_STOP_FAULT, OUTCOME_NOT_FINITE, "a grain's position or velocity is not finite at %.6g s",
+                  dem_system_time(run->system));
+      return;
+    }
+    if (is_loaded) {
+      double force[2];
+      held_force(run, force);
+      for (int d = 0; d < 2; d++) {
+        run->state.impulse[d] += 0.5 * dt * (force[d] + run->state.force_before[d]);
+        run->state.force_before[d] = force[d];
+      }
+      dem_loading_record(run);
+    }
+    check_stop(run);
+    if (dem_system_steps(run->system) % CHECK_INTERVAL == 0 || run->state.finished) {
+      check_energy(run);
+      check_speed(run);
+    }
+  }
+}

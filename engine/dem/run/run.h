@@ -1,0 +1,88 @@
+/* One run of engine `dem`: body, moving grains, protocol and what it has recorded so far. Inside this folder only. */
+#ifndef CLAST_ENGINE_DEM_RUN_RUN_H
+#define CLAST_ENGINE_DEM_RUN_RUN_H
+
+#include "engine/dem/observe/results.h"
+#include "engine/dem/scene/inputs.h"
+#include "engine/dem/step/system.h"
+#include "engine/engine.h"
+
+/* One point of the stress-strain curve: means over the steps since the point before it. Extension is positive. */
+struct dem_sample {
+  double time, strain, stress, lateral_strain;
+  uint64_t broken;
+};
+
+/* What changes during a run beside the system itself: a plain value, saved as it stands in a restart file. */
+struct dem_state {
+  int finished, stop, outcome_state;
+  char message[FIELD_TEXT_SIZE];
+  double energy_input, closed_start;          /* J/m; ledger at the start */
+  double momentum_start[2];                   /* of the grains that are free along that axis */
+  double force_before[2], impulse[2];         /* on held grains: at the step before; its time integral (trapezoids) */
+  double stress_sum, strain_sum, lateral_sum; /* loading: since the last sample */
+  uint64_t summed, samples;
+  double stress_peak, strain_peak, time_peak; /* loading: magnitudes at the largest stress */
+};
+
+struct dem_run {
+  struct dem_inputs inputs;
+  uint64_t seed;
+  struct dem_tessellation *tessellation;
+  struct dem_system *system;
+  struct dem_state state;
+  double stable_time_step;
+
+  uint32_t charge;     /* the explosive grain, or UINT32_MAX */
+  unsigned char *held; /* by grain: bit 1 x, 2 y, 4 rotation */
+
+  /* loading */
+  uint32_t *lower, *upper, *left, *right; /* held layers; gauge of the lateral strain at half height */
+  size_t lower_count, upper_count, left_count, right_count;
+  double gauge_length, gauge_width, section; /* m */
+  uint64_t sample_interval;
+  struct dem_sample *sample;
+  size_t sample_capacity;
+};
+
+status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error);
+void dem_run_free(struct dem_run *run); /* NULL is fine */
+/* At most max_steps, independent of how they are split over calls. */
+void dem_run_advance(struct dem_run *run, uint64_t max_steps);
+double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
+/* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
+void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
+/* End the run: the first reason given stays, but a fault stands above any other. */
+void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* protocol.c: the body, and what is done to it at the start. */
+status dem_protocol_body(const struct dem_inputs *inputs, uint64_t seed, struct dem_tessellation **out,
+                         struct error *error);
+status dem_protocol_start(struct dem_run *run, struct error *error);
+
+/* loading.c: blocks between two moving sides. */
+status dem_loading_start(struct dem_run *run, struct error *error);
+void dem_loading_drive(struct dem_run *run);  /* before a step */
+void dem_loading_record(struct dem_run *run); /* after it */
+void dem_loading_results(const struct dem_run *run, struct dem_results *results);
+
+/* report.c */
+status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
+                            struct error *error);
+status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
+                         struct fragment **fragments, size_t *count, struct error *error);
+
+/* describe.c */
+char *dem_describe_scene(const struct dem_inputs *inputs);
+double dem_describe_threshold_energy(const struct dem_inputs *inputs, const struct dem_tessellation *tessellation);
+/* Closing speed above which two free grains pass through each other: no overlap stores so much energy, m/s. */
+double dem_describe_passing_speed(const struct dem_inputs *inputs);
+void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
+
+/* fields.c, restart.c */
+status dem_snapshot_write(struct dem_run *run, const char *path, struct error *error);
+status dem_restart_save(struct dem_run *run, const char *path, struct error *error);
+status dem_restart_load(const struct dem_inputs *inputs, const char *path, struct dem_run **out, struct error *error);
+
+#endif

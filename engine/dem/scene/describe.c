@@ -1,0 +1,158 @@
+/* What a scene models and why, what it needs and how its numbers compare: text for `clast explain` and `plan`. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "engine/dem/run/run.h"
+
+enum { MEASURED_UP_TO = 20000 }; /* grains: beyond, stability and energies are scaled instead of measured on a body */
+
+double dem_describe_threshold_energy(const struct dem_inputs *in, const struct dem_tessellation *t) {
+  double sum = 0; /* half (E S / l) (t l)^2 */
+  for (size_t p = 0; p < t->pair_count; p++) {
+    struct dem_point a = t->centroid[t->pair[p][0]], b = t->centroid[t->pair[p][1]];
+    sum += 0.5 * in->beam.young_modulus * t->side[p] * hypot(b.x - a.x, b.y - a.y);
+  }
+  return sum * in->threshold.strain * in->threshold.strain;
+}
+
+/* Square lattice along its rows: beams have modulus E; a contact pressed by d has the force Y d S/L_c with S = s and
+ * L_c = 2 s/sqrt(pi), the diameter of the circle of area s^2, hence the modulus Y sqrt(pi)/2. */
+void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, double *compression) {
+  bool contact = in->contact.law != DEM_CONTACT_OFF && in->contact.bonded;
+  *extension = sqrt(in->beam.young_modulus / in->grain.density);
+  *compression = sqrt((in->beam.young_modulus + (contact ? in->grain.young_modulus * 0.88622692545275801 : 0)) /
+                      in->grain.density);
+}
+
+/* Two squares of side s face on, d = 2 s/sqrt(pi): pushed through each other they store at most half kappa s^4 with
+ * kappa = Y/(d S_ref), S_ref = 0.54 d (printed law: half Y s^3/d of work), and have rho s^2 v^2 / 4 to spend. */
+double dem_describe_passing_speed(const struct dem_inputs *in) {
+  const double d = 2 / sqrt(3.14159265358979323846);
+  switch ((enum dem_contact_law)in->contact.law) {
+  case DEM_CONTACT_CONSERVATIVE: return sqrt(2 / (0.54 * d * d) * in->grain.young_modulus / in->grain.density);
+  case DEM_CONTACT_PRINTED: return sqrt(2 / d * in->grain.young_modulus / in->grain.density);
+  case DEM_CONTACT_OFF: break;
+  }
+  return 0;
+}
+
+static void protocol(const struct dem_inputs *in, FILE *out) {
+  switch ((enum dem_kind)in->kind) {
+  case DEM_DISC_EXPLOSION:
+    fprintf(out,
+            "disc-explosion: a charge of %.4g J/m in the central grain, which it burns; its neighbours fly off\n"
+            "  perpendicular to the common sides, with speeds as side over mass (K99 section 3.3.1)\n",
+            in->charge.energy);
+    break;
+  case DEM_BLOCK_IMPACT:
+    fprintf(out,
+            "block-impact: the middle grain of the lower side is shot into the block at %.4g m/s (K99 section 3.3.2)\n",
+            in->impact.speed);
+    break;
+  case DEM_UNIAXIAL:
+    fprintf(out,
+            "uniaxial: lower and upper row move %s at strain rate %.4g /s, free to slide sideways (K99 section 3.1)\n",
+            in->loading.direction == DEM_EXTENSION ? "apart" : "together", in->loading.rate);
+    break;
+  case DEM_COMPRESSION:
+    fprintf(out, "compression: confined lower and upper row move together at strain rate %.4g /s (K99 section 3.2)\n",
+            in->loading.rate);
+    break;
+  case DEM_DISC_COLLISION:
+    fprintf(out, "disc-collision: two equal discs approach at %.4g m/s, impact parameter %.4g diameters\n",
+            in->collision.speed, in->collision.impact_parameter);
+    break;
+  }
+}
+
+static void model(const struct dem_inputs *in, FILE *out) {
+  fprintf(out, "  beams: yes, E %.4g Pa\n", in->beam.young_modulus);
+  if (!in->threshold.breaking)
+    fprintf(out, "  breaking: no (threshold.breaking is false)\n");
+  else if (field_is_off(in->threshold.modulus))
+    fprintf(out, "  breaking: strain %.4g, angle %.4g deg, the same for all beams\n", in->threshold.strain,
+            in->threshold.angle * 57.295779513082323);
+  else
+    fprintf(out, "  breaking: thresholds drawn per beam, Weibull modulus %.4g about strain %.4g, angle %.4g deg\n",
+            in->threshold.modulus, in->threshold.strain, in->threshold.angle * 57.295779513082323);
+  if (in->contact.law == DEM_CONTACT_OFF) {
+    fprintf(out, "  contact: no (contact.law is off): grains pass through each other\n");
+    return;
+  }
+  fprintf(out, "  contact: %s law, Y %.4g Pa, bonded neighbours %s\n",
+          in->contact.law == DEM_CONTACT_PRINTED ? "printed" : "conservative", in->grain.young_modulus,
+          in->contact.bonded ? "too" : "not");
+  fprintf(out, "  limit of the model: single grains that close in faster than about %.0f m/s pass through each other\n",
+          dem_describe_passing_speed(in));
+  bool damped = in->contact.normal_damping > 0 || in->contact.tangential_damping > 0;
+  if (damped)
+    fprintf(out, "  damping: normal %.4g /s, tangential %.4g /s, friction %.4g, bonded neighbours %s\n",
+            in->contact.normal_damping, in->contact.tangential_damping, in->contact.friction,
+            in->contact.damping_bonded ? "too" : "not");
+  else
+    fprintf(out, "  damping: no\n");
+}
+
+static double energy_put_in(const struct dem_inputs *in) {
+  double area = in->grain.spacing * in->grain.spacing;
+  switch ((enum dem_kind)in->kind) {
+  case DEM_DISC_EXPLOSION: return in->charge.energy;
+  case DEM_BLOCK_IMPACT: return 0.5 * in->grain.density * area * in->impact.speed * in->impact.speed;
+  case DEM_DISC_COLLISION:
+    return 0.125 * in->grain.density * dem_inputs_grains(in) * area * in->collision.speed * in->collision.speed;
+  case DEM_UNIAXIAL:
+  case DEM_COMPRESSION: break;
+  }
+  return NAN;
+}
+
+char *dem_describe_scene(const struct dem_inputs *in) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  protocol(in, out);
+  model(in, out);
+  double extension, compression;
+  dem_describe_sound_speeds(in, &extension, &compression);
+  fprintf(out, "  sound speed (estimate along a square lattice): %.0f m/s in extension, %.0f m/s in compression\n",
+          extension, compression);
+
+  double grains = dem_inputs_grains(in), energy = energy_put_in(in);
+  if (grains > MEASURED_UP_TO)
+    fprintf(out, "  grains: about %.0f; too many to measure stability and energies for a description\n", grains);
+  else { /* the body of seed 1 */
+    struct dem_inputs probe = *in;
+    probe.fidelity.time_step = 1e-15; /* any step will do to build it */
+    struct dem_run *run = NULL;
+    struct error error = {0};
+    probe.stop.end_time = 1e-12;
+    if (probe.kind == DEM_UNIAXIAL || probe.kind == DEM_COMPRESSION)
+      probe.kind = DEM_BLOCK_IMPACT; /* the same body without its record */
+    probe.impact.speed = 1;
+    if (dem_run_create(&probe, 1, &run, &error))
+      fprintf(out, "  cannot be run: %s\n", error.message);
+    else {
+      double needed = dem_describe_threshold_energy(in, run->tessellation), limit = run->stable_time_step;
+      fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", run->tessellation->cell_count,
+              run->tessellation->pair_count);
+      if (isnan(energy))
+        fprintf(out, "  every beam at the strain threshold would hold %.4g J/m\n", needed);
+      else
+        fprintf(out, "  energy put in: %.4g J/m; every beam at the strain threshold would hold %.4g J/m (ratio %.3g)\n",
+                energy, needed, energy / needed);
+      fprintf(out, "  time step: %.4g s, stability limit 2/omega_max %.4g s (ratio %.2g)%s\n", in->fidelity.time_step,
+              limit, in->fidelity.time_step / limit,
+              in->fidelity.time_step > limit ? ": UNSTABLE, will be refused" : "");
+    }
+    dem_run_free(run);
+  }
+  fprintf(out, "  at most %.3g steps of %.3g grains\n", dem_inputs_end_time(in) / in->fidelity.time_step, grains);
+  if (fclose(out)) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

@@ -1,0 +1,200 @@
+/* "K99" in the sources below: Kun, D'Addetta, Herrmann & Ramm 1999, Two-dimensional dynamic simulation of fracture and
+ * fragmentation of solids; numbers of its table 1 turned from CGS into SI (unit thickness: energies per metre). */
+#include "engine/dem/scene/inputs.h"
+
+#include <math.h>
+
+#include "engine/dem/step/system.h"
+
+static const char *const kinds[] = {"disc-explosion", "block-impact",   "uniaxial",
+                                    "compression",    "disc-collision", NULL};
+static const char *const laws[] = {"conservative", "printed", "off", NULL};
+static const char *const directions[] = {"extension", "compression", NULL};
+static const char *const integrators[] = {"verlet", "gear", NULL};
+
+#define DEGREE (3.14159265358979323846 / 180)
+
+#define ROW(path_, kind_, unit_, ...)                                                                                  \
+  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct dem_inputs, path_), __VA_ARGS__ }
+#define REAL(path_, unit_, default_, low, high, ...)                                                                   \
+  ROW(path_, FIELD_REAL, unit_, .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
+#define COUNT(path_, default_, low, high, ...)                                                                         \
+  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
+#define SWITCH(path_, default_, ...) ROW(path_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
+#define CHOICE(path_, choices_, ...) ROW(path_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
+
+#define DISCS    "kind=disc-explosion|disc-collision"
+#define BLOCKS   "kind=block-impact|uniaxial|compression"
+#define LOADED   "kind=uniaxial|compression"
+#define FREE     "kind=disc-explosion|block-impact|disc-collision"
+#define TOUCHING "contact.law=conservative|printed"
+
+static const struct field rows[] = {
+    CHOICE(kind, kinds,
+           .choice_docs = "a charge in the centre of a disc\n"
+                          "one grain of a block's lower side is shot into it\n"
+                          "a block pulled or pressed between two opposite sides, free to slide sideways: K and nu\n"
+                          "a block pressed between confined ends until it fails\n"
+                          "two equal discs run into each other",
+           .doc = "The protocol: what is done to the body.", .source = "K99 section 3"),
+
+    REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .flags = FIELD_LOG, .when = DISCS, .doc = "Diameter of the disc.",
+         .source = "K99 table 1"),
+    COUNT(body.columns, 40, 1, 10000, .when = BLOCKS, .doc = "Grains along the block's width (x)."),
+    COUNT(body.rows, 20, 2, 10000, .when = BLOCKS,
+          .doc = "Grains along the block's height (y): the direction of the load or of the shot."),
+
+    REAL(grain.density, "kg/m^3", 5000, 1e-3, 1e6, .flags = FIELD_LOG, .doc = "Mass density of the grains.",
+         .source = "K99 table 1"),
+    REAL(grain.young_modulus, "Pa", 1e9, 1, 1e15, .flags = FIELD_LOG,
+         .doc = "Y: modulus of the repulsion of overlapping grains.", .source = "K99 eq. 2 and table 1"),
+    REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5, .flags = FIELD_LOG,
+         .doc =
+             "Grid constant of the random lattice: the mean size of a grain. The default gives about 1100 grains in a "
+             "disc of 0.4 m.",
+         .source = "K99 table 1 (number of polygons)"),
+    REAL(grain.disorder, "1", 1, 0, 1,
+         .doc = "a over spacing: each grid square's point is thrown uniformly into the concentric square of side "
+                "a. 0 is a square lattice, 1 uses the whole grid square.",
+         .source = "K99 section 2.1; the paper gives no value for its runs"),
+
+    REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15, .flags = FIELD_LOG,
+         .doc = "E: modulus of the beams that join neighbouring grains; the shear modulus is E/2.",
+         .source = "K99 eqs. 7-9 and table 1"),
+
+    SWITCH(threshold.breaking, 1, .doc = "Beams may break. Off: a purely elastic body."),
+    REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .flags = FIELD_LOG, .when = "threshold.breaking=true",
+         .doc = "t_epsilon: strain at which an unbent beam breaks.", .source = "K99 eq. 13"),
+    REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .flags = FIELD_LOG, .when = "threshold.breaking=true",
+         .doc = "t_Theta: end rotation at which a hardly stretched beam breaks.", .source = "K99 eq. 13"),
+    REAL(threshold.modulus, "1", NAN, 0.1, 1e6, .flags = FIELD_MAY_BE_OFF | FIELD_LOG,
+         .when = "threshold.breaking=true",
+         .doc = "Weibull modulus of thresholds drawn for each beam, with the two thresholds above as the law's scales. "
+                "off: all beams have the same thresholds.",
+         .source = "off is K99 section 2.3; the law is an option beyond the paper"),
+
+    CHOICE(contact.law, laws,
+           .choice_docs = "the gradient of an overlap potential: an undamped contact returns the energy put in\n"
+                          "force Y A/L_c as in the paper: not a potential force\n"
+                          "grains pass through each other: the pure beam lattice",
+           .doc = "Repulsion of overlapping grains.", .source = "K99 eq. 2 for `printed`"),
+    SWITCH(contact.bonded, 1, .when = TOUCHING,
+           .doc = "Repulsion acts between grains that a beam joins, too: the paper's stiffer compression needs it.",
+           .source = "K99 section 3.1"),
+    REAL(contact.normal_damping, "1/s", 0, 0, 1e12, .when = TOUCHING,
+         .doc = "gamma_N: damping of the approach of overlapping grains.",
+         .source = "K99 eq. 3; the paper gives no value"),
+    REAL(contact.tangential_damping, "1/s", 0, 0, 1e12, .when = TOUCHING,
+         .doc = "gamma_T: damping of the sliding of overlapping grains, limited by Coulomb's law.",
+         .source = "K99 eq. 4; the paper gives no value"),
+    REAL(contact.friction, "1", 0, 0, 100, .when = TOUCHING,
+         .doc = "mu: limit of the tangential over the normal force.", .source = "K99 eq. 4; the paper gives no value"),
+    SWITCH(contact.damping_bonded, 0, .when = TOUCHING,
+           .doc =
+               "Damping and friction act between grains that a beam joins, too. They decide the outcome more than any "
+               "threshold does."),
+
+    REAL(charge.energy, "J/m", 5e4, 1e-12, 1e18, .flags = FIELD_LOG, .when = "kind=disc-explosion",
+         .doc =
+             "E_o: kinetic energy given to the neighbours of the central grain, per metre of thickness. Each starts "
+             "perpendicular to the common side with a speed proportional to side over mass; the central grain is the "
+             "explosive and is gone.",
+         .source = "K99 section 3.3.1 and table 1 (5e9 erg per cm)"),
+
+    REAL(impact.speed, "m/s", 400, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=block-impact",
+         .doc = "Speed of the grain in the middle of the lower side, directed into the block.",
+         .source = "K99 figure II"),
+    REAL(impact.angle, "rad", 0, -1.5707963267948966, 1.5707963267948966, .when = "kind=block-impact",
+         .doc = "Angle between that velocity and the inward normal, positive towards +x."),
+
+    CHOICE(loading.direction, directions, .when = "kind=uniaxial",
+           .choice_docs = "the sides move apart\nthe sides move towards each other", .doc = "Sense of the load."),
+    REAL(loading.rate, "1/s", 0.5, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM | FIELD_LOG, .when = LOADED,
+         .doc = "Strain rate once the sides move at constant speed (each side moves at half of rate times height).",
+         .source = "K99 section 3.1; the paper gives no value"),
+    REAL(loading.ramp, "s", 5e-3, 0, 1e3, .when = LOADED,
+         .doc = "Time of constant acceleration from rest to that speed: it keeps elastic waves small.",
+         .source = "K99 section 3.1; the paper gives no value"),
+    REAL(loading.strain_end, "1", 0.01, 0, 0.9, .flags = FIELD_ABOVE_MINIMUM, .when = LOADED,
+         .doc = "Strain between the held layers at which the run ends."),
+    REAL(loading.residual, "1", 0.3, 0, 1, .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM, .when = "kind=compression",
+         .doc =
+             "The body has failed, and the run ends, once the stress is below this share of its maximum. off: load up "
+             "to strain_end."),
+
+    REAL(collision.speed, "m/s", 200, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=disc-collision",
+         .doc = "Speed of approach of the two discs; each has half of it in their common frame."),
+    REAL(collision.impact_parameter, "1", 0, 0, 1, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=disc-collision",
+         .doc = "Distance of the centres across the approach, over the diameter: 0 is head-on."),
+
+    REAL(stop.quiet_time, "s", 3e-4, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE,
+         .doc =
+             "The run is complete when no beam has broken for this long, counted from the first break. A time, not a "
+             "number of steps: else the time step would change the physics.",
+         .source = "K99 section 3.3.1 (300 steps of 1 us)"),
+    REAL(stop.end_time, "s", 1e-2, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE, .doc = "Hard end of the run."),
+
+    REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3, .flags = FIELD_LOG,
+         .doc = "Time step; refused where it is above the stability limit 2/omega_max of the body.",
+         .source = "K99 table 1"),
+    CHOICE(fidelity.integrator, integrators,
+           .choice_docs = "velocity Verlet: the everyday choice\nfifth-order Gear predictor-corrector: the paper's",
+           .doc = "How the equations of motion are integrated.", .source = "K99 section 2.3 for `gear`"),
+    REAL(fidelity.energy_bound, "1", 0.1, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+         .doc =
+             "The run ends with state `energy` when the closed ledger drifts by more than this share of the energy put "
+             "in. off: it only reports the drift."),
+};
+
+const struct field_table dem_inputs = FIELD_TABLE(
+    rows, struct dem_inputs, "dem scene",
+    "Discrete elements in the plane: Voronoi grains joined by breakable beams (Kun, D'Addetta, Herrmann & Ramm 1999).");
+
+double dem_inputs_grains(const struct dem_inputs *in) {
+  if (in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION) {
+    double disc = 0.25 * 3.14159265358979323846 * pow(in->body.diameter / in->grain.spacing, 2);
+    return in->kind == DEM_DISC_COLLISION ? 2 * disc : disc;
+  }
+  return (double)in->body.columns * (double)in->body.rows;
+}
+
+double dem_inputs_end_time(const struct dem_inputs *in) {
+  if (in->kind != DEM_UNIAXIAL && in->kind != DEM_COMPRESSION)
+    return in->stop.end_time;
+  double strain = in->loading.strain_end, rate = in->loading.rate, ramp = in->loading.ramp;
+  return strain >= rate * ramp / 2 ? strain / rate + ramp / 2 : sqrt(2 * ramp * strain / rate);
+}
+
+status dem_inputs_check(const struct dem_inputs *in, struct error *error) {
+  double grains = dem_inputs_grains(in);
+  bool disc = in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION;
+  if (disc && !(in->body.diameter >= 4 * in->grain.spacing))
+    return status_fail(error, STATUS_CONTENT,
+                       "body.diameter is %.4g m, grain.spacing %.4g m: a disc needs a diameter of at least 4 spacings",
+                       in->body.diameter, in->grain.spacing);
+  if (!(grains <= 1e7))
+    return status_fail(error, STATUS_CONTENT, "a body of %.3g grains is too large (at most 1e7): %s", grains,
+                       disc ? "raise grain.spacing or lower body.diameter" : "lower body.columns or body.rows");
+  double steps = dem_inputs_end_time(in) / in->fidelity.time_step;
+  if (!(steps <= 1e12))
+    return status_fail(error, STATUS_CONTENT,
+                       "the run could take %.3g time steps (at most 1e12): raise fidelity.time_step or end it earlier",
+                       steps);
+  if (!(steps >= 1))
+    return status_fail(error, STATUS_CONTENT,
+                       "the run ends before its first time step of %.4g s: lower fidelity.time_step",
+                       in->fidelity.time_step);
+  if (in->kind == DEM_UNIAXIAL || in->kind == DEM_COMPRESSION) {
+    if (in->body.rows < 4 || in->body.columns < 4)
+      return status_fail(error, STATUS_CONTENT,
+                         "a loaded block needs at least 4 columns and 4 rows: two rows are held, strains are measured "
+                         "between the others");
+    if (in->loading.strain_end < 0.5 * in->loading.rate * in->loading.ramp)
+      return status_fail(
+          error, STATUS_CONTENT,
+          "loading.strain_end %.4g is reached while the sides still accelerate (strain %.4g at the end of "
+          "loading.ramp): shorten the ramp or lower loading.rate",
+          in->loading.strain_end, 0.5 * in->loading.rate * in->loading.ramp);
+  }
+  return STATUS_OK;
+}

@@ -1,0 +1,297 @@
+#include "engine/dem/step/system.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/dem/beams/breaking.h"
+#include "engine/dem/contacts/neighbours.h"
+#include "engine/dem/lattice/assemble.h"
+#include "engine/dem/step/gear_start.h"
+#include "engine/dem/step/kernels.h"
+
+static status check(const struct dem_parameters *p, struct error *error) {
+  const struct {
+    const char *name;
+    double value, low;
+  } positive[] = {{"density", p->density, 1e-30},
+                  {"grain modulus", p->grain_modulus, 0.0},
+                  {"beam modulus", p->beam_modulus, 0.0},
+                  {"normal damping", p->normal_damping, 0.0},
+                  {"tangential damping", p->tangential_damping, 0.0},
+                  {"friction", p->friction, 0.0},
+                  {"time step", p->time_step, 1e-30},
+                  {"strain threshold", p->breaking ? p->strain_threshold : 1.0, 0.0},
+                  {"angle threshold", p->breaking ? p->angle_threshold : 1.0, 0.0},
+                  {"threshold modulus", isnan(p->threshold_modulus) ? 1.0 : p->threshold_modulus, 1e-3}};
+  for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k)
+    if (!(positive[k].value >= positive[k].low && positive[k].value < 1e30))
+      return status_fail(error, STATUS_CONTENT, "%s is %g; it must be a finite number not below %g.", positive[k].name,
+                         positive[k].value, positive[k].low);
+  return STATUS_OK;
+}
+
+void dem_system_evaluate(struct dem_system *s, double dt) {
+  memset(s->c.fx, 0, s->padded * sizeof(double));
+  memset(s->c.fy, 0, s->padded * sizeof(double));
+  memset(s->c.torque, 0, s->padded * sizeof(double));
+  memset(&s->sums, 0, sizeof s->sums);
+  s->general_count = 0;
+  s->kernels->forces(s);
+  if (!s->velocities)
+    return;
+  for (int lane = 0; lane < DEM_BLOCK; ++lane) {
+    s->now.contact += dt * s->sums.contact[lane];
+    s->now.damping += dt * s->sums.damping[lane];
+    s->now.friction += dt * s->sums.friction[lane];
+  }
+}
+
+static bool make_ready(struct dem_system *s) {
+  s->kernels->turn(s);
+  memcpy(s->c.guess_vx, s->c.vx, s->padded * sizeof(double));
+  memcpy(s->c.guess_vy, s->c.vy, s->padded * sizeof(double));
+  memcpy(s->c.guess_spin, s->c.spin, s->padded * sizeof(double));
+  if (!dem_neighbours_make(s))
+    return false;
+  dem_system_evaluate(s, 0.0);
+  s->now.ready = 1;
+  return true;
+}
+
+status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_parameters *parameters,
+                         struct dem_system **out, struct error *error) {
+  *out = NULL;
+  status done = check(parameters, error);
+  if (done != STATUS_OK)
+    return done;
+  struct dem_system *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
+  if (!s)
+    return status_fail(error, STATUS_MEMORY, "not enough memory for a system.");
+  memset(s, 0, sizeof *s);
+  s->p = *parameters;
+  s->kernels = dem_kernels_choose();
+  s->velocities = s->p.contact != DEM_CONTACT_OFF &&
+                  (s->p.contact == DEM_CONTACT_PRINTED || s->p.normal_damping > 0.0 ||
+                   (s->p.tangential_damping > 0.0 && s->p.friction > 0.0));
+  done = dem_assemble(s, tessellation, error);
+  if (done == STATUS_OK)
+    s->kernels->rest(s);
+  if (done == STATUS_OK && !make_ready(s))
+    done = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
+  if (done != STATUS_OK) {
+    dem_system_free(s);
+    return done;
+  }
+  *out = s;
+  return STATUS_OK;
+}
+
+void dem_system_free(struct dem_system *s) {
+  if (!s)
+    return;
+  void *const blocks[] = {s->arena,     s->mass,      s->inertia,        s->diameter,    s->first_vertex,
+                          s->outline_x, s->outline_y, s->first_partner,  s->partner,     s->partner_pair,
+                          s->freedoms,  s->present,   s->held_vx,        s->held_vy,     s->held_spin,
+                          s->held,      s->pair,      s->pair_stiffness, s->pair_normal, s->pair_tangential,
+                          s->alive,     s->windowed,  s->pair_lane,      s->lane_pair,   s->bond,
+                          s->near,      s->near_pair, s->general,        s->cell_head,   s->cell_grain,
+                          s->cell_next, s->cell_key,  s->cell_low,       s->log};
+  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+    free(blocks[k]);
+  free(s);
+}
+
+size_t dem_system_bytes(const struct dem_system *s) {
+  const size_t n = s->count, pairs = s->pair_count;
+  return sizeof *s + s->arena_doubles * sizeof(double) +
+         n * (3 * sizeof(double) + 2 + 3 * sizeof(double) + 3 * sizeof(uint32_t)) +
+         s->first_vertex[n] * 2 * sizeof(double) +
+         pairs *
+             (4 * sizeof(uint32_t) + sizeof *s->pair + 3 * sizeof(double) + 2 + 2 * sizeof(int32_t) + sizeof *s->log) +
+         s->bond_capacity * sizeof *s->bond + s->near_capacity / DEM_BLOCK * sizeof *s->near +
+         s->near_capacity * sizeof *s->near_pair + s->general_capacity * sizeof(uint32_t) + n * sizeof *s->cell_low +
+         s->cell_buckets * sizeof(uint32_t) + s->cell_capacity * (2 * sizeof(uint32_t) + sizeof *s->cell_key);
+}
+
+void dem_system_set_velocity(struct dem_system *s, uint32_t grain, double vx, double vy, double spin) {
+  s->c.vx[grain] = vx;
+  s->c.vy[grain] = vy;
+  s->c.spin[grain] = spin;
+  s->now.ready = 0; /* damping sees the new velocity, and the lists' skins depend on it */
+}
+
+void dem_system_remove(struct dem_system *s, uint32_t grain) {
+  if (!s->present[grain])
+    return;
+  s->present[grain] = 0;
+  for (uint32_t k = s->first_partner[grain]; k < s->first_partner[grain + 1]; ++k) {
+    const int32_t pair = (int32_t)s->partner_pair[k];
+    dem_breaking_cut(s, pair);
+  }
+  s->c.vx[grain] = s->c.vy[grain] = s->c.spin[grain] = 0.0;
+  s->c.mobility_x[grain] = s->c.mobility_y[grain] = s->c.mobility_angle[grain] = 0.0;
+  s->now.ready = 0; /* the list made before the next evaluation has neither its bonds nor its contacts */
+}
+
+static double kinetic_of(const struct dem_system *s, uint32_t i) {
+  return 0.5 * s->mass[i] * (s->c.vx[i] * s->c.vx[i] + s->c.vy[i] * s->c.vy[i]) +
+         0.5 * s->inertia[i] * s->c.spin[i] * s->c.spin[i];
+}
+
+static void prescribe(struct dem_system *s, uint32_t grain) {
+  const double before = kinetic_of(s, grain);
+  if (s->freedoms[grain] & 1)
+    s->c.vx[grain] = s->held_vx[grain];
+  if (s->freedoms[grain] & 2)
+    s->c.vy[grain] = s->held_vy[grain];
+  if (s->freedoms[grain] & 4)
+    s->c.spin[grain] = s->held_spin[grain];
+  s->now.external_work += kinetic_of(s, grain) - before; /* a jolt is work too */
+}
+
+void dem_system_hold(struct dem_system *s, uint32_t grain, unsigned freedoms) {
+  if (!s->freedoms[grain] && freedoms)
+    s->held[s->held_count++] = grain;
+  s->freedoms[grain] |= (unsigned char)(freedoms & 7u);
+  double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
+  for (int k = 0; k < 3; ++k)
+    if (freedoms & 1u << k) {
+      mobility[k][grain] = 0.0;
+      for (int order = 2; order < 6 && s->c.gear[k][2]; ++order)
+        s->c.gear[k][order][grain] = 0.0;
+    }
+  prescribe(s, grain);
+}
+
+void dem_system_drive(struct dem_system *s, uint32_t grain, double vx, double vy, double spin) {
+  s->held_vx[grain] = vx;
+  s->held_vy[grain] = vy;
+  s->held_spin[grain] = spin;
+  prescribe(s, grain);
+}
+
+/* Work of the holds over `dt`: what keeps a driven freedom at its velocity balances the force on it. */
+static void book_holds(struct dem_system *s, double dt) {
+  for (size_t k = 0; k < s->held_count; ++k) {
+    const uint32_t i = s->held[k];
+    if (!s->present[i])
+      continue;
+    const unsigned f = s->freedoms[i];
+    s->now.external_work -= dt * ((f & 1 ? s->c.fx[i] * s->c.vx[i] : 0.0) + (f & 2 ? s->c.fy[i] * s->c.vy[i] : 0.0) +
+                                  (f & 4 ? s->c.torque[i] * s->c.spin[i] : 0.0));
+  }
+}
+
+bool dem_system_step(struct dem_system *s) {
+  const double dt = s->p.time_step;
+  bool moved = false;
+  if (!s->now.ready && !make_ready(s))
+    return false;
+  if (s->p.integrator == DEM_GEAR && !s->now.gear_started) {
+    if (!dem_gear_start(s))
+      return false;
+    s->now.gear_started = 1;
+  }
+  book_holds(s, 0.5 * dt);
+  const bool finite = s->p.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved)
+                                                  : s->kernels->verlet_drift(s, &moved);
+  s->now.time = (double)++s->now.steps * dt;
+  if (!finite || (moved && !dem_neighbours_make(s)))
+    return false;
+  dem_system_evaluate(s, dt);
+  if (s->p.integrator == DEM_GEAR)
+    s->kernels->gear_correct(s);
+  else
+    s->kernels->verlet_kick(s);
+  book_holds(s, 0.5 * dt);
+  return true;
+}
+
+double dem_system_time(const struct dem_system *s) {
+  return s->now.time;
+}
+uint64_t dem_system_steps(const struct dem_system *s) {
+  return s->now.steps;
+}
+
+static void measure(struct dem_system *s) {
+  memset(&s->sums, 0, sizeof s->sums);
+  s->general_count = 0;
+  s->kernels->measure(s);
+}
+
+struct dem_ledger dem_system_ledger(struct dem_system *s) {
+  struct dem_ledger ledger = {.contact = s->now.contact,
+                              .damping = s->now.damping,
+                              .friction = s->now.friction,
+                              .broken_beam = s->now.broken_beam,
+                              .external_work = s->now.external_work};
+  if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
+    ledger.contact = 0.0;
+  measure(s);
+  for (int lane = 0; lane < DEM_BLOCK; ++lane) {
+    ledger.beam += s->sums.beam[lane];
+    if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
+      ledger.contact += s->sums.contact[lane];
+  }
+  for (uint32_t i = 0; i < s->count; ++i)
+    if (s->present[i])
+      ledger.kinetic += kinetic_of(s, i);
+  return ledger;
+}
+
+double dem_system_overlap_share(struct dem_system *s) {
+  if (s->p.contact == DEM_CONTACT_OFF || s->pair_count == 0)
+    return 0.0;
+  measure(s);
+  return (double)s->sums.overlaps / (double)s->pair_count;
+}
+
+struct dem_grain dem_system_grain(const struct dem_system *s, uint32_t i) {
+  return (struct dem_grain){.x = s->c.x[i],
+                            .y = s->c.y[i],
+                            .angle = s->c.angle[i],
+                            .vx = s->c.vx[i],
+                            .vy = s->c.vy[i],
+                            .spin = s->c.spin[i],
+                            .mass = s->mass[i],
+                            .moment_of_inertia = s->inertia[i],
+                            .present = s->present[i] != 0};
+}
+
+void dem_system_force(const struct dem_system *s, uint32_t grain, double *fx, double *fy, double *torque) {
+  *fx = s->c.fx[grain];
+  *fy = s->c.fy[grain];
+  *torque = s->c.torque[grain];
+}
+
+bool dem_system_beam_alive(const struct dem_system *s, size_t beam) {
+  return s->alive[beam] != 0;
+}
+
+double dem_system_beam_strain(const struct dem_system *s, size_t beam) {
+  const int32_t slot = s->pair_lane[beam];
+  if (!s->alive[beam] || slot == DEM_NO_PAIR)
+    return NAN;
+  const uint32_t i = s->pair[beam][0], j = s->pair[beam][1];
+  const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i];
+  return sqrt(dx * dx + dy * dy) / s->bond[slot / DEM_BLOCK].length[slot % DEM_BLOCK] - 1.0;
+}
+
+size_t dem_system_breaks(const struct dem_system *s, const struct dem_break **log) {
+  *log = s->log;
+  return s->now.break_count;
+}
+
+double dem_system_last_break(const struct dem_system *s) {
+  return s->now.last_break;
+}
+
+size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {
+  struct dem_ring ring;
+  dem_neighbours_ring(s, grain, s->c.x[grain], s->c.y[grain], &ring);
+  for (size_t v = 0; v < ring.count && v < capacity; ++v)
+    vertices[v] = (struct dem_point){ring.x[v], ring.y[v]};
+  return ring.count;
+}

@@ -1,0 +1,91 @@
+/* The moving grains: beams, contacts, integration, breaking. K99 section 2; physics.md's corrections.
+ *
+ * All arrays are allocated at set-up; nothing is allocated in the step loop. */
+#ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_H
+#define CLAST_ENGINE_DEM_STEP_SYSTEM_H
+
+#include <stdbool.h>
+
+#include "engine/dem/lattice/tessellation.h"
+
+enum dem_contact_law { DEM_CONTACT_CONSERVATIVE, DEM_CONTACT_PRINTED, DEM_CONTACT_OFF };
+enum dem_integrator { DEM_VERLET, DEM_GEAR };
+
+struct dem_parameters {
+  double density;            /* kg/m^3; unit thickness: masses are kg per m of thickness */
+  double grain_modulus;      /* Y, Pa */
+  double beam_modulus;       /* E, Pa */
+  int contact;               /* enum dem_contact_law */
+  bool contact_on_bonded;    /* contact acts between bonded neighbours too */
+  double normal_damping;     /* gamma_N, 1/s */
+  double tangential_damping; /* gamma_T, 1/s */
+  double friction;           /* mu */
+  bool damping_on_bonded;    /* damping and friction act on bonded pairs too */
+  bool breaking;             /* beams may break */
+  double strain_threshold;   /* t_eps */
+  double angle_threshold;    /* t_Theta, rad */
+  double threshold_modulus;  /* Weibull modulus of thresholds drawn per beam; NaN = all equal (K99) */
+  uint64_t seed;
+  int integrator;   /* enum dem_integrator */
+  double time_step; /* s */
+};
+
+struct dem_break {
+  double time;   /* s */
+  uint32_t beam; /* index into the tessellation's pairs */
+  double strain, angle_first, angle_second;
+  bool bending; /* mode: the bending term was the larger one */
+};
+
+/* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for the
+ * conservative law `contact` is its potential, for the printed law the work done on contacts. */
+struct dem_ledger {
+  double kinetic, beam, contact, damping, friction, broken_beam, external_work;
+};
+
+struct dem_system; /* opaque; layout in system_layout.h, for this folder only */
+
+status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_parameters *parameters,
+                         struct dem_system **out, struct error *error);
+void dem_system_free(struct dem_system *system); /* NULL is fine */
+size_t dem_system_bytes(const struct dem_system *system);
+
+/* Boundary conditions and loads, per grain. */
+void dem_system_set_velocity(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);
+void dem_system_remove(struct dem_system *system, uint32_t grain); /* the explosive: its beams and contacts are gone */
+/* Degrees of freedom held at a prescribed velocity (bit 1: x, 2: y, 4: rotation). The work they do is booked. */
+void dem_system_hold(struct dem_system *system, uint32_t grain, unsigned freedoms);
+void dem_system_drive(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);
+
+/* One time step. False when a position or velocity is no longer finite. */
+bool dem_system_step(struct dem_system *system);
+
+double dem_system_time(const struct dem_system *system);
+uint64_t dem_system_steps(const struct dem_system *system);
+struct dem_ledger dem_system_ledger(struct dem_system *system);
+/* State of one grain: position of the centre of mass, rotation angle, velocities. */
+struct dem_grain {
+  double x, y, angle, vx, vy, spin, mass, moment_of_inertia;
+  bool present;
+};
+struct dem_grain dem_system_grain(const struct dem_system *system, uint32_t grain);
+/* Force on a grain at the last evaluation (with reaction of its holds left out). */
+void dem_system_force(const struct dem_system *system, uint32_t grain, double *fx, double *fy, double *torque);
+/* Beams: alive or not, their strain now. */
+bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
+double dem_system_beam_strain(const struct dem_system *system, size_t beam);
+size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);
+double dem_system_last_break(const struct dem_system *system); /* s; 0 before any */
+/* 2 / omega_max by power iteration on the initial beam network (and contacts), s: the stability limit of dt. */
+double dem_system_stable_time_step(const struct dem_system *system);
+/* Pairs that overlap now over the tessellation's neighbour pairs. */
+double dem_system_overlap_share(struct dem_system *system);
+/* Current outline of a grain, counter-clockwise; returns the number of vertices (up to capacity are written). */
+size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_t capacity, struct dem_point *vertices);
+
+/* Everything that the next step depends on, so that a restored run continues with the same bits. */
+size_t dem_system_state_size(const struct dem_system *system);
+void dem_system_state_save(const struct dem_system *system, void *bytes);
+bool dem_system_state_load(struct dem_system *system, const void *bytes, size_t size);
+
+#endif

@@ -1,0 +1,78 @@
+/* The stability limit of the time step: 2 / omega_max of the network at rest, by power iteration on M^-1 K without ever
+ * building K. Contacts of bonded pairs count as springs across the common side's middle. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/dem/step/system_layout.h"
+
+/* Add K u of one beam (and its contact) to f: linearised forces at rest, u = (x, y, angle) of every grain. */
+static void add_bond(const struct dem_system *s, size_t slot, const double *u, double *f) {
+  const struct dem_bond_block *b = &s->bond[slot / DEM_BLOCK];
+  const size_t lane = slot % DEM_BLOCK;
+  const uint32_t i = b->first[lane], j = b->second[lane];
+  const double ex = b->reference_x[lane], ey = b->reference_y[lane], l = b->length[lane];
+  const double dx = u[3 * j] - u[3 * i], dy = u[3 * j + 1] - u[3 * i + 1];
+  const double stretch = dx * ex + dy * ey, phi = (dy * ex - dx * ey) / l;
+  const double t1 = u[3 * i + 2] - phi, t2 = u[3 * j + 2] - phi;
+  const double m1 = b->diagonal[lane] * (t1 - t2) + b->cross[lane] * t2;
+  const double m2 = b->diagonal[lane] * (t2 - t1) + b->cross[lane] * t1;
+  const double tension = b->axial[lane] * stretch, shear = -(m1 + m2) / l;
+  const double fx = tension * ex - shear * ey, fy = tension * ey + shear * ex;
+  f[3 * i] -= fx, f[3 * i + 1] -= fy, f[3 * i + 2] += m1;
+  f[3 * j] += fx, f[3 * j + 1] += fy, f[3 * j + 2] += m2;
+  if (!(b->stiffness[lane] > 0.0))
+    return;
+  /* A face-on overlap of depth d has area S d: kappa S^2 is the conservative law's spring, (Y/L_c) S the printed one's.
+   */
+  const double hx = b->half_x[0][lane], hy = b->half_y[0][lane], side = 2.0 * sqrt(hx * hx + hy * hy);
+  const double k = b->stiffness[lane] * side * (s->p.contact == DEM_CONTACT_PRINTED ? 1.0 : side);
+  const double nx = 2.0 * hy / side, ny = -2.0 * hx / side; /* from i to j */
+  const double r1x = b->middle_x[0][lane], r1y = b->middle_y[0][lane], r2x = b->middle_x[1][lane],
+               r2y = b->middle_y[1][lane];
+  const double gap = (dx - u[3 * j + 2] * r2y + u[3 * i + 2] * r1y) * nx +
+                     (dy + u[3 * j + 2] * r2x - u[3 * i + 2] * r1x) * ny;
+  const double push = k * gap;
+  f[3 * i] -= push * nx, f[3 * i + 1] -= push * ny, f[3 * i + 2] -= push * (r1x * ny - r1y * nx);
+  f[3 * j] += push * nx, f[3 * j + 1] += push * ny, f[3 * j + 2] += push * (r2x * ny - r2y * nx);
+}
+
+double dem_system_stable_time_step(const struct dem_system *s) {
+  const size_t n = s->count;
+  double *u = malloc(6 * (n + 2) * sizeof *u), *f = u ? u + 3 * (n + 2) : NULL;
+  if (!u)
+    return NAN;
+  const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
+  for (size_t k = 0; k < 3 * (n + 2); ++k) /* any start with all modes in it */
+    u[k] = ((double)(k * 2654435761u >> 7 & 1023u) / 511.5 - 1.0) * (k % 3 == 2 ? 1.0 / s->mean_diameter : 1.0);
+  u[3 * n] = u[3 * n + 1] = u[3 * n + 2] = u[3 * n + 3] = u[3 * n + 4] = u[3 * n + 5] = 0.0;
+  double squared = 0.0;
+  for (int iteration = 0; iteration < 1000; ++iteration) {
+    memset(f, 0, 3 * (n + 2) * sizeof *f);
+    for (size_t slot = 0; slot < s->now.bond_blocks * DEM_BLOCK; ++slot)
+      if (s->lane_pair[slot] != DEM_NO_PAIR)
+        add_bond(s, slot, u, f);
+    /* Rayleigh quotient u.K u / u.M u, then u <- M^-1 K u, scaled. */
+    double top = 0.0, bottom = 0.0, largest = 0.0;
+    for (size_t i = 0; i < n; ++i)
+      for (size_t k = 0; k < 3; ++k) {
+        const double per_mass = mobility[k][i], v = u[3 * i + k];
+        if (!(per_mass > 0.0))
+          continue;
+        top += v * f[3 * i + k];
+        bottom += v * v / per_mass;
+        f[3 * i + k] *= per_mass;
+        largest = fmax(largest, fabs(f[3 * i + k]));
+      }
+    const double before = squared;
+    squared = bottom > 0.0 ? top / bottom : 0.0;
+    if (!(largest > 0.0) || (iteration > 20 && fabs(squared - before) < 1e-7 * squared))
+      break;
+    for (size_t i = 0; i < n; ++i)
+      for (size_t k = 0; k < 3; ++k)
+        u[3 * i + k] = mobility[k][i] > 0.0 ? f[3 * i + k] / largest : 0.0;
+  }
+  free(u);
+  return squared > 0.0 ? 2.0 / sqrt(squared) : (double)INFINITY;
+}

@@ -1,0 +1,186 @@
+#include "engine/sph/body/bodies.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double unit(const double a[3], double out[3]) {
+  const double length = sqrt(dot(a, a));
+  for (int k = 0; k < 3; k++)
+    out[k] = length > 0 ? a[k] / length : 0;
+  return length;
+}
+
+static const char *name(size_t body, char text[32]) { /* as scenes call them: particles.h */
+  if (body < 2)
+    return body ? "the projectile" : "the target";
+  const char digits[3] = {(char)('0' + body / 100 % 10), (char)('0' + body / 10 % 10), (char)('0' + body % 10)};
+  memcpy(text, "body ", 5);
+  memcpy(text + 5, digits, 3);
+  text[8] = 0;
+  return text;
+}
+
+static status check(const struct sph_body *bodies, size_t count, struct error *error) {
+  if (!count || count > 255)
+    return status_fail(error, STATUS_CONTENT, "%zu bodies: give 1 to 255.", count);
+  for (size_t b = 0; b < count; b++) {
+    status code = sph_shape_check(&bodies[b].shape, error);
+    if (code)
+      return code;
+    if (!(bodies[b].density > 0 && isfinite(bodies[b].density)))
+      return status_fail(error, STATUS_CONTENT, "the density of a body is %g kg/m^3: give a positive one.",
+                         bodies[b].density);
+    if (bodies[b].h_over_spacing <= 0 || isinf(bodies[b].h_over_spacing))
+      return status_fail(error, STATUS_CONTENT, "h over spacing is %g: give a positive number (%g is usual).",
+                         bodies[b].h_over_spacing, SPH_BODIES_H);
+  }
+  char text[2][32];
+  for (size_t b = 0; b < count; b++)
+    for (size_t a = 0; a < b; a++) {
+      const double gap = sph_shape_gap(&bodies[a].shape, &bodies[b].shape);
+      const double size = cbrt(fmin(sph_shape_volume(&bodies[a].shape), sph_shape_volume(&bodies[b].shape)));
+      if (gap < -1e-9 * size) /* bodies that touch are no overlap, however they are rounded */
+        return status_fail(error, STATUS_CONTENT, "%s and %s overlap by %.4g m: move one of them, or give a gap.",
+                           name(a, text[0]), name(b, text[1]), -gap);
+    }
+  return STATUS_OK;
+}
+
+status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
+                       struct sph_range *ranges, struct error *error) {
+  *out = NULL;
+  struct sph_points *points = NULL;
+  struct sph_particles *p = NULL;
+  status code = check(bodies, count, error);
+  if (code)
+    return code;
+  points = calloc(count, sizeof *points);
+  if (!points)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu bodies", count);
+  size_t n = 0;
+  for (size_t b = 0; b < count; b++) {
+    code = sph_lattice_fill(&bodies[b].lattice, &bodies[b].shape, &points[b], error);
+    if (code)
+      goto cleanup;
+    n += points[b].n;
+  }
+  code = sph_particles_make(n, arrays, &p, error);
+  if (code)
+    goto cleanup;
+  size_t first = 0;
+  for (size_t b = 0; b < count; b++) {
+    const struct sph_points *from = &points[b];
+    const double wide = isnan(bodies[b].h_over_spacing) ? SPH_BODIES_H : bodies[b].h_over_spacing;
+    struct sph_range range = {.first = first, .n = from->n, .spacing = from->spacing, .nearest = from->nearest};
+    range.h = wide * from->spacing;
+    range.mass = bodies[b].density * sph_shape_volume(&bodies[b].shape);
+    for (size_t i = 0; i < from->n; i++) {
+      const double share = from->share ? from->share[i] : 1;
+      p->x[first + i] = from->x[i];
+      p->y[first + i] = from->y[i];
+      p->z[first + i] = from->z[i];
+      p->mass[first + i] = range.mass / (double)from->n * share;
+      p->density[first + i] = bodies[b].density;
+      p->h[first + i] = range.h * (from->share ? cbrt(share) : 1);
+      p->body[first + i] = (uint8_t)b;
+    }
+    if (ranges)
+      ranges[b] = range;
+    first += from->n;
+  }
+  *out = p;
+cleanup:
+  for (size_t b = 0; b < count; b++)
+    sph_lattice_empty(&points[b]);
+  free(points);
+  return code;
+}
+
+status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
+                      double angle, double gap, double flight[3], struct error *error) {
+  double outwards[3], point[3], normal[3], aside[3];
+  if (!(unit(direction, outwards) > 0) || !isfinite(dot(direction, direction)))
+    return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");
+  if (!(gap >= 0 && isfinite(gap)))
+    return status_fail(error, STATUS_CONTENT, "the gap before the impact is %g m: give 0 or more.", gap);
+  if (!(angle >= 0 && angle < 1.5707963267948966))
+    return status_fail(error, STATUS_CONTENT, "the impact comes %g degrees from the normal: give 0 to below 90.",
+                       angle * 57.29577951308232);
+  sph_shape_surface(target, outwards, point, normal);
+  const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
+  for (int k = 0; k < 3; k++)
+    aside[k] = (k == towards) - normal[towards] * normal[k];
+  unit(aside, aside);
+  const double away = gap + sph_shape_reach(projectile, normal);
+  for (int k = 0; k < 3; k++) {
+    projectile->centre[k] = point[k] + away * normal[k];
+    flight[k] = -cos(angle) * normal[k] + sin(angle) * aside[k];
+  }
+  return STATUS_OK;
+}
+
+void sph_bodies_move(struct sph_particles *p, struct sph_range range, const double velocity[3]) {
+  for (size_t i = range.first; i < range.first + range.n; i++) {
+    p->vx[i] += velocity[0];
+    p->vy[i] += velocity[1];
+    p->vz[i] += velocity[2];
+  }
+}
+
+void sph_bodies_stretch(struct sph_particles *p, struct sph_range range, const double centre[3], const double axis[3],
+                        double rate, double ratio) {
+  double w[3];
+  unit(axis, w);
+  for (size_t i = range.first; i < range.first + range.n; i++) {
+    const double r[3] = {p->x[i] - centre[0], p->y[i] - centre[1], p->z[i] - centre[2]};
+    const double along = dot(r, w);
+    p->vx[i] += rate * (along * w[0] - ratio * (r[0] - along * w[0]));
+    p->vy[i] += rate * (along * w[1] - ratio * (r[1] - along * w[1]));
+    p->vz[i] += rate * (along * w[2] - ratio * (r[2] - along * w[2]));
+  }
+}
+
+void sph_bodies_spin(struct sph_particles *p, struct sph_range range, const double centre[3], const double spin[3]) {
+  for (size_t i = range.first; i < range.first + range.n; i++) {
+    const double r[3] = {p->x[i] - centre[0], p->y[i] - centre[1], p->z[i] - centre[2]};
+    p->vx[i] += spin[1] * r[2] - spin[2] * r[1];
+    p->vy[i] += spin[2] * r[0] - spin[0] * r[2];
+    p->vz[i] += spin[0] * r[1] - spin[1] * r[0];
+  }
+}
+
+bool sph_bodies_beyond(const struct sph_middle *middle, const double point[3]) {
+  double w[3];
+  unit(middle->axis, w);
+  const double r[3] = {point[0] - middle->centre[0], point[1] - middle->centre[1], point[2] - middle->centre[2]};
+  return fabs(dot(r, w)) > middle->half;
+}
+
+size_t sph_bodies_hold(struct sph_particles *p, struct sph_range range, const struct sph_middle *middle, int freedoms) {
+  size_t count = 0;
+  for (size_t i = range.first; i < range.first + range.n; i++)
+    if (sph_bodies_beyond(middle, (double[3]){p->x[i], p->y[i], p->z[i]})) {
+      p->held[i] |= (uint8_t)freedoms;
+      count++;
+    }
+  return count;
+}
+
+void sph_bodies_damp(struct sph_particles *p, struct sph_range range, const struct sph_shape *box, int sides,
+                     double margin, double rate) {
+  for (size_t i = range.first; i < range.first + range.n; i++) {
+    const double r[3] = {p->x[i] - box->centre[0], p->y[i] - box->centre[1], p->z[i] - box->centre[2]};
+    double deepest = 0;
+    for (int side = 0; side < 6; side++)
+      if (sides & 1 << side) {
+        const double from = 0.5 * box->side[side / 2] + (side % 2 ? -1 : 1) * r[side / 2];
+        deepest = fmax(deepest, fmin(1, 1 - from / margin));
+      }
+    p->damping[i] = fmax(p->damping[i], rate * deepest * deepest);
+  }
+}

@@ -1,0 +1,257 @@
+#include "engine/sph/body/irregular.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/random.h"
+#include "engine/sph/body/hilbert.h"
+#include "engine/sph/body/kd_tree.h"
+#include "engine/sph/body/particles.h"
+#include "engine/sph/body/relax.h"
+
+static const double pi = 3.14159265358979323846;
+static const uint64_t places = (uint64_t)1 << 32; /* draws of this file start here: lattice.c's are below */
+
+static status store(const struct sph_shape *shape, const struct sph_grading *grading, size_t n, double (*at)[3],
+                    struct sph_points *points, struct error *error) {
+  points->n = n;
+  points->x = malloc(n * sizeof *points->x);
+  points->y = malloc(n * sizeof *points->y);
+  points->z = malloc(n * sizeof *points->z);
+  points->share = grading->fine > 0 ? malloc(n * sizeof *points->share) : NULL;
+  if (!points->x || !points->y || !points->z || (grading->fine > 0 && !points->share))
+    return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
+  double total = 0;
+  for (size_t i = 0; i < n; i++) {
+    points->x[i] = at[i][0];
+    points->y[i] = at[i][1];
+    points->z[i] = at[i][2];
+    if (points->share) {
+      const double s = sph_relax_spacing(grading, at[i]);
+      total += points->share[i] = s * s * s;
+    }
+  }
+  for (size_t i = 0; i < n && points->share; i++)
+    points->share[i] *= (double)n / total;
+  points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
+  points->stretch = 1;
+  struct sph_kd_tree *tree;
+  status code = sph_kd_tree_create(n, points->x, points->y, points->z, &tree, error);
+  if (code)
+    return code;
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) {
+    const size_t j = sph_kd_tree_other(tree, at[i], i);
+    if (j < n)
+      sum += hypot(hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]), at[i][2] - at[j][2]);
+  }
+  points->nearest = n > 1 ? sum / (double)n : points->spacing;
+  sph_kd_tree_free(tree);
+  return STATUS_OK;
+}
+
+/* Uniform points start as the hexagonal lattice, each thrown by up to 0.7 spacings per direction: nothing is left of
+ * the order, but the density is uniform over long distances, where pushing apart is slow. */
+static status fill_uniform(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
+                           struct sph_points *points, struct error *error) {
+  struct sph_lattice regular = *lattice;
+  regular.kind = SPH_LATTICE_HEXAGONAL;
+  regular.particles = wanted;
+  struct sph_points start;
+  double(*at)[3] = NULL;
+  status code = sph_lattice_fill(&regular, shape, &start, error);
+  if (code)
+    return code;
+  at = malloc(start.n * sizeof *at);
+  if (!at) {
+    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", start.n);
+    goto cleanup;
+  }
+  for (size_t i = 0; i < start.n; i++) {
+    uint64_t bits[4];
+    random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, places + i, bits);
+    const double p[3] = {start.x[i], start.y[i], start.z[i]};
+    for (int k = 0; k < 3; k++)
+      at[i][k] = p[k] + 1.4 * start.spacing * (random_uniform(bits[k]) - 0.5);
+  }
+  code = sph_relax_spread(lattice, shape, start.spacing, start.n, at, error);
+  if (!code)
+    code = store(shape, &lattice->grading, start.n, at, points, error);
+cleanup:
+  free(at);
+  sph_lattice_empty(&start);
+  return code;
+}
+
+/* ---- grading: how many particles lie within r of the point ---- */
+
+enum { SHELLS = 1024, RAYS = 512 };
+
+struct shells {
+  double r[SHELLS + 1];      /* m, edges */
+  double open[SHELLS];       /* share of the middle of each shell that lies in the body */
+  double number[SHELLS + 1]; /* of whole shells, cumulative */
+};
+
+static void ray(double u, double turn, double d[3]) { /* u, turn: of [0, 1) */
+  const double z = 2 * u - 1, across = sqrt(fmax(0, 1 - z * z));
+  d[0] = across * cos(2 * pi * turn);
+  d[1] = across * sin(2 * pi * turn);
+  d[2] = z;
+}
+
+static void cut_shells(const struct sph_grading *g, const struct sph_shape *shape, struct shells *shells) {
+  double size = 0, away = 0;
+  for (int k = 0; k < 3; k++) {
+    const double unit[3] = {k == 0, k == 1, k == 2}, reach = sph_shape_reach(shape, unit);
+    size += reach * reach;
+    away += (g->point[k] - shape->centre[k]) * (g->point[k] - shape->centre[k]);
+  }
+  const double furthest = sqrt(size) + sqrt(away), core = g->radius + 4 * g->fine;
+  for (int k = 0; k <= SHELLS; k++) /* fine shells in the core, geometric beyond */
+    shells->r[k] = core * expm1(log1p(furthest / core) * k / SHELLS);
+  for (int k = 0; k < SHELLS; k++) {
+    const double r = 0.5 * (shells->r[k] + shells->r[k + 1]);
+    int in = 0;
+    for (int i = 0; i < RAYS; i++) {
+      double d[3];
+      ray((i + 0.5) / RAYS, fmod(0.6180339887498949 * i, 1), d);
+      in += sph_shape_inside(shape,
+                             (double[3]){g->point[0] + r * d[0], g->point[1] + r * d[1], g->point[2] + r * d[2]});
+    }
+    shells->open[k] = (double)in / RAYS;
+  }
+}
+
+static double count(const struct sph_grading *g, struct shells *shells) { /* particles in the body, by the grading */
+  double n = 0;
+  shells->number[0] = 0;
+  for (int k = 0; k < SHELLS; k++) {
+    const double a = shells->r[k], b = shells->r[k + 1], r = 0.5 * (a + b);
+    const double s = sph_relax_spacing(g, (double[3]){g->point[0] + r, g->point[1], g->point[2]});
+    const double whole = 4 * pi / 3 * (b - a) * (b * b + a * b + a * a) / (s * s * s);
+    shells->number[k + 1] = shells->number[k] + whole;
+    n += whole * shells->open[k];
+  }
+  return n;
+}
+
+static const double steepest = 0.12; /* neighbours' spacings then differ by less than 1.15 */
+
+static status decide(const struct sph_lattice *lattice, struct sph_grading *g, struct shells *shells, double *n,
+                     struct error *error) {
+  if (isnan(g->growth)) {
+    g->growth = steepest;
+    const double fewest = count(g, shells);
+    g->growth = 0;
+    const double most = count(g, shells), particles = lattice->particles;
+    if (!(particles >= fewest && particles <= most))
+      return status_fail(
+          error, STATUS_CONTENT,
+          "spacing from %g m at the point of impact gives %.0f to %.0f particles, not %.0f: change their number, "
+          "the finest spacing, or its radius.",
+          g->fine, ceil(fewest), floor(most), particles);
+    double low = 0, high = steepest;
+    for (int k = 0; k < 60; k++) {
+      g->growth = 0.5 * (low + high);
+      *(count(g, shells) > particles ? &low : &high) = g->growth;
+    }
+  } else if (!(g->growth >= 0 && g->growth <= steepest)) {
+    return status_fail(error, STATUS_CONTENT,
+                       "spacing grows by %g per distance: give 0 to %g, so that neighbours are alike.", g->growth,
+                       steepest);
+  }
+  *n = fmax(1, round(count(g, shells)));
+  if (!(*n * 480 < (double)sph_particles_memory()) || *n > 4e9)
+    return status_fail(
+        error, STATUS_MEMORY,
+        "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.", *n,
+        *n * 480 / 1e9, (double)sph_particles_memory() / 1e9);
+  return STATUS_OK;
+}
+
+/* Neighbours in space become neighbours in memory: the sequence leaps about. */
+static status sort(size_t n, double (*at)[3], struct error *error) {
+  double *column = malloc(3 * n * sizeof *column);
+  uint32_t *order = malloc(n * sizeof *order);
+  status code = STATUS_OK;
+  if (!column || !order)
+    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
+  for (size_t i = 0; i < n && !code; i++)
+    for (size_t k = 0; k < 3; k++)
+      column[k * n + i] = at[i][k];
+  if (!code)
+    code = sph_hilbert_find(n, column, column + n, column + 2 * n, order, error);
+  for (size_t i = 0; i < n && !code; i++)
+    for (size_t k = 0; k < 3; k++)
+      at[i][k] = column[k * n + order[i]];
+  free(column);
+  free(order);
+  return code;
+}
+
+/* Points start as a low-discrepancy sequence (Weyl's, with powers of the plastic number's cousin in 3D) over (number
+ * within r, direction), kept where the body is. */
+static status fill_graded(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                          struct error *error) {
+  static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  struct sph_lattice graded = *lattice;
+  struct sph_grading *g = &graded.grading;
+  struct shells *shells = malloc(sizeof *shells);
+  double(*at)[3] = NULL, number = 0;
+  status code = STATUS_OK;
+  if (!shells)
+    return status_fail(error, STATUS_MEMORY, "no memory for a graded body");
+  cut_shells(g, shape, shells);
+  code = decide(lattice, g, shells, &number, error);
+  if (code)
+    goto cleanup;
+  const size_t n = (size_t)number;
+  at = malloc(n * sizeof *at);
+  if (!at) {
+    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
+    goto cleanup;
+  }
+  uint64_t bits[4];
+  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, places, bits);
+  const uint64_t tries = (uint64_t)(4 * shells->number[SHELLS]) + 1000000;
+  size_t i = 0;
+  for (uint64_t trial = 0; i < n && trial < tries; trial++) {
+    double u[3], d[3];
+    for (int k = 0; k < 3; k++)
+      u[k] = fmod(random_uniform(bits[k]) + (double)trial * weyl[k], 1);
+    const double rank = u[0] * shells->number[SHELLS];
+    int low = 0, high = SHELLS;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      *(shells->number[middle] <= rank ? &low : &high) = middle;
+    }
+    const double a = shells->r[low], b = shells->r[low + 1];
+    const double part = (rank - shells->number[low]) / (shells->number[low + 1] - shells->number[low]);
+    const double r = cbrt(a * a * a + part * (b * b * b - a * a * a));
+    ray(u[1], u[2], d);
+    for (int k = 0; k < 3; k++)
+      at[i][k] = g->point[k] + r * d[k];
+    i += sph_shape_inside(shape, at[i]);
+  }
+  if (i < n) {
+    code = status_fail(error, STATUS_CONTENT,
+                       "a body is too thin, or too far from its point of impact, for graded particles.");
+    goto cleanup;
+  }
+  code = sort(n, at, error);
+  if (!code)
+    code = sph_relax_spread(&graded, shape, g->fine, n, at, error);
+  if (!code)
+    code = store(shape, g, n, at, points, error);
+cleanup:
+  free(shells);
+  free(at);
+  return code;
+}
+
+status sph_irregular_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
+                          struct sph_points *points, struct error *error) {
+  return lattice->grading.fine > 0 ? fill_graded(lattice, shape, points, error)
+                                   : fill_uniform(lattice, shape, wanted, points, error);
+}

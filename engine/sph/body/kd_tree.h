@@ -1,0 +1,26 @@
+/* Which of n points is nearest? A k-d tree: memory in proportion to n, however unevenly the points stand. */
+#ifndef CLAST_ENGINE_SPH_BODY_KD_TREE_H
+#define CLAST_ENGINE_SPH_BODY_KD_TREE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+struct sph_kd_tree; /* opaque */
+
+/* The coordinates are copied. n from 1 to below 2^32. STATUS_MEMORY. */
+status sph_kd_tree_create(size_t n, const double *x, const double *y, const double *z, struct sph_kd_tree **out,
+                          struct error *error);
+void sph_kd_tree_free(struct sph_kd_tree *nearest); /* NULL is fine */
+
+/* The nearest point's index; of two at the same distance the lower one. */
+size_t sph_kd_tree_find(const struct sph_kd_tree *nearest, const double point[3]);
+/* The nearest point but `self`; SIZE_MAX when there is no other. */
+size_t sph_kd_tree_other(const struct sph_kd_tree *nearest, const double point[3], size_t self);
+/* Indices of the points within `radius`, at most `room` of them stored; returns how many there are. Not sorted, but
+ * always in the same order. */
+size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[3], double radius, uint32_t *out,
+                          size_t room);
+
+#endif

@@ -1,0 +1,435 @@
+#include "engine/sph/body/lattice.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/random.h"
+#include "engine/sph/body/irregular.h"
+#include "engine/sph/body/particles.h"
+
+/* A right-angled cell with points at `basis` (fractions of its sides). Sides in spacings: the hexagonal lattice's
+ * neighbours are 2^(1/6) spacings apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
+struct cell {
+  double side[3];   /* of a row's point, of a row, of a layer: in spacings */
+  int rows, layers; /* how many make a period: in y, in z */
+  int count;
+  double basis[4][3];
+};
+static const double hexagonal = 1.122462048309373;
+static const struct cell cells[] = {
+    [SPH_LATTICE_HEXAGONAL] = {{1.122462048309373, 0.9720806486198328, 0.9164864246657354},
+                               2,
+                               2,
+                               4,
+                               {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 1. / 6, 0.5}, {0, 2. / 3, 0.5}}},
+    [SPH_LATTICE_CUBIC] = {{1, 1, 1}, 1, 1, 1, {{0, 0, 0}}},
+};
+
+static double period(const struct cell *cell, int direction) {
+  return cell->side[direction] * (direction == 0 ? 1 : direction == 1 ? cell->rows : cell->layers);
+}
+
+double sph_lattice_period(int kind, double spacing, int direction, double at_least) {
+  const double one = spacing * (kind == SPH_LATTICE_IRREGULAR ? 1 : period(&cells[kind], direction));
+  return one * fmax(1, ceil(at_least / one * (1 - 1e-12)));
+}
+
+void sph_lattice_empty(struct sph_points *points) {
+  free(points->x);
+  free(points->y);
+  free(points->z);
+  free(points->share);
+  *points = (struct sph_points){0};
+}
+
+static status allocate(struct sph_points *points, size_t n, struct error *error) {
+  points->n = n;
+  points->x = malloc(n * sizeof *points->x);
+  points->y = malloc(n * sizeof *points->y);
+  points->z = malloc(n * sizeof *points->z);
+  if (points->x && points->y && points->z)
+    return STATUS_OK;
+  return status_fail(error, STATUS_MEMORY, "no memory for the places of %zu particles", n);
+}
+
+static status too_thin(double wanted, double spacing, struct error *error) {
+  return status_fail(error, STATUS_CONTENT,
+                     "a body is too thin for %.0f particles of spacing %.3g m: ask for more particles.", wanted,
+                     spacing);
+}
+
+/* ---- boxes along the axes: whole rows, stretched to fit ---- */
+
+static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
+                    double wanted, double best[3]) {
+  const double spacing = cbrt(sph_shape_volume(box) / wanted);
+  double ideal[3], least = INFINITY;
+  int step[3];
+  for (int k = 0; k < 3; k++) {
+    ideal[k] = box->side[k] / (spacing * cell->side[k]);
+    step[k] = lattice->periodic[k] ? (k == 1 ? cell->rows : k == 2 ? cell->layers : 1) : 1;
+  }
+  enum { AROUND = 3 };
+  for (int trial = 0; trial < (2 * AROUND) * (2 * AROUND) * (2 * AROUND); trial++) {
+    const int shift[3] = {trial % (2 * AROUND) - AROUND + 1, trial / (2 * AROUND) % (2 * AROUND) - AROUND + 1,
+                          trial / (4 * AROUND * AROUND) - AROUND + 1};
+    double count[3], n = 1, widest = 0, narrowest = INFINITY;
+    for (int k = 0; k < 3; k++) {
+      count[k] = fmax(1, floor(ideal[k] / step[k]) + shift[k]) * step[k];
+      n *= count[k];
+      widest = fmax(widest, ideal[k] / count[k]);
+      narrowest = fmin(narrowest, ideal[k] / count[k]);
+    }
+    /* Up to 1 % off the number costs as much as a lattice 2 % wider one way than another; beyond, each 0.2 % as much.
+     */
+    const double miss = fabs(log(n / wanted)), off = miss <= 0.01 ? miss / 0.01 : 1 + (miss - 0.01) / 0.002;
+    const double uneven = log(widest / narrowest) / 0.02;
+    const double cost = off * off + uneven * uneven;
+    if (cost < least) {
+      least = cost;
+      for (int k = 0; k < 3; k++)
+        best[k] = count[k];
+    }
+  }
+}
+
+static status fill_box(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *box,
+                       double wanted, struct sph_points *points, struct error *error) {
+  double count[3];
+  fit_box(lattice, cell, box, wanted, count);
+  const double n = count[0] * count[1] * count[2];
+  if (n > 2 * wanted + 2 || n < 0.5 * wanted)
+    return too_thin(wanted, cbrt(sph_shape_volume(box) / wanted), error);
+  status code = allocate(points, (size_t)n, error);
+  if (code)
+    return code;
+  points->spacing = cbrt(sph_shape_volume(box) / (double)points->n);
+  double step[3], corner[3];
+  points->stretch = 1;
+  for (int k = 0; k < 3; k++) {
+    step[k] = box->side[k] / count[k];
+    corner[k] = box->centre[k] - 0.5 * box->side[k];
+    const double stretch = step[k] / (points->spacing * cell->side[k]);
+    points->stretch = fmax(points->stretch, fmax(stretch, 1 / stretch));
+  }
+  const bool shifted = cell->rows == 2; /* rows stand in the gaps of their neighbours, half a point to and fro */
+  size_t i = 0;
+  for (size_t layer = 0; layer < (size_t)count[2]; layer++)
+    for (size_t row = 0; row < (size_t)count[1]; row++)
+      for (size_t at = 0; at < (size_t)count[0]; at++, i++) {
+        const double x = shifted ? 0.25 + 0.5 * (double)((row + layer) % 2) : 0.5;
+        const double y = shifted ? 1. / 3 + 1. / 3 * (double)(layer % 2) : 0.5;
+        points->x[i] = corner[0] + ((double)at + x) * step[0];
+        points->y[i] = corner[1] + ((double)row + y) * step[1];
+        points->z[i] = corner[2] + ((double)layer + 0.5) * step[2];
+      }
+  return STATUS_OK;
+}
+
+/* ---- lattices cut by a surface ---- */
+
+struct cut {
+  const struct cell *cell;
+  const struct sph_shape *shape;
+  double frame[3][3]; /* columns: the lattice's axes */
+  double side[3];     /* m, of the cell with all its points */
+  double reach[3];    /* m, of the shape along the lattice's axes */
+  bool layered;       /* layers fitted to a cylinder's length: the frame is the cylinder's */
+  bool local;         /* inside is decided in the lattice's frame */
+};
+
+static bool inside(const struct cut *c, const double p[3], double world[3]) {
+  const struct sph_shape *s = c->shape;
+  if (c->local) {
+    const double across = p[0] * p[0] + p[1] * p[1];
+    if (s->kind == SPH_SHAPE_SPHERE)
+      return across + p[2] * p[2] < s->radius * s->radius;
+    return across < s->radius * s->radius && across >= s->inner_radius * s->inner_radius &&
+           fabs(p[2]) < 0.5 * s->length;
+  }
+  for (int k = 0; k < 3; k++)
+    world[k] = s->centre[k] + c->frame[k][0] * p[0] + c->frame[k][1] * p[1] + c->frame[k][2] * p[2];
+  return sph_shape_inside(s, world);
+}
+
+struct box { /* of cells */
+  int64_t low[3], high[3];
+};
+
+/* Counts, and with `points` stores (relative to the centre, in the lattice's frame), what lies inside: boxes of cells
+ * that the shape does not reach are left out, so that thin shapes of any direction cost what they hold. */
+static size_t cut_box(const struct cut *c, const double offset[3], const struct box *box, struct sph_points *points,
+                      size_t n) {
+  enum { SMALL = 8 };
+  double middle[3], world[3], half = 0, p[3];
+  int longest = 0;
+  for (int k = 0; k < 3; k++) { /* points are up to one cell beyond their cell's corner */
+    const double wide = 0.5 * (double)(box->high[k] - box->low[k] + 1) * c->side[k];
+    middle[k] = ((double)box->low[k] + offset[k]) * c->side[k] + wide;
+    half += wide * wide;
+    if (box->high[k] - box->low[k] > box->high[longest] - box->low[longest])
+      longest = k;
+  }
+  for (int k = 0; k < 3; k++)
+    world[k] = c->shape->centre[k] + c->frame[k][0] * middle[0] + c->frame[k][1] * middle[1] +
+               c->frame[k][2] * middle[2];
+  if (sph_shape_distance(c->shape, world, NULL) > sqrt(half))
+    return n;
+  if (box->high[longest] - box->low[longest] > SMALL) {
+    struct box part[2] = {*box, *box};
+    part[0].high[longest] = part[1].low[longest] = box->low[longest] + (box->high[longest] - box->low[longest]) / 2;
+    n = cut_box(c, offset, &part[0], points, n);
+    return cut_box(c, offset, &part[1], points, n);
+  }
+  for (int64_t iz = box->low[2]; iz < box->high[2]; iz++)
+    for (int64_t iy = box->low[1]; iy < box->high[1]; iy++)
+      for (int b = 0; b < c->cell->count; b++) {
+        const double *basis = c->cell->basis[b];
+        p[2] = ((double)iz + basis[2] + offset[2]) * c->side[2];
+        p[1] = ((double)iy + basis[1] + offset[1]) * c->side[1];
+        if (fabs(p[2]) >= c->reach[2] || fabs(p[1]) >= c->reach[1])
+          continue;
+        for (int64_t ix = box->low[0]; ix < box->high[0]; ix++) {
+          p[0] = ((double)ix + basis[0] + offset[0]) * c->side[0];
+          if (fabs(p[0]) >= c->reach[0] || !inside(c, p, world))
+            continue;
+          if (points) {
+            points->x[n] = p[0];
+            points->y[n] = p[1];
+            points->z[n] = p[2];
+          }
+          n++;
+        }
+      }
+  return n;
+}
+
+static size_t cut(const struct cut *c, const double offset[3], struct sph_points *points) {
+  struct box all;
+  for (int k = 0; k < 3; k++) { /* offset and basis are each within a cell */
+    all.low[k] = (int64_t)floor(-c->reach[k] / c->side[k]) - 2;
+    all.high[k] = (int64_t)ceil(c->reach[k] / c->side[k]) + 2;
+  }
+  return cut_box(c, offset, &all, points, 0);
+}
+
+/* Three uniforms: from the seed, or (not turned) first the middle of a point, then an even cover of the cell. */
+static void offsets(const struct sph_lattice *lattice, uint64_t trial, double out[3]) {
+  static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  uint64_t bits[4];
+  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, trial + 1, bits);
+  for (int k = 0; k < 3; k++)
+    out[k] = lattice->turned ? random_uniform(bits[k]) : fmod((double)trial * weyl[k], 1);
+}
+
+static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uniform over rotations: Shoemake 1992 */
+  uint64_t bits[4];
+  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, 0, bits);
+  const double u = random_uniform(bits[0]), a = 6.283185307179586 * random_uniform(bits[1]),
+               b = 6.283185307179586 * random_uniform(bits[2]);
+  const double x = sqrt(1 - u) * sin(a), y = sqrt(1 - u) * cos(a), z = sqrt(u) * sin(b), w = sqrt(u) * cos(b);
+  const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      frame[i][j] = matrix[i][j];
+}
+
+static void stack_layers(struct cut *c, double spacing, double layers) { /* along a cylinder, whole layers */
+  const double taller = c->shape->length / layers / (spacing * c->cell->side[2]);
+  c->side[0] = spacing * period(c->cell, 0) / sqrt(taller);
+  c->side[1] = spacing * period(c->cell, 1) / sqrt(taller);
+  c->side[2] = spacing * period(c->cell, 2) * taller;
+}
+
+/* Does the body, one spacing wider all round, have forty times its volume? Then the lattice mostly misses it, and
+ * looking for better offsets would take long. Layers have no ends to miss. */
+static bool thin(const struct cut *c) {
+  const struct sph_shape *s = c->shape;
+  const double each = c->side[0] * c->side[1] * c->side[2] / c->cell->count, layer = c->side[2] / c->cell->layers;
+  const double across = c->layered ? sqrt(each / layer) : cbrt(each), along = c->layered ? 0 : across;
+  if (s->kind == SPH_SHAPE_SPHERE)
+    return false;
+  double wider = 1;
+  for (int k = 0; k < 3; k++)
+    wider *= s->side[k] + 2 * across;
+  if (s->kind == SPH_SHAPE_CYLINDER) {
+    const double outer = s->radius + across, inner = fmax(0, s->inner_radius - across);
+    wider = 3.14159265358979323846 * (outer - inner) * (outer + inner) * (s->length + 2 * along);
+  }
+  return !(wider < 40 * sph_shape_volume(s));
+}
+
+/* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
+ * look until it fits. Returns the number, 0 when the lattice misses the shape. */
+static size_t search(const struct sph_lattice *lattice, const struct cut *c, double wanted, double best[3]) {
+  const uint64_t trials = wanted < 2000 ? 1000 : 100;
+  double off = HUGE_VAL;
+  size_t n = 0;
+  for (uint64_t trial = 0; trial < trials && off > 0.002; trial++) {
+    double offset[3];
+    offsets(lattice, trial, offset);
+    if (c->layered) { /* half a layer from the end */
+      const double end = (0.5 * c->side[2] / c->cell->layers - 0.5 * c->shape->length) / c->side[2];
+      offset[2] = end - floor(end);
+    }
+    const size_t count = cut(c, offset, NULL);
+    if (!count || fabs((double)count - wanted) / wanted >= off)
+      continue;
+    off = fabs((double)count - wanted) / wanted;
+    n = count;
+    for (int k = 0; k < 3; k++)
+      best[k] = offset[k];
+  }
+  return n;
+}
+
+/* Scale to exactly V/n per particle (layers stay), put the centre of mass where the shape has it, turn into the world.
+ */
+static void settle(const struct cut *c, double wanted, struct sph_points *points) {
+  const size_t n = points->n;
+  const double ratio = wanted / (double)n, across = c->layered ? sqrt(ratio) : cbrt(ratio),
+               along = c->layered ? 1 : across;
+  double mean[3] = {0};
+  for (size_t i = 0; i < n; i++) {
+    mean[0] += points->x[i] / (double)n;
+    mean[1] += points->y[i] / (double)n;
+    mean[2] += c->layered ? 0 : points->z[i] / (double)n;
+  }
+  for (size_t i = 0; i < n; i++) {
+    const double p[3] = {across * (points->x[i] - mean[0]), across * (points->y[i] - mean[1]),
+                         along * (points->z[i] - mean[2])};
+    double *const out[3] = {&points->x[i], &points->y[i], &points->z[i]};
+    for (int k = 0; k < 3; k++)
+      *out[k] = c->shape->centre[k] + c->frame[k][0] * p[0] + c->frame[k][1] * p[1] + c->frame[k][2] * p[2];
+  }
+}
+
+static status fill_cut(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *shape,
+                       double wanted, struct sph_points *points, struct error *error) {
+  struct cut c = {.cell = cell, .shape = shape};
+  const double spacing = cbrt(sph_shape_volume(shape) / wanted);
+  c.layered = shape->kind == SPH_SHAPE_CYLINDER && !lattice->turned;
+  c.local = c.layered || shape->kind == SPH_SHAPE_SPHERE;
+  sph_shape_frame(shape, c.frame);
+  if (lattice->turned)
+    turn(lattice, c.frame);
+  for (int k = 0; k < 3; k++) {
+    const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]};
+    c.side[k] = spacing * period(cell, k);
+    c.reach[k] = sph_shape_reach(shape, axis);
+  }
+  double offset[3] = {0}, layers = 0;
+  size_t n = 0;
+  if (c.layered) { /* the number of layers nearest to the ideal one, or the next if that fits the number better */
+    const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? cell->layers : 1;
+    const double ideal = shape->length / (spacing * cell->side[2]) / step, nearest = fmax(1, round(ideal));
+    const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
+    layers = nearest * step;
+    stack_layers(&c, spacing, layers);
+    if (thin(&c))
+      return too_thin(wanted, spacing, error);
+    n = search(lattice, &c, wanted, offset);
+    if (fabs((double)n - wanted) > 0.01 * wanted) {
+      double second[3];
+      stack_layers(&c, spacing, other * step);
+      const size_t m = search(lattice, &c, wanted, second);
+      if (fabs((double)m - wanted) < fabs((double)n - wanted)) {
+        n = m;
+        layers = other * step;
+        for (int k = 0; k < 3; k++)
+          offset[k] = second[k];
+      }
+      stack_layers(&c, spacing, layers);
+    }
+  } else {
+    if (thin(&c))
+      return too_thin(wanted, spacing, error);
+    n = search(lattice, &c, wanted, offset);
+  }
+  if (!n || (double)n < 0.5 * wanted || (double)n > 2 * wanted + 2)
+    return too_thin(wanted, spacing, error);
+  status code = allocate(points, n, error);
+  if (code)
+    return code;
+  cut(&c, offset, points);
+  points->spacing = cbrt(sph_shape_volume(shape) / (double)n);
+  const double taller = c.layered ? shape->length / layers / (spacing * cell->side[2]) : 1;
+  points->stretch = fmax(taller, 1 / taller);
+  settle(&c, wanted, points);
+  return STATUS_OK;
+}
+
+/* ---- what is asked for ---- */
+
+static status check_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape, int k,
+                             struct error *error) {
+  const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit), *axis = shape->axis;
+  const char name = "xyz"[k];
+  const char *what = lattice->grading.fine > 0         ? "a graded body"
+                     : lattice->turned                 ? "a turned lattice"
+                     : shape->kind == SPH_SHAPE_SPHERE ? "a sphere"
+                                                       : NULL;
+  if (what)
+    return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what,
+                       name);
+  if (shape->kind == SPH_SHAPE_CYLINDER && (axis[(k + 1) % 3] != 0 || axis[(k + 2) % 3] != 0))
+    return status_fail(error, STATUS_CONTENT, "a cylinder can repeat along its axis only, not along %c.", name);
+  if (fabs(shape->centre[k] - half) > 1e-9 * half)
+    return status_fail(error, STATUS_CONTENT,
+                       "a body that repeats along %c begins at 0 there: its centre must be at %g m, not %g m.", name,
+                       half, shape->centre[k]);
+  return STATUS_OK;
+}
+
+/* The number of particles, when no grading decides it. */
+static status decide(const struct sph_lattice *lattice, double volume, double *wanted, struct error *error) {
+  const double s = lattice->spacing, bytes = lattice->kind == SPH_LATTICE_IRREGULAR ? 640 : 160;
+  *wanted = lattice->particles;
+  if (isnan(*wanted)) {
+    if (!(s > 0 && isfinite(s)))
+      return status_fail(error, STATUS_CONTENT,
+                         "the spacing of particles is %g m: give a positive length, or a number.", s);
+    *wanted = volume / s / s / s;
+    if (!(*wanted >= 0.5))
+      return status_fail(error, STATUS_CONTENT,
+                         "particles of spacing %g m are larger than their body of %g m^3: give a smaller spacing.", s,
+                         volume);
+  }
+  if (!(*wanted >= 0.5))
+    return status_fail(error, STATUS_CONTENT, "a body of %g particles: give at least one.", *wanted);
+  if (!(*wanted * bytes < (double)sph_particles_memory()) || *wanted > 4e9)
+    return status_fail(
+        error, STATUS_MEMORY,
+        "%.4g particles need %.3g GB before the first step; this machine, or the limit set, has %.3g GB.", *wanted,
+        *wanted * bytes / 1e9, (double)sph_particles_memory() / 1e9);
+  *wanted = fmax(1, round(*wanted));
+  return STATUS_OK;
+}
+
+status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                        struct error *error) {
+  *points = (struct sph_points){0};
+  const bool graded = lattice->grading.fine > 0;
+  double wanted = 0;
+  status code = sph_shape_check(shape, error);
+  if (!code && !graded)
+    code = decide(lattice, sph_shape_volume(shape), &wanted, error);
+  for (int k = 0; k < 3 && !code; k++)
+    if (lattice->periodic[k])
+      code = check_periodic(lattice, shape, k, error);
+  if (code)
+    return code;
+  if (lattice->kind == SPH_LATTICE_IRREGULAR || graded) {
+    code = sph_irregular_fill(lattice, shape, wanted, points, error);
+  } else {
+    const struct cell *cell = &cells[lattice->kind];
+    code = shape->kind == SPH_SHAPE_BOX && !lattice->turned ? fill_box(lattice, cell, shape, wanted, points, error)
+                                                            : fill_cut(lattice, cell, shape, wanted, points, error);
+    points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
+  }
+  if (code)
+    sph_lattice_empty(points);
+  return code;
+}

@@ -1,0 +1,53 @@
+/* Particles as they are set up and read back: plain arrays in the order of their ids, bodies one after the other.
+ * (Inside the moving system they are sorted in space.) Arrays that a scene does not need are NULL: off means absent. */
+#ifndef CLAST_ENGINE_SPH_BODY_PARTICLES_H
+#define CLAST_ENGINE_SPH_BODY_PARTICLES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+enum sph_freedom { /* bits of `held` */
+                   SPH_HELD_X = 1,
+                   SPH_HELD_Y = 2,
+                   SPH_HELD_Z = 4, /* moves at its present velocity, whatever pulls (grips, pistons) */
+};
+
+enum sph_particle_arrays { /* which of the optional arrays exist */
+                           SPH_WITH_STRESS = 1,
+                           SPH_WITH_DAMAGE = 2,
+                           SPH_WITH_HELD = 4,
+                           SPH_WITH_DAMPING = 8,
+                           SPH_WITH_DISTENTION = 16,
+};
+
+struct sph_particles {
+  size_t n;
+  double *x, *y, *z;    /* m */
+  double *vx, *vy, *vz; /* m/s */
+  double *mass;         /* kg */
+  double *density;      /* kg/m^3, bulk (with pores) */
+  double *energy;       /* J/kg, specific internal */
+  double *h;            /* m, smoothing length; support is 2h */
+  double *pressure;     /* Pa, undamaged, bulk; filled when read back */
+  uint8_t *body;        /* 0 target, 1 projectile, ...: index into the bodies given to sph_system_create; ascending */
+  /* optional */
+  double *stress[6];   /* Pa, deviatoric xx xy xz yy yz zz, undamaged, bulk */
+  double *damage_cbrt; /* D^(1/3), tension and compaction together */
+  uint8_t *held;       /* enum sph_freedom bits */
+  double *damping;     /* 1/s: dv/dt = -damping v, for far sides that let waves out */
+  double *distention;  /* alpha = rho_s/rho >= 1 */
+  double *
+      rest_distention; /* what it would be at P = 0: pores that are closed for good (palpha.h); filled when read back */
+};
+
+/* Allocates all arrays that the flags (enum sph_particle_arrays) ask for, zeroed (distention: 1). STATUS_MEMORY. */
+status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
+void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
+
+/* Most bytes that this process may ever have: the machine's memory, or its limit of address space. What needs more is
+ * refused before anything is allocated, with the number. */
+size_t sph_particles_memory(void);
+
+#endif

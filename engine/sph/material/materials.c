@@ -1,0 +1,93 @@
+#include "engine/sph/material/materials.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/material/material_rows.h"
+#include "schemas/document.h"
+#include "schemas/edit_distance.h"
+
+/* What may be off is off unless given; all else must be given. */
+#define ROW(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                                 \
+  {.path = #member_,                                                                                                   \
+   .kind = FIELD_REAL,                                                                                                 \
+   .unit = unit_,                                                                                                      \
+   .offset = offsetof(struct sph_material, member_),                                                                   \
+   .minimum = low_,                                                                                                    \
+   .maximum = high_,                                                                                                   \
+   .number = NAN,                                                                                                      \
+   .flags = (flags_) | ((flags_)&FIELD_MAY_BE_OFF ? 0 : FIELD_REQUIRED),                                               \
+   .when = WHEN_##need_,                                                                                               \
+   .doc = doc_,                                                                                                        \
+   .source = source_},
+
+#define WHEN_ALWAYS    NULL
+#define WHEN_STRENGTH  NULL
+#define WHEN_FRACTURE  NULL
+#define WHEN_POROSITY  "porosity.curve=quadratic|two-power"
+#define WHEN_TWO_POWER "porosity.curve=two-power"
+
+static const char *const curves[] = SPH_POROSITY_CURVES;
+static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW){.path = "porosity.curve",
+                                                           .kind = FIELD_CHOICE,
+                                                           .offset = offsetof(struct sph_material, porosity.curve),
+                                                           .choices = curves,
+                                                           .choice_docs = SPH_POROSITY_CURVE_DOCS,
+                                                           .doc = SPH_POROSITY_CURVE_DOC,
+                                                           .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
+                                    SPH_POROSITY_ROWS(ROW)};
+
+const struct field_table
+    sph_materials_table = FIELD_TABLE(rows, struct sph_material, "sph material",
+                                      "The values of a solid that the scene's physics may ask for.");
+
+size_t sph_materials_count(void) {
+  size_t count = 0;
+  while (builtin_material_list[count].name)
+    count++;
+  return count;
+}
+
+const char *sph_materials_name(size_t index) {
+  return index < sph_materials_count() ? builtin_material_list[index].name : NULL;
+}
+
+const char *sph_materials_text(const char *name) {
+  for (size_t i = 0; builtin_material_list[i].name; i++)
+    if (strcmp(builtin_material_list[i].name, name) == 0)
+      return builtin_material_list[i].text;
+  return NULL;
+}
+
+status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error) {
+  static const char *const own_keys[] = {"material", "source", NULL};
+  struct document *document = NULL;
+  const char *report = NULL;
+  field_defaults(&sph_materials_table, out);
+  status code = document_parse(name, text, strlen(text), &document, error);
+  if (code)
+    return code;
+  document_node *root = document_root(document);
+  if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
+    document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
+  code = document_finish(document, &report);
+  if (code)
+    status_fail(error, code, "%s", report);
+  document_free(document);
+  return code;
+}
+
+status sph_materials_load(const char *name, struct sph_material *out, struct error *error) {
+  const char *text = sph_materials_text(name), *near = NULL;
+  if (text)
+    return sph_materials_parse(name, text, out, error);
+  size_t best = strlen(name) / 2 + 1;
+  for (size_t i = 0; sph_materials_name(i); i++) {
+    size_t distance = edit_distance(name, strlen(name), sph_materials_name(i));
+    if (distance < best)
+      best = distance, near = sph_materials_name(i);
+  }
+  return status_fail(error, STATUS_MISSING, "there is no material '%.100s'%s%s%s `clast materials` lists them", name,
+                     near ? "; did you mean '" : ";", near ? near : "", near ? "'?" : "");
+}

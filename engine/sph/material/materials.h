@@ -1,0 +1,20 @@
+/* Named materials: documents with their sources, kept in engine/sph/material/builtin/ and compiled into the program. A
+ * scene selects one by name (target.material.name), and its values become the defaults of that body's material inputs.
+ */
+#ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIALS_H
+#define CLAST_ENGINE_SPH_MATERIAL_MATERIALS_H
+
+#include "engine/sph/material/material.h"
+#include "schemas/field.h"
+
+extern const struct field_table sph_materials_table; /* describes struct sph_material */
+
+size_t sph_materials_count(void);
+const char *sph_materials_name(size_t index);     /* sorted; NULL beyond the last */
+const char *sph_materials_text(const char *name); /* the document, or NULL */
+/* STATUS_MISSING with the nearest name; STATUS_CONTENT with the report when the document has a fault. */
+status sph_materials_load(const char *name, struct sph_material *out, struct error *error);
+/* The same of a document at hand. */
+status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error);
+
+#endif

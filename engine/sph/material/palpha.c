@@ -1,0 +1,321 @@
+#include "engine/sph/material/palpha.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+#include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/ranges.h"
+
+/* 1. Curves */
+
+double sph_palpha_crush(const struct sph_palpha_law *law, double p) {
+  const struct sph_palpha *g = &law->given;
+  if (p <= g->elastic_pressure)
+    return law->elastic_distention;
+  if (p >= g->solid_pressure)
+    return 1;
+  double left = (g->solid_pressure - p) / (g->solid_pressure - g->elastic_pressure);
+  if (g->curve == SPH_CRUSH_QUADRATIC)
+    return 1 + (law->elastic_distention - 1) * left * left;
+  double alpha = 1 + (g->transition_distention - 1) * pow(left, g->exponent_high);
+  if (p < g->transition_pressure)
+    alpha += (law->elastic_distention - g->transition_distention) *
+             pow((g->transition_pressure - p) / (g->transition_pressure - g->elastic_pressure), g->exponent_low);
+  return alpha;
+}
+
+double sph_palpha_crush_slope(const struct sph_palpha_law *law, double p) {
+  const struct sph_palpha *g = &law->given;
+  if (p <= g->elastic_pressure || p >= g->solid_pressure)
+    return 0;
+  double range = g->solid_pressure - g->elastic_pressure, left = (g->solid_pressure - p) / range;
+  if (g->curve == SPH_CRUSH_QUADRATIC)
+    return -2 * (law->elastic_distention - 1) * left / range;
+  double slope = -(g->transition_distention - 1) * g->exponent_high * pow(left, g->exponent_high - 1) / range;
+  if (p < g->transition_pressure) {
+    range = g->transition_pressure - g->elastic_pressure;
+    slope -= (law->elastic_distention - g->transition_distention) * g->exponent_low *
+             pow((g->transition_pressure - p) / range, g->exponent_low - 1) / range;
+  }
+  return slope;
+}
+
+double sph_palpha_elastic_slope(const struct sph_palpha_law *law, double alpha) {
+  double h = 1 - law->stiffness_slope * (alpha - 1); /* h^2 is the stiffness over the solid's */
+  return alpha * alpha / law->solid.A * (1 - 1 / (h * h));
+}
+
+static double within(double value, double low, double high) {
+  return value < low ? low : value > high ? high : value;
+}
+
+/* What the elastic branch adds to `rest` up to P, for an end `alpha` that is itself unknown: Simpson's rule with the
+ * middle by Hermite (Lobatto IIIA), and its derivatives. */
+struct elastic {
+  double change, by_alpha, by_pressure;
+};
+
+static double slope_and_growth(const struct sph_palpha_law *law, double alpha, double *growth) {
+  double h = 1 / (1 - law->stiffness_slope * (alpha - 1)), soft = (1 - h * h) / law->solid.A;
+  *growth = 2 * alpha * (soft - alpha * law->stiffness_slope * h * h * h / law->solid.A);
+  return alpha * alpha * soft;
+}
+
+static struct elastic elastic_change(const struct sph_palpha_law *law, double rest, double alpha, double p) {
+  if (law->stiffness_slope == 0)
+    return (struct elastic){0, 0, 0};
+  double growth_to, growth_middle, from = sph_palpha_elastic_slope(law, rest);
+  double to = slope_and_growth(law, alpha, &growth_to);
+  double half = within((rest + alpha) / 2 + p / 8 * (from - to), 1, law->given.distention);
+  double middle = slope_and_growth(law, half, &growth_middle);
+  double mean = (from + 4 * middle + to) / 6;
+  return (struct elastic){p * mean, p / 6 * (growth_to + growth_middle * (2 - p / 2 * growth_to)),
+                          mean + p / 12 * growth_middle * (from - to)};
+}
+
+double sph_palpha_elastic(const struct sph_palpha_law *law, double rest, double p) {
+  double high = law->given.distention, alpha = rest;
+  for (int i = 0; i < 100; i++) {
+    double next = within(rest + elastic_change(law, rest, alpha, p).change, 1, high);
+    if (fabs(next - alpha) < 1e-15)
+      return next;
+    alpha = next;
+  }
+  return alpha;
+}
+
+double sph_palpha_rest(const struct sph_palpha_law *law, double alpha, double p) {
+  double rest = alpha;
+  for (int i = 0; i < 100; i++) {
+    /* by symmetry: alpha is where the branch from `rest` at P comes to, going back to 0 */
+    struct elastic e = elastic_change(law, alpha, rest, -p);
+    double next = within(rest - (rest - alpha - e.change) / (1 - e.by_alpha), 1, law->given.distention);
+    if (fabs(next - rest) < 1e-15)
+      return next;
+    rest = next;
+  }
+  return rest;
+}
+
+double sph_palpha_damage_cbrt(const struct sph_palpha_law *law, double rest) {
+  double closed = within(1 - (rest - 1) / (law->given.distention - 1), 0, 1);
+  const double d = 0.01;
+  return closed == 0 ? 0 : (cbrt(closed + d) - cbrt(d)) / (cbrt(1 + d) - cbrt(d));
+}
+
+/* 2. A law from what is given */
+
+static status refuse(struct error *error, const char *what, double value, const char *remedy) {
+  return status_fail(error, STATUS_CONTENT, "porosity.%s is %.9g: %s", what, value, remedy);
+}
+
+static status check_curve(const struct sph_palpha *g, struct error *error) {
+  if (g->curve != SPH_CRUSH_QUADRATIC && g->curve != SPH_CRUSH_TWO_POWER)
+    return refuse(error, "curve", g->curve, "it must be quadratic or two-power");
+  if (!(g->distention > 1) || !isfinite(g->distention))
+    return refuse(error, "distention", g->distention, "it must be above 1 (1 is a solid: leave the porosity out)");
+  if (!(g->elastic_pressure >= 0) || !isfinite(g->elastic_pressure))
+    return refuse(error, "elastic_pressure", g->elastic_pressure, "it must be a pressure of 0 or more");
+  if (!(g->solid_pressure > g->elastic_pressure) || !isfinite(g->solid_pressure))
+    return refuse(error, "solid_pressure", g->solid_pressure, "it must be above elastic_pressure");
+  if (g->curve == SPH_CRUSH_QUADRATIC)
+    return STATUS_OK;
+  if (!(g->transition_pressure > g->elastic_pressure) || !(g->transition_pressure < g->solid_pressure))
+    return refuse(error, "transition_pressure", g->transition_pressure,
+                  "it must lie between elastic_pressure and solid_pressure");
+  if (!(g->transition_distention >= 1) || !isfinite(g->transition_distention))
+    return refuse(error, "transition_distention", g->transition_distention, "it must be 1 or more");
+  if (!(g->elastic_distention >= g->transition_distention) || !isfinite(g->elastic_distention) ||
+      g->elastic_distention <= 1)
+    return refuse(error, "elastic_distention", g->elastic_distention,
+                  "it must be above 1 and not below transition_distention");
+  if (!(g->exponent_low >= 1) || !isfinite(g->exponent_low))
+    return refuse(error, "exponent_low", g->exponent_low, "it must be 1 or more");
+  if (!(g->exponent_high >= 1) || !isfinite(g->exponent_high))
+    return refuse(error, "exponent_high", g->exponent_high, "it must be 1 or more");
+  return STATUS_OK;
+}
+
+/* Is the branch with this alpha_e sound up to alpha_0, that is, stays h > 0? (h = c_e/c_s at alpha_e.) */
+static bool set_stiffness(struct sph_palpha_law *law, double ratio, double elastic_distention) {
+  law->elastic_distention = elastic_distention;
+  law->stiffness_slope = ratio < 1 ? (1 - ratio) / (elastic_distention - 1) : 0;
+  return elastic_distention > 1 && law->stiffness_slope * (law->given.distention - 1) < 1;
+}
+
+/* Does the one step from 0 to P_e end where many small ones do, within a hundredth of the pores? It does not when h
+ * grows many times over on the way: then the step would close what the branch leaves open. (Above P_e the branch is
+ * stiffer.) */
+static bool followed(const struct sph_palpha_law *law) {
+  enum { STEPS = 256 };
+  const double first = law->given.distention, pressure = law->given.elastic_pressure;
+  double alpha = first;
+  for (int i = 0; i < STEPS; i++)
+    alpha = sph_palpha_elastic(law, alpha, pressure / STEPS);
+  return fabs(alpha - sph_palpha_elastic(law, first, pressure)) < 0.01 * (first - 1);
+}
+
+status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
+                          struct error *error) {
+  status code = check_curve(given, error);
+  if (code != STATUS_OK)
+    return code;
+  *out = (struct sph_palpha_law){.given = *given, .solid = solid->tillotson, .solid_density = solid->density};
+  if (!(solid->tillotson.A > 0) || !(solid->density > 0))
+    return status_fail(error, STATUS_CONTENT, "porosity: the solid has no bulk modulus or density");
+  double solid_speed = sqrt(solid->tillotson.A / solid->density);
+  double ratio = isnan(given->sound_speed) ? 1 : given->sound_speed / solid_speed;
+  if (!(ratio > 0) || !(ratio <= 1))
+    return status_fail(error, STATUS_CONTENT,
+                       "porosity.sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s",
+                       given->sound_speed, solid_speed);
+  const char
+      *soft = "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, or "
+              "a lower elastic_pressure";
+  if (given->curve == SPH_CRUSH_TWO_POWER) {
+    if (!set_stiffness(out, ratio, given->elastic_distention))
+      return refuse(error, "distention", given->distention, "it is too far above elastic_distention for sound_speed");
+    const double begin = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
+    if (begin > given->elastic_distention * (1 + 1e-6))
+      return refuse(error, "distention", given->distention,
+                    "it is above elastic_distention, where the crush curve begins: lower it or raise that");
+    return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
+  }
+  /* alpha_e <- elastic branch at P_e, from above: falls to the largest solution */
+  double alpha_e = given->distention;
+  for (int i = 0; i < 1000; i++) {
+    if (!set_stiffness(out, ratio, alpha_e))
+      return refuse(error, "distention", given->distention, soft);
+    double next = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
+    if (fabs(next - alpha_e) < 1e-14 * alpha_e)
+      return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
+    alpha_e = next;
+  }
+  return refuse(error, "distention", given->distention, soft);
+}
+
+/* 3. (alpha, P) of a density and an energy */
+
+struct trial {
+  struct sph_pressure solid;
+  double pressure,
+      slope; /* bulk P(alpha) and dP/dalpha at constant rho, u: not negative, but for hot expanded matter */
+};
+
+static struct trial try_distention(const struct sph_palpha_law *law, double alpha, double rho, double u) {
+  struct trial t = {.solid = sph_tillotson(&law->solid, law->solid_density, alpha * rho, u)};
+  t.pressure = t.solid.pressure / alpha;
+  t.slope = (rho * t.solid.by_density - t.pressure) / alpha;
+  if (t.slope < 0)
+    t.slope = 0;
+  return t;
+}
+
+/* Both branches fall with P, and P rises with alpha, so alpha - min(elastic, crush)(P(alpha)) rises: its only zero lies
+ * between 1 and alpha_0. Newton, kept within that bracket (on the crush curve, which is convex, it climbs steadily from
+ * below). A last step from a miss below 1e-9 leaves the square of that: it is taken, but not evaluated again. */
+static double solve(const struct sph_palpha_law *law, double rest, double alpha, double rho, double u, struct trial *at,
+                    bool *crush) {
+  double low = 1, high = law->given.distention;
+  for (int i = 0; i < 200; i++) {
+    struct trial t = try_distention(law, alpha, rho, u);
+    double target = 1, rise = 1;
+    *crush = t.pressure >= law->given.solid_pressure;
+    if (!*crush) {
+      struct elastic e = elastic_change(law, rest, alpha, t.pressure);
+      target = rest + e.change;
+      rise = 1 - e.by_alpha - e.by_pressure * t.slope;
+      if (target >= law->given.distention)
+        target = law->given.distention, rise = 1;
+    }
+    if (!*crush && t.pressure > law->given.elastic_pressure) {
+      double bound = sph_palpha_crush(law, t.pressure);
+      if (bound < target) {
+        *crush = true;
+        target = bound;
+        rise = 1 - sph_palpha_crush_slope(law, t.pressure) * t.slope;
+      }
+    }
+    *at = t;
+    double miss = alpha - target;
+    if (miss == 0)
+      return alpha;
+    if (miss > 0)
+      high = alpha;
+    else
+      low = alpha;
+    double next = alpha - miss / (rise > 0.1 ? rise : 0.1);
+    bool inside = next >= low && next <= high;
+    if (fabs(miss) < 1e-9 || high - low < 1e-15) {
+      if (!inside)
+        return alpha;
+      at->pressure += t.slope * (next - alpha);
+      return next;
+    }
+    alpha = inside && i % 32 < 31 ? next : low + (high - low) / 2;
+  }
+  return alpha;
+}
+
+static struct sph_palpha_state without_pores(const struct sph_palpha_law *law, double rho, double u) {
+  struct sph_pressure p = sph_tillotson(&law->solid, law->solid_density, rho, u);
+  return (struct sph_palpha_state){1, 1, p.pressure, p.by_density, p.by_energy, 0, 0, 1, p.sound_speed};
+}
+
+struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, double rest, double guess, double rho,
+                                          double u) {
+  if (!(rest > 1))
+    return without_pores(law, rho, u);
+  double top = law->given.distention, slope = 0;
+  struct trial t;
+  bool crush;
+  double alpha = solve(law, rest, within(guess, 1, top), rho, u, &t, &crush);
+  if (crush) {
+    if (!(alpha > 1))
+      return without_pores(law, rho, u);
+    slope = sph_palpha_crush_slope(law, t.pressure);
+    double now = sph_palpha_rest(law, alpha, t.pressure);
+    if (now < rest)
+      rest = now;
+  } else if (law->stiffness_slope != 0 && alpha < top) {
+    slope = sph_palpha_elastic_slope(law, alpha);
+  }
+  /* Along a branch: dP (1 - slope (rho dP_s/drho_s - P)/alpha) = dP_s/drho_s drho + dP_s/du du/alpha */
+  double below = alpha + slope * (t.pressure - rho * t.solid.by_density);
+  if (!(below >= alpha))
+    below = alpha; /* as t.slope */
+  struct sph_palpha_state s = {.distention = alpha, .rest = rest, .pressure = t.pressure};
+  s.by_density = alpha * t.solid.by_density / below;
+  s.by_energy = t.solid.by_energy / below;
+  s.distention_by_density = slope * s.by_density;
+  s.distention_by_energy = slope * s.by_energy;
+  double adiabatic = s.distention_by_density + t.pressure / (rho * rho) * s.distention_by_energy;
+  s.shear_factor = within(1 + adiabatic * rho / alpha, 0, 1);
+  double c = t.solid.sound_speed;
+  s.sound_speed = isnan(law->given.sound_speed) ? c : c + (law->given.sound_speed - c) * (alpha - 1) / (top - 1);
+  return s;
+}
+
+/* 4. As a module of the moving solid */
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
+  (void)parameters;
+  return body->porosity != NULL;
+}
+
+bool sph_palpha_harms(const struct sph_body_physics *body) {
+  return body->porosity && body->strength;
+}
+
+const struct sph_module sph_palpha_module = {
+    .name = "palpha",
+    .doc = "Pores below the resolution: distention alpha follows a crush curve under load and an elastic branch when "
+           "unloaded; "
+           "it acts on pressure, deviator, yield stress, sound speed and damage.",
+    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008",
+    .when = "a body with porosity (distention above 1)",
+    .on = on,
+    .bytes = 5 * (int)sizeof(double), /* 3 without strength, 4 without flaws */
+    .hook =
+        {[SPH_RESPOND] = offsetof(struct sph_ranges, palpha), [SPH_RATES] = offsetof(struct sph_ranges, palpha_limit)},
+};

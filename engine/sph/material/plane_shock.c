@@ -1,0 +1,93 @@
+#include "engine/sph/material/plane_shock.h"
+
+#include <math.h>
+#include <stddef.h>
+
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/material/tillotson.h"
+
+enum { HALVINGS = 100 }; /* of a bracket: to the last bit */
+static const double most_pressure = 1e16;
+
+struct matter {
+  const struct sph_material *material;
+  const struct sph_palpha_law *law; /* NULL: solid */
+};
+
+/* Distention of fresh matter that is loaded to P: the elastic branch, bounded by the crush curve. */
+static double distention_at(const struct matter *m, double pressure) {
+  if (!m->law)
+    return 1;
+  if (pressure >= m->law->given.solid_pressure)
+    return 1;
+  double elastic = sph_palpha_elastic(m->law, m->law->given.distention, pressure);
+  return pressure > m->law->given.elastic_pressure ? fmin(elastic, sph_palpha_crush(m->law, pressure)) : elastic;
+}
+
+/* Of matter that the front takes from `ahead` to a pressure: density by halving, as P_s(alpha rho, u(rho)) rises with
+ * rho. */
+static struct sph_front front_to(const struct matter *m, const struct sph_front *ahead, double pressure) {
+  struct sph_front f = {.pressure = pressure, .distention = distention_at(m, pressure)};
+  const struct sph_tillotson *t = &m->material->tillotson;
+  double low = ahead->density, high = 20 * m->material->density, mean = (ahead->pressure + pressure) / 2;
+  for (int k = 0; k < HALVINGS; k++) {
+    f.density = (low + high) / 2;
+    f.energy = ahead->energy + mean * (1 / ahead->density - 1 / f.density);
+    if (sph_tillotson(t, m->material->density, f.distention * f.density, f.energy).pressure < f.distention * pressure)
+      low = f.density;
+    else
+      high = f.density;
+  }
+  double jump = pressure - ahead->pressure, gain = sqrt(jump * (1 / ahead->density - 1 / f.density));
+  f.velocity = ahead->velocity + gain;
+  f.speed = ahead->velocity + jump / (ahead->density * gain);
+  return f;
+}
+
+/* The front behind which matter moves with the piston. */
+static struct sph_front front_of(const struct matter *m, const struct sph_front *ahead, double piston) {
+  double low = fmax(ahead->pressure, 1e-6), high = most_pressure;
+  for (int k = 0; k < HALVINGS; k++) {
+    double middle = sqrt(low * high);
+    if (front_to(m, ahead, middle).velocity < piston)
+      low = middle;
+    else
+      high = middle;
+  }
+  return front_to(m, ahead, sqrt(low * high));
+}
+
+status sph_plane_shock(const struct sph_material *material, bool porous, double piston, struct sph_plane_shock *out,
+                       struct error *error) {
+  static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};
+  struct sph_palpha_law law;
+  *out = (struct sph_plane_shock){.precursor = none, .shock = none};
+  status code = porous ? sph_palpha_prepare(&material->porosity, material, &law, error) : STATUS_OK;
+  if (code)
+    return code;
+  const struct matter m = {.material = material, .law = porous ? &law : NULL};
+  struct sph_front rest = {.distention = porous ? law.given.distention : 1};
+  rest.density = out->first_density = material->density / rest.distention;
+  double elastic = porous ? law.given.elastic_pressure : 0;
+  if (elastic > 0) {
+    out->has_precursor = true;
+    out->precursor = front_to(&m, &rest, elastic);
+  }
+  out->has_shock = !out->has_precursor || piston > out->precursor.velocity;
+  if (out->has_shock) {
+    out->shock = front_of(&m, out->has_precursor ? &out->precursor : &rest, piston);
+    if (out->has_precursor && !(out->shock.speed < out->precursor.speed)) { /* it has swallowed the precursor */
+      out->has_precursor = false;
+      out->precursor = none;
+      out->shock = front_of(&m, &rest, piston);
+    }
+  } else {
+    out->precursor = front_of(&m, &rest, piston);
+  }
+  const struct sph_front *last = out->has_shock ? &out->shock : &out->precursor;
+  if (!(fabs(last->velocity - piston) < 1e-6 * piston) || !(last->speed > piston) ||
+      !(last->density > out->first_density))
+    return status_fail(error, STATUS_CONTENT,
+                       "no shock wave in this matter moves it at %.6g m/s: give another piston.speed", piston);
+  return STATUS_OK;
+}

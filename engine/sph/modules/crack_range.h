@@ -1,0 +1,102 @@
+/* Which flaws are open, and how fast D^(1/3) grows with them [BA95 section 4.3].
+ *
+ * Local strain (eq. 21) of the damaged stress: eps = sigma_t/((1-D) E), with sigma_t the largest principal value of
+ * (1-D) S - P (P < 0: (1-D) P). The factors cancel:  E eps = lambda(S) - P                where P < 0,
+ *                                                    E eps = lambda(S) - P/(1-D)          elsewhere.
+ * lambda(S) <= 2 sqrt(J2/3) tells, without principal axes, which particles can have no open flaw: nearly all. For the
+ * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
+ * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
+ * of it. (Where the two larger values meet, rounding of det S makes that 1e-8 of |S|, as with acos.) */
+#ifndef CLAST_ENGINE_SPH_MODULES_CRACK_RANGE_H
+#define CLAST_ENGINE_SPH_MODULES_CRACK_RANGE_H
+
+#include "engine/sph/modules/range_tools.h"
+
+/* cos(2/3 acos(s)) on [0, 1]: Chebyshev interpolation, in powers of 2 s - 1. */
+RANGE_INLINE double crack_third_cosine(double s) {
+  static const double c[17] = {0.766044443118978,       0.24740906632284043,     -0.015509188436481955,
+                               0.002466352815691789,    -0.0005041246913301313,  0.00011642544451832467,
+                               -2.891993360699116e-05,  7.54113105182103e-06,    -2.035886681257262e-06,
+                               5.639788836689093e-07,   -1.5948649112929443e-07, 4.617777441564896e-08,
+                               -1.3456397963049525e-08, 3.6028213343971334e-09,  -1.0683273724516248e-09,
+                               5.264174066673318e-10,   -1.5966098420242849e-10};
+  const double t = 2 * s - 1, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
+  const double low = (c[0] + c[1] * t + t2 * (c[2] + c[3] * t)) + t4 * (c[4] + c[5] * t + t2 * (c[6] + c[7] * t));
+  const double high = (c[8] + c[9] * t + t2 * (c[10] + c[11] * t)) +
+                      t4 * (c[12] + c[13] * t + t2 * (c[14] + c[15] * t));
+  return low + t8 * (high + t8 * c[16]);
+}
+
+/* Largest principal value of a deviator. */
+RANGE_INLINE double crack_largest(double xx, double xy, double xz, double yy, double yz) {
+  const double zz = -(xx + yy);
+  const double third = (xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz) * (1.0 / 3); /* J2/3 */
+  const double size = sqrt(third), inverse = third > 0 ? 1 / (size * third) : 0;
+  const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  const double cosine = range_smaller(range_larger(0.5 * det * inverse, -1), 1);
+  return 2 * size * crack_third_cosine(sqrt(0.5 + 0.5 * cosine));
+}
+
+/* What flaws have done: all damage, unless pores close in this body, too (palpha_range adds the two up). */
+RANGE_INLINE double *crack_own_damage(const struct sph_system *s, const struct sph_solid *body) {
+  return body->physics.porosity ? s->c.tension : s->c.damage;
+}
+
+RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  const double dt = s->dt, *rate = s->c.damage_rate, *cap = s->c.damage_cap;
+  double *d = crack_own_damage(s, body);
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++)
+    d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
+}
+
+/* One particle whose strain (times E) is known. Its list is looked up only when the strain has left the bracket between
+ * two thresholds. */
+RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body, size_t i, double stress) {
+  if (!(stress >= s->c.open_from[i] && stress < s->c.open_below[i])) {
+    const size_t own = s->id[i] - body->first;
+    double bracket[2];
+    const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young, bracket);
+    s->c.open_from[i] = bracket[0] * body->young;
+    s->c.open_below[i] = bracket[1] * body->young;
+    s->c.open_rate[i] = open ? sph_fracture_rate(open, s->p.growth) * s->c.crack_rate[i] : 0;
+    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->p.cap) : 0;
+  }
+  s->c.damage_rate[i] = crack_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
+  if (s->c.damage[i] >= 1)
+    s->c.weakest[i] = INFINITY; /* nothing left to open */
+}
+
+RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = s->c.damage;
+  const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
+  const double *yz = s->c.stress[4];
+  double *rate = s->c.damage_rate;
+  double above[SPH_BLOCK], strain[SPH_BLOCK];
+  uint32_t which[SPH_BLOCK];
+  const size_t low = b->low, n = b->high - b->low;
+  RANGE_LOOP
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = low + k;
+    const double J2 = xx[i] * xx[i] + yy[i] * yy[i] + xx[i] * yy[i] + xy[i] * xy[i] + xz[i] * xz[i] + yz[i] * yz[i];
+    above[k] = 2 * sqrt(J2 * (1.0 / 3)) * (1 + 1e-12) - pressure[i] - weakest[i];
+    rate[i] = above[k] >= 0 ? rate[i] : 0;
+  }
+  size_t count = 0;
+  for (size_t k = 0; k < n; k++) {
+    which[count] = (uint32_t)k;
+    count += above[k] >= 0;
+  }
+  if (!count)
+    return;
+  RANGE_LOOP
+  for (size_t m = 0; m < count; m++) {
+    const size_t i = low + which[m];
+    const double left = 1 - d[i] * d[i] * d[i], p = pressure[i];
+    strain[m] = crack_largest(xx[i], xy[i], xz[i], yy[i], yz[i]) - (p > 0 ? p / range_larger(left, 1e-30) : p);
+  }
+  for (size_t m = 0; m < count; m++)
+    crack_open(s, body, low + which[m], strain[m]);
+}
+
+#endif

@@ -1,0 +1,102 @@
+/* Hooke's law in a turning frame, and what damage leaves of the stress.
+ *
+ * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in
+ * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged; of it (1-D)
+ * S acts, and (1-D) P where P < 0. */
+#ifndef CLAST_ENGINE_SPH_MODULES_ELASTIC_RANGE_H
+#define CLAST_ENGINE_SPH_MODULES_ELASTIC_RANGE_H
+
+#include "engine/sph/modules/range_tools.h"
+
+RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  const double dt = s->dt;
+  for (int k = 0; k < 5; k++) {
+    double *stress = s->c.stress[k];
+    const double *rate = s->c.stress_rate[k];
+    RANGE_LOOP
+    for (size_t i = b->low; i < b->high; i++)
+      stress[i] += dt * rate[i];
+  }
+}
+
+RANGE_INLINE void elastic_output(struct sph_system *s, struct sph_block *b, bool fracture) {
+  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
+  double *term = s->c.pressure_term, *factor = s->c.stress_factor;
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double inverse = 1 / (density[i] * density[i]);
+    const double left = fracture ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
+    const double share = fracture ? left * inverse : inverse, p = pressure[i];
+    term[i] = -p * (p < 0 ? share : inverse);
+    factor[i] = share;
+  }
+}
+
+RANGE_HOOK void elastic_output_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  elastic_output(s, b, false);
+}
+RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  elastic_output(s, b, true);
+}
+
+/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]; with the gradient
+ * correction eps of the uncorrected gradient, which is conjugate to the forces (pairs.h). */
+RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b,
+                                     bool pores) {
+  const double half = 0.5 * s->dt, solid_two_mu = 2 * body->physics.material.shear_modulus;
+  const double *f = s->c.shear_factor, *alpha = s->c.distention;
+  double *const *g = b->sums->gradient;
+  const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7],
+               *g8 = g[8];
+  const double *density = s->c.density, *term = s->c.pressure_term, *heating = b->sums->heating,
+               *power = b->sums->power;
+  const double *factor = s->c.stress_factor;
+  double *energy = s->c.energy, *energy_rate = s->c.energy_rate;
+  double *sxx = s->c.stress[0], *sxy = s->c.stress[1], *sxz = s->c.stress[2], *syy = s->c.stress[3],
+         *syz = s->c.stress[4];
+  double *rxx = s->c.stress_rate[0], *rxy = s->c.stress_rate[1], *rxz = s->c.stress_rate[2], *ryy = s->c.stress_rate[3];
+  double *ryz = s->c.stress_rate[4];
+  const size_t low = b->low, n = b->high - b->low;
+  RANGE_LOOP
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = low + k;
+    const double exx = g0[k], eyy = g4[k], ezz = g8[k], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
+    const double exy = 0.5 * (g1[k] + g3[k]), exz = 0.5 * (g2[k] + g6[k]), eyz = 0.5 * (g5[k] + g7[k]);
+    const double two_mu = pores ? solid_two_mu * f[i] / alpha[i] : solid_two_mu;
+    const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
+    const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
+    const double axx = factor[i] * xx, ayy = factor[i] * yy; /* what acts */
+    const double work = term[i] * divergence + axx * exx + ayy * eyy - (axx + ayy) * ezz +
+                        2 * (factor[i] * xy * exy + factor[i] * xz * exz + factor[i] * yz * eyz);
+    const double heat = (power ? power[k] : density[i] * work) + heating[k];
+    energy[i] += half * (heat - energy_rate[i]);
+    energy_rate[i] = heat;
+    /* (R S - S R)_ab = sum_c R_ac S_cb + R_bc S_ca */
+    const double txx = 2 * (wxy * xy + wxz * xz);
+    const double tyy = 2 * (-wxy * xy + wyz * yz);
+    const double txy = wxy * (yy - xx) + wxz * yz + wyz * xz;
+    const double txz = wxz * (zz - xx) + wxy * yz - wyz * xy;
+    const double tyz = wyz * (zz - yy) - wxy * xz - wxz * xy;
+    const double nxx = two_mu * (exx - third) + txx, nyy = two_mu * (eyy - third) + tyy;
+    const double nxy = two_mu * exy + txy, nxz = two_mu * exz + txz, nyz = two_mu * eyz + tyz;
+    sxx[i] = xx + half * (nxx - rxx[i]), rxx[i] = nxx;
+    sxy[i] = xy + half * (nxy - rxy[i]), rxy[i] = nxy;
+    sxz[i] = xz + half * (nxz - rxz[i]), rxz[i] = nxz;
+    syy[i] = yy + half * (nyy - ryy[i]), ryy[i] = nyy;
+    syz[i] = yz + half * (nyz - ryz[i]), ryz[i] = nyz;
+  }
+}
+
+/* With pores: dS/dt = (f/alpha) 2 mu dev(eps) + R S - S R; the share of alpha's change, -(S/alpha) dalpha/dt, is in
+ * palpha_range. */
+RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  if (body->physics.porosity)
+    elastic_rates_loop(s, body, b, true);
+  else
+    elastic_rates_loop(s, body, b, false);
+}
+
+#endif

@@ -1,0 +1,39 @@
+/* What all range loops share. They are plain loops that GCC vectorises: one particle's result depends on nothing else,
+ * so the width of the vectors changes no bit but through contraction to FMA. */
+#ifndef CLAST_ENGINE_SPH_MODULES_RANGE_TOOLS_H
+#define CLAST_ENGINE_SPH_MODULES_RANGE_TOOLS_H
+
+#include <math.h>
+
+#include "engine/sph/modules/ranges.h"
+
+#ifdef __clang__
+#define RANGE_LOOP _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define RANGE_LOOP _Pragma("GCC ivdep") /* columns do not overlap */
+#endif
+#define RANGE_INLINE static inline __attribute__((always_inline, unused))
+#define RANGE_HOOK   static __attribute__((unused))
+
+RANGE_INLINE double range_larger(double a, double b) {
+  return a > b ? a : b;
+}
+RANGE_INLINE double range_smaller(double a, double b) {
+  return a < b ? a : b;
+}
+
+/* Largest of n values that are not negative (n <= SPH_BLOCK); eight running maxima, so that it vectorises. */
+RANGE_INLINE double range_largest(const double *value, size_t n) {
+  double most[8] = {0};
+  size_t k = 0;
+  for (; k + 8 <= n; k += 8)
+    for (int lane = 0; lane < 8; lane++)
+      most[lane] = range_larger(value[k + (size_t)lane], most[lane]);
+  for (; k < n; k++)
+    most[0] = range_larger(value[k], most[0]);
+  for (int lane = 1; lane < 8; lane++)
+    most[0] = range_larger(most[lane], most[0]);
+  return most[0];
+}
+
+#endif

@@ -1,0 +1,38 @@
+/* The loops over particles, compiled once per CPU class and chosen at run time.
+ *
+ * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run. The environment
+ * variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine does not have is not used. */
+#ifndef CLAST_ENGINE_SPH_MODULES_RANGES_H
+#define CLAST_ENGINE_SPH_MODULES_RANGES_H
+
+#include "engine/sph/step/system_layout.h"
+
+struct sph_ranges {
+  /* predict */
+  sph_hook motion_predict;  /* x v rho u h */
+  sph_hook elastic_predict; /* S */
+  sph_hook damage_predict;  /* D^(1/3) */
+  /* respond */
+  sph_hook tillotson;     /* P and c of rho and u */
+  sph_hook palpha;        /* the same with pores: alpha, P, c, f, S, damage by compaction */
+  sph_hook tension_limit; /* P >= -limit */
+  sph_hook yield;         /* S back to the yield surface */
+  sph_hook crack;         /* open flaws: rate and cap of D^(1/3) */
+  /* what the pair loop takes */
+  sph_hook output_fluid, output_whole, output_damaged;
+  /* rates */
+  sph_hook palpha_limit;                                  /* of the time step, by alpha */
+  sph_hook hold;                                          /* held freedoms and damping: the new accelerations */
+  sph_hook fluid_rates;                                   /* u */
+  sph_hook elastic_rates;                                 /* u and S */
+  sph_hook correct_fluid, correct_whole, correct_damaged; /* v rho h, and the limits of the time step */
+};
+
+extern const struct sph_ranges sph_ranges_baseline;
+#ifdef __x86_64__
+extern const struct sph_ranges sph_ranges_v3, sph_ranges_v4;
+#endif
+
+const struct sph_ranges *sph_ranges_choose(void);
+
+#endif

@@ -1,0 +1,50 @@
+/* Tillotson pressure and sound speed over a range. Nearly all matter is cold or compressed: that branch is computed for
+ * all (no transcendental function in it), and the few hot, expanded particles are done again by the general form. */
+#ifndef CLAST_ENGINE_SPH_MODULES_TILLOTSON_RANGE_H
+#define CLAST_ENGINE_SPH_MODULES_TILLOTSON_RANGE_H
+
+#include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/range_tools.h"
+
+RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  const struct sph_tillotson t = body->physics.material.tillotson;
+  const double density0 = body->physics.material.density, inverse0 = 1 / density0, floor2 = t.A / (4 * density0);
+  const double *density = s->c.density, *energy = s->c.energy;
+  double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed;
+  int64_t hot = 0;
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double rho = density[i], u = range_larger(energy[i], 0);
+    const double eta = rho * inverse0, mu = eta - 1, B = mu < 0 ? 0 : t.B;
+    const double e = t.E0 * eta * eta, q = 1 / (u + e), w = t.b * e * q; /* w = b/(u/e + 1) */
+    const double p = (t.a + w) * rho * u + (t.A + B * mu) * mu;
+    const double by_density = (t.a + w) * u + 2 * w * q * u * u + (t.A + 2 * B * mu) * inverse0;
+    const double by_energy = rho * (t.a + w - w * q * u);
+    const double c2 = by_density + p / (rho * rho) * by_energy;
+    pressure[i] = p;
+    sound_speed[i] = sqrt(range_larger(c2, floor2));
+    hot |= -(int64_t)(rho < density0) & -(int64_t)(u > t.E_iv);
+  }
+  if (!hot)
+    return;
+  for (size_t i = b->low; i < b->high; i++)
+    if (density[i] < density0 && energy[i] > t.E_iv) {
+      const struct sph_pressure r = sph_tillotson(&t, density0, density[i], energy[i]);
+      pressure[i] = r.pressure;
+      sound_speed[i] = r.sound_speed;
+    }
+}
+
+RANGE_HOOK void tillotson_tension_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  const double lowest = -body->physics.material.tension_limit, per_density = 1 / body->physics.material.density;
+  const double *density = s->c.density, *distention = s->c.distention;
+  double *pressure = s->c.pressure;
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double of_solid = (distention ? distention[i] : 1) * density[i] * per_density;
+    const double whole = range_smaller(range_larger(10 * (of_solid - 0.9), 0), 1); /* torn matter does not pull */
+    pressure[i] = range_larger(pressure[i], lowest * whole);
+  }
+}
+
+#endif

@@ -1,0 +1,140 @@
+#include "engine/sph/modules/weibull.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/sph/modules/modules.h"
+
+struct sph_weibull_lists {
+  size_t particles, count;
+  /* exact */
+  size_t *first;
+  double *strain;
+  /* compact */
+  double *lowest, *exponent;
+  uint32_t *total;
+};
+
+void sph_weibull_free(struct sph_weibull_lists *w) {
+  if (!w)
+    return;
+  free(w->first);
+  free(w->strain);
+  free(w->lowest);
+  free(w->exponent);
+  free(w->total);
+  free(w);
+}
+
+static bool fill_exact(struct sph_weibull_lists *w, const struct sph_flaws *flaws) {
+  w->first = malloc((w->particles + 1) * sizeof *w->first);
+  w->strain = malloc((w->count ? w->count : 1) * sizeof *w->strain);
+  if (!w->first || !w->strain)
+    return false;
+  for (size_t i = 0; i <= w->particles; i++)
+    w->first[i] = flaws->first[i];
+  for (size_t f = 0; f < w->count; f++)
+    w->strain[f] = exp(flaws->log_strain[f]);
+  return true;
+}
+
+static bool fill_compact(struct sph_weibull_lists *w, const struct sph_flaws *flaws) {
+  const size_t room = w->particles ? w->particles : 1;
+  w->lowest = malloc(room * sizeof *w->lowest);
+  w->exponent = malloc(room * sizeof *w->exponent);
+  w->total = malloc(room * sizeof *w->total);
+  if (!w->lowest || !w->exponent || !w->total)
+    return false;
+  for (size_t i = 0; i < w->particles; i++) {
+    const size_t first = flaws->first[i], last = flaws->first[i + 1];
+    w->total[i] = (uint32_t)(last - first);
+    w->lowest[i] = last > first ? exp(flaws->log_strain[first]) : HUGE_VAL;
+    const double span = last > first ? flaws->log_strain[last - 1] - flaws->log_strain[first] : 0;
+    w->exponent[i] = span > 0 ? log((double)(last - first)) / span : 0;
+  }
+  return true;
+}
+
+status sph_weibull_make(const struct sph_flaws *flaws, bool compact, struct sph_weibull_lists **out,
+                        struct error *error) {
+  *out = NULL;
+  struct sph_weibull_lists *w = calloc(1, sizeof *w);
+  if (w) {
+    w->particles = flaws->particles;
+    w->count = flaws->count;
+  }
+  if (!w || !(compact ? fill_compact : fill_exact)(w, flaws)) {
+    sph_weibull_free(w);
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", flaws->count);
+  }
+  *out = w;
+  return STATUS_OK;
+}
+
+size_t sph_weibull_bytes(const struct sph_weibull_lists *w) {
+  if (!w)
+    return 0;
+  return sizeof *w + (w->strain ? (w->particles + 1) * sizeof *w->first + w->count * sizeof *w->strain
+                                : w->particles * (2 * sizeof *w->lowest + sizeof *w->total));
+}
+
+double sph_weibull_lowest(const struct sph_weibull_lists *w, size_t i) {
+  if (!w->strain)
+    return w->lowest[i];
+  return w->first[i] < w->first[i + 1] ? w->strain[w->first[i]] : HUGE_VAL;
+}
+
+uint32_t sph_weibull_total(const struct sph_weibull_lists *w, size_t i) {
+  return w->strain ? (uint32_t)(w->first[i + 1] - w->first[i]) : w->total[i];
+}
+
+static uint32_t active_exact(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  const size_t first = w->first[i], last = w->first[i + 1];
+  size_t low = first, high = last;
+  while (low < high) { /* first flaw stronger than the strain */
+    const size_t middle = low + (high - low) / 2;
+    if (w->strain[middle] <= strain)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  bracket[0] = low > first ? w->strain[low - 1] : -HUGE_VAL;
+  bracket[1] = low < last ? w->strain[low] : HUGE_VAL;
+  return (uint32_t)(low - first);
+}
+
+static uint32_t active_compact(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  const double lowest = w->lowest[i], q = w->exponent[i], total = (double)w->total[i];
+  bracket[0] = -HUGE_VAL;
+  bracket[1] = lowest;
+  if (!(strain >= lowest))
+    return 0;
+  double open = total;
+  if (q > 0 && lowest > 0) { /* else one flaw, all equal, or thresholds of 0: all open at once */
+    const double law = floor(pow(strain / lowest, q) * (1 + 1e-12)); /* the highest is reached, not missed */
+    open = law < 1 ? 1 : law < total ? law : total;
+  }
+  bracket[0] = open > 1 && q > 0 ? lowest * pow(open, 1 / q) : lowest;
+  bracket[1] = open < total ? lowest * pow(open + 1, 1 / q) : HUGE_VAL;
+  return (uint32_t)open;
+}
+
+uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
+  return (w->strain ? active_exact : active_compact)(w, i, strain, bracket);
+}
+
+static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
+  (void)parameters;
+  return body->flaws != NULL;
+}
+
+const struct sph_module sph_weibull_module = {
+    .name = "weibull",
+    .doc = "Explicit flaws: each particle has its own list of strains at which a flaw opens, or that list's lowest, "
+           "number and "
+           "exponent (compact).",
+    .source = "Benz & Asphaug 1995, eqs. 11 and 20",
+    .when = "a body whose material has Weibull parameters",
+    .on = on,
+    .bytes = 4 * sizeof(double), /* and the lists: about 12 thresholds per particle, or 20 bytes compact */
+};

@@ -1,0 +1,26 @@
+/* The flaws of one body as the step needs them: which thresholds does a strain exceed? Exact: every threshold of every
+ * particle, ascending. Compact: (lowest, exponent, number) per particle, with
+ *   n(eps) = min(total, floor((eps/lowest)^q)),  q = ln(total)/ln(highest/lowest),
+ * a power law that counts 1 at the lowest and all at the highest threshold; that is how codes of this kind save memory
+ * (Benz & Asphaug 1994). Thresholds are strains here: those that no double holds are infinite (never open) or 0. */
+#ifndef CLAST_ENGINE_SPH_MODULES_WEIBULL_H
+#define CLAST_ENGINE_SPH_MODULES_WEIBULL_H
+
+#include <stdbool.h>
+
+#include "engine/sph/body/flaws.h"
+
+struct sph_weibull_lists; /* opaque */
+
+/* STATUS_MEMORY. */
+status sph_weibull_make(const struct sph_flaws *flaws, bool compact, struct sph_weibull_lists **out,
+                        struct error *error);
+void sph_weibull_free(struct sph_weibull_lists *lists); /* NULL is fine */
+size_t sph_weibull_bytes(const struct sph_weibull_lists *lists);
+
+double sph_weibull_lowest(const struct sph_weibull_lists *lists, size_t particle);
+uint32_t sph_weibull_total(const struct sph_weibull_lists *lists, size_t particle);
+/* How many are open; it stays so while bracket[0] <= strain < bracket[1]. */
+uint32_t sph_weibull_active(const struct sph_weibull_lists *lists, size_t particle, double strain, double bracket[2]);
+
+#endif

@@ -1,0 +1,133 @@
+#include "engine/sph/observe/plate.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/sph/scene/derived.h"
+
+struct sph_plate_layer { /* of matter that stood one spacing deep at the start: sums over its particles */
+  double x, density, count;
+};
+
+status sph_plate_start(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  run->layer = malloc((size_t)in->fidelity.points * sizeof *run->layer);
+  if (!run->layer)
+    return status_fail(error, STATUS_MEMORY, "no memory for %lld layers", (long long)in->fidelity.points);
+  return sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &run->exact, error);
+}
+
+static size_t layer_of(const struct sph_run *run, size_t i) {
+  double last = (double)run->inputs.fidelity.points - 1;
+  return (size_t)fmax(0, fmin(last, run->start->x[i] / sph_derived_spacing(&run->inputs)));
+}
+
+static void fill_layers(const struct sph_run *run, const struct sph_particles *p) {
+  memset(run->layer, 0, (size_t)run->inputs.fidelity.points * sizeof *run->layer);
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    struct sph_plate_layer *l = &run->layer[layer_of(run, i)];
+    l->x += p->x[i];
+    l->density += p->density[i];
+    l->count++;
+  }
+}
+
+size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *layers, size_t most) {
+  const struct sph_particles *p = run->now;
+  double spacing = sph_derived_spacing(&run->inputs);
+  size_t count = (size_t)fmin((double)most, (double)run->inputs.fidelity.points);
+  fill_layers(run, p);
+  for (size_t k = 0; k < count; k++)
+    layers[k] = (struct sph_crater_layer){.depth = ((double)k + 0.5) * spacing};
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    size_t k = layer_of(run, i);
+    if (k >= count)
+      continue;
+    double n = run->layer[k].count;
+    layers[k].distention += (p->distention ? p->distention[i] : 1) / n;
+    layers[k].pressure += p->pressure[i] / n;
+    layers[k].velocity += p->vx[i] / n;
+  }
+  return count;
+}
+
+/* From the far side: the first place as dense as halfway from what is ahead of a front to what is behind it. */
+static double passes(const struct sph_run *run, double ahead, double behind) {
+  double level = (ahead + behind) / 2, before = NAN, at = NAN;
+  for (size_t k = (size_t)run->inputs.fidelity.points; k-- > 0;) {
+    const struct sph_plate_layer *l = &run->layer[k];
+    if (!(l->count > 0))
+      continue;
+    double density = l->density / l->count, x = l->x / l->count;
+    if (density >= level)
+      return isnan(before) ? (double)NAN : x + (at - x) * (density - level) / (density - before);
+    before = density;
+    at = x;
+  }
+  return NAN;
+}
+
+void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, double *shock, double *precursor) {
+  const struct sph_plane_shock *exact = &run->exact;
+  double between = exact->has_precursor ? exact->precursor.density : exact->first_density;
+  fill_layers(run, p);
+  *precursor = exact->has_precursor ? passes(run, exact->first_density, between) : (double)NAN;
+  *shock = exact->has_shock ? passes(run, between, exact->shock.density) : (double)NAN;
+}
+
+/* Slope of places against times by least squares, from half of the run on: by then a front has its final form. */
+static double speed(const struct sph_run *run, size_t offset) {
+  double from = run->inputs.stop.end_time / 2, n = 0, t = 0, x = 0, tt = 0, tx = 0;
+  for (size_t k = 0; k < run->state.samples; k++) {
+    double place, time = run->sample[k].time - from;
+    memcpy(&place, (const char *)&run->sample[k] + offset, sizeof place);
+    if (!(time >= 0) || isnan(place))
+      continue;
+    n++, t += time, x += place, tt += time * time, tx += time * place;
+  }
+  return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
+}
+
+struct plateau {
+  double density, pressure, distention;
+};
+
+static struct plateau between(const struct sph_run *run, double low, double high) {
+  const struct sph_particles *p = run->now;
+  struct plateau sum = {0};
+  double n = 0;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    if (!(p->x[i] > low && p->x[i] < high))
+      continue;
+    sum.density += p->density[i];
+    sum.pressure += p->pressure[i];
+    sum.distention += p->distention ? p->distention[i] : (double)NAN;
+    n++;
+  }
+  return (struct plateau){sum.density / n, sum.pressure / n, sum.distention / n}; /* NaN of none */
+}
+
+void sph_plate_report(const struct sph_run *run, struct sph_results *r) {
+  const struct sph_plane_shock *exact = &run->exact;
+  double shock, precursor, piston = run->inputs.piston.speed * sph_system_time(run->system);
+  sph_plate_look(run, run->now, &shock, &precursor);
+  if (exact->has_shock) { /* the middle half from the piston to the front */
+    struct plateau p = between(run, piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4);
+    r->shock.speed = speed(run, offsetof(struct sph_sample, front));
+    r->shock.density = p.density, r->shock.pressure = p.pressure, r->shock.distention = p.distention;
+    r->shock.speed_exact = exact->shock.speed;
+    r->shock.density_exact = exact->shock.density;
+    r->shock.pressure_exact = exact->shock.pressure;
+    r->shock.distention_exact = run->now->distention ? exact->shock.distention : (double)NAN;
+  }
+  if (exact->has_precursor) { /* well ahead of the shock, which is spread over some spacings, and behind its own rise */
+    double from = exact->has_shock ? shock : piston;
+    struct plateau p = between(run, from + (precursor - from) * 0.4, from + (precursor - from) * 0.7);
+    r->precursor.speed = speed(run, offsetof(struct sph_sample, precursor));
+    r->precursor.pressure = p.pressure, r->precursor.distention = p.distention;
+    r->precursor.speed_exact = exact->precursor.speed;
+    r->precursor.pressure_exact = exact->precursor.pressure;
+    r->precursor.distention_exact = exact->precursor.distention;
+  }
+}

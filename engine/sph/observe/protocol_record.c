@@ -1,0 +1,79 @@
+/* What stretch, vibration and piston record along the way, at equal times of the simulation. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/sph/observe/plate.h"
+
+enum { SAMPLES = 400 }; /* looks over the whole run: a look costs about a tenth of a step */
+
+status sph_protocol_record_start(struct sph_run *run, struct error *error) {
+  if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
+    return STATUS_OK;
+  status code = run->inputs.kind == SPH_PISTON ? sph_plate_start(run, error) : STATUS_OK;
+  if (code)
+    return code;
+  run->sample_interval = run->inputs.stop.end_time / SAMPLES;
+  run->sample_capacity = SAMPLES + 2;
+  run->sample = calloc(run->sample_capacity, sizeof *run->sample);
+  return run->sample ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for %zu samples", run->sample_capacity);
+}
+
+/* Mean axial stress between the grips, by volume, as the damaged solid bears it. */
+static double axial_stress(const struct sph_run *run, const struct sph_particles *p) {
+  double half = run->inputs.target.length / 2 - run->inputs.stretch.grip, sum = 0, volume = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    if (fabs(run->start->z[i]) > half)
+      continue;
+    double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0, part = p->mass[i] / p->density[i];
+    double pressure = p->pressure[i] < 0 ? (1 - d) * p->pressure[i] : p->pressure[i];
+    sum += part * (-pressure + (p->stress[5] ? (1 - d) * p->stress[5][i] : 0));
+    volume += part;
+  }
+  return volume > 0 ? sum / volume : 0;
+}
+
+/* Projection of the velocities on the mode they started in, over its first size. */
+static double mode(const struct sph_run *run, const struct sph_particles *p) {
+  double sum = 0, norm = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    sum += p->mass[i] * p->vz[i] * run->start->vz[i];
+    norm += p->mass[i] * run->start->vz[i] * run->start->vz[i];
+  }
+  return norm > 0 ? sum / norm : 0;
+}
+
+static void note_crossing(struct sph_state *state, double value, double time) {
+  double before = state->mode_before;
+  if (before != 0 && value * before < 0) {
+    double when = state->mode_time + (time - state->mode_time) * before / (before - value);
+    if (state->crossings++ == 0)
+      state->crossing_first = when;
+    state->crossing_last = when;
+  }
+  state->mode_before = value;
+  state->mode_time = time;
+}
+
+void sph_protocol_record(struct sph_run *run) {
+  struct sph_state *state = &run->state;
+  double time = sph_system_time(run->system);
+  if (!run->sample || time < (double)state->samples * run->sample_interval || state->samples >= run->sample_capacity)
+    return;
+  const struct sph_particles *p = sph_run_read(run);
+  struct sph_sample *sample = &run->sample[state->samples++];
+  *sample = (struct sph_sample){.time = time, .damage = sph_system_damage(run->system, NULL)};
+  if (run->inputs.kind == SPH_STRETCH) {
+    sample->strain = run->inputs.stretch.rate * time;
+    sample->stress = axial_stress(run, p);
+    if (sample->stress > state->peak_stress) {
+      state->peak_stress = sample->stress;
+      state->peak_strain = sample->strain;
+      state->peak_time = time;
+    }
+  } else if (run->inputs.kind == SPH_PISTON) {
+    sph_plate_look(run, p, &sample->front, &sample->precursor);
+  } else {
+    sample->mode = mode(run, p);
+    note_crossing(state, sample->mode, time);
+  }
+}

@@ -1,0 +1,57 @@
+/* What engine `sph` reports beyond struct outcome: table result_sph. Off (NaN) where a quantity does not apply. */
+#ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
+#define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
+
+#include "schemas/field.h"
+
+enum sph_stop { SPH_STOP_RUNNING, SPH_STOP_QUIET, SPH_STOP_END_TIME, SPH_STOP_FAULT };
+
+struct sph_results {
+  int stop_reason; /* enum sph_stop */
+  int64_t particles, projectile_particles, flaws;
+  double target_mass, projectile_mass, specific_energy;
+  bool fracture_ceased;
+  double first_damage, cease_time;
+  double mean_damage, undamaged_fraction, mean_distention;
+  struct {
+    double bare_fraction, veneer_fraction, dynamic_fraction;
+    double axis_middle, axis_short;
+    double speed;
+  } largest;
+  struct {
+    double mass, angle;
+  } second;
+  struct {
+    double mass_fraction, momentum;
+  } ejecta;
+  struct {
+    double depth, radius, volume, compaction_share;
+  } crater;
+  struct {
+    double mass_fraction, volume, depth, reach;
+  } compaction;
+  struct {
+    double kinetic, internal, damped, work_of_held, clamped;
+  } energy;
+  double energy_input, clamped_share, density_held_share, angular_momentum_error;
+  struct {
+    double courant, force, damage, distention, energy, density;
+  } limited;
+  double neighbours;
+  struct {
+    double stress, strain, time;
+  } peak;
+  double cracks;
+  double frequency;
+  double rebound;
+  struct {
+    double speed, speed_exact, density, density_exact, pressure, pressure_exact, distention, distention_exact;
+  } shock;
+  struct {
+    double speed, speed_exact, pressure, pressure_exact, distention, distention_exact;
+  } precursor;
+};
+
+extern const struct field_table sph_results;
+
+#endif

@@ -1,3 +1,0 @@
-/* The range loops for CPU class baseline. */
-#define RANGES_TABLE sph_ranges_baseline
-#include "engine/sph/ranges_body.h"

@@ -1,6 +1,0 @@
-/* The range loops for CPU class v4. */
-#if defined(__x86_64__) && defined(__GNUC__)
-#pragma GCC target("arch=x86-64-v4")
-#define RANGES_TABLE sph_ranges_v4
-#include "engine/sph/ranges_body.h"
-#endif

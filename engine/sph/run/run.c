@@ -1,0 +1,206 @@
+#include "engine/sph/run/run.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/sph/scene/derived.h"
+
+enum {
+  LOOK_INTERVAL = 8,    /* steps between looks at the damage */
+  LEDGER_INTERVAL = 64, /* steps between looks at the energy, each a pass over all particles */
+};
+
+double sph_run_closed(const struct sph_ledger *l) {
+  return l->kinetic + l->internal + l->damped - l->work_of_held;
+}
+
+double sph_run_extent(const struct sph_run *run) {
+  const double diagonal[3] = {0.57735026918962576, 0.57735026918962576, 0.57735026918962576};
+  return sph_shape_reach(&run->shape[0], diagonal);
+}
+
+/* The first reason given stays, but a fault stands above any other. */
+static __attribute__((format(printf, 4, 5))) void end(struct sph_run *run, int stop, int outcome_state,
+                                                      const char *format, ...) {
+  if (run->state.finished && (stop != SPH_STOP_FAULT || run->state.stop == SPH_STOP_FAULT))
+    return;
+  run->state.finished = 1;
+  run->state.stop = stop;
+  run->state.outcome_state = outcome_state;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(run->state.message, sizeof run->state.message, format, arguments);
+  va_end(arguments);
+}
+
+const struct sph_particles *sph_run_read(struct sph_run *run) {
+  sph_system_read(run->system, run->now);
+  return run->now;
+}
+
+/* ---- building ---- */
+
+static status make_system(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  struct sph_body_physics physics[SPH_RUN_BODIES];
+  for (int b = 0; b < run->body_count; b++) {
+    const struct sph_body_inputs *body = b == 1 && sph_derived_has_projectile(in) ? &in->projectile : &in->target;
+    physics[b] = (struct sph_body_physics){.material = body->material,
+                                           .strength = body->strength,
+                                           .flaws = run->flaws[b],
+                                           .porosity = sph_derived_porous(body) ? &body->material.porosity : NULL};
+    if (field_is_off(body->material.yield_stress))
+      physics[b].material.yield_stress = HUGE_VAL; /* never yields */
+  }
+  struct sph_parameters parameters = sph_describe_parameters(in);
+  parameters.spacing_over_h = run->range[0].nearest / run->range[0].h;
+  memcpy(parameters.periodic, run->periodic, sizeof parameters.periodic);
+  return sph_system_create(run->start, (size_t)run->body_count, physics, &parameters, &run->system, error);
+}
+
+static status check_memory(const struct sph_inputs *in, struct error *error) {
+  double needed = (double)sph_describe_memory(in), there = (double)sph_particles_memory();
+  if (needed <= there)
+    return STATUS_OK;
+  return status_fail(error, STATUS_MEMORY, "%.4g particles need about %.3g GB of memory, and there are %.3g GB: %s",
+                     sph_derived_particles(in), needed / 1e9, there / 1e9, sph_inputs_check_fewer(in));
+}
+
+static void begin(struct sph_run *run) {
+  struct sph_ledger ledger = sph_system_ledger(run->system);
+  run->state.energy_start = sph_run_closed(&ledger);
+  run->state.energy_input = ledger.kinetic;
+  memcpy(run->state.momentum_start, ledger.momentum, sizeof ledger.momentum);
+  memcpy(run->state.angular_start, ledger.angular_momentum, sizeof ledger.angular_momentum);
+  run->state.momentum_scale_start = ledger.momentum_scale;
+  run->state.smallest_step = HUGE_VAL;
+  run->state.first_damage = NAN;
+}
+
+status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error) {
+  *out = NULL;
+  status code = sph_inputs_check(inputs, error);
+  if (code || (code = check_memory(inputs, error)))
+    return code;
+  struct sph_run *run = calloc(1, sizeof *run);
+  if (!run)
+    return status_fail(error, STATUS_MEMORY, "no memory for a run");
+  run->inputs = *inputs;
+  run->seed = seed;
+  if ((code = sph_protocol_bodies(run, error)) || (code = make_system(run, error)))
+    goto cleanup;
+  int arrays = (run->start->stress[0] ? SPH_WITH_STRESS : 0) | (run->start->damage_cbrt ? SPH_WITH_DAMAGE : 0) |
+               (run->start->distention ? SPH_WITH_DISTENTION : 0);
+  if ((code = sph_particles_make(run->start->n, arrays, &run->now, error)) ||
+      (code = sph_protocol_record_start(run, error)))
+    goto cleanup;
+  for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own */
+    sph_flaws_free(run->flaws[b]);
+    run->flaws[b] = NULL;
+  }
+  begin(run);
+  *out = run;
+  run = NULL;
+cleanup:
+  sph_run_free(run);
+  return code;
+}
+
+void sph_run_free(struct sph_run *run) {
+  if (!run)
+    return;
+  sph_system_free(run->system);
+  sph_particles_free(run->start);
+  sph_particles_free(run->now);
+  for (int b = 0; b < SPH_RUN_BODIES; b++)
+    sph_flaws_free(run->flaws[b]);
+  free(run->sample);
+  free(run->layer);
+  free(run);
+}
+
+/* ---- advancing ---- */
+
+static bool can_crack(const struct sph_run *run) {
+  return run->flaw_count > 0;
+}
+
+/* The declared rule: damage counts as ceased since the last time it was stop.quiet_growth below what it is now. */
+static void look_at_damage(struct sph_run *run) {
+  struct sph_state *state = &run->state;
+  double damage = sph_system_damage(run->system, NULL), time = sph_system_time(run->system);
+  if (isnan(state->first_damage)) {
+    if (!(damage > 0))
+      return;
+    state->first_damage = time;
+    state->quiet_damage = damage;
+    state->quiet_since = time;
+  }
+  if (damage - state->quiet_damage >= run->inputs.stop.quiet_growth) {
+    state->quiet_damage = damage;
+    state->quiet_since = time;
+  }
+  if (time - state->quiet_since >= run->inputs.stop.quiet_time)
+    end(run, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
+}
+
+static void look_at_energy(struct sph_run *run) {
+  struct sph_ledger ledger = sph_system_ledger(run->system);
+  double closed = sph_run_closed(&ledger), input = run->state.energy_input + fabs(ledger.work_of_held);
+  double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound;
+  if (!isfinite(closed))
+    end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s",
+        sph_system_time(run->system));
+  else if (!field_is_off(bound) && input > 0 && drift > bound * input) {
+    char clamped[120] = "";
+    if (fabs(ledger.clamped) > drift / 2)
+      snprintf(clamped, sizeof clamped,
+               "; %.3g of it is energy.clamped, of cold matter held at u = 0: if that stays, raise the bound",
+               ledger.clamped / input);
+    end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
+        "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g: lower "
+        "fidelity.cfl, or take more particles%s",
+        sph_system_time(run->system), drift / input, bound, clamped);
+  }
+}
+
+static void look_at_end(struct sph_run *run) {
+  double time = sph_system_time(run->system);
+  if (time < run->inputs.stop.end_time)
+    return;
+  if (can_crack(run) && !isnan(run->state.first_damage))
+    end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME, "damage still grew %.3g s before the hard end: raise stop.end_time",
+        time - run->state.quiet_since);
+  else /* nothing ever broke: there is no fracture that could still go on */
+    end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
+}
+
+status sph_run_advance(struct sph_run *run, uint64_t max_steps) {
+  struct sph_state *state = &run->state;
+  for (uint64_t k = 0; k < max_steps && !state->finished; k++) {
+    if (!sph_system_step(run->system, run->inputs.stop.end_time)) {
+      const int fault = sph_system_fault(run->system);
+      if (fault == SPH_FAULT_MEMORY)
+        return STATUS_MEMORY;
+      end(run, SPH_STOP_FAULT, fault == SPH_FAULT_TIME_STEP ? OUTCOME_TIME_STEP : OUTCOME_NOT_FINITE, "%s",
+          sph_system_failure(run->system));
+      break;
+    }
+    int limiter = sph_system_limiter(run->system);
+    state->limited[limiter]++;
+    if (limiter != SPH_LIMIT_END)
+      state->smallest_step = fmin(state->smallest_step, sph_system_last_step(run->system));
+    if (run->sample)
+      sph_protocol_record(run);
+    uint64_t steps = sph_system_steps(run->system);
+    if (can_crack(run) && steps % LOOK_INTERVAL == 0)
+      look_at_damage(run);
+    look_at_end(run);
+    if (steps % LEDGER_INTERVAL == 0 || state->finished)
+      look_at_energy(run);
+  }
+  return STATUS_OK;
+}

@@ -1,0 +1,102 @@
+/* One run of engine `sph`: bodies, the moving system, the protocol and what it has recorded so far. Inside this folder
+ * only. */
+#ifndef CLAST_ENGINE_SPH_RUN_RUN_H
+#define CLAST_ENGINE_SPH_RUN_RUN_H
+
+#include "engine/engine.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/observe/crater.h"
+#include "engine/sph/observe/results.h"
+#include "engine/sph/observe/sph_fragments.h"
+#include "engine/sph/scene/inputs.h"
+#include "engine/sph/step/system.h"
+
+enum { SPH_RUN_BODIES = 2 };
+
+/* One point of the curve that a protocol records: stress against strain (stretch), the mode's amplitude (vibration), or
+ * where the fronts are (piston). */
+struct sph_sample {
+  double time, strain, stress, mode, damage, front, precursor;
+};
+
+/* What changes during a run beside the system itself: a plain value, saved as it stands in a restart file. */
+struct sph_state {
+  int finished, stop, outcome_state;
+  char message[FIELD_TEXT_SIZE];
+  double energy_start, energy_input; /* J: ledger's closed sum, kinetic energy at the start */
+  double momentum_start[3], angular_start[3];
+  double momentum_scale_start;                /* kg m/s, sum |p| at the start */
+  double smallest_step;                       /* s */
+  double first_damage;                        /* s, NaN: none yet */
+  double quiet_damage, quiet_since;           /* mean damage, and when it was that; the rule of stop.quiet_time */
+  uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
+  uint64_t samples, skipped;                  /* of the curve */
+  double peak_stress, peak_strain, peak_time; /* stretch */
+  double mode_before, mode_time;              /* vibration: amplitude at the last look */
+  double crossing_first, crossing_last;       /* s, interpolated zero crossings of the mode */
+  uint64_t crossings;
+};
+
+struct sph_run {
+  struct sph_inputs inputs;
+  uint64_t seed;
+  struct sph_shape shape[SPH_RUN_BODIES]; /* where they stand at the start */
+  struct sph_range range[SPH_RUN_BODIES];
+  int body_count;
+  size_t targets;                          /* particles that can belong to fragments: ids below this one */
+  double periodic[3];                      /* m, NaN = open */
+  double impact_direction[3];              /* from the target's centre to the point of impact; unit */
+  struct sph_particles *start;             /* as they were set up: positions and h at rest */
+  struct sph_particles *now;               /* room to read the system back; sph_run_read */
+  struct sph_flaws *flaws[SPH_RUN_BODIES]; /* NULL: the body does not crack; freed once the system has them */
+  size_t flaw_count;
+  struct sph_system *system;
+  struct sph_state state;
+  struct sph_sample *sample; /* sample_capacity of them; NULL: the protocol records nothing */
+  size_t sample_capacity;
+  double sample_interval;        /* s */
+  struct sph_plane_shock exact;  /* piston: what it should do */
+  struct sph_plate_layer *layer; /* piston: room for a look (plate.c) */
+};
+
+status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
+void sph_run_free(struct sph_run *run); /* NULL is fine */
+/* At most max_steps, independent of how they are split over calls. STATUS_MEMORY: that is no result, and the run cannot
+ * go on. */
+status sph_run_advance(struct sph_run *run, uint64_t max_steps);
+/* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
+const struct sph_particles *sph_run_read(struct sph_run *run);
+double
+sph_run_closed(const struct sph_ledger *ledger);  /* the sum that must stay constant, J; clamps are not credited */
+double sph_run_extent(const struct sph_run *run); /* m, the target's reach: a length for errors */
+
+/* protocol.c: bodies with their flaws, where they stand and how they move. Fills shape, range, start, flaws... of the
+ * run. */
+status sph_protocol_bodies(struct sph_run *run, struct error *error);
+
+/* protocol_record.c: what stretch, vibration and piston record along the way. */
+status sph_protocol_record_start(struct sph_run *run, struct error *error);
+void sph_protocol_record(struct sph_run *run); /* after a step */
+
+/* report.c */
+struct sph_crater_options sph_report_crater(const struct sph_run *run);
+/* The target's fragments as the inputs ask for, but for the two choices given; of the particles last read. */
+status sph_report_pieces(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *pieces,
+                         struct error *error);
+status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
+                         struct fragment **fragments, size_t *count, struct error *error);
+
+/* describe.c */
+char *sph_describe_scene(const struct sph_inputs *inputs);
+size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
+double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, near enough */
+struct sph_parameters
+sph_describe_parameters(const struct sph_inputs *inputs); /* fidelity and options; not `periodic` */
+
+/* fields.c, restart.c */
+status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error);
+status sph_restart_save(struct sph_run *run, const char *path, struct error *error);
+status sph_restart_load(const struct sph_inputs *inputs, const char *path, struct sph_run **out, struct error *error);
+
+#endif

@@ -1,0 +1,183 @@
+#include "engine/sph/scene/derived.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "engine/sph/body/bodies.h"
+
+static const double pi = 3.14159265358979323846;
+enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
+
+double sph_derived_bulk_modulus(const struct sph_material *m) {
+  return m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A;
+}
+
+double sph_derived_young_modulus(const struct sph_material *m) {
+  double K = sph_derived_bulk_modulus(m);
+  return 9 * K * m->shear_modulus / (3 * K + m->shear_modulus);
+}
+
+double sph_derived_poisson_ratio(const struct sph_material *m) {
+  double K = sph_derived_bulk_modulus(m);
+  return (3 * K - 2 * m->shear_modulus) / (2 * (3 * K + m->shear_modulus));
+}
+
+double sph_derived_wave_speed(const struct sph_body_inputs *b) { /* pressure answers with A, whatever K says */
+  const struct sph_material *m = &b->material;
+  double bulk2 = m->tillotson.A / m->density, shear2 = b->strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
+  if (sph_derived_porous(b) && !field_is_off(m->porosity.sound_speed))
+    bulk2 = m->porosity.sound_speed * m->porosity.sound_speed;
+  return sqrt(bulk2 + shear2);
+}
+
+double sph_derived_crack_speed(const struct sph_material *m) {
+  return 0.4 * sqrt((sph_derived_bulk_modulus(m) + 4.0 / 3 * m->shear_modulus) / m->density);
+}
+
+bool sph_derived_cracks(const struct sph_body_inputs *b) {
+  if (!b->strength || b->fracture == SPH_FRACTURE_OFF)
+    return false;
+  bool known = !field_is_off(b->material.weibull.m) && !field_is_off(b->material.weibull.k);
+  return b->fracture == SPH_FRACTURE_ON || known;
+}
+
+bool sph_derived_porous(const struct sph_body_inputs *b) {
+  return b->material.porosity.curve != SPH_CRUSH_NONE && b->material.porosity.distention > 1;
+}
+
+double sph_derived_density(const struct sph_body_inputs *b) {
+  return sph_derived_porous(b) ? b->material.density / b->material.porosity.distention : b->material.density;
+}
+
+bool sph_derived_has_projectile(const struct sph_inputs *in) {
+  return in->kind == SPH_IMPACT;
+}
+
+bool sph_derived_has_intruder(const struct sph_inputs *in) {
+  return in->kind == SPH_IMPACT || in->kind == SPH_PISTON;
+}
+
+int sph_derived_bodies(const struct sph_inputs *in) {
+  return sph_derived_has_intruder(in) || in->kind == SPH_COLLISION ? 2 : 1;
+}
+
+static struct sph_shape shape_of(const struct sph_body_inputs *b) {
+  struct sph_shape shape = {.kind = b->shape, .axis = {0, 0, 1}};
+  switch ((enum sph_shape_kind)b->shape) {
+  case SPH_SHAPE_CYLINDER:
+    shape.inner_radius = b->inner_radius;
+    shape.length = b->length;
+    shape.radius = b->radius;
+    break;
+  case SPH_SHAPE_SPHERE: shape.radius = b->radius; break;
+  case SPH_SHAPE_BOX: memcpy(shape.side, (const double[]){b->width, b->depth, b->height}, sizeof shape.side); break;
+  }
+  return shape;
+}
+
+double sph_derived_thickness(const struct sph_inputs *in, int direction, double at_least) {
+  double spacing = sph_derived_spacing(in), support = 2 * spacing * in->fidelity.smoothing * (1 + in->fidelity.skin);
+  return sph_lattice_period(in->target.lattice, spacing, direction, fmax(at_least, 2.1 * support));
+}
+
+struct sph_shape sph_derived_target(const struct sph_inputs *in) {
+  struct sph_shape shape = shape_of(&in->target);
+  if (in->kind == SPH_PISTON) {
+    shape.side[1] = sph_derived_thickness(in, 1, in->target.depth);
+    shape.side[2] = sph_derived_thickness(in, 2, in->target.height);
+  }
+  return shape;
+}
+
+double sph_derived_target_mass(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_derived_target(in);
+  return sph_derived_density(&in->target) * sph_shape_volume(&shape);
+}
+
+struct sph_shape sph_derived_projectile(const struct sph_inputs *in) {
+  if (in->impact.projectile == SPH_BY_SIZE)
+    return shape_of(&in->projectile);
+  double mass = in->impact.mass, speed = in->impact.speed;
+  if (in->impact.projectile == SPH_BY_ENERGY)
+    mass = 2 * in->impact.specific_energy * sph_derived_target_mass(in) / (speed * speed);
+  return (struct sph_shape){.kind = SPH_SHAPE_SPHERE,
+                            .axis = {0, 0, 1},
+                            .radius = cbrt(3 * mass / (4 * pi * sph_derived_density(&in->projectile)))};
+}
+
+struct sph_shape sph_derived_piston(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_derived_target(in);
+  shape.side[0] = PISTON_LAYERS * sph_derived_spacing(in);
+  return shape;
+}
+
+double sph_derived_projectile_mass(const struct sph_inputs *in) {
+  if (!sph_derived_has_projectile(in))
+    return 0;
+  struct sph_shape shape = sph_derived_projectile(in);
+  return sph_derived_density(&in->projectile) * sph_shape_volume(&shape);
+}
+
+double sph_derived_specific_energy(const struct sph_inputs *in) {
+  double v = in->impact.speed;
+  return sph_derived_has_projectile(in) ? 0.5 * sph_derived_projectile_mass(in) * v * v / sph_derived_target_mass(in)
+                                        : (double)NAN;
+}
+
+status sph_derived_aim(const struct sph_inputs *in, struct sph_shape shape[2], double flight[3], struct error *error) {
+  const double up[3] = {0, 0, 1}, angle = in->impact.angle;
+  shape[0] = sph_derived_target(in);
+  shape[1] = sph_derived_projectile(in);
+  memcpy(shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof shape[1].axis);
+  status code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight,
+                               error); /* touching; and now back along the flight */
+  for (int k = 0; !code && k < 3; k++)
+    shape[1].centre[k] -= flight[k] * in->impact.gap / cos(angle);
+  return code;
+}
+
+double sph_derived_spacing(const struct sph_inputs *in) {
+  if (in->kind == SPH_PISTON)
+    return in->target.width / (double)in->fidelity.points;
+  struct sph_shape shape = shape_of(&in->target);
+  return cbrt(sph_shape_volume(&shape) / (double)in->fidelity.particles);
+}
+
+double sph_derived_fine_spacing(const struct sph_inputs *in) {
+  bool graded = in->kind == SPH_IMPACT && in->fidelity.graded && in->fidelity.fine_spacing > 0;
+  return graded ? in->fidelity.fine_spacing : sph_derived_spacing(in);
+}
+
+double sph_derived_smallest_spacing(const struct sph_inputs *in) {
+  double fine = sph_derived_fine_spacing(in);
+  return sph_derived_has_projectile(in) ? fmin(fine, fine * in->fidelity.projectile_spacing) : fine;
+}
+
+double sph_derived_particles(const struct sph_inputs *in) {
+  double target = (double)in->fidelity.particles;
+  if (in->kind == SPH_COLLISION)
+    return 2 * target;
+  if (in->kind == SPH_PISTON) {
+    struct sph_shape plate = sph_derived_target(in), piston = sph_derived_piston(in);
+    return (sph_shape_volume(&plate) + sph_shape_volume(&piston)) / pow(sph_derived_spacing(in), 3);
+  }
+  if (!sph_derived_has_projectile(in))
+    return target;
+  struct sph_shape shape = sph_derived_projectile(in);
+  double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
+  return target + sph_shape_volume(&shape) / (spacing * spacing * spacing);
+}
+
+static double longest(const struct sph_shape *shape) {
+  if (shape->kind == SPH_SHAPE_SPHERE)
+    return 2 * shape->radius;
+  if (shape->kind == SPH_SHAPE_CYLINDER)
+    return fmax(2 * shape->radius, shape->length);
+  return fmax(shape->side[0], fmax(shape->side[1], shape->side[2]));
+}
+
+double sph_derived_crossing(const struct sph_inputs *in) {
+  struct sph_shape shape = sph_derived_target(in);
+  double extent = in->kind == SPH_COLLISION ? 2 * shape.radius : longest(&shape);
+  return extent / sph_derived_wave_speed(&in->target);
+}

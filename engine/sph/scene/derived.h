@@ -1,0 +1,43 @@
+/* Sizes, masses, speeds and times of a scene: what follows from the inputs alone. */
+#ifndef CLAST_ENGINE_SPH_SCENE_DERIVED_H
+#define CLAST_ENGINE_SPH_SCENE_DERIVED_H
+
+#include "engine/sph/body/shape.h"
+#include "engine/sph/scene/inputs.h"
+
+bool sph_derived_has_projectile(const struct sph_inputs *inputs);
+int sph_derived_bodies(const struct sph_inputs *inputs);
+/* Is there a second body that belongs to no fragment: a projectile or a piston (ids after the target's)? */
+bool sph_derived_has_intruder(const struct sph_inputs *inputs);
+/* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
+bool sph_derived_cracks(const struct sph_body_inputs *body);
+/* Has it pores? A crush curve and a distention above 1. */
+bool sph_derived_porous(const struct sph_body_inputs *body);
+double sph_derived_density(const struct sph_body_inputs *body);        /* kg/m^3, with the pores */
+double sph_derived_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
+double sph_derived_young_modulus(const struct sph_material *material); /* Pa */
+double sph_derived_poisson_ratio(const struct sph_material *material);
+double sph_derived_wave_speed(const struct sph_body_inputs *body);   /* m/s, longitudinal */
+double sph_derived_crack_speed(const struct sph_material *material); /* m/s, c_g */
+/* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
+struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
+struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);
+struct sph_shape sph_derived_piston(const struct sph_inputs *inputs); /* at the origin, too */
+/* m: what repeats along y or z (direction 1 or 2) in whole periods of the target's lattice, at least so thick, and so
+ * thick that no particle meets its own image. */
+double sph_derived_thickness(const struct sph_inputs *inputs, int direction, double at_least);
+double sph_derived_target_mass(const struct sph_inputs *inputs);     /* kg */
+double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
+double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
+double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
+double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
+double sph_derived_crossing(const struct sph_inputs *inputs); /* s, of a wave through the target's longest extent */
+double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
+/* Target and projectile where they start, and the unit direction of flight: it touches the target where the normal is
+ * z, the flight impact.angle from it, whatever the gap before. STATUS_CONTENT. */
+status sph_derived_aim(const struct sph_inputs *inputs, struct sph_shape shape[2], double flight[3],
+                       struct error *error);
+/* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */
+double sph_derived_specific_energy(const struct sph_inputs *inputs);
+
+#endif

@@ -1,0 +1,251 @@
+/* What a scene models and why, what it needs and how its numbers compare: text for `clast explain` and `plan`. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/modules/modules.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
+
+/* Bytes per particle of the moving system but its lists (sph_system_bytes of 10 000 particles; 100 less of 100 000),
+ * what the gradient correction adds, lists at the usual h, and all that stands beside the system (particles as set up
+ * and as read back; fragments at the end, when dust is many: what a whole process had at its peak, less the system). */
+enum {
+  BYTES_SYSTEM = 690,
+  BYTES_CORRECTION = 140,
+  BYTES_LISTS = 108,
+  BYTES_BESIDE = 450,
+  BYTES_PER_FLAW = 16,
+  BYTES_ANYWAY = 4 << 20
+};
+/* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2
+ * to 3 GHz). */
+enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
+static const double pi = 3.14159265358979323846;
+static const double euler = 0.57721566490153286;
+
+struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
+  struct sph_parameters p = sph_parameters_default();
+  p.viscosity_alpha = in->viscosity.alpha;
+  p.viscosity_beta = in->viscosity.beta;
+  p.artificial_stress = in->method.artificial_stress;
+  p.gradient_correction = in->method.gradient_correction;
+  p.volume_weights = in->method.volume_weights;
+  p.cfl = in->fidelity.cfl;
+  p.damage_step = in->fidelity.damage_step;
+  p.growth = in->fracture.growth;
+  p.cap = in->fracture.cap;
+  p.crack_radius_support = in->fracture.crack_radius == 1;
+  p.compact_flaws = in->fidelity.flaws == 1;
+  p.distention_step = in->fidelity.distention_step;
+  p.skin = in->fidelity.skin;
+  p.precision = in->fidelity.precision;
+  p.threads = (int)in->fidelity.threads;
+  return p;
+}
+
+static double flaws_expected(double particles) {
+  return particles * (log(fmax(particles, 1)) + euler);
+}
+
+size_t sph_describe_memory(const struct sph_inputs *in) {
+  double particles = sph_derived_particles(in),
+         lists = pow(in->fidelity.smoothing / SPH_BODIES_H * (1 + in->fidelity.skin), 3) * BYTES_LISTS;
+  double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists +
+                                             (in->method.gradient_correction ? BYTES_CORRECTION : 0));
+  if (sph_derived_cracks(&in->target))
+    bytes += flaws_expected(particles) * BYTES_PER_FLAW;
+  return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
+}
+
+static double steps_expected(const struct sph_inputs *in) {
+  double h = sph_derived_smallest_spacing(in) * in->fidelity.smoothing;
+  double blow = in->kind == SPH_IMPACT ? 0.25 * in->impact.speed
+                                       : 0; /* compressed matter is faster than sound at rest */
+  return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_derived_wave_speed(&in->target) + blow));
+}
+
+/* Particle-steps of one core in a second. */
+static double speed_expected(const struct sph_inputs *in) {
+  double cost = in->fidelity.precision == SPH_FLOAT ? COST_FLOAT : COST_DOUBLE;
+  cost += (in->method.gradient_correction ? COST_CORRECTION : 0) +
+          (in->method.artificial_stress > 0 ? COST_ARTIFICIAL : 0);
+  return 1e9 / cost;
+}
+
+double sph_describe_work(const struct sph_inputs *in) {
+  return sph_derived_particles(in) * steps_expected(in);
+}
+
+/* ---- text ---- */
+
+static void shape(const char *name, const struct sph_shape *s, const struct sph_body_inputs *b, double spacing,
+                  FILE *out) {
+  static const char *const lattices[] = {"hexagonal lattice", "cubic lattice", "irregular points"};
+  double volume = sph_shape_volume(s);
+  fprintf(out, "  %s: ", name);
+  if (s->kind == SPH_SHAPE_SPHERE)
+    fprintf(out, "sphere of radius %.4g m", s->radius);
+  else if (s->kind == SPH_SHAPE_CYLINDER)
+    fprintf(out, "%s of radius %.4g m, length %.4g m", s->inner_radius > 0 ? "ring" : "cylinder", s->radius, s->length);
+  else
+    fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
+  fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", builtin_material_names[b->material_name],
+          sph_derived_density(b) * volume, volume / (spacing * spacing * spacing), spacing, lattices[b->lattice]);
+}
+
+static void protocol(const struct sph_inputs *in, FILE *out) {
+  struct sph_shape target = sph_derived_target(in), projectile;
+  double spacing = sph_derived_spacing(in);
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal\n", in->impact.speed, in->impact.angle * 180 / pi);
+    break;
+  case SPH_STRETCH:
+    fprintf(out,
+            "stretch: a rod is pulled by its ends at %.4g /s, stretching evenly from the start (Benz & Asphaug 1995 "
+            "section "
+            "5.1)\n",
+            in->stretch.rate);
+    break;
+  case SPH_VIBRATION:
+    fprintf(out, "vibration: a free bar rings along its axis in its first mode, ends at %.4g m/s\n",
+            in->vibration.speed);
+    break;
+  case SPH_COLLISION:
+    fprintf(out,
+            "collision: two equal bodies approach at %.4g m/s, slabs that repeat along their axes (Gray et al. 2001)\n",
+            in->collision.speed);
+    break;
+  case SPH_PISTON:
+    fprintf(out,
+            "piston: a plate, a bar that repeats sideways, is driven at %.4g m/s along x (Jutzi, Benz & Michel 2008)\n",
+            in->piston.speed);
+    break;
+  }
+  shape("target", &target, &in->target, spacing, out);
+  if (sph_derived_has_projectile(in)) {
+    projectile = sph_derived_projectile(in);
+    shape("projectile", &projectile, &in->projectile, sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing,
+          out);
+    if (in->fidelity.graded)
+      fprintf(out, "  graded: spacing %.3g m within %.3g m of the point of impact\n", in->fidelity.fine_spacing,
+              in->fidelity.fine_radius);
+  }
+}
+
+/* Who asks for a module: the bodies for which it is on. */
+static bool modules(const struct sph_inputs *in, FILE *out) {
+  struct sph_parameters parameters = sph_describe_parameters(in);
+  struct sph_flaws some = {.particles = 1};
+  int bytes = 0;
+  for (size_t k = 0; k < sph_modules_count(); k++) {
+    const struct sph_module *module = sph_modules_at(k);
+    const char *who[3] = {"", "target", "projectile"};
+    int on = 0;
+    for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
+      const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
+      struct sph_body_physics physics = {.material = body->material,
+                                         .strength = body->strength,
+                                         .flaws = sph_derived_cracks(body) ? &some : NULL,
+                                         .porosity = sph_derived_porous(body) ? &body->material.porosity : NULL};
+      if (module->on(&physics, &parameters))
+        on |= 1 << b;
+    }
+    if (on)
+      fprintf(out, "  %s (%s%s%s): %s [%s]\n", module->name, on & 1 ? who[1] : "", on == 3 ? ", " : "",
+              on & 2 ? who[2] : "", module->doc, module->source);
+    else
+      fprintf(out, "  %s: no; on with %s\n", module->name, module->when);
+    bytes += on ? module->bytes : 0;
+  }
+  fprintf(out, "  these modules add %d bytes per particle\n", bytes);
+  return true;
+}
+
+static void numbers(const struct sph_inputs *in, FILE *out) {
+  const struct sph_body_inputs *target = &in->target;
+  double speed = sph_derived_wave_speed(target), crossing = sph_derived_crossing(in);
+  fprintf(out, "  waves: c_p %.0f m/s, through the target in %.3g s", speed, crossing);
+  if (target->strength)
+    fprintf(out, "; Young's modulus %.4g Pa, Poisson's ratio %.3g", sph_derived_young_modulus(&target->material),
+            sph_derived_poisson_ratio(&target->material));
+  fputc('\n', out);
+  if (sph_derived_cracks(target)) {
+    double E = sph_derived_young_modulus(&target->material), m = target->material.weibull.m,
+           n = (double)in->fidelity.particles;
+    double log_kv = log(target->material.weibull.k) +
+                    log(sph_derived_target_mass(in) / target->material.density); /* solid volume */
+    fprintf(
+        out,
+        "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
+        "%.0f m/s\n",
+        flaws_expected(n), exp(-log_kv / m), E * exp(-log_kv / m), exp((log(flaws_expected(n)) - log_kv) / m),
+        E * exp((log(flaws_expected(n)) - log_kv) / m), sph_derived_crack_speed(&target->material));
+  }
+  if (sph_derived_has_projectile(in)) {
+    struct sph_shape projectile = sph_derived_projectile(in);
+    double mass = sph_derived_projectile_mass(in), energy = 0.5 * mass * in->impact.speed * in->impact.speed;
+    double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
+    fprintf(out,
+            "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g particles across the projectile\n",
+            energy, mass, sph_derived_specific_energy(in), cbrt(sph_shape_volume(&projectile) * 6 / pi) / spacing);
+  }
+  if (in->kind == SPH_VIBRATION && target->strength)
+    fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",
+            sqrt(sph_derived_young_modulus(&target->material) / target->material.density) / (2 * target->length));
+}
+
+static void front(const char *name, const struct sph_front *f, FILE *out) {
+  fprintf(out, "  exact %s: %.6g m/s; behind it %.4g Pa, %.6g kg/m^3, distention %.6g, matter at %.4g m/s\n", name,
+          f->speed, f->pressure, f->density, f->distention, f->velocity);
+}
+
+static void plate(const struct sph_inputs *in, FILE *out) {
+  struct sph_plane_shock exact;
+  if (in->kind != SPH_PISTON ||
+      sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, NULL))
+    return;
+  if (exact.has_precursor)
+    front("elastic precursor", &exact.precursor, out);
+  if (exact.has_shock)
+    front("shock", &exact.shock, out);
+}
+
+char *sph_describe_scene(const struct sph_inputs *in) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  struct error error = {0};
+  protocol(in, out);
+  modules(in, out);
+  numbers(in, out);
+  plate(in, out);
+  if (sph_inputs_check(in, &error))
+    fprintf(out, "  cannot be run: %s\n", error.message);
+  double particles = sph_derived_particles(in);
+  fprintf(out, "  memory: about %.0f bytes per particle, %.3g MB in all\n", (double)sph_describe_memory(in) / particles,
+          (double)sph_describe_memory(in) / 1e6);
+  const double steps = steps_expected(in), speed = speed_expected(in), seconds = steps * particles / speed;
+  fprintf(out,
+          "  about %.3g steps of %.4g particles to stop.end_time%s: %.2g %s of a core that does %.2g particle-steps a "
+          "second\n",
+          steps, particles, sph_derived_cracks(&in->target) ? ", fewer when fracture ceases before" : "",
+          seconds < 100    ? seconds
+          : seconds < 6000 ? seconds / 60
+                           : seconds / 3600,
+          seconds < 100    ? "s"
+          : seconds < 6000 ? "minutes"
+                           : "hours",
+          speed);
+  if (fclose(out)) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

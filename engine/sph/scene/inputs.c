@@ -1,0 +1,308 @@
+/* "BA95" in the sources below: Benz & Asphaug 1995, Simulations of brittle solids using smooth particle hydrodynamics.
+ */
+#include "engine/sph/scene/inputs.h"
+
+#include <math.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/fracture.h"
+#include "engine/sph/material/material_rows.h"
+#include "engine/sph/pairs/pairs.h"
+
+static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};
+static const char *const shapes[] = {"sphere", "cylinder", "box", NULL};
+static const char *const lattices[] = {"hexagonal", "cubic", "irregular", NULL};
+static const char *const fractures[] = {"auto", "on", "off", NULL};
+static const char *const far_sides[] = {"free", "damped", NULL};
+static const char *const projectile_by[] = {"size", "mass", "specific-energy", NULL};
+static const char *const draws[] = {"ranked", "poisson", NULL};
+static const char *const growths[] = {"cube-root", "linear", NULL};
+static const char *const caps[] = {"ba95", "count", "none", NULL};
+static const char *const crack_radii[] = {"volume", "support", NULL};
+static const char *const link_h[] = {"initial", "current", NULL};
+static const char *const precisions[] = {"double", "float", NULL};
+static const char *const curves[] = SPH_POROSITY_CURVES;
+static const char *const flaw_lists[] = {"exact", "compact", NULL};
+
+#define ROW(path_, kind_, unit_, ...)                                                                                  \
+  { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct sph_inputs, path_), __VA_ARGS__ }
+#define REAL(path_, unit_, default_, low, high, ...)                                                                   \
+  ROW(path_, FIELD_REAL, unit_, .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
+#define COUNT(path_, default_, low, high, ...)                                                                         \
+  ROW(path_, FIELD_INTEGER, "1", .number = default_, .minimum = low, .maximum = high, __VA_ARGS__)
+#define SWITCH(path_, default_, ...) ROW(path_, FIELD_BOOLEAN, NULL, .number = default_, .maximum = 1, __VA_ARGS__)
+#define CHOICE(path_, choices_, ...) ROW(path_, FIELD_CHOICE, NULL, .choices = choices_, __VA_ARGS__)
+
+/* ---- rows of a body, written once: B is `target` or `projectile`, `exists` the condition under which it is there ----
+ */
+
+#define MATERIAL_ROW(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                      \
+  {.path = #B ".material." #member_,                                                                                   \
+   .kind = FIELD_REAL,                                                                                                 \
+   .unit = unit_,                                                                                                      \
+   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
+   .minimum = low_,                                                                                                    \
+   .maximum = high_,                                                                                                   \
+   .number = NAN,                                                                                                      \
+   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
+   .when = WHEN_##need_(B, exists_ALWAYS),                                                                             \
+   .doc = doc_ " The named material's value unless given.",                                                            \
+   .source = source_},
+#define WHEN_ALWAYS(B, exists)    exists
+#define WHEN_STRENGTH(B, exists)  #B ".strength=true"
+#define WHEN_FRACTURE(B, exists)  #B ".fracture=auto|on"
+#define WHEN_POROSITY(B, exists)  #B ".material.porosity.curve=quadratic|two-power"
+#define WHEN_TWO_POWER(B, exists) #B ".material.porosity.curve=two-power"
+#define MATERIAL_PORES(B, exists)                                                                                      \
+  {.path = #B ".material.porosity.curve",                                                                              \
+   .kind = FIELD_CHOICE,                                                                                               \
+   .offset = offsetof(struct sph_inputs, B.material.porosity.curve),                                                   \
+   .choices = curves,                                                                                                  \
+   .flags = FIELD_DERIVED,                                                                                             \
+   .choice_docs = SPH_POROSITY_CURVE_DOCS,                                                                             \
+   .when = exists,                                                                                                     \
+   .doc = SPH_POROSITY_CURVE_DOC " The named material's unless given.",                                                \
+   .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
+#define TARGET_MATERIAL(...)     MATERIAL_ROW(target, NULL, __VA_ARGS__)
+#define PROJECTILE_MATERIAL(...) MATERIAL_ROW(projectile, "kind=impact", __VA_ARGS__)
+
+#define BODY_SIZES(B, shape_)                                                                                          \
+  REAL(B.radius, "m", shape_, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=sphere|cylinder",                      \
+       .doc = "Radius of the sphere or cylinder."),                                                                    \
+      REAL(B.inner_radius, "m", 0, 0, 1e9, .when = #B ".shape=cylinder",                                               \
+           .doc = "Radius of a hole along the cylinder's axis: a ring. 0: a full cylinder."),                          \
+      REAL(B.length, "m", 0.04, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=cylinder",                           \
+           .doc =                                                                                                      \
+               "Length of the cylinder along its axis: z for a target, the flight for a projectile. In a collision, "  \
+               "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),      \
+      REAL(B.width, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                  \
+           .doc = "Side of the box along x."),                                                                         \
+      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                  \
+           .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "   \
+                  "whole periods "                                                                                     \
+                  "of the lattice are made of it."),                                                                   \
+      REAL(B.height, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                 \
+           .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the " \
+                  "least one.")
+
+#define BODY_MATTER(B, exists, material_)                                                                              \
+  CHOICE(B.lattice, lattices, .when = exists,                                                                          \
+         .choice_docs =                                                                                                \
+             "hexagonal close packing\nsimple cubic\nrandom points pushed apart until the density is uniform",         \
+         .doc = "How particles stand at the start."),                                                                  \
+      SWITCH(B.turned, 0, .when = exists,                                                                              \
+             .doc = "Orientation and offset of the lattice are drawn from the seed, instead of along the axes."),      \
+      SWITCH(B.strength, 1, .when = exists,                                                                            \
+             .doc = "The body resists shear (Hooke, von Mises). false: a fluid; stress and strength are not stored."), \
+      CHOICE(B.fracture, fractures, .when = #B ".strength=true",                                                       \
+             .choice_docs =                                                                                            \
+                 "if the material has Weibull's m and k\nyes; m and k are needed\nno: only tension_limit and "         \
+                 "yield limit stress",                                                                                 \
+             .doc = "The body has explicit flaws, from which cracks grow.", .source = "BA95 section 3"),               \
+  {                                                                                                                    \
+    .path = #B ".material.name", .kind = FIELD_CHOICE, .offset = offsetof(struct sph_inputs, B.material_name),         \
+    .choices = builtin_material_names, .number = 0, .flags = FIELD_DERIVED, .when = exists,                            \
+    .doc = "Material whose values become the defaults of this body's; `clast materials` lists them, and " material_    \
+           " is taken unless one is named. custom: the scene gives all values."                                        \
+  }
+
+static const struct field rows[] = {
+    CHOICE(kind, kinds,
+           .choice_docs = "a projectile flies into a target\n"
+                          "a cylinder is pulled apart by its ends at a constant rate\n"
+                          "a free cylinder rings along its axis in its first mode\n"
+                          "two equal cylinders or rings collide, as slabs that repeat along their axes\n"
+                          "a piston runs into a plate without strength, a bar that repeats sideways; its shock is "
+                          "compared with the exact one",
+           .doc = "The protocol: what is done to the body."),
+
+    CHOICE(target.shape, shapes,
+           .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
+                  "the others are done to cylinders."),
+    BODY_SIZES(target, 0.03),
+    REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact",
+         .doc = "The target turns about z before it is hit."),
+    CHOICE(sides.far, far_sides, .when = "target.shape=box",
+           .choice_docs =
+               "free surfaces: waves return\na layer inside all sides but the upper one damps motion: it stands for a "
+               "half-space",
+           .doc = "The sides of a box that are not hit."),
+    REAL(sides.depth, "m", NAN, 1e-9, 1e9, .flags = FIELD_DERIVED, .when = "sides.far=damped",
+         .doc = "Thickness of the damping layer; a tenth of the shortest side unless given. A wave that goes through "
+                "it and "
+                "back keeps about 3 %."),
+    BODY_MATTER(target, NULL, "basalt"),
+    SPH_MATERIAL_ROWS(TARGET_MATERIAL) MATERIAL_PORES(target, NULL) SPH_POROSITY_ROWS(TARGET_MATERIAL)
+
+        CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
+               .choice_docs =
+                   "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
+               .doc = "What decides the projectile's size."),
+    REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .flags = FIELD_LOG, .when = "impact.projectile=mass",
+         .doc = "Mass of the projectile."),
+    REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .flags = FIELD_LOG,
+         .when = "impact.projectile=specific-energy",
+         .doc = "Q: kinetic energy of the projectile over the target's mass; its mass follows from that and from the "
+                "speed."),
+    REAL(impact.speed, "m/s", 3200, 0, 1e6, .when = "kind=impact",
+         .doc = "Speed of the projectile; the target is at rest.", .source = "BA95 section 5.2"),
+    REAL(impact.angle, "rad", 0, 0, 1.5707963267948966, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=impact",
+         .doc =
+             "Angle between the flight and the inward normal where the projectile hits (the target's upper side, z).",
+         .source = "BA95 section 5.2"),
+    REAL(impact.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=impact",
+         .doc = "Distance of the projectile's surface from the target's at the start, along the normal; one particle "
+                "spacing of the "
+                "target there unless given."),
+
+    CHOICE(projectile.shape, shapes, .when = "impact.projectile=size", .doc = "The projectile's outline."),
+    BODY_SIZES(projectile, 0.0035),
+    BODY_MATTER(projectile, "kind=impact", "nylon"),
+    SPH_MATERIAL_ROWS(PROJECTILE_MATERIAL) MATERIAL_PORES(projectile, "kind=impact")
+        SPH_POROSITY_ROWS(PROJECTILE_MATERIAL)
+
+            REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_LOG | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+                 .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
+                 .source = "BA95 section 5.1"),
+    REAL(stretch.grip, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+         .doc = "Length of each end that is held and pulled; a twentieth of the rod unless given, three spacings at "
+                "least."),
+    REAL(stretch.flaw_free, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=stretch",
+         .doc = "Length of each end, grip included, that has no flaws; a tenth of the rod unless given, one support "
+                "beyond the grip "
+                "at least."),
+    REAL(vibration.speed, "m/s", 1, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=vibration",
+         .doc = "Speed of the ends at the start."),
+    REAL(collision.speed, "m/s", 50, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=collision",
+         .doc = "Speed of approach; each body has half of it.", .source = "Gray, Monaghan & Swift 2001"),
+    REAL(collision.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=collision",
+         .doc = "Distance of the surfaces at the start; two particle spacings unless given."),
+    REAL(piston.speed, "m/s", 458, 0, 1e5, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=piston",
+         .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
+         .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
+
+    CHOICE(fracture.draw, draws, .when = "target.fracture=auto|on",
+           .choice_docs = "eps_j = (j/kV)^(1/m): a seed only moves the flaws about\n"
+                          "the body's flaw strengths are a draw themselves",
+           .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
+    CHOICE(fracture.growth, growths, .when = "target.fracture=auto|on",
+           .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
+           .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
+    CHOICE(fracture.cap, caps, .when = "target.fracture=auto|on",
+           .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+           .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
+    CHOICE(fracture.crack_radius, crack_radii, .when = "target.fracture=auto|on",
+           .choice_docs = "radius of the sphere of the particle's volume\n"
+                          "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+           .doc = "R_s: length that a crack has to grow until its particle is broken.",
+           .source = "BA95 eq. 15; the paper gives no value"),
+
+    REAL(viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
+         .source = "Monaghan 1992"),
+    REAL(viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
+         .source = "Monaghan 1992"),
+    REAL(method.artificial_stress, "1", 0, 0, 1,
+         .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
+         .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
+    SWITCH(method.gradient_correction, 0,
+           .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
+                  "strain and keeps its "
+                  "angular momentum, and its free sides are as stiff as its inside. For ringing and spinning bodies; "
+                  "costs a quarter "
+                  "more time.",
+           .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
+    SWITCH(
+        method.volume_weights, 0,
+        .doc =
+            "m_j/rho_j instead of m_j/rho_i in the velocity gradient, for bodies of very different density that touch.",
+        .source = "BA95 eq. 18 for off"),
+
+    REAL(fragments.static_strength, "Pa", NAN, 0, 1e15,
+         .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_LOG,
+         .doc = "At the end particles under more tension than this count as broken. Unless given: Young's modulus "
+                "times the mean "
+                "strength of the weakest flaw of the whole target. off: no such pass.",
+         .source = "BA95 section 4.4"),
+    REAL(fragments.damage, "1", 1, 0, 1, .flags = FIELD_ABOVE_MINIMUM,
+         .doc = "Particles with this damage or more do not join fragments.",
+         .source = "BA95 section 4.4 (fully damaged)"),
+    REAL(
+        fragments.link_length, "1", 1.2, 0.1, 4,
+        .doc =
+            "Undamaged particles nearer than this many smoothing lengths belong together. 1 is as printed, but nearest "
+            "neighbours of the default lattice stand 0.99 h apart and a strain of 1 % would part them; from 1.1 to 1.3 "
+            "h is "
+            "the same: all nearest neighbours and none farther.",
+        .source = "BA95 section 4.4 (1 h)"),
+    CHOICE(fragments.link_h, link_h,
+           .choice_docs = "of the body at rest\nas it is at the end, where debris has expanded",
+           .doc = "The smoothing length meant there."),
+    SWITCH(
+        fragments.veneer, 1,
+        .doc =
+            "The first layer of damaged neighbours belongs to a fragment. Results tell the largest fragment with and "
+            "without it.",
+        .source = "BA95 section 4.4"),
+
+    REAL(crater.ejection_speed, "m/s", 10, 0, 1e6, .when = "kind=impact",
+         .doc = "At the end what moves out of the target (along z, towards where the projectile came from) faster than "
+                "this counts as "
+                "ejecta, all else as retained: there is no gravity to tell. 0: whatever moves outwards.",
+         .source = "Jutzi & Benz, section 3.2, for 0"),
+    REAL(
+        stop.end_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
+        .doc =
+            "Hard end of the run; unless given, ten times what a longitudinal wave needs through the target, and the "
+            "time "
+            "until bodies meet. Of a plate: when its first front, by the jump conditions, has gone 0.94 of its width."),
+    REAL(stop.quiet_time, "s", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM,
+         .when = "target.fracture=auto|on",
+         .doc = "Fracture has ceased, and the run is complete, when the mean damage of the body has grown by less than "
+                "stop.quiet_growth for this long, counted from the first damage; unless given, the time of two such "
+                "waves."),
+    REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
+         .doc = "See stop.quiet_time: a share of the body's volume."),
+
+    COUNT(fidelity.particles, 10000, 1, 2e9, .flags = FIELD_LOG, .when = "kind=impact|stretch|vibration|collision",
+          .doc = "Particles of the target (of a collision: of each body), within what its lattice allows."),
+    COUNT(fidelity.points, 400, 1, 1e6, .flags = FIELD_LOG, .when = "kind=piston",
+          .doc = "Width of the plate over the particle spacing. Sideways it is as thick as its lattice needs."),
+    REAL(fidelity.projectile_spacing, "1", 0.5, 1e-3, 1e3, .when = "kind=impact",
+         .doc = "Particle spacing of the projectile over the target's where it hits."),
+    SWITCH(fidelity.graded, 0, .when = "kind=impact", .doc = "Particles are finer near the point of impact."),
+    REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED | FIELD_LOG,
+         .when = "fidelity.graded=true", .doc = "Spacing there; half of the uniform one unless given."),
+    REAL(fidelity.fine_radius, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
+         .doc = "Distance up to which it holds; four fine spacings unless given."),
+    REAL(fidelity.smoothing, "1", SPH_BODIES_H, 0.7, 3,
+         .doc = "Smoothing length h over the particle spacing (V/n)^(1/3). The default has 56 neighbours within 2h on "
+                "lattices, and a "
+                "kernel sum within 1 % of what it stands for; others err by some per cent at any resolution."),
+    REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Time step over h/(c + viscous)."),
+    REAL(fidelity.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
+         .doc = "Largest change of D^(1/3) in a time step."),
+    REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material.porosity.curve=quadratic|two-power",
+         .doc = "Largest change of a porous particle's distention in a time step.",
+         .source = "Jutzi, Benz & Michel 2008"),
+    REAL(fidelity.skin, "1", 0.05, 0, 1,
+         .doc = "Least slack of the neighbour lists over h (fast particles have more): longer lists last for more "
+                "steps. It "
+                "changes the order of sums, not the physics."),
+    CHOICE(fidelity.precision, precisions,
+           .choice_docs = "double throughout\nstored relative positions and pair sums are float",
+           .doc = "Arithmetic of the pair loop."),
+    CHOICE(fidelity.flaws, flaw_lists, .when = "target.fracture=auto|on",
+           .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
+           .doc = "How a particle's flaws are stored."),
+    COUNT(fidelity.threads, 1, 1, 1024,
+          .doc = "Threads of one run, for a big one on an idle machine. The bits do not depend on it."),
+    REAL(fidelity.energy_bound, "1", 0.05, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+         .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
+                "off: it "
+                "only reports the drift."),
+};
+
+const struct field_table sph_inputs = FIELD_TABLE(
+    rows, struct sph_inputs, "sph scene",
+    "Solids that crack: smoothed particle hydrodynamics with explicit Weibull flaws (Benz & Asphaug 1994, 1995).");

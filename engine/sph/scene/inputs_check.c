@@ -1,0 +1,248 @@
+/* Conditions across the inputs: what cannot be run is refused here, with a remedy. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/body/bodies.h"
+#include "engine/sph/material/material_rows.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/scene/derived.h"
+#include "engine/sph/scene/inputs.h"
+
+#define REFUSE(...) return status_fail(error, STATUS_CONTENT, __VA_ARGS__)
+
+/* ---- materials ---- */
+
+enum need { ALWAYS, STRENGTH, FRACTURE, POROSITY, TWO_POWER };
+static const struct {
+  const char *name;
+  size_t offset;
+  enum need need;
+  bool may_be_off;
+} values[] = {
+#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
+  {#member_, offsetof(struct sph_material, member_), need_, ((flags_)&FIELD_MAY_BE_OFF) != 0},
+    SPH_MATERIAL_ROWS(VALUE) SPH_POROSITY_ROWS(VALUE)};
+
+static bool needed(size_t k, const struct sph_body_inputs *body) {
+  if (values[k].need == FRACTURE)
+    return body->strength && body->fracture == SPH_FRACTURE_ON;
+  if (values[k].need == STRENGTH)
+    return body->strength && strcmp(values[k].name, "shear_modulus") == 0;
+  if (values[k].need >= POROSITY && body->material.porosity.curve == SPH_CRUSH_NONE)
+    return false;
+  if (values[k].need == TWO_POWER && body->material.porosity.curve != SPH_CRUSH_TWO_POWER)
+    return false;
+  return !values[k].may_be_off;
+}
+
+/* Distention and fraction agree (they do unless both were given), and the values make a crush curve. */
+static status check_porosity(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const struct sph_palpha *p = &body->material.porosity;
+  struct sph_palpha_law law;
+  struct error why = {0};
+  if (p->curve == SPH_CRUSH_NONE)
+    return STATUS_OK;
+  if (!(fabs(p->fraction - (1 - 1 / p->distention)) < 1e-9))
+    REFUSE("%s.material.porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two",
+           body_name, p->distention, 1 - 1 / p->distention, p->fraction);
+  if (p->distention > 1 && sph_palpha_prepare(p, &body->material, &law, &why))
+    REFUSE("%s.material.%.3000s", body_name, why.message);
+  return STATUS_OK;
+}
+
+static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const char *name = builtin_material_names[body->material_name];
+  const struct sph_material *m = &body->material;
+  for (size_t k = 0; k < sizeof values / sizeof values[0]; k++) {
+    double value;
+    memcpy(&value, (const char *)m + values[k].offset, sizeof value);
+    if (!isnan(value) || !needed(k, body))
+      continue;
+    const char *remedy = "give it, or name another material";
+    char text[200];
+    if (values[k].need != ALWAYS) {
+      snprintf(text, sizeof text, "give it, or set %s.%s", body_name,
+               values[k].need == STRENGTH   ? "strength: false"
+               : values[k].need == FRACTURE ? "fracture: off"
+                                            : "material.porosity.curve: none");
+      remedy = text;
+    }
+    REFUSE("%s.material.%s is needed%s, and the material '%s' has none: %s", body_name, values[k].name,
+           values[k].need == FRACTURE   ? " because fracture is on"
+           : values[k].need == STRENGTH ? " because the body has strength"
+           : values[k].need >= POROSITY ? " by the crush curve"
+                                        : "",
+           name, remedy);
+  }
+  if (!(m->tillotson.E_cv > m->tillotson.E_iv))
+    REFUSE(
+        "%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: vaporisation begins before it is "
+        "complete",
+        body_name, m->tillotson.E_cv, m->tillotson.E_iv);
+  bool m_off = field_is_off(m->weibull.m), k_off = field_is_off(m->weibull.k);
+  if (body->strength && body->fracture == SPH_FRACTURE_AUTO && m_off != k_off)
+    REFUSE(
+        "%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
+        body_name, m_off ? "k" : "m", m_off ? "m" : "k");
+  return check_porosity(body_name, body, error);
+}
+
+/* ---- sizes ---- */
+
+static status check_shape(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape,
+                          struct error *error) {
+  if (body->shape == SPH_SHAPE_CYLINDER && shape->kind == SPH_SHAPE_CYLINDER && body->inner_radius >= body->radius)
+    REFUSE("%s.inner_radius is %.4g m, the radius %.4g m: a ring needs a smaller hole", name, body->inner_radius,
+           body->radius);
+  if (!(sph_shape_volume(shape) > 0) || !isfinite(sph_shape_volume(shape)))
+    REFUSE("%s has a volume of %.4g m^3: give other sizes", name, sph_shape_volume(shape));
+  return STATUS_OK;
+}
+
+static status check_cylinder(const struct sph_inputs *in, const char *protocol, struct error *error) {
+  if (in->target.shape != SPH_SHAPE_CYLINDER)
+    REFUSE("%s is done to a cylinder: set target.shape: cylinder", protocol);
+  return STATUS_OK;
+}
+
+static status check_impact(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape target = sph_derived_target(in), projectile;
+  if (in->impact.projectile == SPH_BY_ENERGY && !(in->impact.speed > 0))
+    REFUSE("impact.specific_energy at impact.speed 0 would need a projectile without end: give a speed, or "
+           "impact.projectile: "
+           "size");
+  projectile = sph_derived_projectile(in);
+  status code = in->impact.projectile == SPH_BY_SIZE ? check_shape("projectile", &in->projectile, &projectile, error)
+                                                     : STATUS_OK;
+  if (code)
+    return code;
+  if (!(projectile.kind == SPH_SHAPE_SPHERE ? projectile.radius > 1e-12 && projectile.radius < 1e9 : true))
+    REFUSE("a projectile of radius %.4g m (from %s) is out of range", projectile.radius,
+           in->impact.projectile == SPH_BY_MASS ? "impact.mass" : "impact.specific_energy");
+  if (target.kind == SPH_SHAPE_CYLINDER && target.inner_radius > 0)
+    REFUSE("a projectile comes down along the axis of a ring and misses it: give target.inner_radius: 0");
+  if (in->impact.speed > 0) {
+    double arrival = in->impact.gap / (in->impact.speed * cos(in->impact.angle));
+    if (arrival >= in->stop.end_time)
+      REFUSE("the projectile needs %.4g s over impact.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or "
+             "lower the gap",
+             arrival, in->impact.gap, in->stop.end_time);
+    struct sph_shape shape[2];
+    double flight[3];
+    if ((code = sph_derived_aim(in, shape, flight, error)))
+      return code;
+    if (sph_shape_approach(&shape[0], &shape[1], flight, NULL) > 0)
+      REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
+             in->impact.angle, in->impact.gap);
+  }
+  double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
+  if (pieces < 1 - 1e-9) /* one is enough, within rounding of its volume */
+    REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise "
+           "fidelity.particles, or "
+           "take a larger projectile",
+           pieces, in->fidelity.projectile_spacing);
+  if (in->fidelity.graded && in->fidelity.fine_spacing > sph_derived_spacing(in))
+    REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, or set "
+           "fidelity.graded: false",
+           in->fidelity.fine_spacing, sph_derived_spacing(in));
+  return STATUS_OK;
+}
+
+static status check_piston(const struct sph_inputs *in, struct error *error) {
+  struct sph_plane_shock exact;
+  if (in->target.shape != SPH_SHAPE_BOX)
+    REFUSE("a piston runs into a plate: set target.shape: box");
+  if (in->target.strength)
+    REFUSE("a piston's shock is compared with that of matter without strength: set target.strength: false");
+  if (in->sides.far == 1)
+    REFUSE("a plate repeats sideways, and its far side is never reached: set sides.far: free");
+  if (in->target.turned)
+    REFUSE("a turned lattice cannot repeat sideways: set target.turned: false");
+  if (in->fidelity.points < 20)
+    REFUSE("fidelity.points is %lld: a shock is spread over about ten particles, so give 20 or more",
+           (long long)in->fidelity.points);
+  return sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, error);
+}
+
+static status check_protocol(const struct sph_inputs *in, struct error *error) {
+  status code;
+  double spacing = sph_derived_spacing(in);
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT: return check_impact(in, error);
+  case SPH_STRETCH:
+    if ((code = check_cylinder(in, "stretch", error)))
+      return code;
+    if (2 * in->stretch.grip >= 0.9 * in->target.length)
+      REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more "
+             "fidelity.particles or a longer "
+             "target.length",
+             in->stretch.grip, in->target.length);
+    if (2 * in->stretch.flaw_free >= 0.95 * in->target.length)
+      REFUSE("ends of %.4g m without flaws leave too little of a rod of %.4g m: give a shorter stretch.flaw_free",
+             in->stretch.flaw_free, in->target.length);
+    return STATUS_OK;
+  case SPH_VIBRATION: return check_cylinder(in, "vibration", error);
+  case SPH_COLLISION:
+    if ((code = check_cylinder(in, "collision", error)))
+      return code;
+    if (in->target.turned)
+      REFUSE("a turned lattice cannot repeat along the axis: set target.turned: false");
+    if (in->collision.gap / in->collision.speed >= in->stop.end_time)
+      REFUSE("the bodies need %.4g s over collision.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or "
+             "lower the gap",
+             in->collision.gap / in->collision.speed, in->collision.gap, in->stop.end_time);
+    if (in->collision.gap < spacing / 2)
+      REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap",
+             in->collision.gap, spacing);
+    return STATUS_OK;
+  case SPH_PISTON: return check_piston(in, error);
+  }
+  return STATUS_OK;
+}
+
+const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT: return "lower fidelity.particles, or raise fidelity.projectile_spacing";
+  case SPH_COLLISION: return "lower fidelity.particles or target.length";
+  case SPH_PISTON: return "lower fidelity.points, or target.depth and target.height";
+  case SPH_STRETCH:
+  case SPH_VIBRATION: break;
+  }
+  return "lower fidelity.particles";
+}
+
+status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape target = sph_derived_target(in);
+  status code = check_material("target", &in->target, error);
+  if (!code)
+    code = check_shape("target", &in->target, &target, error);
+  if (!code && sph_derived_has_projectile(in))
+    code = check_material("projectile", &in->projectile, error);
+  if (!code)
+    code = check_protocol(in, error);
+  if (code)
+    return code;
+  bool cracks = sph_derived_cracks(&in->target) ||
+                (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
+  if (cracks && in->method.artificial_stress > 0)
+    REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
+  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
+      2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
+    REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side",
+           in->sides.depth);
+  double particles = sph_derived_particles(in);
+  if (!(particles <= 2e9))
+    REFUSE("%.3g particles are too many (at most 2e9): %s", particles, sph_inputs_check_fewer(in));
+  if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
+    REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
+  double step = in->fidelity.cfl * sph_derived_smallest_spacing(in) / sph_derived_wave_speed(&in->target);
+  double steps = in->stop.end_time / step;
+  if (!(steps <= 1e10))
+    REFUSE("the run could take %.3g time steps (at most 1e10): end it earlier (stop.end_time %.4g s) or take larger "
+           "particles",
+           steps, in->stop.end_time);
+  return STATUS_OK;
+}

@@ -1,0 +1,102 @@
+/* Inputs that were not given and follow from others. */
+#include <math.h>
+#include <string.h>
+
+#include "engine/builtin.h"
+#include "engine/sph/material/materials.h"
+#include "engine/sph/material/plane_shock.h"
+#include "engine/sph/scene/derived.h"
+#include "engine/sph/scene/inputs.h"
+
+#define FREE(member) (!given[row_at(offsetof(struct sph_inputs, member))])
+
+static size_t row_at(size_t offset) {
+  size_t row = 0;
+  while (sph_inputs.rows[row].offset != offset)
+    row++;
+  return row;
+}
+
+/* The values of the named material, but for those that the scene gives. */
+static void complete_material(struct sph_inputs *in, struct sph_body_inputs *body, const char *fallback,
+                              const bool *given) {
+  struct sph_material material;
+  size_t name = (size_t)((char *)&body->material_name - (char *)in),
+         first = (size_t)((char *)&body->material - (char *)in);
+  if (!given[row_at(name)])
+    for (body->material_name = 0; strcmp(builtin_material_names[body->material_name], fallback) != 0;)
+      body->material_name++;
+  if ((size_t)body->material_name >= sph_materials_count() ||
+      sph_materials_load(builtin_material_names[body->material_name], &material, NULL))
+    field_defaults(&sph_materials_table, &material); /* custom: none */
+  for (size_t i = 0; i < sph_inputs.count; i++) {
+    size_t offset = sph_inputs.rows[i].offset;
+    if (!given[i] && offset >= first && offset < first + sizeof material)
+      memcpy((char *)in + offset, (char *)&material + (offset - first),
+             sph_inputs.rows[i].kind == FIELD_CHOICE ? sizeof(int) : sizeof(double));
+  }
+  /* porosity by whichever of its two names was given; the material's own distention otherwise */
+  struct sph_palpha *pores = &body->material.porosity;
+  size_t distention = (size_t)((char *)&pores->distention - (char *)in),
+         fraction = (size_t)((char *)&pores->fraction - (char *)in);
+  if (given[row_at(fraction)] && !given[row_at(distention)])
+    pores->distention = 1 / (1 - pores->fraction);
+  else if (!given[row_at(fraction)])
+    pores->fraction = 1 - 1 / pores->distention;
+}
+
+/* Young's modulus times the mean strength of the weakest of kV flaws: Gamma(1 + 1/m) (kV)^(-1/m). */
+static double static_strength(const struct sph_inputs *in) {
+  if (!sph_derived_cracks(&in->target))
+    return NAN;
+  struct sph_shape shape = sph_derived_target(in);
+  double m = in->target.material.weibull.m;
+  double log_strain = lgamma(1 + 1 / m) -
+                      (log(in->target.material.weibull.k) +
+                       log(sph_shape_volume(&shape) * sph_derived_density(&in->target) / in->target.material.density)) /
+                          m; /* solid volume */
+  double strength = sph_derived_young_modulus(&in->target.material) * exp(log_strain);
+  return strength > 0 && strength <= 1e15 ? strength : (double)NAN;
+}
+
+/* Until the first front of a plate has gone 0.94 of the way, so that nothing has come back; NaN where values are
+ * missing. */
+static double plate_time(const struct sph_inputs *in) {
+  struct sph_plane_shock exact;
+  if (sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, NULL))
+    return NAN;
+  return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
+}
+
+void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
+  complete_material(in, &in->target, "basalt", given);
+  complete_material(in, &in->projectile, "nylon", given);
+  double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
+  if (FREE(sides.depth))
+    in->sides.depth = 0.1 * fmin(in->target.width, fmin(in->target.depth, in->target.height));
+  if (FREE(fidelity.fine_spacing))
+    in->fidelity.fine_spacing = 0.5 * spacing;
+  if (FREE(fidelity.fine_radius))
+    in->fidelity.fine_radius = 4 * in->fidelity.fine_spacing;
+  if (FREE(impact.gap))
+    in->impact.gap = sph_derived_fine_spacing(in);
+  if (FREE(collision.gap))
+    in->collision.gap = 2 * spacing;
+  if (FREE(stretch.grip))
+    in->stretch.grip = fmax(in->target.length / 20, 3 * spacing);
+  if (FREE(stretch.flaw_free))
+    in->stretch.flaw_free = fmax(in->target.length / 10, in->stretch.grip + 2.5 * spacing);
+  if (FREE(fragments.static_strength))
+    in->fragments.static_strength = static_strength(in);
+  if (FREE(stop.quiet_time))
+    in->stop.quiet_time = 2 * crossing;
+  if (FREE(stop.end_time)) {
+    in->stop.end_time = 10 * crossing;
+    if (in->kind == SPH_IMPACT && in->impact.speed > 0)
+      in->stop.end_time += in->impact.gap / (in->impact.speed * cos(in->impact.angle));
+    else if (in->kind == SPH_COLLISION)
+      in->stop.end_time += in->collision.gap / in->collision.speed;
+    else if (in->kind == SPH_PISTON)
+      in->stop.end_time = plate_time(in);
+  }
+}

@@ -1,0 +1,240 @@
+/* Bodies, where they stand and how they move at the start. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/sph/body/flaw_places.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { Z = 2 };
+
+/* A collision has two of the target. */
+static const struct sph_body_inputs *inputs_of(const struct sph_run *run, int body) {
+  return body == 1 && sph_derived_has_projectile(&run->inputs) ? &run->inputs.projectile : &run->inputs.target;
+}
+
+static struct sph_body body_of(const struct sph_run *run, const struct sph_body_inputs *b,
+                               const struct sph_shape *shape, uint64_t number, double spacing) {
+  const struct sph_inputs *in = &run->inputs;
+  return (struct sph_body){
+      .shape = *shape,
+      .lattice = {.kind = b->lattice,
+                  .particles = NAN,
+                  .spacing = spacing,
+                  .turned = b->turned,
+                  .seed = run->seed,
+                  .body = number},
+      .density = sph_derived_density(b),
+      .h_over_spacing = in->fidelity.smoothing,
+  };
+}
+
+/* Two slabs that repeat along their axes. */
+static void place_slabs(struct sph_run *run) {
+  const struct sph_inputs *in = &run->inputs;
+  double length = sph_derived_thickness(in, Z, in->target.length);
+  for (int b = 0; b < 2; b++) {
+    run->shape[b] = sph_derived_target(in);
+    run->shape[b].length = length;
+    run->shape[b].centre[0] = (b ? 1 : -1) * (in->target.radius + in->collision.gap / 2);
+    run->shape[b].centre[Z] = length / 2;
+  }
+  run->periodic[Z] = length;
+}
+
+/* The plate from x = 0 on, the piston before it; what repeats begins at 0. */
+static void place_plate(struct sph_run *run) {
+  run->shape[0] = sph_derived_target(&run->inputs);
+  run->shape[1] = sph_derived_piston(&run->inputs);
+  run->shape[0].centre[0] = run->shape[0].side[0] / 2;
+  run->shape[1].centre[0] = -run->shape[1].side[0] / 2;
+  for (int k = 1; k < 3; k++) {
+    run->periodic[k] = run->shape[0].side[k];
+    run->shape[0].centre[k] = run->shape[1].centre[k] = run->periodic[k] / 2;
+  }
+}
+
+static int arrays_of(const struct sph_inputs *in) {
+  int arrays = 0;
+  const struct sph_body_inputs *bodies[] = {&in->target, &in->projectile};
+  for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
+    if (bodies[b]->strength)
+      arrays |= SPH_WITH_STRESS;
+    if (sph_derived_cracks(bodies[b]) ||
+        (bodies[b]->strength && sph_derived_porous(bodies[b]))) /* pores that close harm, too */
+      arrays |= SPH_WITH_DAMAGE;
+    if (sph_derived_porous(bodies[b]))
+      arrays |= SPH_WITH_DISTENTION;
+  }
+  if (in->kind == SPH_STRETCH || in->kind == SPH_PISTON)
+    arrays |= SPH_WITH_HELD;
+  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far)
+    arrays |= SPH_WITH_DAMPING;
+  return arrays;
+}
+
+static status make_bodies(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  double spacing = sph_derived_spacing(in);
+  struct sph_body body[SPH_RUN_BODIES];
+  body[0] = body_of(run, &in->target, &run->shape[0], 0, spacing);
+  if (in->kind == SPH_COLLISION || in->kind == SPH_PISTON) {
+    body[1] = body_of(run, &in->target, &run->shape[1], 1, spacing);
+    for (int k = 0; k < 3; k++)
+      body[0].lattice.periodic[k] = body[1].lattice.periodic[k] = !isnan(run->periodic[k]);
+  } else {
+    body[0].lattice.particles = (double)in->fidelity.particles;
+    if (sph_derived_has_projectile(in)) {
+      body[1] = body_of(run, &in->projectile, &run->shape[1], 1,
+                        sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing);
+      if (in->fidelity.graded) {
+        struct sph_grading *grading = &body[0].lattice.grading;
+        *grading = (struct sph_grading){.fine = in->fidelity.fine_spacing,
+                                        .radius = in->fidelity.fine_radius,
+                                        .growth = NAN};
+        double normal[3];
+        sph_shape_surface(&run->shape[0], run->impact_direction, grading->point, normal);
+      }
+    }
+  }
+  return sph_bodies_make(body, (size_t)run->body_count, arrays_of(in), &run->start, run->range, error);
+}
+
+/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends; and the
+ * sides' share of it, by Poisson's ratio. */
+static void ring(struct sph_run *run) {
+  struct sph_particles *p = run->start;
+  double speed = run->inputs.vibration.speed, k = pi / run->inputs.target.length;
+  double ratio = run->inputs.target.strength ? sph_derived_poisson_ratio(&run->inputs.target.material) : 0;
+  for (size_t i = 0; i < p->n; i++) {
+    double aside = -ratio * k * speed * cos(k * p->z[i]);
+    p->vz[i] += speed * sin(k * p->z[i]);
+    p->vx[i] += aside * p->x[i];
+    p->vy[i] += aside * p->y[i];
+  }
+}
+
+/* A grip at each end, or nothing pulls. */
+static status grip(struct sph_run *run, struct error *error) {
+  const double length = run->inputs.stretch.grip;
+  bool below = false, above = false;
+  sph_bodies_hold(run->start, run->range[0],
+                  &(struct sph_middle){.axis = {0, 0, 1}, .half = run->inputs.target.length / 2 - length},
+                  SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  for (size_t i = 0; i < run->range[0].n; i++)
+    if (run->start->held[i])
+      *(run->start->z[i] < 0 ? &below : &above) = true;
+  return below && above ? STATUS_OK
+                        : status_fail(error, STATUS_CONTENT,
+                                      "a grip of %.4g m holds no particle (they are %.4g m apart): raise "
+                                      "stretch.grip or fidelity.particles",
+                                      length, run->range[0].spacing);
+}
+
+static status set_in_motion(struct sph_run *run, const double flight[3], struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  const double origin[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, spin[3] = {0, 0, in->target.spin};
+  double v[3] = {0, 0, 0};
+  switch ((enum sph_kind)in->kind) {
+  case SPH_IMPACT:
+    for (int k = 0; k < 3; k++)
+      v[k] = in->impact.speed * flight[k];
+    sph_bodies_move(run->start, run->range[1], v);
+    if (in->target.spin != 0)
+      sph_bodies_spin(run->start, run->range[0], origin, spin);
+    break;
+  case SPH_STRETCH:
+    sph_bodies_stretch(run->start, run->range[0], origin, axis, in->stretch.rate,
+                       in->target.strength ? sph_derived_poisson_ratio(&in->target.material) : 0);
+    return grip(run, error);
+  case SPH_VIBRATION: ring(run); break;
+  case SPH_COLLISION:
+    for (int b = 0; b < 2; b++) {
+      v[0] = (b ? -0.5 : 0.5) * in->collision.speed;
+      sph_bodies_move(run->start, run->range[b], v);
+    }
+    break;
+  case SPH_PISTON:
+    v[0] = in->piston.speed;
+    sph_bodies_move(run->start, run->range[1], v);
+    for (size_t i = run->range[1].first; i < run->start->n; i++)
+      run->start->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
+    break;
+  }
+  return STATUS_OK;
+}
+
+static status make_flaws(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  struct sph_middle middle = {.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.flaw_free};
+  status code = STATUS_OK;
+  for (int b = 0; b < run->body_count && !code; b++) {
+    const struct sph_body_inputs *body = inputs_of(run, b);
+    if (!sph_derived_cracks(body))
+      continue;
+    struct sph_flaw_law law = {.weibull = body->material.weibull,
+                               .draw = in->fracture.draw,
+                               .seed = run->seed,
+                               .body = (uint64_t)b};
+    code = sph_flaw_places_make(&law, &run->shape[b], run->start, run->range[b],
+                                in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b],
+                                error);
+    if (!code)
+      run->flaw_count += run->flaws[b]->count;
+  }
+  return code;
+}
+
+/* A wave that crosses the layer and returns keeps exp(-rate depth/(3 c)) of its amplitude: half of the kinetic energy,
+ * which is half of its energy, twice the integral of rate (s/depth)^2. 10.5 c/depth leaves 3 %. */
+static status damp(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  if (!run->start->damping)
+    return STATUS_OK;
+  sph_bodies_damp(run->start, run->range[0], &run->shape[0],
+                  SPH_SIDE_X0 | SPH_SIDE_X1 | SPH_SIDE_Y0 | SPH_SIDE_Y1 | SPH_SIDE_Z0, in->sides.depth,
+                  10.5 * sph_derived_wave_speed(&in->target) / in->sides.depth);
+  for (size_t i = 0; i < run->range[0].n; i++)
+    if (run->start->damping[i] > 0)
+      return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "a damping layer of %.4g m holds no particle (they are %.4g m apart): raise sides.depth "
+                     "or fidelity.particles, or set sides.far: free",
+                     in->sides.depth, run->range[0].spacing);
+}
+
+static void open_pores(struct sph_run *run) {
+  for (int b = 0; run->start->distention && b < run->body_count; b++)
+    for (size_t i = run->range[b].first; i < run->range[b].first + run->range[b].n; i++)
+      run->start->distention[i] = sph_derived_porous(inputs_of(run, b))
+                                      ? inputs_of(run, b)->material.porosity.distention
+                                      : 1;
+}
+
+status sph_protocol_bodies(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  double flight[3] = {0, 0, 0};
+  status code = STATUS_OK;
+  run->body_count = sph_derived_bodies(in);
+  run->impact_direction[Z] = 1;
+  for (int k = 0; k < 3; k++)
+    run->periodic[k] = NAN;
+  if (in->kind == SPH_IMPACT)
+    code = sph_derived_aim(in, run->shape, flight, error);
+  else if (in->kind == SPH_COLLISION)
+    place_slabs(run);
+  else if (in->kind == SPH_PISTON)
+    place_plate(run);
+  else
+    run->shape[0] = sph_derived_target(in);
+  if (code || (code = make_bodies(run, error)))
+    return code;
+  run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
+  open_pores(run);
+  if ((code = set_in_motion(run, flight, error)) || (code = damp(run, error)))
+    return code;
+  return make_flaws(run, error);
+}

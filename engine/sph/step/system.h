@@ -1,0 +1,107 @@
+/* The moving solid: one force evaluation a step over sorted particles and reused neighbour lists.
+ * Benz & Asphaug 1995 [BA95] sections 2-4; corrections and choices are documented where they are made. */
+#ifndef CLAST_ENGINE_SPH_STEP_SYSTEM_H
+#define CLAST_ENGINE_SPH_STEP_SYSTEM_H
+
+#include <stdbool.h>
+
+#include "engine/sph/body/flaws.h"
+#include "engine/sph/body/particles.h"
+#include "engine/sph/material/fracture.h"
+#include "engine/sph/material/material.h"
+#include "engine/sph/material/palpha.h"
+#include "engine/sph/pairs/pairs.h"
+
+/* What one body is made of, and which physics it has. Off means absent: nothing is stored or called for it. */
+struct sph_body_physics {
+  struct sph_material material;
+  bool strength;                     /* deviatoric stress: Hooke, Jaumann, radial return */
+  const struct sph_flaws *flaws;     /* NULL: no fracture; by the body's own particle order; copied at create */
+  const struct sph_palpha *porosity; /* NULL: solid; copied at create */
+};
+
+struct sph_parameters {
+  double viscosity_alpha, viscosity_beta; /* Monaghan: 1.5, 3 */
+  double artificial_stress;               /* 0 = absent; elastic scenes only */
+  double spacing_over_h;                  /* initial spacing over h */
+  bool gradient_correction;               /* linear consistency of the velocity gradient, keeps rigid rotation */
+  bool volume_weights;                    /* m_j/rho_j in the velocity gradient (bodies of different density touch) */
+  double cfl;                             /* of h/(c + viscous), 0.2-0.4 */
+  double damage_step;                     /* largest change of D^(1/3) a step */
+  double distention_step;                 /* largest change of alpha a step */
+  double largest_time_step;               /* s, NaN = off */
+  int growth, cap;                        /* enum sph_fracture_growth, sph_fracture_cap */
+  bool crack_radius_support;              /* R_s = 2h instead of (3V/4pi)^(1/3) */
+  bool compact_flaws;                     /* (lowest, highest, number) per particle instead of the exact list */
+  double h_lowest, h_highest;             /* bounds of h over its initial value */
+  double density_lowest; /* over the initial one: below, the density is held and what that does is booked */
+  double skin;           /* least slack of the neighbour lists over h; fast particles have more */
+  double periodic[3];    /* m, length of the periodic box per direction; NaN = open */
+  int precision;         /* enum sph_precision */
+  int threads;           /* OpenMP, 1 = none; same bits whatever the number */
+};
+struct sph_parameters sph_parameters_default(void);
+
+enum sph_limiter { /* what set the time step */
+                   SPH_LIMIT_COURANT,
+                   SPH_LIMIT_FORCE,
+                   SPH_LIMIT_DAMAGE,
+                   SPH_LIMIT_DISTENTION,
+                   SPH_LIMIT_ENERGY,
+                   SPH_LIMIT_DENSITY,
+                   SPH_LIMIT_GIVEN,
+                   SPH_LIMIT_END,
+                   SPH_LIMITS
+};
+
+/* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + damped - initial - work_of_held; clamps are booked apart. */
+struct sph_ledger {
+  double kinetic, internal, work_of_held, damped, clamped; /* clamped: put in by u >= 0 */
+  uint64_t
+      density_held; /* particle-steps at the lowest density; that changes pressures, but puts no energy in by itself */
+  double momentum[3], angular_momentum[3];
+  double momentum_scale; /* sum |p| */
+};
+
+struct sph_system; /* opaque */
+
+/* `particles` is copied. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated
+ * when it would not fit; STATUS_CONTENT when a body lacks a material value that its physics needs (named). */
+status sph_system_create(const struct sph_particles *particles, size_t body_count,
+                         const struct sph_body_physics *bodies, const struct sph_parameters *parameters,
+                         struct sph_system **out, struct error *error);
+void sph_system_free(struct sph_system *system); /* NULL is fine */
+size_t sph_system_bytes(const struct sph_system *system);
+
+enum sph_fault { /* why a step could not be done */
+                 SPH_FAULT_NONE,
+                 SPH_FAULT_NOT_FINITE,
+                 SPH_FAULT_TIME_STEP, /* of the numbers: the same on any machine */
+                 SPH_FAULT_MEMORY,    /* of the machine: a run that had more of it would have gone on */
+};
+
+/* One time step, not beyond `until` (s). False on a fault, and from then on. */
+bool sph_system_step(struct sph_system *system, double until);
+int sph_system_fault(const struct sph_system *system);           /* enum sph_fault */
+const char *sph_system_failure(const struct sph_system *system); /* what, where, when; empty when all is well */
+double sph_system_time(const struct sph_system *system);
+double sph_system_last_step(const struct sph_system *system); /* s */
+int sph_system_limiter(const struct sph_system *system);      /* enum sph_limiter, of the last step */
+uint64_t sph_system_steps(const struct sph_system *system);
+struct sph_ledger sph_system_ledger(const struct sph_system *system);
+/* Mass-weighted mean damage of bodies with flaws, and how fast it grows now (1/s; NULL is fine): is fracture going on?
+ */
+double sph_system_damage(const struct sph_system *system, double *rate);
+/* Read back in the order of the ids, at one time level; arrays present in *out are filled. Positions are wrapped into
+ * the box in periodic directions. The pressure is that of the last evaluation (the predicted state of the same time).
+ */
+void sph_system_read(const struct sph_system *system, struct sph_particles *out);
+/* How many flaws each particle has, by id (0 in bodies without). False, and nothing filled, when no body has any. */
+bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
+double sph_system_neighbours(const struct sph_system *system); /* mean number within 2h */
+
+size_t sph_system_state_size(const struct sph_system *system);
+void sph_system_state_save(const struct sph_system *system, void *bytes);
+bool sph_system_state_load(struct sph_system *system, const void *bytes, size_t size); /* then the same bits */
+
+#endif

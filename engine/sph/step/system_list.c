@@ -1,0 +1,191 @@
+#include "engine/sph/step/system_list.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include "engine/sph/body/hilbert.h"
+
+enum {
+  LISTINGS_PER_SORT = 8,
+  LEAST_HORIZON = 2, /* steps that lists are made for */
+  ROOM = 4,          /* most slack, in h */
+};
+
+/* By precision: steps that lists are made for, at most; neighbours whose sums take as long as making lists (bench_sph
+ * pairs). In float a sum takes half the time and making lists as long as in double, so that longer ones pay. */
+static const uint64_t horizon_most[] = {[SPH_DOUBLE] = 20, [SPH_FLOAT] = 30};
+static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
+
+/* What stands at order[i] comes to i. */
+static bool permute(struct sph_system *s) {
+  double **slot[SPH_COLUMNS];
+  const size_t columns = sph_system_create_columns(s, slot), threads = s->p.threads > 1 ? (size_t)s->p.threads : 1;
+  double *room = malloc(threads * s->n * sizeof *room);
+  if (!room) {
+    s->fault = SPH_FAULT_MEMORY;
+    snprintf(s->failure, sizeof s->failure, "no memory to sort %zu particles", s->n);
+    return false;
+  }
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 1) num_threads(s->p.threads) if (s->p.threads > 1)
+#endif
+  for (size_t k = 0; k < columns; k++) {
+#ifdef _OPENMP
+    double *scratch = room + (size_t)omp_get_thread_num() * s->n;
+#else
+    double *scratch = room;
+#endif
+    double *column = *slot[k];
+    for (size_t i = 0; i < s->n; i++)
+      scratch[i] = column[s->order[i]];
+    memcpy(column, scratch, s->n * sizeof(double));
+  }
+  uint32_t *word = (uint32_t *)(void *)room;
+  for (size_t i = 0; i < s->n; i++)
+    word[i] = s->id[s->order[i]];
+  memcpy(s->id, word, s->n * sizeof *word);
+  uint8_t *byte = (uint8_t *)room;
+  for (size_t i = 0; s->held && i < s->n; i++)
+    byte[i] = s->held[s->order[i]];
+  if (s->held)
+    memcpy(s->held, byte, s->n);
+  free(room);
+  return true;
+}
+
+/* Bodies stay in their places; within each, along the space-filling curve. */
+static bool sort(struct sph_system *s) {
+  struct error error = {0};
+  for (size_t b = 0; b < s->body_count; b++) {
+    const size_t first = s->solid[b].first, count = s->solid[b].last - first;
+    if (!count)
+      continue;
+    if (sph_hilbert_find(count, s->c.x + first, s->c.y + first, s->c.z + first, s->order + first, &error) !=
+        STATUS_OK) {
+      s->fault = SPH_FAULT_MEMORY;
+      snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
+      return false;
+    }
+    for (size_t i = first; i < first + count; i++)
+      s->order[i] += (uint32_t)first;
+  }
+  return permute(s);
+}
+
+static double wrapped(double x, double length) {
+  if (!(length > 0))
+    return x;
+  x -= length * floor(x / length);
+  return x < length ? x : 0;
+}
+
+static void wrap(struct sph_system *s) {
+  const double *length = s->p.periodic;
+  if (!(length[0] > 0 || length[1] > 0 || length[2] > 0))
+    return;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads(s->p.threads) if (s->p.threads > 1)
+#endif
+  for (size_t i = 0; i < s->n; i++) {
+    s->c.x[i] = wrapped(s->c.x[i], length[0]);
+    s->c.y[i] = wrapped(s->c.y[i], length[1]);
+    s->c.z[i] = wrapped(s->c.z[i], length[2]);
+  }
+}
+
+static double cube(double x) {
+  return x * x * x;
+}
+
+double sph_system_list_reach(const struct sph_parameters *p) {
+  double thinnest = INFINITY;
+  for (int d = 0; d < 3; d++)
+    if (p->periodic[d] < thinnest)
+      thinnest = p->periodic[d];
+  return 0.2499 * thinnest; /* twice that of a pair, 2 (h + slack), must fit */
+}
+
+/* Lists for the positions as they are. How far each particle may go before they are worn: fast ones have more room, so
+ * that a spray of debris does not make new lists all the time, and slow ones have little, so that their lists are
+ * short. A thin periodic box bounds the reach. */
+static bool list_anew(struct sph_system *s) {
+  const struct sph_columns *c = &s->c;
+  const double skin = s->p.skin, horizon = (double)s->now.horizon * s->dt;
+  const double reach = sph_system_list_reach(&s->p);
+  double *const *listed = sph_pairs_listed(s->pairs);
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
+#endif
+  for (size_t k = 0; k < s->block_count; k++) {
+    struct sph_block *block = &s->block[k];
+    block->swollen = 0;
+    for (size_t i = block->low; i < block->high; i++) {
+      const double h = c->h[i], most = fmin(ROOM * h, fmax(skin * h, reach - h));
+      const double way = horizon * sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i] + c->vz[i] * c->vz[i]);
+      const double slack = fmin(most, fmax(skin * h, way));
+      listed[0][i] = c->x[i], listed[1][i] = c->y[i], listed[2][i] = c->z[i], listed[3][i] = h, listed[4][i] = slack;
+      if (slack > skin * h)
+        block->swollen += cube(1 + slack / h) - cube(1 + skin);
+    }
+  }
+  return sph_system_list_again(s);
+}
+
+bool sph_system_list_again(struct sph_system *s) {
+  struct error error = {0};
+  for (size_t k = 0; k < s->block_count; k++)
+    s->block[k].slack = -1; /* to be looked up */
+  if (sph_pairs_relist(s->pairs, &error) == STATUS_OK)
+    return true;
+  s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
+  snprintf(s->failure, sizeof s->failure, "%.200s", error.message);
+  return false;
+}
+
+/* What is lost, until the lists are worn, on pairs beyond the support that only the room of fast particles brings in:
+ * much where many fly fast and close together. In neighbours, like `listing`. By counting, not by the clock: bits
+ * depend on it. */
+static double lost_on_room(const struct sph_system *s) {
+  double swollen = 0;
+  for (size_t k = 0; k < s->block_count; k++)
+    swollen += s->block[k].swollen;
+  const double beyond = sph_pairs_reached(s->pairs) - s->now.neighbours,
+               most = s->now.neighbours * swollen / (double)s->n;
+  return fmin(beyond, most) * (double)s->now.horizon;
+}
+
+static void lengthen(struct sph_system *s) {
+  const uint64_t most = horizon_most[s->p.precision];
+  s->now.horizon = s->now.horizon && s->now.horizon < most / 2 ? 2 * s->now.horizon : most;
+}
+
+bool sph_system_list(struct sph_system *s) {
+  bool worn = s->now.listings == 0;
+  for (size_t k = 0; k < s->block_count; k++)
+    worn |= s->block[k].slack < 0; /* looked up in this step */
+  if (!worn)
+    return true;
+  wrap(s);
+  if (s->now.listings++ % LISTINGS_PER_SORT == 0) {
+    if (!sort(s))
+      return false;
+    lengthen(s);
+  }
+  if (!list_anew(s))
+    return false;
+  /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some
+   * eight times the loss */
+  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * listing[s->p.precision]) {
+    s->now.horizon /= 2;
+    if (!list_anew(s))
+      return false;
+  }
+  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->p.precision])
+    lengthen(s); /* the next ones */
+  return true;
+}

@@ -1,0 +1,183 @@
+/* The order of a step, and why: physics modules in modules.c; here what stands around them.
+ *
+ *   predict x v rho u h S D | pressure, yield, open flaws, what damage leaves | one pair loop | rates, half the change
+ * of rates
+ *
+ * Everything happens block by block, so that the columns of a block are read once from memory before the pair loop and
+ * once in it: rates follow as soon as a block's sums are complete. */
+#include "engine/sph/step/system_step.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "engine/sph/step/limits.h"
+#include "engine/sph/step/system_list.h"
+
+static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
+
+static void run(struct sph_system *s, struct sph_block *block, const sph_hook *hook, size_t count) {
+  for (size_t m = 0; m < count; m++)
+    hook[m](s, &s->solid[block->body], block);
+}
+
+/* Looked up anew when all that the fastest moved, added up over the steps, may have used it up. A hundredth is more
+ * than positions are rounded by meanwhile. */
+static void look_up_slack(struct sph_system *s, struct sph_block *block) {
+  block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
+}
+
+static void before_pairs(struct sph_system *s) {
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
+#endif
+  for (size_t k = 0; k < s->block_count; k++) {
+    struct sph_block *block = &s->block[k];
+    run(s, block, s->solid[block->body].before, s->solid[block->body].before_count);
+    if (block->slack < 0)
+      look_up_slack(s, block);
+  }
+}
+
+/* The first block from place `at` on. */
+static size_t first_block(const struct sph_system *s, size_t at) {
+  size_t low = 0, high = s->block_count;
+  while (low < high) {
+    const size_t middle = (low + high) / 2;
+    if (s->block[middle].low < at)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* What the pair loop found for a piece goes on at once into the rates of its blocks. */
+static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
+  struct sph_system *s = context;
+  for (size_t m = 0; s->p.gradient_correction && m < 6; m++)
+    memcpy(s->c.correction[m] + first, sums->correction[m], count * sizeof(double));
+  for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
+    struct sph_block *block = &s->block[k];
+    const struct sph_solid *body = &s->solid[block->body];
+    const size_t skip = block->low - first;
+    struct sph_pair_sums own = {.ax = sums->ax + skip,
+                                .ay = sums->ay + skip,
+                                .az = sums->az + skip,
+                                .heating = sums->heating + skip,
+                                .power = sums->power ? sums->power + skip : NULL,
+                                .signal = sums->signal + skip};
+    for (int m = 0; m < 9; m++)
+      own.gradient[m] = sums->gradient[m] + skip;
+    block->sums = &own;
+    run(s, block, body->after, body->after_count);
+    block->sums = NULL;
+  }
+}
+
+struct sph_pair_fields sph_system_step_fields(const struct sph_system *s) {
+  const struct sph_columns *c = &s->c;
+  struct sph_pair_fields fields = {.x = c->x,
+                                   .y = c->y,
+                                   .z = c->z,
+                                   .h = c->h,
+                                   .vx = c->vx,
+                                   .vy = c->vy,
+                                   .vz = c->vz,
+                                   .mass = c->mass,
+                                   .density = c->density,
+                                   .sound_speed = c->sound_speed,
+                                   .pressure_term = c->pressure_term,
+                                   .stress_factor = c->stress_factor};
+  for (int k = 0; k < 6; k++)
+    fields.correction[k] = c->correction[k];
+  for (int k = 0; k < 5; k++)
+    fields.stress[k] = c->stress[k];
+  return fields;
+}
+
+static void sum_pairs(struct sph_system *s) {
+  const struct sph_pair_fields fields = sph_system_step_fields(s);
+  sph_pairs_sum(s->pairs, s->n, &fields, after_pairs, s);
+  s->now.neighbours = sph_pairs_neighbours(s->pairs);
+}
+
+static bool gather(struct sph_system *s, double dt) {
+  memset(s->now.worst, 0, sizeof s->now.worst);
+  double damping = 0, holding = 0;
+  for (size_t k = 0; k < s->block_count; k++) {
+    struct sph_block *b = &s->block[k];
+    s->now.clamped += b->clamped;
+    s->now.density_held += b->density_held;
+    damping += b->damped;
+    holding += b->work_of_held;
+    for (int l = 0; l < SPH_LIMITS; l++)
+      s->now.worst[l] = fmax(s->now.worst[l], b->worst[l]);
+  }
+  s->now.damped += 0.5 * dt * (s->now.damping_power + damping);
+  s->now.work_of_held += 0.5 * dt * (s->now.holding_power + holding);
+  s->now.damping_power = damping;
+  s->now.holding_power = holding;
+  for (size_t k = 0; k < s->block_count; k++)
+    if (s->block[k].lost < s->n) {
+      const size_t i = s->block[k].lost;
+      s->fault = SPH_FAULT_NOT_FINITE;
+      snprintf(s->failure, sizeof s->failure,
+               "particle %u of body %u is no longer finite (or beyond 1e30) at %.6g s, step %llu: x %.4g %.4g %.4g m, "
+               "density %.4g kg/m^3, energy %.4g J/kg",
+               (unsigned)s->id[i], (unsigned)s->block[k].body, s->now.time, (unsigned long long)s->now.steps, s->c.x[i],
+               s->c.y[i], s->c.z[i], s->c.density[i], s->c.energy[i]);
+      return false;
+    }
+  return true;
+}
+
+/* Carries the state over dt, with one evaluation of the forces at its end. */
+static bool advance(struct sph_system *s, double dt) {
+  s->dt = dt;
+  for (size_t k = 0; k < s->block_count; k++) {
+    struct sph_block *b = &s->block[k];
+    memset(b->worst, 0, sizeof b->worst);
+    b->clamped = b->damped = b->work_of_held = 0;
+    b->density_held = 0;
+    b->lost = s->n;
+  }
+  before_pairs(s);
+  if (!sph_system_list(s))
+    return false;
+  sum_pairs(s);
+  return gather(s, dt);
+}
+
+bool sph_system_step_begin(struct sph_system *s) {
+  if (s->p.gradient_correction && !advance(s, 0))
+    return false; /* forces need the correction of the pass before */
+  return advance(s, 0);
+}
+
+bool sph_system_step(struct sph_system *s, double until) {
+  int limiter;
+  if (s->fault)
+    return false;
+  const double dt = sph_limits_step(s, until, &limiter);
+  if (!(dt > 0))
+    return dt == 0; /* already there */
+  const bool chosen = limiter != SPH_LIMIT_END && limiter != SPH_LIMIT_GIVEN;
+  if (chosen && s->now.first_step == 0)
+    s->now.first_step = dt;
+  if (chosen && (dt < collapse * s->now.first_step || s->now.time + dt == s->now.time)) {
+    static const char *const names[SPH_LIMITS] = {"Courant", "force",   "damage", "distention",
+                                                  "energy",  "density", "given",  "end"};
+    s->fault = SPH_FAULT_TIME_STEP;
+    snprintf(s->failure, sizeof s->failure,
+             "the time step fell to %.3g s (%s limit) at %.6g s, step %llu; it began with %.3g s", dt, names[limiter],
+             s->now.time, (unsigned long long)s->now.steps, s->now.first_step);
+    return false;
+  }
+  const bool done = advance(s, dt);
+  s->now.time = limiter == SPH_LIMIT_END ? until : s->now.time + dt;
+  s->now.last_step = dt;
+  s->now.limiter = limiter;
+  s->now.steps++;
+  return done;
+}
