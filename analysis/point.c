@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/query.h"
+#include "db/ask/query.h"
 
 enum { RESAMPLE_SEED = 1 };
 

@@ -4,7 +4,7 @@
 
 #include "analysis/pictures/picture.h"
 #include "analysis/statistics/estimates.h"
-#include "db/store.h"
+#include "db/store/store.h"
 
 struct point_data {
   int64_t point_id, results_version;

@@ -17,7 +17,7 @@
 #include "campaign/campaign.h"
 #include "campaign/farm/farm.h"
 #include "campaign/terminal/progress.h"
-#include "db/store.h"
+#include "db/store/store.h"
 
 struct driver_options {
   const char *store_path;                        /* NULL: the campaign's */

@@ -8,8 +8,8 @@
 #include "campaign/design/design.h"
 #include "campaign/run.h"
 #include "campaign/terminal/progress.h"
-#include "db/query.h"
-#include "db/store.h"
+#include "db/ask/query.h"
+#include "db/store/store.h"
 
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
 #define NOTHING ((double)NAN)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "analysis/point.h"
-#include "db/query.h"
+#include "db/ask/query.h"
 
 struct missing {
   size_t count, capacity;

@@ -3,7 +3,7 @@
 #ifndef CLAST_CAMPAIGN_POOLING_H
 #define CLAST_CAMPAIGN_POOLING_H
 
-#include "db/store.h"
+#include "db/store/store.h"
 
 enum { POOLING_RESAMPLES = 400 }; /* of runs, for the standard errors: they are then known to 4 % */
 

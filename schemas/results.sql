@@ -1,5 +1,5 @@
 -- The store of clast: schema of version 1.
--- Made from the tables in db/schema_tables.c and the engines' field tables; do not edit: a test compares.
+-- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
 PRAGMA user_version = 1;

@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "analysis/pooled.h"
+#include "analysis/statistics/pooled.h"
 
 /* A body in pieces, whatever engine made it: convex cells with the number of the fragment each belongs to, 0 the
  * heaviest. All arrays borrowed. */

@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "db/store.h"
+#include "db/store/store.h"
 
 static void print_problem(void *context, const char *text) {
   size_t *count = context;

@@ -3,7 +3,7 @@
 #define CLAST_CAMPAIGN_COMMANDS_ESTIMATES_H
 
 #include "campaign/terminal/table.h"
-#include "db/store.h"
+#include "db/store/store.h"
 
 /* Which points: 0 = all. resamples: of the runs, for the errors of the exponents; 0 = none. */
 struct estimates_choice {

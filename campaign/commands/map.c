@@ -86,7 +86,7 @@ static status run(const struct command_line *line, struct error *error) {
     code = status_fail(error, STATUS_MEMORY, "out of memory");
   struct query_sink groups = {&map, take_columns, take_group}, points = {&map, NULL, take_point};
   if (!code)
-    code = query_group(map.store, by, map.exponent ? "largest_fraction" : options->quantity, &groups, error);
+    code = ask_group(map.store, by, map.exponent ? "largest_fraction" : options->quantity, &groups, error);
   if (!code && map.exponent) {
     snprintf(sql, sizeof sql, "select distinct \"%s\", \"%s\", point_id from points", map.name[0], map.name[1]);
     code = query_run(map.store, sql, 0, NULL, 0, &points, error);

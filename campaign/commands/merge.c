@@ -4,7 +4,7 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/pooling.h"
-#include "db/store.h"
+#include "db/store/store.h"
 
 static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;

@@ -8,7 +8,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
 
-/* Columns of query_group after the axes. */
+/* Columns of ask_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF = 8, COLUMNS = 9 };
 enum { WIDTH = 900, MOST_CURVES = 8, MOST_MEANS = 1000, RESAMPLES = 1000 };
 
@@ -177,7 +177,7 @@ static status run(const struct command_line *line, struct error *error) {
   struct query_sink sink = {&plot, take_columns, plot.exponent ? NULL : take_group};
   char by[600], title[400], x_label[300], y_label[300], by_label[300];
   snprintf(by, sizeof by, "%s%s%s", options->x, options->by ? "," : "", options->by ? options->by : "");
-  code = query_group(plot.store, by, plot.exponent ? "largest_fraction" : options->quantity, &sink, error);
+  code = ask_group(plot.store, by, plot.exponent ? "largest_fraction" : options->quantity, &sink, error);
   if (!code && plot.exponent) {
     snprintf(plot.name[2], sizeof plot.name[2], "%s", options->quantity);
     code = fit_points(&plot, error);

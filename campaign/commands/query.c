@@ -21,8 +21,8 @@ static status list_canned(enum table_format format, struct error *error) {
   table_column(table, "answers", NULL);
   if (format != TABLE_TEXT)
     table_column(table, "sql", NULL);
-  for (size_t i = 0; i < query_canned_count(); i++) {
-    const struct query_canned *canned = query_canned_at(i);
+  for (size_t i = 0; i < ask_canned_count(); i++) {
+    const struct query_canned *canned = ask_canned_at(i);
     table_text(table, canned->name);
     table_text(table, canned->parameters);
     table_text(table, canned->doc);
@@ -45,7 +45,7 @@ static status run(const struct command_line *line, struct error *error) {
   if ((line->count == 2) == (options->named != NULL))
     return status_fail(error, STATUS_USAGE,
                        "give either an SQL statement or --named NAME; `clast query --list` shows the names");
-  const struct query_canned *canned = options->named ? query_canned_find(options->named, error) : NULL;
+  const struct query_canned *canned = options->named ? ask_canned_find(options->named, error) : NULL;
   if (options->named && !canned)
     return STATUS_USAGE;
 
@@ -62,7 +62,7 @@ static status run(const struct command_line *line, struct error *error) {
   code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  code = query_register_functions(store, error);
+  code = ask_register_functions(store, error);
   if (!code) {
     struct rows rows;
     struct query_sink sink = rows_sink(&rows, store, format, stdout);

@@ -5,7 +5,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
-#include "db/query.h"
+#include "db/ask/query.h"
 
 struct options {
   struct launch_options launch;

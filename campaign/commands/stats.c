@@ -42,8 +42,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   struct rows rows;
   struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = query_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink,
-                     error);
+  code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, error);
   code = rows_end(&rows, code, error);
   store_close(store, NULL);
   return code;

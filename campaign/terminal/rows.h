@@ -3,7 +3,7 @@
 #define CLAST_CAMPAIGN_TERMINAL_ROWS_H
 
 #include "campaign/terminal/table.h"
-#include "db/query.h"
+#include "db/ask/query.h"
 
 struct rows { /* a sink's context */
   struct table *table;

@@ -4,9 +4,9 @@
 #include <string.h>
 #include <time.h>
 
-#include "db/schema.h"
 #include "db/store/internal.h"
-#include "db/views.h"
+#include "db/store/schema.h"
+#include "db/store/views.h"
 
 static const char adding_run[] = "adding a run", adding_point[] = "adding a point";
 

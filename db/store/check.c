@@ -7,8 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "db/schema.h"
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 #include "engine/scene.h"
 
 struct report {

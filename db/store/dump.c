@@ -1,8 +1,8 @@
 /* What two stores of the same campaign must have in common, as text: sorted by identity, doubles in hexadecimal. */
 #include <string.h>
 
-#include "db/schema.h"
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 
 static const char doing[] = "writing what is deterministic";
 

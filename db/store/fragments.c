@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/bins.h"
+#include "db/store/bins.h"
 #include "db/store/internal.h"
 
 static const char adding_run[] = "adding a run";

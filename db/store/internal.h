@@ -4,10 +4,10 @@
 
 #include <math.h>
 
-#include "db/identities.h"
 #include "db/sql.h"
-#include "db/store.h"
-#include "db/sums.h"
+#include "db/store/identities.h"
+#include "db/store/store.h"
+#include "db/store/sums.h"
 
 enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 #define STORE_BATCH_SECONDS 1.0

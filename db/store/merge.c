@@ -1,10 +1,10 @@
 /* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
 #include <string.h>
 
-#include "db/bins.h"
-#include "db/schema.h"
+#include "db/store/bins.h"
 #include "db/store/internal.h"
-#include "db/views.h"
+#include "db/store/schema.h"
+#include "db/store/views.h"
 
 static const char doing[] = "merging";
 

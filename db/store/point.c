@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "db/schema.h"
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 
 static int state_of(const char *name) {
   static const char *const path = "state";

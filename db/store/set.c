@@ -1,8 +1,8 @@
 /* What may change after a run is stored: its estimates, and whether it is part of the statistics. */
 #include <stdlib.h>
 
-#include "db/schema.h"
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 
 static const char writing[] = "writing estimates";
 

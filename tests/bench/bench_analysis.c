@@ -6,8 +6,8 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "analysis/pooled.h"
 #include "analysis/statistics/estimates.h"
+#include "analysis/statistics/pooled.h"
 #include "engine/random.h"
 
 static double seconds(void) {

@@ -4,7 +4,7 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
-#include "tests/campaign_play.h"
+#include "tests/support/campaign_play.h"
 
 static double seconds(void) {
   struct timespec t;

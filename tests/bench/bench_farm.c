@@ -13,9 +13,9 @@
 #include <sys/wait.h>
 
 #include "campaign/farm/clock.h"
-#include "db/store.h"
-#include "tests/farm_tasks.h"
-#include "tests/store_fixture.h"
+#include "db/store/store.h"
+#include "tests/support/farm_tasks.h"
+#include "tests/support/store_fixture.h"
 
 #define SLOTS      2
 #define TASKS      400

@@ -18,8 +18,8 @@
 #include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
 #include "tests/bench/sph_whole_runs.h"
-#include "tests/noise.h"
-#include "tests/pair_sums.h"
+#include "tests/support/noise.h"
+#include "tests/support/pair_sums.h"
 
 enum { COLUMNS = 17, SUMS = 14, FLOPS = 139 }; /* per pair, counted in pairs_kernels_sum.h: an inverse or a root is 1 */
 

@@ -3,7 +3,7 @@
 #include <time.h>
 
 #include "analysis/statistics/estimates.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 enum { POINTS = 100, BINS = 30, REPEATS = 5, VARIANTS = 64 };
 
@@ -126,7 +126,7 @@ int main(int argc, char **argv) {
   need(query_number(store, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size", 0, NULL, &bytes,
                     &error));
   printf("store_bytes_per_run %.0f B\n", bytes / (double)runs);
-  ask(store, "store_point_stats_ms", query_canned_find("point-stats", NULL)->sql, POINTS);
+  ask(store, "store_point_stats_ms", ask_canned_find("point-stats", NULL)->sql, POINTS);
   ask(store, "store_points_view_ms", "SELECT * FROM points", POINTS);
   ask(store, "store_spectrum_one_ms",
       "SELECT lower, upper, count, mass, density, count_sd FROM spectra WHERE point_id = 17", BINS);

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "tests/farm_process.h"
+#include "tests/support/farm_process.h"
 
 static const char *program;
 

@@ -17,7 +17,7 @@
 #include <time.h>
 
 #include "db/store/internal.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \

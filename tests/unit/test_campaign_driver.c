@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 
 #include "analysis/analysis.h"
-#include "tests/campaign_play.h"
+#include "tests/support/campaign_play.h"
 
 static char folder[64];
 static const char *in(const char *name) {

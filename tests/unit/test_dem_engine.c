@@ -1,5 +1,5 @@
 /* Engine dem as its callers see it: tables, built-in scenes, refusals, stop rules, chunks that do not matter. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include "engine/dem/lattice/assemble.h"
 #include "engine/dem/run/run.h"

@@ -1,5 +1,5 @@
-/* Pinned hashes of two small runs of engine dem: what to do when they change is said in tests/golden.h. */
-#include "tests/golden.h"
+/* Pinned hashes of two small runs of engine dem: what to do when they change is said in tests/support/golden.h. */
+#include "tests/support/golden.h"
 
 enum { RESULTS_VERSION = 3 };
 #define GOLDEN_DISC  "0e38e047ed1ddd66cbca46b75860a7be"

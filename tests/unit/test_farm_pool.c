@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 
 #include "campaign/farm/clock.h"
-#include "tests/farm_tasks.h"
+#include "tests/support/farm_tasks.h"
 
 #ifdef __SANITIZE_ADDRESS__
 __attribute__((visibility("default"))) const char *__asan_default_options(void);

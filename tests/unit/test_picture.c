@@ -17,7 +17,7 @@
 #include "analysis/analysis.h"
 #include "analysis/pictures/picture.h"
 #include "engine/random.h"
-#include "tests/sweep.h"
+#include "tests/support/sweep.h"
 
 static char folder[256];
 static const char *at(const char *name) {

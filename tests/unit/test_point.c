@@ -7,7 +7,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/point.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \

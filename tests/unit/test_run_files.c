@@ -1,6 +1,6 @@
 /* Files of a run of either engine: a restart file gives the same bits, and one that is damaged, of another scene or of
  * another CPU class is refused; files are whole or not there, on a full disk and after a kill. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include <dirent.h>
 #include <signal.h>
@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "engine/cpu_class.h"
-#include "tests/sweep.h"
+#include "tests/support/sweep.h"
 
 static char folder[] = "/tmp/clast_run_files_XXXXXX";
 

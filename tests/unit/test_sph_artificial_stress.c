@@ -11,7 +11,7 @@
 
 #include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
-#include "tests/noise.h"
+#include "tests/support/noise.h"
 
 static const char *const classes[] = {"baseline", "v3", "v4"};
 

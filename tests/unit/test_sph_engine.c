@@ -1,6 +1,6 @@
 /* Engine sph as its callers see it: tables, built-in scenes, how protocols start, stop rules, chunks and restarts that
  * do not matter, refusals, and inputs at the ends of their ranges. Small bodies: this is not about physics. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

@@ -23,7 +23,7 @@
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/observe/particle_columns.h"
 #include "engine/sph/scene/inputs.h"
-#include "tests/sweep.h"
+#include "tests/support/sweep.h"
 
 static char folder[256];
 static const char *at(const char *name) {

@@ -1,5 +1,5 @@
 /* Fields files of engine sph explain themselves and hold what the run reports. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include <hdf5.h>
 #include <unistd.h>

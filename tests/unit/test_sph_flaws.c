@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "tests/grady_kipp.h"
+#include "tests/support/grady_kipp.h"
 
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {
   struct sph_flaw_law law = {.weibull = {m, k}, .volume = 1e-5, .draw = draw, .seed = seed};

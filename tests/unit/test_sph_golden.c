@@ -1,5 +1,5 @@
-/* Pinned hashes of three small runs of engine sph: what to do when they change is said in tests/golden.h. */
-#include "tests/golden.h"
+/* Pinned hashes of three small runs of engine sph: what to do when they change is said in tests/support/golden.h. */
+#include "tests/support/golden.h"
 
 enum { RESULTS_VERSION = 5 };
 #define GOLDEN_SPHERE "11c3db2817bfbc5b886464fc6a6ea8c9"

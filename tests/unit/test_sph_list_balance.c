@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "engine/sph/pairs/list_balance.h"
-#include "tests/noise.h"
+#include "tests/support/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };
 

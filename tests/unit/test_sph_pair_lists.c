@@ -12,7 +12,7 @@
 #include "engine/sph/pairs/neighbours.h"
 #include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
-#include "tests/pair_cloud.h"
+#include "tests/support/pair_cloud.h"
 
 static void swap_particles(struct cloud *c, size_t i, size_t j) {
   for (int k = 0; k < 4; k++) {

@@ -13,8 +13,8 @@
 #include "engine/sph/pairs/pairs.h"
 #include "engine/sph/pairs/pairs_kernels.h"
 #include "tests/bench/reference_sph.h"
-#include "tests/pair_cloud.h"
-#include "tests/pair_sums.h"
+#include "tests/support/pair_cloud.h"
+#include "tests/support/pair_sums.h"
 
 enum { SUMS = 14 };
 

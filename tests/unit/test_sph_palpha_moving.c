@@ -1,6 +1,6 @@
 /* P-alpha in the moving system: the range loop against the formulas one by one, deviator, yield, damage, limiter,
  * state; and what must not be there without pores. */
-#include "tests/sph_case.h"
+#include "tests/support/sph_case.h"
 
 #include "engine/random.h"
 #include "engine/sph/material/tillotson.h"

@@ -1,5 +1,5 @@
 /* The moving solid: conservation over a collision that breaks, ledger, limits and rates by hand, what is absent. */
-#include "tests/sph_collision.h"
+#include "tests/support/sph_collision.h"
 
 #include "engine/sph/modules/ranges.h"
 

@@ -1,6 +1,6 @@
 /* The moving solid to the last bit: after a restart, with any number of threads; and, but for rounding, whatever axes
  * and numbering. */
-#include "tests/sph_collision.h"
+#include "tests/support/sph_collision.h"
 
 static size_t everything(const struct sph_system *s, unsigned char **bytes) {
   const size_t size = sph_system_state_size(s);

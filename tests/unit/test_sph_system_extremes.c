@@ -1,5 +1,5 @@
 /* The moving solid at its bounds: speeds, clamps, thin matter, states that cannot go on, systems that are refused. */
-#include "tests/sph_collision.h"
+#include "tests/support/sph_collision.h"
 
 #include "engine/sph/body/bodies.h"
 

@@ -1,5 +1,5 @@
 /* Tillotson: derivatives against finite differences over all branches, continuity across them, known traps. */
-#include "tests/sph_case.h"
+#include "tests/support/sph_case.h"
 
 #include "engine/sph/material/tillotson.h"
 #include "engine/sph/modules/ranges.h"

@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 
 #include "db/store/internal.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \

@@ -9,9 +9,9 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "db/views.h"
+#include "db/store/views.h"
 #include "engine/spectrum.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \
@@ -178,7 +178,7 @@ static void groups_pool_runs_not_means(void **state) {
   struct store *store = reader();
   struct rows rows = {.count = 0};
   const struct query_sink sink = {.context = &rows, .columns = keep_names, .row = keep_row};
-  OK(query_group(store, "m", "hardest, largest_fraction", &sink, &error));
+  OK(ask_group(store, "m", "hardest, largest_fraction", &sink, &error));
   assert_int_equal(rows.count, M);
   double sd, mean = two_pass(hardest, 6, 0, K, &sd);
   char expected[200];
@@ -188,17 +188,17 @@ static void groups_pool_runs_not_means(void **state) {
                          "material_m,engine,results_version,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
                          "hardest_hw95,largest_fraction_mean"));
   memset(&rows, 0, sizeof rows);
-  OK(query_group(store, "material.k,m", NULL, &sink, &error));
+  OK(ask_group(store, "material.k,m", NULL, &sink, &error));
   assert_int_equal(rows.count, M * K);
   memset(&rows, 0, sizeof rows);
-  OK(query_group(store, "", "broken_count", &sink, &error));
+  OK(ask_group(store, "", "broken_count", &sink, &error));
   assert_int_equal(rows.count, 1);
-  assert_int_equal(query_group(store, "q", NULL, &sink, &error), STATUS_USAGE);
+  assert_int_equal(ask_group(store, "q", NULL, &sink, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));
-  assert_int_equal(query_group(store, "m", "fraction", &sink, &error), STATUS_USAGE);
+  assert_int_equal(ask_group(store, "m", "fraction", &sink, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "ambiguous"));
   assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
-  assert_int_equal(query_group(store, "m", "largest_fracton", &sink, &error), STATUS_USAGE);
+  assert_int_equal(ask_group(store, "m", "largest_fracton", &sink, &error), STATUS_USAGE);
   assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
   store_close(store, NULL);
 }
@@ -260,9 +260,9 @@ static void every_canned_query_runs(void **state) {
   struct store *store = reader();
   struct rows rows = {.count = 0};
   const struct query_sink sink = {.context = &rows, .columns = keep_names, .row = keep_row};
-  assert_true(query_canned_count() >= 10);
-  for (size_t i = 0; i < query_canned_count(); i++) {
-    const struct query_canned *canned = query_canned_at(i);
+  assert_true(ask_canned_count() >= 10);
+  for (size_t i = 0; i < ask_canned_count(); i++) {
+    const struct query_canned *canned = ask_canned_at(i);
     const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};
     if (strcmp(canned->name, "run-exponents") == 0)
       continue; /* needs analysis' columns: see test_store_schema */
@@ -276,7 +276,7 @@ static void every_canned_query_runs(void **state) {
   }
   /* the documented query gives what the view gives */
   memset(&rows, 0, sizeof rows);
-  OK(query_run(store, query_canned_find("point-stats", NULL)->sql, 0, NULL, 0, &sink, &error));
+  OK(query_run(store, ask_canned_find("point-stats", NULL)->sql, 0, NULL, 0, &sink, &error));
   char first[200];
   snprintf(first, sizeof first, "\n1,3,25,%.6g,%.6g,%.6g\n",
            number(store, "SELECT largest_fraction_mean FROM points WHERE point_id = 1"),
@@ -284,7 +284,7 @@ static void every_canned_query_runs(void **state) {
            number(store, "SELECT largest_fraction_se FROM points WHERE point_id = 1"));
   if (!strstr(rows.text, first))
     fail_msg("%s not in %s", first, rows.text);
-  assert_null(query_canned_find("nonsense", &error));
+  assert_null(ask_canned_find("nonsense", &error));
   assert_non_null(strstr(error.message, "point-stats"));
   store_close(store, NULL);
 }
@@ -294,7 +294,7 @@ static void our_aggregates(void **state) {
   struct store *store = reader();
   struct rows rows;
   assert_int_equal(ask(store, "SELECT median(1)", &rows), STATUS_USAGE); /* not before they are asked for */
-  OK(query_register_functions(store, &error));
+  OK(ask_register_functions(store, &error));
   assert_near(number(store, "SELECT stdev(value) FROM json_each('[2,4,4,4,5,5,7,9]')"), sqrt(32.0 / 7), 1e-14);
   assert_near(number(store, "SELECT median(value) FROM json_each('[5,1,4,2]')"), 3, 0);
   assert_near(number(store, "SELECT median(value) FROM json_each('[5,1,4]')"), 4, 0);

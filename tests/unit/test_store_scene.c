@@ -9,7 +9,7 @@
 #include <sqlite3.h>
 
 #include "analysis/statistics/estimates.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \

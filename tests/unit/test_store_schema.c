@@ -10,9 +10,9 @@
 #include <sqlite3.h>
 
 #include "analysis/statistics/estimates.h"
-#include "db/schema.h"
-#include "db/views.h"
-#include "tests/store_fixture.h"
+#include "db/store/schema.h"
+#include "db/store/views.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 
@@ -150,8 +150,8 @@ static void canned_queries_know_the_real_columns(void **state) {
   struct store *store = NULL;
   const struct query_sink sink = {.context = NULL};
   assert_int_equal(store_open_reader("test-store-schema.db", &store, &error), STATUS_OK);
-  for (size_t i = 0; i < query_canned_count(); i++) {
-    const struct query_canned *canned = query_canned_at(i);
+  for (size_t i = 0; i < ask_canned_count(); i++) {
+    const struct query_canned *canned = ask_canned_at(i);
     const struct query_parameter parameter = {.name = canned->parameters, .value = "1"};
     if (query_run(store, canned->sql, *canned->parameters ? 1 : 0, &parameter, 0, &sink, &error) != STATUS_OK)
       fail_msg("%s: %s", canned->name, error.message);

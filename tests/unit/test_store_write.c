@@ -10,7 +10,7 @@
 
 #include "db/store/internal.h"
 #include "engine/spectrum.h"
-#include "tests/store_fixture.h"
+#include "tests/support/store_fixture.h"
 
 static struct error error;
 #define OK(call)                                                                                                       \

@@ -1,7 +1,7 @@
 /* Compressive strength test (K99 section 3.2, figures 8 and 9): linear, then abrupt failure; cracks along the load;
  * triangles on the confined ends intact. Quick: one body of 25 x 40, at twice the rate. CLAST_FULL=1: five, and again
  * at half the rate. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include "engine/dem/run/run.h"
 

@@ -3,7 +3,7 @@
  * both tending to the pure beam lattice's. Prints the table; engine/dem/VALIDATION.md quotes it.
  *
  * Quick: one body of 16 x 24 grains. CLAST_FULL=1: three bodies of 25 x 40. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 enum { MODULI = 6 };
 

@@ -7,7 +7,7 @@
  * Quick: few seeds, a gate widened by their own error. CLAST_FULL=1: 30 seeds of each, thresholds of figure 11, and the
  * choices that the paper leaves open (contact law, damping, disorder, stop), for engine/dem/VALIDATION.md.
  * CLAST_SEEDS=n changes the number. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include "analysis/statistics/exponent.h"
 #include "analysis/statistics/sample.h"

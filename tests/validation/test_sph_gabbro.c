@@ -15,7 +15,7 @@
  * Quick: a coarse cube, m = 3 and 9. CLAST_FULL=1: 45 000 particles, m = 6, and the paper's 80 000 evenly spaced on a
  * lattice, with c_p halfway between floor and sound rock at 4.8 to 5.6 cm (the paper: "centered around r = 4 cm").
  * CLAST_PARTICLES=n changes the number of the graded ones, CLAST_EVEN=n that of the evenly spaced ones. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"

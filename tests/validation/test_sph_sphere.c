@@ -8,7 +8,7 @@
  * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a
  * wrong speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own
  * numbers. */
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 #include "analysis/statistics/sample.h"
 #include "engine/sph/run/run.h"

@@ -3,7 +3,7 @@
 #include "tests/verification/dem_fixture.h"
 
 #include "engine/dem/run/run.h"
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 /* One grain of two is driven along, across and around: the energy that comes in is the work booked. Two laws of motion.
  */

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
-#include "tests/grady_kipp.h"
+#include "tests/support/grady_kipp.h"
 
 enum { PARTICLES = 50000, STEPS = 400 };
 static const double m = 8.5, k = 5e34, volume = 1.257e-5, young = 53.06e9, crack_speed = 1837;

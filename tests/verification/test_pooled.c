@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "analysis/pooled.h"
+#include "analysis/statistics/pooled.h"
 #include "engine/random.h"
 
 enum { RUNS = 30, MOST = 101 };

@@ -7,7 +7,7 @@
  * neighbours (0.37 h/R of the speed: test_sph_waves.c): 96 000 particles are still 3.3 % low, and the frequency is
  * extrapolated from two sizes with the first order that a skin has, 12 000 and 1500, CLAST_FULL=1: 96 000 and 12 000.
  */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 struct ring {
   double frequency; /* Hz */

@@ -1,7 +1,7 @@
 /* One material runs into another: plane nylon on plane basalt at 3.2 km/s, without strength, against the exact answer.
  * Between the two shocks there is one pressure and one velocity, where both materials' Hugoniots meet (impedance
  * matching); so much momentum goes over per area and time. Densities stand 1 : 2.3: the case for `volume_weights`. */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 static struct sph_material nylon(void) { /* engine/sph/material/builtin/nylon.yaml */
   return (struct sph_material){.density = 1185,

@@ -13,7 +13,7 @@
  * And a slow uniaxial compression through yield: slopes K + 4 mu/3, then K.
  *
  * CLAST_FULL=1: twice the length in particles. */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 static void jump_conditions(void **state) {
   (void)state;

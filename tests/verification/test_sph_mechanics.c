@@ -4,8 +4,8 @@
  * Homogeneous motions are made with held particles: everyone moves at a constant velocity linear in its place, and with
  * the gradient correction the velocity gradient is then exact at every particle, at the surfaces too. Internal energy
  * is exact where the support is full: at surfaces it balances the forces there (pairs.h), which the holds bear. */
-#include "tests/grady_kipp.h"
-#include "tests/sph_case.h"
+#include "tests/support/grady_kipp.h"
+#include "tests/support/sph_case.h"
 
 #include "engine/random.h"
 #include "engine/sph/material/tillotson.h"

@@ -5,7 +5,7 @@
 #include "engine/sph/material/materials.h"
 #include "engine/sph/material/plane_shock.h"
 #include "palpha_exact.h"
-#include "tests/run_case.h"
+#include "tests/support/run_case.h"
 
 static void near(double got, double want, double relative, const char *what) {
   if (!(fabs(got - want) <= relative * fabs(want)))

@@ -9,7 +9,7 @@
  *
  * CLAST_FULL=1: ten particles across a ring as in the paper, four else. The work of the artificial stress is in the
  * internal energy: without it 9 % of the kinetic energy were missing. */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 struct rings {
   double stretch;  /* largest distance of a pair of nearest neighbours over that at rest */

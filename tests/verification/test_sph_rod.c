@@ -13,8 +13,8 @@
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
 #include "engine/sph/body/flaw_places.h"
-#include "tests/grady_kipp.h"
-#include "tests/sph_solid.h"
+#include "tests/support/grady_kipp.h"
+#include "tests/support/sph_solid.h"
 
 static const double radius = 0.01, length = 0.04;
 

@@ -8,7 +8,7 @@
  * A free elastic sphere spun at once keeps its angular momentum within 1 % over ten turns with the gradient correction,
  * and is shown without it. Two solids that collide, with all that basalt does, keep linear momentum to 1e-12 and energy
  * to 0.5 %. */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 static void rotate(double c, double s, const double from[6], double to[6]) { /* about z; xx xy xz yy yz zz */
   const double t[3][3] = {{from[0], from[1], from[2]}, {from[1], from[3], from[4]}, {from[2], from[4], from[5]}};

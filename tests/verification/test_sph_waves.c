@@ -10,7 +10,7 @@
  * the change of density) is of that order, 1e-4.
  *
  * CLAST_FULL=1: every axis, with the gradient correction, too, and one more doubling of each. */
-#include "tests/sph_solid.h"
+#include "tests/support/sph_solid.h"
 
 enum polarisation { PRESSURE_WAVE, SHEAR_WAVE };
 

@@ -1,0 +1,51 @@
+/* A point's spectrum and exponents from all its runs together. Runs are the independent units: errors come from the
+ * scatter between runs and from resampling runs, never from counting fragments. Each run's largest fragment M_1 bounds
+ * its own window and is left out; what is given up is next to nothing, and a giant remnant cannot bend the fit. */
+#ifndef CLAST_ANALYSIS_STATISTICS_POOLED_H
+#define CLAST_ANALYSIS_STATISTICS_POOLED_H
+
+#include <stdbool.h>
+
+#include "analysis/statistics/exponent.h"
+#include "analysis/statistics/sample.h"
+
+/* Masses of the fragments of run r: masses[first[r]] ... masses[first[r + 1] - 1], descending, kg. Borrowed. */
+struct pooled_runs {
+  size_t count;
+  const size_t *first; /* count + 1 */
+  const double *masses;
+};
+
+/* One bin of F(m): fragments per run and per unit of m/unit_mass. */
+struct pooled_bin {
+  int bin;
+  double lower, upper;   /* kg */
+  int64_t count;         /* over all runs */
+  double density;        /* count / (runs x (upper - lower)/unit_mass) */
+  double standard_error; /* from the scatter of the runs' counts; NaN for one run */
+};
+/* Non-empty bins, ascending, malloc'd into *bins. unit_mass: 1 for F(m) in 1/kg, the total mass for F(m/M). */
+status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,
+                       size_t *count, struct error *error);
+
+struct pooled_exponent {
+  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest bound */
+  struct sample_interval interval; /* from resampling runs: this is the error to quote */
+  size_t runs;                     /* that had fragments in their window */
+};
+/* lower: kg, the same for all runs of the point (so many mean element masses). resamples: 0 for no interval, 1000 for
+ * final numbers; KS and CUTOFF cost milliseconds per resample, the others microseconds. */
+status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
+                       double level, uint64_t seed, struct pooled_exponent *out, struct error *error);
+
+/* Is the pure power law good enough? Likelihood ratios against its two rivals in the same windows. */
+struct pooled_rivals {
+  int64_t n;
+  double beta;                     /* pure */
+  double cutoff_beta, cutoff_mass; /* HUGE_VAL: none needed */
+  double cutoff_ratio, cutoff_p;   /* 2 dlnL; small p: the cut-off is needed */
+  double lognormal_ratio, lognormal_p;
+};
+status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error);
+
+#endif

@@ -1,0 +1,106 @@
+/* Canned queries: also the examples from which people learn the tables. Plain SQL without our own functions, so that
+ * each can be pasted into any tool. */
+#include <string.h>
+
+#include "db/ask/query.h"
+
+static const struct query_canned queries[] = {
+    {"points", "Statistics of every point: n, failed, censored, mean, scatter and interval of the main results.",
+     "SELECT * FROM points", ""},
+    {"point-stats",
+     "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.",
+     "SELECT point_id, results_version, n, k + s / n AS mean, sqrt(max(0, (q - s * s / n) / (n - 1))) AS sd,\n"
+     "  sqrt(max(0, (q - s * s / n) / (n - 1) / n)) AS se\n"
+     "FROM (SELECT t.point_id, t.results_version, count(*) AS n, k.largest_fraction AS k,\n"
+     "    total(r.largest_fraction - k.largest_fraction) AS s,\n"
+     "    total((r.largest_fraction - k.largest_fraction) * (r.largest_fraction - k.largest_fraction)) AS q\n"
+     "  FROM point_total t\n"
+     "  JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE f.point_id = t.point_id AND f.results_version =\n"
+     "    t.results_version AND f.counts = 1 ORDER BY f.replicate, f.seed LIMIT 1)\n"
+     "  CROSS JOIN run r ON r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 1\n"
+     "  GROUP BY t.point_id, t.results_version)",
+     ""},
+    {"runs", "Every run of a point, with its inputs and results (:point).",
+     "SELECT * FROM runs WHERE point_id = :point ORDER BY replicate, seed", "point"},
+    {"spectrum",
+     "Pooled fragment mass spectrum of a point with its density F(m) and the scatter between runs (:point).",
+     "SELECT bin, lower, upper, n, runs, count, count_mean, count_sd, density FROM spectra WHERE point_id = :point "
+     "ORDER BY "
+     "bin",
+     "point"},
+    {"spectra", "Pooled fragment mass spectrum of every point.", "SELECT * FROM spectra ORDER BY point_id, bin", ""},
+    {"run-spectrum", "Fragment mass spectrum of one run (:run).",
+     "SELECT s.bin, b.lower, b.upper, s.count, s.mass FROM spectrum s JOIN bin b USING (bin) WHERE s.run_id = :run "
+     "ORDER BY "
+     "s.bin",
+     "run"},
+    {"exponents",
+     "Exponent beta of F(m) ~ m^-beta by method and window: pooled over each point's runs, with its error.",
+     "SELECT * FROM estimates WHERE run_id IS NULL ORDER BY point_id, ordinal", ""},
+    {"run-exponents", "Mean and scatter over runs of the exponent that each run gave, by point, method and window.",
+     "SELECT point_id, results_version, method, \"window\", count(beta) AS n, avg(beta) AS beta_mean, sqrt(max(0, "
+     "(total(beta * beta) - count(beta) * avg(beta) * avg(beta)) / (count(beta) - 1))) AS beta_sd,\n"
+     "  avg(standard_error) AS standard_error_mean\n"
+     "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, ordinal ORDER BY point_id, ordinal",
+     ""},
+    {"scatter", "How much the seed matters: relative scatter of the main results per point.",
+     "SELECT point_id, n, largest_fraction_sd / largest_fraction_mean AS largest_fraction_scatter,\n"
+     "  fragment_count_sd / fragment_count_mean AS fragment_count_scatter,\n"
+     "  mean_fragment_mass_sd / mean_fragment_mass_mean AS mean_fragment_mass_scatter\n"
+     "FROM points WHERE n > 1 ORDER BY point_id",
+     ""},
+    {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
+     "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
+     "AND "
+     "surplus = 0\nUNION ALL\n"
+     "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', iif(exit_code, ' (exit ' "
+     "|| "
+     "exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
+     ""},
+    {"censored", "Runs that ended at their time: fragments may still have been breaking.",
+     "SELECT point_id, run_id, replicate, seed, time, largest_fraction FROM run WHERE state = 'end-time' ORDER BY "
+     "point_id, "
+     "replicate",
+     ""},
+    {"slowest", "The twenty dearest runs.",
+     "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM run ORDER BY "
+     "wall_time DESC LIMIT 20",
+     ""},
+    {"cost", "Time and memory per point.",
+     "SELECT point_id, count(*) AS runs, total(wall_time) AS wall_time, avg(wall_time) AS wall_time_mean, "
+     "max(wall_time) AS "
+     "wall_time_max, max(peak_memory) AS peak_memory FROM run GROUP BY point_id ORDER BY wall_time DESC",
+     ""},
+    {"progress", "Runs stored per session.",
+     "SELECT s.session_id, s.started_at, s.ended_at, s.outcome, s.host, count(r.run_id) AS runs, total(r.cpu_time) AS "
+     "cpu_time FROM session s LEFT JOIN run r USING (session_id) GROUP BY s.session_id",
+     ""},
+    {"axes", "The inputs that campaigns varied, and how many values each has.",
+     "SELECT a.column_name, a.path, a.unit, (SELECT count(DISTINCT value) FROM point_input i WHERE i.path = a.path) AS "
+     "\"values\", a.meaning FROM axis a ORDER BY a.path",
+     ""},
+    {"columns", "Every table and view, column by column, with unit and meaning.",
+     "SELECT table_name, column_name, unit, meaning FROM column_doc ORDER BY table_name, column_name", ""},
+    {"provenance", "What computed the runs: program, compiler, machine, command line.",
+     "SELECT session_id, started_at, host, key, value FROM session, json_each(facts) ORDER BY session_id, id", ""},
+};
+
+size_t ask_canned_count(void) {
+  return sizeof queries / sizeof queries[0];
+}
+
+const struct query_canned *ask_canned_at(size_t index) {
+  return index < ask_canned_count() ? &queries[index] : NULL;
+}
+
+const struct query_canned *ask_canned_find(const char *name, struct error *error) {
+  char known[512] = "";
+  for (size_t i = 0; i < ask_canned_count(); i++) {
+    if (strcmp(queries[i].name, name) == 0)
+      return &queries[i];
+    size_t used = strlen(known);
+    snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", queries[i].name);
+  }
+  status_fail(error, STATUS_USAGE, "There is no canned query '%.60s'. Known are: %s.", name, known);
+  return NULL;
+}

@@ -1,0 +1,159 @@
+/* Statistics grouped by any varied inputs, pooled over the others (`--by m,k`): from run rows, so that n, mean and
+ * scatter are those of all runs in the group, not of points' means. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/ask/query.h"
+#include "db/store/internal.h"
+#include "db/store/views.h"
+#include "schemas/edit_distance.h"
+
+enum { NAMES = 32, NAME = 128 };
+
+struct names {
+  char name[NAMES][NAME];
+  size_t count;
+};
+
+/* `column` ends in `wanted` after an underscore or a dot, or is it. */
+static bool ends_in(const char *column, const char *wanted) {
+  size_t length = strlen(column), tail = strlen(wanted);
+  if (tail > length)
+    return false;
+  const char *end = column + length - tail;
+  return strcmp(end, wanted) == 0 && (end == column || end[-1] == '_' || end[-1] == '.');
+}
+
+struct choice { /* what a word may stand for */
+  const char *wanted;
+  char found[NAME];
+  size_t matches, distance; /* of the nearest one */
+  bool exact;
+  char near[NAME], known[4096], matching[1024];
+};
+
+static void append(char *list, size_t size, const char *name) {
+  const size_t used = strlen(list);
+  snprintf(list + used, size - used, "%s%s", used ? ", " : "", name);
+}
+
+static status consider(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)error;
+  struct choice *choice = context;
+  const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
+  const size_t distance = edit_distance(choice->wanted, strlen(choice->wanted), name);
+  if (distance < choice->distance) {
+    choice->distance = distance;
+    snprintf(choice->near, sizeof choice->near, "%s", name);
+  }
+  append(choice->known, sizeof choice->known, name);
+  bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
+  if (choice->exact || !(exact || ends_in(column, choice->wanted) || (path && ends_in(path, choice->wanted))))
+    return STATUS_OK;
+  choice->matches = exact ? 1 : choice->matches + 1;
+  choice->exact = exact;
+  append(choice->matching, sizeof choice->matching, name);
+  snprintf(choice->found, sizeof choice->found, "%s", column);
+  return STATUS_OK;
+}
+
+static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
+                      struct names *out, struct error *error) {
+  while (*list) {
+    char word[NAME];
+    size_t length = strcspn(list, ",");
+    snprintf(word, sizeof word, "%.*s", (int)(length < NAME ? length : NAME - 1), list);
+    list += length + (list[length] == ',');
+    char *from = word + strspn(word, " ");
+    for (size_t n = strlen(from); n > 0 && from[n - 1] == ' '; n--)
+      from[n - 1] = '\0';
+    if (!*from)
+      continue;
+    struct choice choice = {.wanted = from, .distance = edit_distance_limit(strlen(from)) + 1};
+    const struct query_sink sink = {.context = &choice, .row = consider};
+    status result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
+    if (result != STATUS_OK)
+      return result;
+    if (choice.matches > 1)
+      return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, from, choice.matching);
+    if (choice.matches == 0 && choice.near[0])
+      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, from, choice.near);
+    if (choice.matches == 0)
+      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, from,
+                         choice.known[0] ? choice.known : "none");
+    if (out->count == NAMES)
+      return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
+    snprintf(out->name[out->count++], NAME, "%s", choice.found);
+  }
+  return STATUS_OK;
+}
+
+static char *group_sql(const struct names *axes, const struct names *quantities) {
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return NULL;
+  fputs("SELECT ", out);
+  for (size_t i = 0; i < axes->count; i++)
+    fprintf(out, "\"%s\", ", axes->name[i]);
+  fputs("engine, results_version, n, failed, censored", out);
+  for (size_t i = 0; i < quantities->count; i++) {
+    const char *q = quantities->name[i];
+    fprintf(out, ",\n  m%zu AS \"%s_mean\", d%zu AS \"%s_sd\", d%zu / sqrt(n%zu) AS \"%s_se\", d%zu / sqrt(n%zu) * (",
+            i, q, i, q, i, i, q, i, i);
+    char degrees[32];
+    snprintf(degrees, sizeof degrees, "(n%zu - 1)", i);
+    views_student(out, degrees);
+    fprintf(out, ") AS \"%s_hw95\"", q);
+  }
+  /* Ordered rows, so that the sums have the same bits whoever finished first. */
+  fputs("\nFROM (SELECT ", out);
+  for (size_t i = 0; i < axes->count; i++)
+    fprintf(out, "\"%s\", ", axes->name[i]);
+  fputs("engine, results_version, sum(counts) AS n, sum(counts = 0) AS failed, sum(counts AND state = 'end-time') AS "
+        "censored",
+        out);
+  for (size_t i = 0; i < quantities->count; i++) {
+    const char *q = quantities->name[i];
+    fprintf(out,
+            ",\n  count(iif(counts, \"%s\", NULL)) AS n%zu, avg(iif(counts, \"%s\", NULL)) AS m%zu, stdev(iif(counts, "
+            "\"%s\", NULL)) AS d%zu",
+            q, i, q, i, q, i);
+  }
+  fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
+        out);
+  for (size_t i = 0; i < axes->count; i++)
+    fprintf(out, "\"%s\", ", axes->name[i]);
+  fputs("engine, results_version) ORDER BY ", out);
+  for (size_t i = 0; i < axes->count; i++)
+    fprintf(out, "\"%s\", ", axes->name[i]);
+  fputs("engine, results_version", out);
+  fclose(out);
+  return sql;
+}
+
+status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
+                 struct error *error) {
+  struct names axes = {.count = 0}, results = {.count = 0};
+  status result = ask_register_functions(store, error);
+  if (result == STATUS_OK)
+    result = resolve(store, by, "Axis", "SELECT column_name, path FROM axis ORDER BY path", &axes, error);
+  if (result == STATUS_OK && quantities)
+    result =
+        resolve(store, quantities, "Quantity",
+                "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
+                "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
+                "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)",
+                &results, error);
+  for (int i = 0; result == STATUS_OK && !quantities && views_quantities[i]; i++)
+    snprintf(results.name[results.count++], NAME, "%s", views_quantities[i]);
+  if (result != STATUS_OK)
+    return result;
+  char *sql = group_sql(&axes, &results);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
+  result = query_run(store, sql, 0, NULL, 0, sink, error);
+  free(sql);
+  return result;
+}

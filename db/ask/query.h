@@ -1,0 +1,67 @@
+/* Asking a store: any SQL that only reads, canned queries by name, statistics grouped by any varied input.
+ *
+ * Rows go to a sink as they come, with names and types, so that commands print tables, CSV or JSON and nothing is held
+ * in memory. The connection refuses whatever is not a reading statement. */
+#ifndef CLAST_DB_ASK_QUERY_H
+#define CLAST_DB_ASK_QUERY_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "db/store/store.h"
+
+enum query_kind { QUERY_NULL, QUERY_INTEGER, QUERY_REAL, QUERY_TEXT, QUERY_BLOB };
+
+struct query_value {
+  enum query_kind kind;
+  int64_t integer;  /* QUERY_INTEGER */
+  double real;      /* QUERY_REAL; the integer too, for whoever only wants a number. NaN for NULL */
+  const char *text; /* QUERY_TEXT: NUL-terminated, borrowed for the call */
+  const void *blob; /* QUERY_BLOB */
+  size_t size;      /* bytes of text or blob */
+};
+
+struct query_sink {
+  void *context;
+  /* Once, before the first row, also when there are none. May be NULL. */
+  status (*columns)(void *context, size_t count, const char *const *names, struct error *error);
+  /* Anything but STATUS_OK ends the query with that status. May be NULL. */
+  status (*row)(void *context, size_t count, const struct query_value *values, struct error *error);
+};
+
+struct query_parameter { /* fills :name in the SQL; a text that reads as a number is bound as one */
+  const char *name, *value;
+};
+
+/* One statement that only reads. STATUS_USAGE: not read-only, more than one statement, a parameter missing or unknown,
+ * an SQL error (SQLite's message and the place). STATUS_STOPPED: longer than time_limit_s (0 = none). */
+status query_run(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,
+                 double time_limit_s, const struct query_sink *sink, struct error *error);
+
+/* One number: first column of the first row. NaN when there is none or it is NULL. */
+status query_number(struct store *store, const char *sql, size_t parameter_count,
+                    const struct query_parameter *parameters, double *number, struct error *error);
+
+/* Aggregates for people at the command line, on this connection only: stdev(x), median(x), and hist_sum(masses), which
+ * pools mass blobs into the store's bins as a JSON array of [bin, count, mass]. The shipped views do without them. */
+status ask_register_functions(struct store *store, struct error *error);
+
+/* n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, pooled over
+ * all runs that share the named axes. `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k");
+ * "" pools everything. `quantities`: comma-separated result columns or unique suffixes; NULL = the main ones. Results
+ * of different results_version are different rows. Registers the functions above. STATUS_USAGE names the known axes and
+ * quantities. */
+status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
+                 struct error *error);
+
+/* Canned queries: a name, what it answers in a sentence, its SQL, the names of its parameters. */
+struct query_canned {
+  const char *name, *doc, *sql;
+  const char *parameters; /* comma-separated, "" for none */
+};
+size_t ask_canned_count(void);
+const struct query_canned *ask_canned_at(size_t index);
+/* NULL: *error lists the known names. */
+const struct query_canned *ask_canned_find(const char *name, struct error *error);
+
+#endif

@@ -1,0 +1,139 @@
+/* Aggregates for people at the command line: SQLite has no median and no standard deviation. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/ask/query.h"
+#include "db/store/internal.h"
+#include "engine/spectrum.h"
+
+struct deviation { /* Welford 1962 */
+  int64_t n;
+  double mean, squares;
+};
+
+static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct deviation *d = sqlite3_aggregate_context(context, sizeof *d);
+  if (!d || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
+  double x = sqlite3_value_double(values[0]), from_old = x - d->mean;
+  d->n++;
+  d->mean += from_old / (double)d->n;
+  d->squares += from_old * (x - d->mean);
+}
+
+static void stdev_final(sqlite3_context *context) {
+  struct deviation *d = sqlite3_aggregate_context(context, 0);
+  if (d && d->n > 1)
+    sqlite3_result_double(context, sqrt(d->squares / (double)(d->n - 1)));
+}
+
+struct sample {
+  double *values;
+  size_t n, capacity;
+};
+
+static void median_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct sample *s = sqlite3_aggregate_context(context, sizeof *s);
+  if (!s || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
+  if (s->n == s->capacity) {
+    size_t capacity = s->capacity ? 2 * s->capacity : 64;
+    double *grown = realloc(s->values, capacity * sizeof *grown);
+    if (!grown) {
+      sqlite3_result_error_nomem(context);
+      return;
+    }
+    s->values = grown;
+    s->capacity = capacity;
+  }
+  s->values[s->n++] = sqlite3_value_double(values[0]);
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return x < y ? -1 : x > y;
+}
+
+static void median_final(sqlite3_context *context) {
+  struct sample *s = sqlite3_aggregate_context(context, 0);
+  if (!s || s->n == 0)
+    return;
+  qsort(s->values, s->n, sizeof *s->values, ascending);
+  sqlite3_result_double(context, s->n % 2 ? s->values[s->n / 2] : (s->values[s->n / 2 - 1] + s->values[s->n / 2]) / 2);
+  free(s->values);
+}
+
+enum { LOWEST = -400, BINS = 800 }; /* 1e-40 to 1e40 kg */
+
+struct histogram {
+  int64_t count[BINS];
+  double mass[BINS];
+  bool wrong;
+};
+
+static void hist_sum_step(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  struct histogram *h = sqlite3_aggregate_context(context, sizeof *h);
+  if (!h || sqlite3_value_type(values[0]) == SQLITE_NULL)
+    return;
+  const unsigned char *bytes = sqlite3_value_blob(values[0]);
+  size_t size = (size_t)sqlite3_value_bytes(values[0]);
+  h->wrong = h->wrong || sqlite3_value_type(values[0]) != SQLITE_BLOB || size % 8 != 0;
+  for (size_t i = 0; !h->wrong && i < size; i += 8) {
+    uint64_t bits = 0;
+    double mass;
+    for (int k = 7; k >= 0; k--)
+      bits = bits << 8 | bytes[i + (size_t)k];
+    memcpy(&mass, &bits, sizeof mass);
+    int bin = spectrum_bin(mass);
+    if (bin < LOWEST || bin >= LOWEST + BINS)
+      continue;
+    h->count[bin - LOWEST]++;
+    h->mass[bin - LOWEST] += mass;
+  }
+}
+
+static void hist_sum_final(sqlite3_context *context) {
+  struct histogram *h = sqlite3_aggregate_context(context, 0);
+  char *text = NULL;
+  size_t size = 0;
+  bool first = true;
+  if (h && h->wrong) {
+    sqlite3_result_error(context, "hist_sum() wants fragment_mass.masses: blobs of float64", -1);
+    return;
+  }
+  FILE *out = open_memstream(&text, &size);
+  if (!out) {
+    sqlite3_result_error_nomem(context);
+    return;
+  }
+  fputc('[', out);
+  for (int i = 0; h && i < BINS; i++) {
+    if (h->count[i] == 0)
+      continue;
+    fprintf(out, "%s[%d,%lld,%.17g]", first ? "" : ",", i + LOWEST, (long long)h->count[i], h->mass[i]);
+    first = false;
+  }
+  fputc(']', out);
+  fclose(out);
+  sqlite3_result_text(context, text, -1, SQLITE_TRANSIENT);
+  free(text);
+}
+
+status ask_register_functions(struct store *store, struct error *error) {
+  const int flags = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS;
+  if (store->functions)
+    return STATUS_OK;
+  int code = sqlite3_create_function(store->db, "stdev", 1, flags, NULL, NULL, stdev_step, stdev_final);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "median", 1, flags, NULL, NULL, median_step, median_final);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
+  if (code != SQLITE_OK)
+    return sql_fail(store->db, code, "registering functions", error);
+  store->functions = true;
+  return STATUS_OK;
+}

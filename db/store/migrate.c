@@ -1,0 +1,92 @@
+#include "db/store/migrate.h"
+
+#include <unistd.h>
+
+#include "db/store/bins.h"
+#include "db/store/schema.h"
+#include "db/store/sums.h"
+#include "db/store/views.h"
+
+status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error) {
+  int64_t application, user_version, things;
+  status result = sql_integer(db, "PRAGMA application_id", 0, &application, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "PRAGMA user_version", 0, &user_version, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &things, error);
+  if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
+    return status_fail(error, STATUS_CONTENT,
+                       "%s is no SQLite database, so no store of clast. Name another file; this one was left alone.",
+                       path);
+  if (result == STATUS_CONTENT) /* SQLite compares the file's length with what its header says */
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s is damaged, perhaps cut short: %s. Restore a copy, or save what can be saved with `sqlite3 FILE "
+        ".recover`.",
+        path, sqlite3_errmsg(db));
+  if (result != STATUS_OK)
+    return result;
+  if (application == 0 && user_version == 0 && things == 0) {
+    *version = -1;
+    return STATUS_OK;
+  }
+  if (application != SCHEMA_APPLICATION_ID)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s is a database of another program (application id 0x%08llx), not a store of clast. Name another "
+        "file; this one was left alone.",
+        path, (unsigned long long)application);
+  if (user_version > SCHEMA_VERSION || user_version < 0)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that newer "
+        "program; the file was left alone.",
+        path, (long long)user_version, SCHEMA_VERSION);
+  *version = (int)user_version;
+  return STATUS_OK;
+}
+
+/* Version 0 had no running sums and no table of bin edges. */
+static status to_version_1(sqlite3 *db, struct error *error) {
+  status result = bins_cover_spectrum(db, error);
+  return result == STATUS_OK ? sums_rebuild(db, 0, error) : result;
+}
+
+static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1};
+
+static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
+  char *copy = NULL;
+  for (int i = 0; i < 100; i++) { /* an earlier try that failed may have left one */
+    sqlite3_free(copy);
+    copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
+    if (!copy)
+      return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+    if (access(copy, F_OK) != 0)
+      break;
+  }
+  status result = sql_executef(db, "keeping a copy before bringing the store forward", error, "VACUUM INTO %Q", copy);
+  sqlite3_free(copy);
+  return result;
+}
+
+status migrate_bring_forward(sqlite3 *db, const char *path, int version, const struct field_table *estimate_table,
+                             struct error *error) {
+  status result = version >= 0 && version < SCHEMA_VERSION ? back_up(db, path, version, error) : STATUS_OK;
+  if (result != STATUS_OK)
+    return result;
+  result = sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error);
+  if (result != STATUS_OK)
+    return result;
+  result = schema_complete_all(db, estimate_table, error);
+  for (int i = version; version >= 0 && result == STATUS_OK && i < SCHEMA_VERSION; i++)
+    result = steps[i](db, error);
+  if (result == STATUS_OK)
+    result = views_regenerate(db, error);
+  if (result == STATUS_OK)
+    result = sql_executef(db, "opening for writing", error,
+                          "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT", SCHEMA_APPLICATION_ID,
+                          SCHEMA_VERSION);
+  if (result != STATUS_OK)
+    sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
+  return result;
+}

@@ -1,0 +1,200 @@
+#include "db/store/schema.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/store/schema_tables.h"
+#include "db/store/views.h"
+
+static const struct schema_column result_columns[] = {
+    {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
+};
+
+struct schema_table schema_result_table(const struct engine_kind *kind) {
+  struct schema_table table = {.meaning = "What this engine reports beyond the columns of table run, one to one.",
+                               .columns = result_columns,
+                               .count = sizeof result_columns / sizeof result_columns[0],
+                               .fields = kind->results,
+                               .options = "STRICT"};
+  snprintf(table.name, sizeof table.name, "result_%s", kind->name);
+  return table;
+}
+
+/* The tables in the order in which they must be created: engines' results last. */
+static struct schema_table table_at(size_t index, const struct field_table *estimate_table) {
+  if (index >= schema_tables_count)
+    return schema_result_table(engine_at(index - schema_tables_count));
+  struct schema_table table = schema_tables[index];
+  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0)
+    table.fields = estimate_table;
+  return table;
+}
+
+/* The field tables' rows carry the choices' names in their meaning, since a column is read without the program. */
+static void write_meaning(const struct field *row, FILE *out) {
+  for (const char *c = row->doc ? row->doc : ""; *c; c++)
+    fputc(*c == '\n' ? ' ' : *c, out);
+  for (size_t i = 0; row->choices && row->choices[i]; i++)
+    fprintf(out, "%s%s", i ? ", " : " One of: ", row->choices[i]);
+}
+
+static void write_column(const char *name, const char *declaration, bool last, const char *unit, FILE *out) {
+  fprintf(out, "  %s %s%s -- %s%s%s", name, declaration, last ? "" : ",", unit ? "[" : "", unit ? unit : "",
+          unit ? "] " : "");
+}
+
+static void write_table(const struct schema_table *table, FILE *out) {
+  size_t fields = table->fields ? table->fields->count : 0;
+  fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
+  for (size_t i = 0; i < table->count; i++) {
+    const struct schema_column *column = &table->columns[i];
+    write_column(column->name, column->declaration, i + 1 == table->count && fields == 0 && !table->tail, column->unit,
+                 out);
+    fprintf(out, "%s\n", column->meaning);
+  }
+  for (size_t i = 0; i < fields; i++) {
+    const struct field *row = &table->fields->rows[i];
+    char name[SCHEMA_NAME_SIZE];
+    sql_column_name(row->path, name, sizeof name);
+    write_column(name, sql_type(row), i + 1 == fields && !table->tail, row->unit, out);
+    write_meaning(row, out);
+    fputc('\n', out);
+  }
+  if (table->tail)
+    fprintf(out, "  %s\n", table->tail);
+  fprintf(out, ") %s;\n", table->options);
+}
+
+static status has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(db, "SELECT 1 FROM pragma_table_xinfo(?1) WHERE name = ?2 OR ?2 = ''", &statement,
+                              "reading the schema", error);
+  if (result == STATUS_OK) {
+    sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
+    sqlite3_bind_text(statement, 2, column, -1, SQLITE_STATIC);
+    int code = sqlite3_step(statement);
+    *has = code == SQLITE_ROW;
+    if (code != SQLITE_ROW && code != SQLITE_DONE)
+      result = sql_fail(db, code, "reading the schema", error);
+  }
+  sqlite3_finalize(statement);
+  return result;
+}
+
+static status write_docs(sqlite3 *db, const struct schema_table *table, struct error *error) {
+  static const char insert[] = "INSERT OR REPLACE INTO column_doc (table_name, column_name, unit, meaning, "
+                               "deterministic) VALUES (%Q, %Q, %Q, %Q, %d)";
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < table->count; i++)
+    result = sql_executef(db, "documenting columns", error, insert, table->name, table->columns[i].name,
+                          table->columns[i].unit, table->columns[i].meaning, 0);
+  for (size_t i = 0; result == STATUS_OK && table->fields && i < table->fields->count; i++) {
+    const struct field *row = &table->fields->rows[i];
+    char name[SCHEMA_NAME_SIZE], *meaning = NULL;
+    size_t size = 0;
+    sql_column_name(row->path, name, sizeof name);
+    FILE *text = open_memstream(&meaning, &size);
+    if (!text)
+      return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
+    write_meaning(row, text);
+    fclose(text);
+    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning,
+                          (row->flags & FIELD_VOLATILE) == 0);
+    free(meaning);
+  }
+  return result;
+}
+
+static status create(sqlite3 *db, const struct schema_table *table, struct error *error) {
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *text = open_memstream(&sql, &size);
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
+  write_table(table, text);
+  for (size_t i = 0; i < schema_tables_indexes_count; i++)
+    if (strcmp(schema_tables_indexes[i][0], table->name) == 0)
+      fprintf(text, "%s\n", schema_tables_indexes[i][1]);
+  fclose(text);
+  status result = sql ? sql_execute(db, sql, "creating tables", error)
+                      : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
+  free(sql);
+  return result;
+}
+
+status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
+  bool has = false;
+  status result = has_column(db, table->name, "", &has, error);
+  if (result != STATUS_OK)
+    return result;
+  if (!has) {
+    result = create(db, table, error);
+    return result == STATUS_OK ? write_docs(db, table, error) : result;
+  }
+  bool grown = false;
+  for (size_t i = 0; table->fields && i < table->fields->count; i++) {
+    char name[SCHEMA_NAME_SIZE];
+    sql_column_name(table->fields->rows[i].path, name, sizeof name);
+    result = has_column(db, table->name, name, &has, error);
+    if (result == STATUS_OK && !has)
+      result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name, name,
+                            sql_type(&table->fields->rows[i]));
+    if (result != STATUS_OK)
+      return result;
+    grown = grown || !has;
+  }
+  return grown ? write_docs(db, table, error) : STATUS_OK;
+}
+
+status schema_complete_all(sqlite3 *db, const struct field_table *estimate_table, struct error *error) {
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < schema_tables_count + engine_count(); i++) {
+    struct schema_table table = table_at(i, estimate_table);
+    result = schema_complete(db, &table, error);
+  }
+  return result;
+}
+
+/* Made from a real database, so that the text cannot differ from what a store is. */
+static status write_sql(sqlite3 *db, const struct field_table *estimate_table, FILE *out, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = schema_complete_all(db, estimate_table, error);
+  if (result == STATUS_OK)
+    result = views_regenerate(db, error);
+  if (result == STATUS_OK)
+    result = sql_prepare(db,
+                         "SELECT sql || ';' FROM sqlite_schema WHERE sql IS NOT NULL UNION ALL SELECT * FROM (SELECT "
+                         "format('INSERT INTO column_doc VALUES (%Q, %Q, %Q, %Q, %d);', table_name, column_name, unit, "
+                         "meaning, deterministic) FROM column_doc ORDER BY table_name, column_name)",
+                         &statement, "writing the schema", error);
+  fprintf(out,
+          "-- The store of clast: schema of version %d.\n"
+          "-- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test "
+          "compares.\n"
+          "-- Views have, besides, one column per input that some campaign varied (table axis).\n"
+          "PRAGMA application_id = %d;\nPRAGMA user_version = %d;\n",
+          SCHEMA_VERSION, SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
+  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
+    fprintf(out, "\n%s\n", (const char *)sqlite3_column_text(statement, 0));
+  sqlite3_finalize(statement);
+  return result;
+}
+
+char *schema_sql(const struct field_table *estimate_table) {
+  char *text = NULL;
+  size_t size = 0;
+  sqlite3 *db = NULL;
+  status result = STATUS_INTERNAL;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  if (sqlite3_open(":memory:", &db) == SQLITE_OK)
+    result = write_sql(db, estimate_table, out, NULL);
+  sqlite3_close(db);
+  fclose(out);
+  if (result != STATUS_OK) {
+    free(text);
+    return NULL;
+  }
+  return text;
+}

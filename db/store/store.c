@@ -1,0 +1,353 @@
+#include "db/store/store.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "db/store/internal.h"
+#include "db/store/lock.h"
+#include "db/store/migrate.h"
+#include "db/store/schema.h"
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static struct store *allocate(const char *path) {
+  struct store *store = calloc(1, sizeof *store);
+  if (!store)
+    return NULL;
+  store->lock = -1;
+  store->lowest_bin = 1;
+  store->path = strdup(path);
+  if (store->path)
+    return store;
+  free(store);
+  return NULL;
+}
+
+static void release(struct store *store) {
+  sqlite3_stmt *const statements[] =
+      {store->run,         store->masses,        store->motion,     store->spectrum, store->spectrum_together,
+       store->attempt,     store->estimate,      store->point_find, store->point,    store->axis_find,
+       store->point_input, store->campaign_point};
+  for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
+    sqlite3_finalize(statements[i]);
+  for (size_t i = 0; i < store->kind_count; i++)
+    sqlite3_finalize(store->kinds[i].insert);
+  sums_clear(&store->sums);
+  identities_clear(&store->identities);
+  sqlite3_close(store->db);
+  if (store->lock >= 0)
+    close(store->lock); /* after SQLite has closed the file: see db/store/lock.h */
+  free(store->blob);
+  free(store->bins);
+  free(store->path);
+  free(store);
+}
+
+static status open_database(struct store *store, int flags, struct error *error) {
+  int code = sqlite3_open_v2(store->path, &store->db, flags | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
+  if (code != SQLITE_OK)
+    return sql_fail(store->db, code, "opening", error);
+  sqlite3_busy_timeout(store->db, 10000);
+  return STATUS_OK;
+}
+
+/* Who holds it: the row that the holder wrote, if it is there yet. */
+static status refuse_held(const char *path, struct error *error) {
+  struct store *store = NULL;
+  sqlite3_stmt *statement = NULL;
+  char holder[512] = "";
+  if (store_open_reader(path, &store, NULL) == STATUS_OK &&
+      sqlite3_prepare_v2(store->db, "SELECT host, pid, since FROM holder", -1, &statement, NULL) == SQLITE_OK &&
+      sqlite3_step(statement) == SQLITE_ROW)
+    snprintf(holder, sizeof holder, " on host %s, process %lld, since %s", sqlite3_column_text(statement, 0),
+             (long long)sqlite3_column_int64(statement, 1), sqlite3_column_text(statement, 2));
+  sqlite3_finalize(statement);
+  store_close(store, NULL);
+  return status_fail(
+      error, STATUS_IO,
+      "%s: the store is being written by another clast%s. Wait until it ends, or stop it; or name another "
+      "store.",
+      path, holder);
+}
+
+static status load_identities(struct store *store, struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(store->db, "SELECT identity, 1 FROM run UNION ALL SELECT identity, 0 FROM attempt",
+                              &statement, "reading what is there", error);
+  int code = SQLITE_DONE;
+  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
+    struct identities_entry *entry = sqlite3_column_bytes(statement, 0) == 16
+                                         ? identities_add(&store->identities, sqlite3_column_blob(statement, 0))
+                                         : NULL;
+    if (!entry)
+      result = status_fail(error, STATUS_MEMORY, "%s: memory ran out while reading what is there", store->path);
+    else if (sqlite3_column_int(statement, 1))
+      entry->stored = true;
+    else
+      entry->attempts++;
+  }
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(store->db, code, "reading what is there", error);
+  sqlite3_finalize(statement);
+  int64_t lowest = 1, highest = 0;
+  if (result == STATUS_OK)
+    result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
+  if (result == STATUS_OK)
+    result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
+  store->lowest_bin = (int)lowest;
+  store->highest_bin = (int)highest;
+  store->identities_loaded = result == STATUS_OK;
+  return result;
+}
+
+static status write_holder(struct store *store, struct error *error) {
+  char host[256] = "unknown";
+  gethostname(host, sizeof host - 1);
+  return sql_executef(store->db, "writing who holds the store", error,
+                      "INSERT OR REPLACE INTO holder VALUES (1, %Q, %lld, strftime('%%Y-%%m-%%dT%%H:%%M:%%SZ', 'now'))",
+                      host, (long long)getpid());
+}
+
+status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
+                         size_t warning_size, struct error *error) {
+  bool held = false;
+  int version = -1;
+  *out = NULL;
+  if (warning_size)
+    warning[0] = '\0';
+  struct store *store = allocate(path);
+  if (!store)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+  store->writer = true;
+  store->estimate_table = estimate_table;
+  bool existed = access(path, F_OK) == 0;
+  status result = lock_take(path, &store->lock, &held, error);
+  if (result != STATUS_OK) {
+    release(store);
+    return held ? refuse_held(path, error) : result;
+  }
+  const char *network = lock_network_file_system(store->lock);
+  if (network && warning_size)
+    snprintf(
+        warning, warning_size,
+        "%s lies on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
+        "local disk and copy the file when it is done.",
+        path, network);
+  result = open_database(store, SQLITE_OPEN_READWRITE, error);
+  if (result == STATUS_OK)
+    result = migrate_inspect(store->db, path, &version, error);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db,
+                         "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
+                         "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                         "opening for writing", error);
+  if (result == STATUS_OK)
+    result = migrate_bring_forward(store->db, path, version, estimate_table, error);
+  if (result == STATUS_OK)
+    result = write_holder(store, error);
+  if (result == STATUS_OK)
+    result = load_identities(store, error);
+  if (result != STATUS_OK) {
+    struct stat file;
+    release(store);
+    if (!existed && stat(path, &file) == 0 && file.st_size == 0)
+      unlink(path); /* ours, and nothing in it */
+    return result;
+  }
+  *out = store;
+  return STATUS_OK;
+}
+
+status store_open_reader(const char *path, struct store **out, struct error *error) {
+  int version = -1;
+  *out = NULL;
+  if (access(path, F_OK) != 0)
+    return status_fail(error, STATUS_MISSING, "%s: there is no such store. Look at the name and the current folder.",
+                       path);
+  struct stat file;
+  if (stat(path, &file) == 0 && S_ISDIR(file.st_mode))
+    return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
+  struct store *store = allocate(path);
+  if (!store)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+  status result = open_database(store, SQLITE_OPEN_READONLY, error);
+  if (result == STATUS_OK)
+    result = migrate_inspect(store->db, path, &version, error);
+  if (result == STATUS_OK && version < 0)
+    result = status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", path);
+  if (result == STATUS_OK && version < SCHEMA_VERSION)
+    result = status_fail(
+        error, STATUS_CONTENT,
+        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or `clast "
+        "merge NEW.db` it: opening for writing brings it forward and keeps a copy.",
+        path, version, SCHEMA_VERSION);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db, "PRAGMA query_only = ON; PRAGMA temp_store = MEMORY", "opening", error);
+  if (result != STATUS_OK) {
+    release(store);
+    return result;
+  }
+  *out = store;
+  return STATUS_OK;
+}
+
+status store_close(struct store *store, struct error *error) {
+  if (!store)
+    return STATUS_OK;
+  status result = STATUS_OK;
+  if (store->writer) {
+    result = store_flush(store, error);
+    if (result == STATUS_OK)
+      result = sql_execute(store->db, "DELETE FROM holder", "closing", error);
+    /* A reader in the middle of a query keeps the log in use: then the file stays in WAL mode, whole and readable. */
+    sqlite3_busy_timeout(store->db, 1000);
+    sqlite3_exec(store->db, "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
+  }
+  release(store);
+  return result;
+}
+
+static void take_back(struct store *store) {
+  sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL); /* an error may have done it already */
+  for (size_t i = 0; i < store->batch_identity_count; i++) {
+    struct identities_entry *entry = identities_find(&store->identities, store->batch_identities[i]);
+    if (entry)
+      entry->stored = false;
+  }
+  sums_forget(&store->sums);
+  store->in_batch = false;
+  store->batch_identity_count = 0;
+  store->broken = true;
+}
+
+status store_begin(struct store *store, struct error *error) {
+  if (!store->writer)
+    return status_fail(error, STATUS_INTERNAL, "%s is open for reading only", store->path);
+  if (store->broken)
+    return status_fail(
+        error, STATUS_IO,
+        "%s: an earlier write failed, so nothing more is written. What was committed is safe; give the same "
+        "command again to do the rest.",
+        store->path);
+  if (store->in_batch)
+    return STATUS_OK;
+  status result = sql_execute(store->db, "BEGIN IMMEDIATE", "beginning to write", error);
+  if (result != STATUS_OK) {
+    store->broken = true;
+    return result;
+  }
+  store->in_batch = true;
+  store->batch_rows = 0;
+  store->batch_identity_count = 0;
+  store->batch_started = now();
+  return STATUS_OK;
+}
+
+status store_end(struct store *store, status result, int rows, struct error *error) {
+  if (result != STATUS_OK) {
+    if (store->in_batch)
+      take_back(store);
+    return result;
+  }
+  store->batch_rows += rows;
+  return store->batch_rows >= STORE_BATCH_ROWS ? store_flush(store, error) : store_tick(store, error);
+}
+
+status store_flush(struct store *store, struct error *error) {
+  if (!store->in_batch)
+    return STATUS_OK;
+  status result = sums_write(&store->sums, store->db, error);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db, "COMMIT", "committing", error);
+  if (result != STATUS_OK) {
+    take_back(store);
+    return result;
+  }
+  store->in_batch = false;
+  store->batch_identity_count = 0;
+  return STATUS_OK;
+}
+
+status store_tick(struct store *store, struct error *error) {
+  return store->in_batch && now() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error) : STATUS_OK;
+}
+
+status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error) {
+  char host[256] = "unknown";
+  gethostname(host, sizeof host - 1);
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  result =
+      sql_executef(store->db, "beginning a session", error,
+                   "INSERT INTO session (started_at, host, pid, facts) VALUES (strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', "
+                   "'now'), %Q, %lld, %Q)",
+                   host, (long long)getpid(), facts_json ? facts_json : "{}");
+  *session_id = sqlite3_last_insert_rowid(store->db);
+  result = store_end(store, result, 1, error);
+  return result == STATUS_OK ? store_flush(store, error) : result;
+}
+
+status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error) {
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_executef(store->db, "ending a session", error,
+                        "UPDATE session SET ended_at = strftime('%%Y-%%m-%%dT%%H:%%M:%%fZ', 'now'), outcome = %Q WHERE "
+                        "session_id = %lld",
+                        outcome, (long long)session_id);
+  result = store_end(store, result, 1, error);
+  return result == STATUS_OK ? store_flush(store, error) : result;
+}
+
+bool store_has_run(struct store *store, const uint8_t identity[16]) {
+  if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
+    return false;
+  const struct identities_entry *entry = identities_find(&store->identities, identity);
+  return entry && entry->stored;
+}
+
+int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit) {
+  if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
+    return 0;
+  const struct identities_entry *entry = identities_find(&store->identities, identity);
+  if (!entry || entry->attempts == 0)
+    return 0; /* nearly always: no query */
+  sqlite3_stmt *statement = NULL;
+  int count = (int)entry->attempts;
+  if (sql_prepare(store->db,
+                  "SELECT count(*) FROM attempt WHERE identity = ?1 AND NOT (reason = 'time_limit' AND (?2 = 0 OR "
+                  "limited_to < ?2)) AND NOT (reason = 'memory_limit' AND (?3 = 0 OR limited_to < ?3))",
+                  &statement, "counting attempts", NULL) == STATUS_OK) {
+    sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);
+    sqlite3_bind_double(statement, 2, time_limit);
+    sqlite3_bind_double(statement, 3, memory_limit);
+    if (sqlite3_step(statement) == SQLITE_ROW)
+      count = sqlite3_column_int(statement, 0);
+  }
+  sqlite3_finalize(statement);
+  return count;
+}
+
+status store_export(struct store *store, const char *path, struct error *error) {
+  if (access(path, F_OK) == 0)
+    return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
+  status result = store_flush(store, error);
+  if (result != STATUS_OK)
+    return result;
+  /* query_only refuses VACUUM INTO, though it writes another file only. */
+  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+  result = sql_executef(store->db, "writing the hand-over file", error, "VACUUM INTO %Q", path);
+  if (!store->writer)
+    sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  if (result != STATUS_OK)
+    unlink(path);
+  return result;
+}

@@ -1,0 +1,38 @@
+/* Running sums of points: point_total and point_spectrum; a point whose sums change loses its pooled estimates. A batch
+ * gathers them in memory and writes each changed row once, in the transaction that adds the runs; rebuilding from the
+ * rows gives the same. */
+#ifndef CLAST_DB_STORE_SUMS_H
+#define CLAST_DB_STORE_SUMS_H
+
+#include "db/sql.h"
+#include "engine/spectrum.h"
+
+struct sums_row {
+  int64_t point_id;
+  int results_version, bin; /* SPECTRUM_NO_BIN: the point's totals */
+  bool used;
+  int64_t runs, count, count_squared; /* totals: count = fragments */
+  int64_t censored, failed, surplus;  /* totals only */
+  double mass;
+};
+
+struct sums { /* all zero = empty */
+  struct sums_row *slots;
+  size_t capacity, count;
+  sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
+  sqlite3_stmt *stale;       /* deletes the pooled estimates of a point that grew */
+};
+
+/* The row to add to, zeros when new. NULL when memory ran out. Valid until the next call. */
+struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin);
+/* Write everything gathered, in ascending order of its key, and forget it. */
+status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
+void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
+void sums_clear(struct sums *sums);  /* everything, statements too */
+
+/* Make the sums of one point (0: of all) anew from run, spectrum and fragment rows. Within the caller's transaction. */
+status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
+/* Rows in which the running sums differ from the rows they sum (doubles: by more than their rounding). */
+status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
+
+#endif

@@ -1,0 +1,235 @@
+#include "db/store/views.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+const char *const views_quantities[] = {"largest_fraction", "second_fraction",    "fragment_count",
+                                        "dust_fraction",    "mean_fragment_mass", NULL};
+
+/* Exact for few degrees of freedom, then Cornish & Fisher's expansion (Abramowitz & Stegun 26.7.5), within 5e-6. */
+void views_student(FILE *out, const char *degrees) {
+  static const char *const exact[] = {"12.706204736174", "4.302652729749", "3.182446305284", "2.776445105198",
+                                      "2.570581835636",  "2.446911851145", "2.364624251593", "2.306004135204",
+                                      "2.262157162798",  "2.228138851986"};
+  fprintf(out, "CASE");
+  for (size_t i = 0; i < sizeof exact / sizeof exact[0]; i++)
+    fprintf(out, " WHEN %s = %zu THEN %s", degrees, i + 1, exact[i]);
+  fprintf(out,
+          "\n      WHEN %1$s > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 "
+          "+ 1.589534053394 / %1$s) / %1$s) / %1$s) / %1$s END",
+          degrees);
+}
+
+static status each_row(sqlite3 *db, const char *sql, void (*write)(FILE *out, sqlite3_stmt *row), FILE *out,
+                       struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(db, sql, &statement, "making the views", error);
+  int code = SQLITE_DONE;
+  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
+    write(out, statement);
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(db, code, "making the views", error);
+  sqlite3_finalize(statement);
+  return result;
+}
+
+static void write_text(FILE *out, sqlite3_stmt *row) {
+  fputs((const char *)sqlite3_column_text(row, 0), out);
+}
+
+static status write_axes(sqlite3 *db, FILE *out, struct error *error) {
+  return each_row(db,
+                  "SELECT format('  (SELECT value FROM point_input i WHERE i.point_id = p.point_id AND i.path = %Q) AS "
+                  "\"%w\",' || char(10), path, column_name) FROM axis ORDER BY path",
+                  write_text, out, error);
+}
+
+static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
+  fprintf(out, "CREATE VIEW runs AS -- every run with its varied inputs and all its results\n"
+               "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n");
+  status result = write_axes(db, out, error);
+  if (result == STATUS_OK)
+    result = each_row(db,
+                      "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT IN "
+                      "('run_id', 'point_id', 'replicate', 'seed', 'identity')",
+                      write_text, out, error);
+  if (result == STATUS_OK) /* an engine's column that is called like one of ours gets the table's name before it */
+    result = each_row(db,
+                      "SELECT format('  %w.\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
+                      "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "
+                      "pragma_table_xinfo(o.name) d WHERE o.type = 'table' AND o.name GLOB 'result_*' AND d.name = "
+                      "c.name) > 1, format(' AS \"%w_%w\"', t.name, c.name), '')) "
+                      "FROM sqlite_schema t, pragma_table_xinfo(t.name) c WHERE t.type = 'table' AND t.name GLOB "
+                      "'result_*' AND c.name <> 'run_id' ORDER BY t.name, c.cid",
+                      write_text, out, error);
+  fprintf(out, "  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id");
+  if (result == STATUS_OK)
+    result =
+        each_row(db,
+                 "SELECT format(char(10) || '  LEFT JOIN %w ON %w.run_id = r.run_id', name, name) FROM sqlite_schema "
+                 "WHERE type = 'table' AND name GLOB 'result_*' ORDER BY name",
+                 write_text, out, error);
+  fprintf(out, ";\n");
+  return result;
+}
+
+/* Mean and scatter in one pass over the index run_statistics: deviations from the value of the point's first run (k),
+ * so that nothing cancels, summed in the order of replicates, so that the bits do not depend on who finished first. No
+ * quantity of a run that counts is NULL (a CHECK of table run). */
+static status write_points(sqlite3 *db, FILE *out, struct error *error) {
+  fprintf(out, "CREATE VIEW points AS -- statistics of every point, one row per results_version\n"
+               "WITH first AS (\n  SELECT ");
+  for (int i = 0; views_quantities[i]; i++)
+    fprintf(out, "k.%s AS k%d, ", views_quantities[i], i);
+  fprintf(
+      out,
+      "t.point_id, t.results_version\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE "
+      "f.point_id =\n    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, "
+      "f.seed LIMIT 1)\n"
+      "), moment AS (\n  SELECT f.point_id, f.results_version, count(*) AS n");
+  for (int i = 0; views_quantities[i]; i++) {
+    const char *name = views_quantities[i];
+    fprintf(out, ",\n    k%d, total(r.%s - k%d) AS s%d, total((r.%s - k%d) * (r.%s - k%d)) AS q%d", i, name, i, i, name,
+            i, name, i, i);
+  }
+  fprintf(out,
+          "\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
+          "    r.counts = 1\n  GROUP BY f.point_id, f.results_version\n"
+          "), scatter AS (\n  SELECT point_id, results_version, n,\n    ");
+  views_student(out, "(n - 1)");
+  fprintf(out, " AS t");
+  for (int i = 0; views_quantities[i]; i++)
+    fprintf(out, ",\n    k%d + s%d / n AS m%d, sqrt(max(0, (q%d - s%d * s%d / n) / (n - 1))) AS d%d", i, i, i, i, i, i,
+            i);
+  fprintf(out, "\n  FROM moment\n)\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n");
+  status result = write_axes(db, out, error);
+  fprintf(
+      out,
+      "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
+      "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
+      "failed_attempts");
+  for (int i = 0; views_quantities[i]; i++) {
+    const char *name = views_quantities[i];
+    fprintf(out, ",\n  m%d AS %s_mean, d%d AS %s_sd, d%d / sqrt(n) AS %s_se, s.t * d%d / sqrt(n) AS %s_hw95", i, name,
+            i, name, i, name, i, name);
+  }
+  fprintf(out, "\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
+               "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;\n");
+  return result;
+}
+
+static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
+  fprintf(out, "CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point\n"
+               "SELECT p.point_id, p.engine, p.scene_name AS scene,\n");
+  status result = write_axes(db, out, error);
+  fprintf(out, "  s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,\n"
+               "  1.0 * s.count / t.runs AS count_mean,\n"
+               "  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,\n"
+               "  s.count / (t.fragments * (b.upper - b.lower)) AS density\n"
+               "FROM point p JOIN point_total t ON t.point_id = p.point_id\n"
+               "  JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
+               "  JOIN bin b ON b.bin = s.bin;\n");
+  return result;
+}
+
+static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
+  static const char
+      fields[] = "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'";
+  fprintf(out, "CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
+               "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n");
+  status result = write_axes(db, out, error);
+  fprintf(out, "  ");
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ");
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
+               "  SELECT point_id, NULL, NULL, NULL, NULL, ");
+  if (result == STATUS_OK)
+    result = each_row(db, fields, write_text, out, error);
+  fprintf(out, "results_version FROM point_estimate\n) e JOIN point p ON p.point_id = e.point_id;\n");
+  return result;
+}
+
+/* Axis columns, statistics and the views' own columns first; the others inherit from the table they come from. */
+static status document(sqlite3 *db, struct error *error) {
+  static const char sql[] =
+      "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates');"
+      "INSERT INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, column_name, unit, meaning || "
+      "' (input ' || path || ')' FROM axis, "
+      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;"
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, w.column1, NULL, "
+      "w.column2 FROM "
+      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, (VALUES ('scene', 'name of the scene the inputs "
+      "started from')) w;"
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES"
+      "('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),"
+      "('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),"
+      "('spectra', 'n', '1', 'runs of the point that count'),"
+      "('spectra', 'count', '1', 'fragments in the bin, of all runs'),"
+      "('spectra', 'mass', 'kg', 'their mass'),"
+      "('spectra', 'count_mean', '1', 'fragments in the bin per run'),"
+      "('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),"
+      "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
+      "integral "
+      "over mass is 1');"
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "
+      "s.column1, d.unit, s.column2 || d.meaning "
+      "FROM "
+      "column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
+      "('_se', 'standard error of the mean: '), ('_hw95', 'half width of the 95 % confidence interval of the mean "
+      "(Student): ')) s WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE "
+      "c.name = "
+      "d.column_name || s.column1);"
+      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, c.name, d.unit, "
+      "d.meaning FROM "
+      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, column_doc d "
+      "WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND (d.table_name IN ('run', "
+      "'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*') "
+      "ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN "
+      "('runs') ELSE v.column1 NOT IN ('runs') END;";
+  return sql_execute(db, sql, "documenting the views", error);
+}
+
+status views_regenerate(sqlite3 *db, struct error *error) {
+  static status (*const writers[])(sqlite3 *, FILE *, struct error *) = {write_runs, write_points, write_spectra,
+                                                                         write_estimates};
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  fputs("DROP VIEW IF EXISTS runs; DROP VIEW IF EXISTS points; DROP VIEW IF EXISTS spectra; DROP VIEW IF EXISTS "
+        "estimates;\n",
+        out);
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < sizeof writers / sizeof writers[0]; i++)
+    result = writers[i](db, out, error);
+  fclose(out);
+  if (result == STATUS_OK)
+    result = sql ? sql_execute(db, sql, "making the views", error)
+                 : status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  if (result == STATUS_OK)
+    result = document(db, error);
+  free(sql);
+  return result;
+}
+
+status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {
+  char plain[256];
+  sqlite3_stmt *statement = NULL;
+  sql_column_name(path, plain, sizeof plain);
+  status result = sql_prepare(db,
+                              "SELECT 1 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, "
+                              "pragma_table_info(v.column1) c WHERE c.name = ?1 UNION ALL SELECT 1 FROM axis WHERE "
+                              "column_name = ?1",
+                              &statement, "making the views", error);
+  if (result != STATUS_OK)
+    return result;
+  sqlite3_bind_text(statement, 1, plain, -1, SQLITE_STATIC);
+  bool taken = sqlite3_step(statement) == SQLITE_ROW;
+  snprintf(name, size, "%s%s", taken ? "input_" : "", plain);
+  sqlite3_finalize(statement);
+  return STATUS_OK;
+}
