@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "analysis/point.h"
+#include "db/ask/point.h"
 #include "db/ask/query.h"
 
 struct missing {

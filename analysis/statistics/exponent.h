@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "engine/spectrum.h"
+#include "analysis/statistics/spectrum.h"
 #include "schemas/field.h"
 
 enum exponent_method {

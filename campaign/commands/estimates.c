@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/point.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/point.h"
 
 enum { AXES_MAXIMUM = 16, RESAMPLE_SEED = 1 };
 static const double level = 0.95;

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/point.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/point.h"
 
 enum {
   WIDTH = 900,

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/point.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/point.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF = 8, COLUMNS = 9 };

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "analysis/pictures/text_plot.h"
-#include "analysis/point.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/point.h"
 
 struct options {
   int64_t point;

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/spectrum.h"
 #include "db/ask/query.h"
 #include "db/store/internal.h"
-#include "engine/spectrum.h"
 
 struct deviation { /* Welford 1962 */
   int64_t n;

@@ -1,6 +1,6 @@
 #include "db/store/bins.h"
 
-#include "engine/spectrum.h"
+#include "analysis/statistics/spectrum.h"
 
 status bins_cover(sqlite3 *db, int lowest, int highest, struct error *error) {
   sqlite3_stmt *statement = NULL;

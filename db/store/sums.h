@@ -4,8 +4,8 @@
 #ifndef CLAST_DB_STORE_SUMS_H
 #define CLAST_DB_STORE_SUMS_H
 
+#include "analysis/statistics/spectrum.h"
 #include "db/sql.h"
-#include "engine/spectrum.h"
 
 struct sums_row {
   int64_t point_id;

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "analysis/analysis.h"
-#include "analysis/point.h"
+#include "db/ask/point.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;

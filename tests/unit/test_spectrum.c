@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "engine/spectrum.h"
+#include "analysis/statistics/spectrum.h"
 
 static void edges_are_exact(void **state) {
   (void)state;

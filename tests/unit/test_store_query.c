@@ -9,8 +9,8 @@
 
 #include <gsl/gsl_cdf.h>
 
+#include "analysis/statistics/spectrum.h"
 #include "db/store/views.h"
-#include "engine/spectrum.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;

@@ -8,8 +8,8 @@
 
 #include <sqlite3.h>
 
+#include "analysis/statistics/spectrum.h"
 #include "db/store/internal.h"
-#include "engine/spectrum.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;

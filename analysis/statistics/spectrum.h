@@ -1,10 +1,9 @@
-/* The mass spectrum of one run on fixed logarithmic bins. The binning stands here, left of the store and of analysis,
- * because both need the same edges.
+/* The mass spectrum of one run on fixed logarithmic bins. Estimates and the store use the same edges.
  *
  * Bin k covers [10^(k/n), 10^((k+1)/n)) kg with n = SPECTRUM_BINS_PER_DECADE: the same edges for every scene, so that
  * bins of different runs, points and stores add up. */
-#ifndef CLAST_ENGINE_SPECTRUM_H
-#define CLAST_ENGINE_SPECTRUM_H
+#ifndef CLAST_ANALYSIS_STATISTICS_SPECTRUM_H
+#define CLAST_ANALYSIS_STATISTICS_SPECTRUM_H
 
 #include <stddef.h>
 #include <stdint.h>

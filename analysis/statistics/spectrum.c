@@ -1,4 +1,4 @@
-#include "engine/spectrum.h"
+#include "analysis/statistics/spectrum.h"
 
 #include <math.h>
 #include <string.h>

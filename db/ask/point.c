@@ -1,4 +1,4 @@
-#include "analysis/point.h"
+#include "db/ask/point.h"
 
 #include <math.h>
 #include <stdio.h>

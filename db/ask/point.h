@@ -1,6 +1,6 @@
 /* One point of a store: the fragment masses of all its runs that count, and the standard estimates made from them. */
-#ifndef CLAST_ANALYSIS_POINT_H
-#define CLAST_ANALYSIS_POINT_H
+#ifndef CLAST_DB_ASK_POINT_H
+#define CLAST_DB_ASK_POINT_H
 
 #include "analysis/pictures/picture.h"
 #include "analysis/statistics/estimates.h"
