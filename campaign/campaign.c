@@ -107,9 +107,10 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
   if (!row)
     row = field_find(kind->results, path, &second);
   if (!row) {
-    const char *nearest = field_nearest(&outcome_table, path);
-    if (!nearest)
-      nearest = field_nearest(kind->results, path);
+    struct text_guess guess = text_guess(path);
+    field_guess(&outcome_table, &guess);
+    field_guess(kind->results, &guess);
+    const char *nearest = guess.nearest;
     status_fail(error, STATUS_CONTENT,
                 "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "
                 "mean_fragment_mass and more (`clast explain results`)",

@@ -5,12 +5,7 @@
 #include <time.h>
 
 #include "campaign/run.h"
-
-static double now_s(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include "schemas/clock.h"
 
 void driver_note(struct driver *driver, const char *text) {
   if (driver->options.note)
@@ -31,7 +26,7 @@ status driver_open(const struct campaign *campaign, struct store *store, const s
   driver->campaign = campaign;
   driver->store = store;
   driver->options = *options;
-  driver->begin = driver->last_left = now_s();
+  driver->begin = driver->last_left = clock_s();
   driver->seconds_left = NAN;
   driver->values = calloc(campaign->axis_count + 1, sizeof *driver->values);
   driver->paths = calloc(campaign->axis_count + 1, sizeof *driver->paths);
@@ -158,9 +153,9 @@ static void give_up(struct driver *driver, struct point *point, int64_t r) {
 
 /* Fills the window; then the dearest run that nobody has given up on before. NULL: nothing (or an error). */
 static struct point *next_run(struct driver *driver, struct flight *flight, status *code) {
-  double deadline = now_s() + DRIVER_FILL_S;
+  double deadline = clock_s() + DRIVER_FILL_S;
   while (*code == STATUS_OK) {
-    while (*code == STATUS_OK && driver->point_count < DRIVER_WINDOW && now_s() < deadline &&
+    while (*code == STATUS_OK && driver->point_count < DRIVER_WINDOW && clock_s() < deadline &&
            driver_window_expand(driver, code, &driver->error))
       ;
     if (*code != STATUS_OK)
@@ -409,7 +404,7 @@ static double time_left(struct driver *driver, double now) {
 static void show(struct driver *driver, int running, bool last) {
   if (!driver->options.progress)
     return;
-  double now = now_s(), elapsed = now - driver->begin;
+  double now = clock_s(), elapsed = now - driver->begin;
   uint64_t unmet = design_points(driver->design) - driver->expanded;
   struct progress_state state = {
       .done = driver->summary.runs_done + driver->summary.runs_reused - driver->summary.runs_surplus,

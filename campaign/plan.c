@@ -10,6 +10,8 @@
 #include "campaign/terminal/progress.h"
 #include "db/ask/query.h"
 #include "db/store/store.h"
+#include "schemas/clock.h"
+#include "schemas/text.h"
 
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
 #define NOTHING ((double)NAN)
@@ -18,12 +20,6 @@ enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
  * measured on stores of thousands of runs, and meant to a factor of 1.5. */
 #define BYTES_PER_RUN      3500.0
 #define BYTES_PER_FRAGMENT 8.0
-
-static double now_s(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 struct looking {
   double work, work_most;
@@ -90,17 +86,17 @@ static status try_run(const struct scene *scene, uint64_t seed, double seconds, 
   void *run = NULL, *result = NULL;
   struct fragment *list = NULL;
   struct outcome outcome;
-  double begin = now_s(), prepared;
+  double begin = clock_s(), prepared;
   uint64_t block = 1;
   bool finished = false;
   status code = kind->prepare(scene->inputs, seed, &run, error);
   if (code != STATUS_OK)
     return code;
-  prepared = now_s();
-  while (code == STATUS_OK && !finished && now_s() - begin < seconds) {
-    double from = now_s();
+  prepared = clock_s();
+  while (code == STATUS_OK && !finished && clock_s() - begin < seconds) {
+    double from = clock_s();
     code = kind->step(run, block, &finished, error);
-    if (now_s() - from < 0.02 && block < UINT64_C(1) << 40)
+    if (clock_s() - from < 0.02 && block < UINT64_C(1) << 40)
       block *= 2;
   }
   if (code != STATUS_OK)
@@ -108,16 +104,16 @@ static status try_run(const struct scene *scene, uint64_t seed, double seconds, 
   plan->trial_made = true;
   plan->trial_finished = finished;
   plan->trial_progress = finished ? 1 : kind->progress ? kind->progress(run) : NOTHING;
-  double stepped = now_s();
+  double stepped = clock_s();
   result = calloc(1, kind->results->size);
   if (!result) {
     code = status_fail(error, STATUS_MEMORY, "no memory for the trial's result");
     goto cleanup;
   }
   code = kind->finish(run, &outcome, result, &list, fragments, error);
-  plan->trial_s = now_s() - begin;
+  plan->trial_s = clock_s() - begin;
   plan->run_s_most = plan->trial_progress > 0
-                         ? (prepared - begin) + (stepped - prepared) / plan->trial_progress + (now_s() - stepped)
+                         ? (prepared - begin) + (stepped - prepared) / plan->trial_progress + (clock_s() - stepped)
                          : NOTHING;
 cleanup:
   free(list);
@@ -261,11 +257,11 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   if (!out)
     return NULL;
   fputs("{\"campaign\": ", out);
-  field_json_string(campaign->name, out);
+  text_json_string(campaign->name, out);
   fputs(", \"scene\": ", out);
-  field_json_string(campaign->scene_reference, out);
+  text_json_string(campaign->scene_reference, out);
   fputs(", \"store\": ", out);
-  field_json_string(campaign->store, out);
+  text_json_string(campaign->store, out);
   fprintf(
       out,
       ", \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": %llu",
@@ -284,7 +280,7 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   number(out, "disk_bytes", plan->disk_bytes);
   number(out, "fields_bytes", plan->fields_bytes);
   fputs(", \"model\": ", out);
-  field_json_string(plan->model ? plan->model : "", out);
+  text_json_string(plan->model ? plan->model : "", out);
   fputs("}\n", out);
   if (fclose(out) != 0) {
     free(text);

@@ -9,6 +9,7 @@
 #include "engine/cpu_class.h"
 #include "engine/engine.h"
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 static void cpu_model(char *model, size_t size) {
   char line[512];
@@ -28,7 +29,7 @@ static void cpu_model(char *model, size_t size) {
 
 static void member(FILE *out, const char *name, const char *value) {
   fprintf(out, ", \"%s\": ", name);
-  field_json_string(value, out);
+  text_json_string(value, out);
 }
 
 char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
@@ -40,7 +41,7 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
     return NULL;
   cpu_model(model, sizeof model);
   fputs("{\"version\": ", out);
-  field_json_string(BUILD_VERSION, out);
+  text_json_string(BUILD_VERSION, out);
   member(out, "commit", BUILD_COMMIT);
   fprintf(out, ", \"dirty\": %s", BUILD_DIRTY ? "true" : "false");
   member(out, "commit_date", BUILD_DATE);
@@ -48,7 +49,7 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   member(out, "build_type", BUILD_TYPE);
   member(out, "flags", BUILD_FLAGS);
   fputs(", \"libraries\": {\"fyaml\": ", out);
-  field_json_string(BUILD_FYAML, out);
+  text_json_string(BUILD_FYAML, out);
   member(out, "hdf5", BUILD_HDF5);
   member(out, "sqlite", BUILD_SQLITE);
   member(out, "gsl", BUILD_GSL);
@@ -70,7 +71,7 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   fprintf(out, ", \"ranks\": %d, \"slots\": %d, \"command\": [", ranks, slots);
   for (int i = 0; argv && i < argc; i++) {
     fputs(i ? ", " : "", out);
-    field_json_string(argv[i], out);
+    text_json_string(argv[i], out);
   }
   fputs("]}", out);
   if (fclose(out) != 0) {

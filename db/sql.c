@@ -155,10 +155,3 @@ const char *sql_type(const struct field *row) {
   }
   return "TEXT";
 }
-
-void sql_column_name(const char *path, char *name, size_t size) {
-  size_t i = 0;
-  for (; path[i] && i + 1 < size; i++)
-    name[i] = path[i] == '.' ? '_' : path[i];
-  name[i] = '\0';
-}

@@ -30,7 +30,5 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
 void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text);
 /* STRICT type of a row's column. */
 const char *sql_type(const struct field *row);
-/* Dots as underscores; at most `size` bytes with the end. */
-void sql_column_name(const char *path, char *name, size_t size);
 
 #endif

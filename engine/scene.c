@@ -6,7 +6,7 @@
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
 #include "schemas/document.h"
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 /* ---- built-in scenes ---- */
 
@@ -29,18 +29,14 @@ const char *scene_builtin_text(const char *name) {
 }
 
 static status unknown_builtin(const char *name, struct error *error) {
-  const char *near = NULL;
-  size_t best = strlen(name) / 2 + 1;
-  for (size_t i = 0; builtin_scene_list[i].name; i++) {
-    size_t d = edit_distance(name, strlen(name), builtin_scene_list[i].name);
-    if (d < best)
-      best = d, near = builtin_scene_list[i].name;
-  }
-  if (near)
+  struct text_guess guess = text_guess(name);
+  for (size_t i = 0; builtin_scene_list[i].name; i++)
+    text_guess_offer(&guess, builtin_scene_list[i].name);
+  if (guess.nearest)
     return status_fail(error, STATUS_MISSING,
                        "there is no built-in scene '%.100s'; did you mean '%s'? A file is named with its folder or "
                        "ending, such as ./%.100s.yaml",
-                       name, near, name);
+                       name, guess.nearest, name);
   return status_fail(error, STATUS_MISSING,
                      "there is no built-in scene '%.100s'; 'clast scenes' lists them. A file is named with its folder "
                      "or ending, such as ./%.100s.yaml",
@@ -251,9 +247,9 @@ char *scene_json(const struct scene *scene) {
   if (!out)
     return NULL;
   fputs("{\"engine\":", out);
-  field_json_string(scene->kind->name, out);
+  text_json_string(scene->kind->name, out);
   fputs(",\"name\":", out);
-  field_json_string(scene->name, out);
+  text_json_string(scene->name, out);
   fputc(',', out);
   field_json_members(scene->kind->inputs, scene->inputs, out);
   fputc('}', out);

@@ -1,21 +1,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
-
-/* Length of the UTF-8 sequence at `text`, 0 when it is none (RFC 3629, table of section 4). */
-static size_t sequence(const unsigned char *text, size_t left) {
-  unsigned char a = text[0];
-  size_t length = a < 0x80 ? 1 : a >= 0xC2 && a < 0xE0 ? 2 : a >= 0xE0 && a < 0xF0 ? 3 : a >= 0xF0 && a < 0xF5 ? 4 : 0;
-  if (length == 0 || length > left)
-    return 0;
-  for (size_t i = 1; i < length; i++)
-    if ((text[i] & 0xC0) != 0x80)
-      return 0;
-  if ((a == 0xE0 && text[1] < 0xA0) || (a == 0xED && text[1] > 0x9F) || (a == 0xF0 && text[1] < 0x90) ||
-      (a == 0xF4 && text[1] > 0x8F))
-    return 0;
-  return length;
-}
+#include "schemas/text.h"
 
 /* YAML 1.2.2, 5.1: what is not printable there is refused here too, and so are the line ends of YAML 1.1 (U+0085,
  * U+2028, U+2029) and byte order marks in the middle, which tools disagree about. */
@@ -35,7 +21,7 @@ size_t document_guard_text(const char *text, size_t size) {
   const unsigned char *bytes = (const unsigned char *)text;
   size_t i = 0;
   while (i < size) {
-    size_t length = sequence(bytes + i, size - i);
+    size_t length = text_utf8_length(text + i, size - i);
     if (length == 0 || control(bytes + i, length))
       return i;
     i += length;
@@ -50,7 +36,7 @@ bool document_guard(struct document *document) {
     unsigned char byte = (unsigned char)text[bad];
     if (byte == 0)
       document_report_at(document, bad, bad + 1, NULL, "a NUL byte: this is not text; save the file as UTF-8");
-    else if (sequence((const unsigned char *)text + bad, size - bad) == 0)
+    else if (text_utf8_length(text + bad, size - bad) == 0)
       document_report_at(document, bad, bad + 1, NULL, "invalid UTF-8 (byte 0x%02x); save the file as UTF-8", byte);
     else
       document_report_at(document, bad, bad + 1, NULL, "a control character (first byte 0x%02x); remove it", byte);

@@ -1,7 +1,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
@@ -15,12 +15,10 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
   }
   char whole[PATH_SIZE], list[LIST_SIZE] = "";
   snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
-  const char *near = NULL;
-  size_t length = strlen(key->text), best = 1 + edit_distance_limit(length), used = 0;
+  struct text_guess guess = text_guess(key->text);
+  size_t used = 0;
   for (size_t i = 0; known && known[i]; i++) {
-    size_t d = edit_distance(key->text, length, known[i]);
-    if (d < best && d < strlen(known[i]))
-      best = d, near = known[i];
+    text_guess_offer(&guess, known[i]);
     if (used < sizeof list) {
       int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);
       used += n > 0 ? (size_t)n : 0;
@@ -30,8 +28,8 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
     memcpy(list + sizeof list - 4, "...", 4);
   if (strcmp(key->text, "<<") == 0)
     document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
-  else if (near)
-    document_report(key, whole, "unknown key; did you mean '%s'?", near);
+  else if (guess.nearest)
+    document_report(key, whole, "unknown key; did you mean '%s'?", guess.nearest);
   else if (elsewhere && strcmp(elsewhere, key->text) == 0)
     document_report(key, whole, "a path with dots; nest it: write '%.*s:' and the rest indented below it",
                     (int)strcspn(elsewhere, "."), elsewhere);

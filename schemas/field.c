@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/edit_distance.h"
-
 enum { QUOTE = 60 };
 
 bool field_is_off(double value) {
@@ -23,23 +21,25 @@ static bool ends_with(const char *path, const char *suffix) {
   return length == path_length || path[path_length - length - 1] == '.';
 }
 
-const char *field_nearest(const struct field_table *table, const char *path) {
-  /* Compared with every suffix of each path, so that "young_modulos" finds "grain.young_modulus"; a suffix costs a
-   * little, so that a whole path wins over one. */
-  size_t best = SIZE_MAX, length = strlen(path), limit = edit_distance_limit(length);
-  const char *found = NULL;
+void field_guess(const struct field_table *table, struct text_guess *guess) {
   for (size_t i = 0; i < table->count; i++) {
-    for (const char *tail = table->rows[i].path; tail; tail = strchr(tail, '.')) {
-      tail += *tail == '.';
-      size_t d = edit_distance(path, length, tail);
-      if (d > limit || d >= strlen(tail))
-        continue;
-      d = 2 * d + (tail != table->rows[i].path);
-      if (d < best)
-        best = d, found = table->rows[i].path;
-    }
+    const char *path = table->rows[i].path;
+    text_guess_offer(guess, path);
+    for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.'))
+      text_guess_offer_part(guess, dot + 1, path);
   }
-  return found;
+}
+
+const char *field_nearest(const struct field_table *table, const char *path) {
+  struct text_guess guess = text_guess(path);
+  field_guess(table, &guess);
+  return guess.nearest;
+}
+
+void field_column_name(const char *path, char *name, size_t size) {
+  snprintf(name, size, "%s", path);
+  for (char *at = name; (at = strchr(at, '.'));)
+    *at = '_';
 }
 
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error) {

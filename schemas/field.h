@@ -16,6 +16,7 @@
 #include <stdio.h>
 
 #include "schemas/status.h"
+#include "schemas/text.h"
 
 enum field_kind { FIELD_REAL, FIELD_INTEGER, FIELD_BOOLEAN, FIELD_CHOICE, FIELD_TEXT };
 enum { FIELD_TEXT_SIZE = 256 };
@@ -73,8 +74,14 @@ bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
  * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
 
-/* Nearest known path by edit distance, or NULL when nothing is near. */
+/* Offers every path of the table, and every trailing part of it, as what may have been meant: "young_modulos" finds
+ * "grain.young_modulus". */
+void field_guess(const struct field_table *table, struct text_guess *guess);
+/* The path of one table that is nearest, or NULL when none is near. */
 const char *field_nearest(const struct field_table *table, const char *path);
+
+/* A path as the name of a column: dots become underscores. */
+void field_column_name(const char *path, char *name, size_t size);
 
 /* Fills every row, required ones with zero or NaN; members that no row describes are left alone. */
 void field_defaults(const struct field_table *table, void *object);
@@ -106,10 +113,9 @@ int field_print(const struct field *row, const struct field_value *value, char *
 
 /* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). malloc'd. */
 char *field_json(const struct field_table *table, const void *object);
-/* Parts of it, for a caller that writes the outer object: its members without braces; one value; any text quoted. */
+/* Parts of it, for a caller that writes the outer object: its members without braces; one value. */
 void field_json_members(const struct field_table *table, const void *object, FILE *out);
 void field_json_value(const struct field *row, const struct field_value *value, FILE *out);
-void field_json_string(const char *text, FILE *out);
 /* Canonical identity text: sorted lines `path=%a\n` of the active rows (text and choices by name). malloc'd. */
 char *field_identity(const struct field_table *table, const void *object);
 /* `clast explain`: one row, or every row under a prefix ("" = all), as text for people. Returns how many rows. */

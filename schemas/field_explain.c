@@ -2,26 +2,9 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 enum { WIDTH = 100, INDENT = 4 };
-
-/* Paragraph wrapped at WIDTH columns. */
-static void wrap(const char *text, FILE *out) {
-  size_t column = 0;
-  while (*text) {
-    size_t word = strcspn(text, " \n");
-    if (column && column + 1 + word > WIDTH)
-      column = 0, fputc('\n', out);
-    if (word) {
-      fprintf(out, "%*s%.*s", column ? 1 : INDENT, "", (int)word, text);
-      column += word + (column ? 1 : INDENT);
-    }
-    text += word;
-    text += *text != 0;
-  }
-  if (column)
-    fputc('\n', out);
-}
 
 static void explain_choices(const struct field *row, FILE *out) {
   const char *doc = row->choice_docs;
@@ -64,8 +47,8 @@ static void explain_row(const struct field *row, FILE *out) {
     else
       fprintf(out, "; default %s\n", text);
   }
-  if (row->doc)
-    wrap(row->doc, out);
+  if (row->doc && *row->doc)
+    text_wrap(row->doc, 0, INDENT, WIDTH, out);
   if (row->kind == FIELD_CHOICE)
     explain_choices(row, out);
   if (row->when) {

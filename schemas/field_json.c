@@ -4,23 +4,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
-
-void field_json_string(const char *text, FILE *out) {
-  fputc('"', out);
-  for (const unsigned char *at = (const unsigned char *)text; *at; at++) {
-    if (*at == '"' || *at == '\\')
-      fprintf(out, "\\%c", *at);
-    else if (*at == '\n')
-      fputs("\\n", out);
-    else if (*at == '\t')
-      fputs("\\t", out);
-    else if (*at < 0x20 || *at == 0x7f)
-      fprintf(out, "\\u%04x", *at);
-    else
-      fputc(*at, out);
-  }
-  fputc('"', out);
-}
+#include "schemas/text.h"
 
 static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
   char number[32];
@@ -32,7 +16,7 @@ static void write_value(const struct field *row, const struct field_value *value
   case FIELD_INTEGER: fprintf(out, "%" PRId64, value->integer); break;
   case FIELD_BOOLEAN: fputs(value->number != 0 ? "true" : "false", out); break;
   case FIELD_CHOICE:
-  case FIELD_TEXT: field_json_string(value->text, out); break;
+  case FIELD_TEXT: text_json_string(value->text, out); break;
   }
 }
 

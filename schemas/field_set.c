@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "schemas/edit_distance.h"
-
 enum { QUOTE = 60 };
 
 static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
@@ -47,19 +45,18 @@ static status check_range(const struct field *row, double number, const struct f
 
 static status unknown_choice(const struct field *row, const char *text, struct error *error) {
   char list[600] = "";
-  size_t used = 0, best = SIZE_MAX;
-  const char *near = NULL;
+  size_t used = 0;
+  struct text_guess guess = text_guess(text);
   for (size_t i = 0; row->choices[i]; i++) {
     int n = snprintf(list + used, sizeof list - used, "%s%s", i ? (row->choices[i + 1] ? ", " : " or ") : "",
                      row->choices[i]);
     if (n > 0 && (size_t)n < sizeof list - used)
       used += (size_t)n;
-    size_t d = edit_distance(text, strlen(text), row->choices[i]);
-    if (d < best && d <= 2 && d < strlen(row->choices[i]))
-      best = d, near = row->choices[i];
+    text_guess_offer(&guess, row->choices[i]);
   }
   return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'%s%s%s", row->path, list, QUOTE, text,
-                     near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+                     guess.nearest ? "; did you mean '" : "", guess.nearest ? guess.nearest : "",
+                     guess.nearest ? "'?" : "");
 }
 
 /* Bring a value to the row's own kind, in range. */

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 /* A decimal number, and perhaps a unit behind it. Which units suit, and what the number is in SI, a schema cannot know:
  * the reader judges that. The last part keeps `$` from matching before a line end. */
 #define NUMBER_AND_UNIT                                                                                                \
@@ -55,7 +57,7 @@ static void type(const struct field *row, FILE *out) {
     for (size_t i = 0; row->choices[i]; i++) {
       if (i)
         fputs(", ", out);
-      field_json_string(row->choices[i], out);
+      text_json_string(row->choices[i], out);
     }
     fputc(']', out);
     break;
@@ -99,7 +101,7 @@ static void description(const struct field *row, FILE *out) {
   if (row->source)
     fprintf(words, " Source: %s.", row->source);
   if (fclose(words) == 0)
-    field_json_string(*text == ' ' ? text + 1 : text, out);
+    text_json_string(*text == ' ' ? text + 1 : text, out);
   free(text);
 }
 
@@ -310,12 +312,12 @@ static int conditions(const struct field_table *table, int indent, FILE *out) {
 void json_schema_write(const struct field_table *table, const char *title, const char *extra,
                        const char *extra_required, FILE *out) {
   fputs("{\n  \"$schema\": \"http://json-schema.org/draft-07/schema#\",\n  \"title\": ", out);
-  field_json_string(title, out);
+  text_json_string(title, out);
   fputs(",\n  \"description\": ", out);
-  field_json_string(table->doc ? table->doc : table->name, out);
+  text_json_string(table->doc ? table->doc : table->name, out);
   fputs(",\n  \"type\": \"object\",\n  \"additionalProperties\": false,\n  \"required\": [", out);
   if (extra_required)
-    field_json_string(extra_required, out);
+    text_json_string(extra_required, out);
   if (extra_required && requires(table, "", 0))
     fputs(", ", out);
   json_schema_required(table, out);

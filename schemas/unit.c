@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 /* Exact definitions: BIPM, The International System of Units, 9th ed. (2019), tables 3, 4, 7 and 8; CGS: dyn, erg. */
 static const struct base {
@@ -30,7 +30,7 @@ static const struct base {
     {"d", 0, 0, 1, 0, 0, 0, 0, false, 86400, 1},
     {"K", 0, 0, 0, 1, 0, 0, 0, true, 1, 1},
     {"rad", 0, 0, 0, 0, 1, 0, 0, true, 1, 1},
-    {"deg", 0, 0, 0, 0, 1, 0, 0, false, 3.14159265358979323846, 180},
+    {"deg", 0, 0, 0, 0, 1, 0, 0, false, M_PI, 180},
     {"Hz", 0, 0, -1, 0, 0, 0, 0, true, 1, 1},
     {"N", 1, 1, -2, 0, 0, 0, 0, true, 1, 1},
     {"Pa", 1, -1, -2, 0, 0, 0, 0, true, 1, 1},
@@ -127,7 +127,7 @@ static bool nearest(const char *name, size_t length, char out[16]) {
     for (size_t p = 0; p < (bases[b].prefixes ? 8u : 1u); p++) {
       char candidate[16];
       snprintf(candidate, sizeof candidate, "%s%s", usual[p], bases[b].name);
-      size_t d = 2 * edit_distance(name, length, candidate);
+      size_t d = 2 * text_distance(name, length, candidate);
       if (strlen(candidate) == length && strncasecmp(candidate, name, length) == 0)
         d = 1; /* "KM", "gpa" */
       if (d < best && d <= (length > 2 ? 2u : 1u))

@@ -8,6 +8,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/statistics/sample.h"
 
 enum { LARGE = 10 }; /* cells: below, a fragment is hardly resolved and gets a pale tint */
 
@@ -51,11 +52,6 @@ static void centre_of(const struct picture_body *body, size_t cell, double centr
   }
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static void cover(double view[4], const double point[2]) {
   for (int axis = 0; axis < 2; axis++) {
     view[axis] = fmin(view[axis], point[axis]);
@@ -86,7 +82,7 @@ static status choose_view(const struct picture_body *body, double view[4]) {
       centre_of(body, i, centre);
       along[i] = centre[axis];
     }
-    qsort(along, body->cells, sizeof *along, ascending);
+    qsort(along, body->cells, sizeof *along, sample_ascending);
     size_t out = body->cells / 50;
     bulk[axis] = fmin(bulk[axis], along[out]);
     bulk[axis + 2] = fmax(bulk[axis + 2], along[body->cells - 1 - out]);

@@ -6,6 +6,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/statistics/sample.h"
 
 static bool bad_axis(const struct picture_axis *axis) {
   if (axis->count == 0)
@@ -102,16 +103,11 @@ status picture_map(const char *path, double width, const char *title, const char
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static size_t distinct(size_t count, const double (*points)[3], int coordinate, double *values) {
   size_t n = 0;
   for (size_t i = 0; i < count; i++)
     values[i] = points[i][coordinate];
-  qsort(values, count, sizeof *values, ascending);
+  qsort(values, count, sizeof *values, sample_ascending);
   for (size_t i = 0; i < count; i++)
     if (i == 0 || values[i] != values[n - 1])
       values[n++] = values[i];
@@ -119,7 +115,7 @@ static size_t distinct(size_t count, const double (*points)[3], int coordinate, 
 }
 
 static size_t place(size_t count, const double *values, double value) {
-  const double *found = bsearch(&value, values, count, sizeof *values, ascending);
+  const double *found = bsearch(&value, values, count, sizeof *values, sample_ascending);
   return (size_t)(found - values); /* every value is there: the axis was made from them */
 }
 

@@ -7,6 +7,7 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/statistics/sample.h"
 
 enum { RESOLVED = 10 }; /* particles: below, a fragment is hardly resolved and gets a pale tint */
 
@@ -138,11 +139,6 @@ static void choose_discs(struct scene *s) {
   qsort(s->disc, s->discs, sizeof *s->disc, by_depth);
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static void cover(double view[4], double x, double y, double radius) {
   view[0] = fmin(view[0], x - radius);
   view[1] = fmin(view[1], y - radius);
@@ -166,7 +162,7 @@ static status choose_view(struct scene *s) {
   for (int axis = 0; axis < 2; axis++) {
     for (size_t k = 0; k < s->discs; k++)
       sorted[k] = axis ? s->disc[k].y : s->disc[k].x;
-    qsort(sorted, s->discs, sizeof *sorted, ascending);
+    qsort(sorted, s->discs, sizeof *sorted, sample_ascending);
     size_t out = s->discs / 20;
     view[axis] = fmin(view[axis], sorted[out]);
     view[axis + 2] = fmax(view[axis + 2], sorted[s->discs - 1 - out]);
@@ -210,7 +206,7 @@ static status choose_colours(struct scene *s) {
     for (size_t k = 0; k < s->discs; k++)
       if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != 3))
         sorted[count++] = value[s->disc[k].id];
-  qsort(sorted, count, sizeof *sorted, ascending);
+  qsort(sorted, count, sizeof *sorted, sample_ascending);
   double least = count ? sorted[0] : 0, most = count ? sorted[count - 1] : 1;
   bool share = s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
   s->low = share ? 0 : count ? sorted[count / 100] : 0;

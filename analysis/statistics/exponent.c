@@ -6,6 +6,7 @@
 
 #include "analysis/statistics/cutoff.h"
 #include "analysis/statistics/power_law.h"
+#include "analysis/statistics/sample.h"
 #include "analysis/statistics/tempered.h"
 
 const char *const exponent_method_names[] = {"least_squares", "binned", "masses", "ks", "cutoff", NULL};
@@ -117,11 +118,6 @@ static status fit_from_masses_by_bins(enum exponent_method method, size_t n, con
   return code;
 }
 
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
-}
-
 /* The masses inside the window, descending; *count of them. NULL only when memory is short. */
 static double *select_sorted(size_t n, const double *masses, double lower, double upper, size_t *count) {
   double *inside = malloc((n ? n : 1) * sizeof *inside);
@@ -138,7 +134,7 @@ static double *select_sorted(size_t n, const double *masses, double lower, doubl
     m++;
   }
   if (!sorted)
-    qsort(inside, m, sizeof *inside, descending);
+    qsort(inside, m, sizeof *inside, sample_descending);
   *count = m;
   return inside;
 }

@@ -6,9 +6,13 @@
 
 #include "engine/random.h"
 
-static int ascending(const void *a, const void *b) {
+int sample_ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
   return (x > y) - (x < y);
+}
+
+int sample_descending(const void *a, const void *b) {
+  return sample_ascending(b, a);
 }
 
 /* Two-sided Student t: the half width of a mean's interval is this times its standard error. NaN for n < 2. */
@@ -48,7 +52,7 @@ struct sample_summary sample_summarise(size_t n, const double *values, double le
     for (size_t i = 0; i < n; i++)
       if (!isnan(values[i]))
         sorted[m++] = values[i];
-    qsort(sorted, m, sizeof *sorted, ascending);
+    qsort(sorted, m, sizeof *sorted, sample_ascending);
     summary.median = m % 2 ? sorted[m / 2] : sorted[m / 2 - 1] / 2 + sorted[m / 2] / 2;
     free(sorted);
   }
@@ -93,7 +97,7 @@ struct sample_interval sample_bootstrap(size_t runs, size_t resamples, uint64_t 
   if (interval.resamples < 2 || interval.resamples < resamples / 2)
     goto cleanup;
   interval.standard_error = sample_summarise(interval.resamples, values, level).standard_deviation;
-  qsort(values, interval.resamples, sizeof *values, ascending);
+  qsort(values, interval.resamples, sizeof *values, sample_ascending);
   interval.lower = percentile(interval.resamples, values, 0.5 - level / 2);
   interval.upper = percentile(interval.resamples, values, 0.5 + level / 2);
 cleanup:

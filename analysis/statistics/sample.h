@@ -12,6 +12,11 @@ struct sample_summary {
   double half_width; /* of the confidence interval of the mean, Student t at the level asked for */
   double minimum, median, maximum;
 };
+
+/* Orders of doubles, for qsort. */
+int sample_ascending(const void *a, const void *b);
+int sample_descending(const void *a, const void *b);
+
 /* NaN values are left out (n counts what was used). level: 0.95. What cannot be told from so few is NaN: everything for
  * n = 0, the scatter for n = 1. Two passes, no cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);

@@ -9,7 +9,6 @@
 #include "campaign/commands/results.h"
 #include "campaign/terminal/table.h"
 #include "engine/scene.h"
-#include "schemas/edit_distance.h"
 
 enum { TABLES_MAXIMUM = 24 };
 
@@ -38,14 +37,12 @@ static bool has_prefix(const struct field_table *table, const char *prefix) {
 static status explain_path(const char *path, struct error *error) {
   const struct field_table *list[TABLES_MAXIMUM];
   size_t count = tables(list), found = 0;
-  const char *nearest = NULL;
+  struct text_guess guess = text_guess(path);
   for (size_t i = 0; i < count; i++) {
     struct error missed = {.status = STATUS_OK};
     const struct field *row = field_find(list[i], path, &missed);
     if (!row && !has_prefix(list[i], path)) {
-      const char *near = field_nearest(list[i], path);
-      if (near && (!nearest || edit_distance(path, strlen(path), near) < edit_distance(path, strlen(path), nearest)))
-        nearest = near;
+      field_guess(list[i], &guess);
       continue;
     }
     printf("%s%s: %s\n", found++ ? "\n" : "", list[i]->name, list[i]->doc);
@@ -53,6 +50,7 @@ static status explain_path(const char *path, struct error *error) {
   }
   if (found)
     return STATUS_OK;
+  const char *nearest = guess.nearest;
   return status_fail(error, STATUS_CONTENT,
                      "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");

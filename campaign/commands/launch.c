@@ -10,6 +10,7 @@
 #include "campaign/driver.h"
 #include "campaign/provenance.h"
 #include "campaign/run.h"
+#include "schemas/clock.h"
 
 enum { MANY_POINTS = 64 }; /* more are not printed at the end of a run unless asked for by --json or --csv */
 
@@ -95,16 +96,14 @@ static status manage(const struct campaign *campaign, const char *store, const s
                                   .note_context = &notes,
                                   .slots = farm_slots_total(farm)};
   struct driver_summary summary = {0};
-  struct timespec start, end;
-  clock_gettime(CLOCK_MONOTONIC, &start);
+  const double start_s = clock_s();
   status code = facts ? driver_run(campaign, farm, &driver, &summary, error)
                       : status_fail(error, STATUS_MEMORY, "out of memory");
-  clock_gettime(CLOCK_MONOTONIC, &end);
+  const double wall_s = clock_s() - start_s;
   progress_free(progress);
   free(facts);
   if (!manager)
     return code;
-  double wall_s = (double)(end.tv_sec - start.tv_sec) + 1e-9 * (double)(end.tv_nsec - start.tv_nsec);
   bool ended = code == STATUS_OK || code == STATUS_FAILED_RUNS || code == STATUS_STOPPED;
   if (ended && !options->quiet)
     print_summary(&summary, store, wall_s, code);

@@ -55,13 +55,6 @@ static status take_names(void *context, size_t count, const char *const *names, 
   return STATUS_OK;
 }
 
-static bool same_name(const char *path, const char *column) {
-  for (; *path && *column; path++, column++)
-    if (*path != *column && !(*path == '.' && *column == '_'))
-      return false;
-  return *path == *column;
-}
-
 static bool same_value(const struct field *row, const struct field_value *computed, const struct query_value *stored) {
   switch (row->kind) {
   case FIELD_REAL:
@@ -107,12 +100,16 @@ static status compare_row(void *context, size_t count, const struct query_value 
   const struct field_table *tables[] = {&outcome_table, comparison->kind->results};
   const void *objects[] = {&comparison->result->outcome, comparison->result->result};
   for (size_t t = 0; t < 2; t++)
-    for (size_t i = 0; i < tables[t]->count; i++)
-      for (size_t c = 0; c < count && !(tables[t]->rows[i].flags & FIELD_VOLATILE); c++)
-        if (same_name(tables[t]->rows[i].path, comparison->names[c])) {
-          compare_value(comparison, &tables[t]->rows[i], objects[t], &values[c]);
+    for (size_t i = 0; i < tables[t]->count; i++) {
+      const struct field *row = &tables[t]->rows[i];
+      char column[sizeof *comparison->names];
+      field_column_name(row->path, column, sizeof column);
+      for (size_t c = 0; c < count; c++)
+        if (strcmp(comparison->names[c], column) == 0) {
+          compare_value(comparison, row, objects[t], &values[c]);
           break;
         }
+    }
   return STATUS_OK;
 }
 

@@ -42,13 +42,10 @@ static void list(struct table *table, const struct field_table *fields, const vo
   }
 }
 
-/* Paths become column names of the store's tables: dots to underscores. */
+/* Columns are called as in the store. */
 static void heading(struct table *table, const struct field *row) {
   char name[FIELD_TEXT_SIZE];
-  snprintf(name, sizeof name, "%s", row->path);
-  for (char *c = name; *c; c++)
-    if (*c == '.')
-      *c = '_';
+  field_column_name(row->path, name, sizeof name);
   table_column(table, name, row->unit);
 }
 

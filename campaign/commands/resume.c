@@ -4,6 +4,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "schemas/clock.h"
+
 enum { EVERY_S = 300 };
 
 static volatile sig_atomic_t stopped; /* a handler can reach nothing else */
@@ -12,25 +14,19 @@ static void note(int number) {
   stopped = number;
 }
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 void resume_begin(struct resume *resume, const char *path) {
   const int wanted[] = {SIGINT, SIGTERM, SIGHUP};
   struct sigaction action = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND};
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++)
     sigaction(wanted[k], &action, NULL);
-  *resume = (struct resume){path, now()};
+  *resume = (struct resume){path, clock_s()};
 }
 
 status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error) {
-  if (!stopped && now() - resume->saved < EVERY_S)
+  if (!stopped && clock_s() - resume->saved < EVERY_S)
     return STATUS_OK;
   status code = kind->save(run, resume->path, error);
-  resume->saved = now();
+  resume->saved = clock_s();
   if (code || !stopped)
     return code;
   return status_fail(error, STATUS_STOPPED,

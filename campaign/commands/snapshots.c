@@ -8,6 +8,7 @@
 #include "engine/atomic_file.h"
 #include "engine/snapshot_read.h"
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 struct snapshots {
   char name[FIELD_TEXT_SIZE];
@@ -77,7 +78,7 @@ static status write_series(const struct snapshots *s, struct error *error) {
     snprintf(path, sizeof path, "%s_%06lld.hdf", base ? base + 1 : s->name, (long long)k);
     field_print_number(s->time[k], number);
     fprintf(out, "%s    {\"name\": ", between);
-    field_json_string(path, out);
+    text_json_string(path, out);
     fprintf(out, ", \"time\": %s}", number);
     between = ",\n";
   }

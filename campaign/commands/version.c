@@ -2,6 +2,7 @@
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/table.h"
+#include "schemas/text.h"
 
 struct options {
   bool json;
@@ -15,9 +16,9 @@ static void print_json(size_t count, const struct fact *facts) {
   fputc('{', stdout);
   for (size_t i = 0; i < count; i++) {
     fputs(i ? ",\n " : "\n ", stdout);
-    table_json_string(facts[i].name, stdout);
+    text_json_string(facts[i].name, stdout);
     fputs(": ", stdout);
-    table_json_string(facts[i].value, stdout);
+    text_json_string(facts[i].value, stdout);
   }
   fputs("\n}\n", stdout);
 }

@@ -8,11 +8,11 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
-#include "campaign/farm/clock.h"
 #include "campaign/farm/private.h"
+#include "schemas/clock.h"
 
-#define HELLO_NS    (60 * FARM_CLOCK_S)
-#define FINALIZE_NS (60 * FARM_CLOCK_S)
+#define HELLO_NS    (60 * CLOCK_S)
+#define FINALIZE_NS (60 * CLOCK_S)
 
 bool farm_under_mpi(void) {
   return getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK");
@@ -76,7 +76,7 @@ static status introduce(struct farm *farm, struct error *error) {
     status sent = farm_link_send(farm->link, 0, FARM_FRAME_HELLO, 0, 1, &(struct iovec){&it, sizeof it}, error);
     return sent == STATUS_OK ? farm_link_flush(farm->link, error) : sent;
   }
-  const int64_t until = farm_clock_ns() + HELLO_NS;
+  const int64_t until = clock_ns() + HELLO_NS;
   for (int missing = farm->ranks - 1; missing > 0;) {
     int count;
     const status drained = farm_link_drain(farm->link, hello, farm, &count, error);
@@ -85,9 +85,9 @@ static status introduce(struct farm *farm, struct error *error) {
     missing = 0;
     for (int rank = 1; rank < farm->ranks; rank++)
       missing += farm->peers[rank].slots == 0;
-    if (missing && farm_clock_ns() > until)
+    if (missing && clock_ns() > until)
       return status_fail(error, STATUS_MEMORY, "%d of %d ranks did not start within %d s", missing, farm->ranks,
-                         (int)(HELLO_NS / FARM_CLOCK_S));
+                         (int)(HELLO_NS / CLOCK_S));
     if (missing)
       nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
   }
@@ -95,7 +95,7 @@ static status introduce(struct farm *farm, struct error *error) {
 }
 
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
-  const int64_t start = farm_clock_ns();
+  const int64_t start = clock_ns();
   status result = STATUS_MEMORY;
   struct farm *farm = calloc(1, sizeof *farm);
   if (!farm)
@@ -138,7 +138,7 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   result = introduce(farm, error);
   if (result != STATUS_OK)
     goto cleanup;
-  farm->usage.start_up_s = 1e-9 * (double)(farm_clock_ns() - start);
+  farm->usage.start_up_s = 1e-9 * (double)(clock_ns() - start);
   *out = farm;
   return STATUS_OK;
 cleanup:
@@ -194,13 +194,13 @@ static bool agree_to_finalize(struct farm *farm) {
         return false;
     return farm_link_flush(farm->link, NULL) == STATUS_OK;
   }
-  const int64_t until = farm_clock_ns() + FINALIZE_NS * 10;
+  const int64_t until = clock_ns() + FINALIZE_NS * 10;
   int64_t sleep_ns = FARM_SLEEP_LEAST_NS;
   for (bool now = false; !now;) {
     if (farm_link_drain(farm->link, finalize, &now, &count, NULL) != STATUS_OK)
       return false;
     farm_signal(farm);
-    if (farm->broken || farm_clock_ns() > until)
+    if (farm->broken || clock_ns() > until)
       return false;
     if (!now)
       nanosleep(&(struct timespec){.tv_nsec = sleep_ns}, NULL);

@@ -15,9 +15,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "campaign/farm/clock.h"
+#include "schemas/clock.h"
 
-#define TERM_GRACE_NS (500 * FARM_CLOCK_MS) /* between SIGTERM at the deadline and SIGKILL */
+#define TERM_GRACE_NS (500 * CLOCK_MS) /* between SIGTERM at the deadline and SIGKILL */
 
 static size_t address_space(void) {
   char text[64] = "";
@@ -129,27 +129,27 @@ static bool drain_pipe(struct farm_isolate *isolate) {
 static int timeout_ms(int64_t until_ns) {
   if (until_ns == INT64_MAX)
     return -1;
-  const int64_t left = until_ns - farm_clock_ns();
+  const int64_t left = until_ns - clock_ns();
   if (left <= 0)
     return 0;
-  return left > 3600 * FARM_CLOCK_S ? 3600000 : (int)(left / FARM_CLOCK_MS) + 1;
+  return left > 3600 * CLOCK_S ? 3600000 : (int)(left / CLOCK_MS) + 1;
 }
 
 /* Waits for the child's end; false: it was ended at its deadline. */
 static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit_ns, int *wait_status,
                         struct rusage *usage) {
   bool in_time = true;
-  int64_t until = limit_ns > 0 ? farm_clock_ns() + limit_ns : INT64_MAX;
+  int64_t until = limit_ns > 0 ? clock_ns() + limit_ns : INT64_MAX;
   for (;;) {
     struct pollfd fds[3] = {{.fd = isolate->child_signal, .events = POLLIN},
                             {.fd = isolate->result[0], .events = POLLIN},
                             {.fd = isolate->channel, .events = POLLRDHUP}};
     const int asked_ms = timeout_ms(until);
-    const int64_t before = farm_clock_ns();
+    const int64_t before = clock_ns();
     const int ready = poll(fds, 3, asked_ms);
     if (asked_ms >= 0 && until != INT64_MAX) { /* stopped (Ctrl-Z) meanwhile? That time is not the run's. */
-      const int64_t late = farm_clock_ns() - before - asked_ms * FARM_CLOCK_MS;
-      if (late > FARM_CLOCK_S)
+      const int64_t late = clock_ns() - before - asked_ms * CLOCK_MS;
+      if (late > CLOCK_S)
         until += late;
     }
     if (ready > 0 && (fds[2].revents & (POLLRDHUP | POLLHUP | POLLERR))) {
@@ -170,9 +170,9 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
         break;
       }
     }
-    if (farm_clock_ns() >= until) {
+    if (clock_ns() >= until) {
       kill(child, in_time ? SIGTERM : SIGKILL);
-      until = in_time ? farm_clock_ns() + TERM_GRACE_NS : INT64_MAX;
+      until = in_time ? clock_ns() + TERM_GRACE_NS : INT64_MAX;
       in_time = false;
     }
   }
@@ -183,7 +183,7 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
 bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
                       const uint8_t *task, size_t size, struct farm_bytes *out) {
   const pid_t self = getpid();
-  const int64_t start = farm_clock_ns();
+  const int64_t start = clock_ns();
   const pid_t child = fork();
   if (child < 0) {
     struct farm_result head = {.ending = FARM_LOST, .slot = slot};
@@ -197,11 +197,11 @@ bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup
 
   int ended = 0;
   struct rusage usage = {0};
-  const bool in_time = await_child(isolate, child, farm_clock_from_s(setup->options.time_limit_s), &ended, &usage);
+  const bool in_time = await_child(isolate, child, clock_from_s(setup->options.time_limit_s), &ended, &usage);
   struct farm_result head = {.slot = slot,
                              .exit_code = WIFEXITED(ended) ? WEXITSTATUS(ended) : 0,
                              .signal = WIFSIGNALED(ended) ? WTERMSIG(ended) : 0,
-                             .wall_s = 1e-9 * (double)(farm_clock_ns() - start),
+                             .wall_s = 1e-9 * (double)(clock_ns() - start),
                              .cpu_s = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                                       1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec),
                              .peak_memory = (int64_t)usage.ru_maxrss * 1024};

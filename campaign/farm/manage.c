@@ -3,14 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/farm/clock.h"
 #include "campaign/farm/private.h"
+#include "schemas/clock.h"
 
-#define TICK_NS (100 * FARM_CLOCK_MS)
+#define TICK_NS (100 * CLOCK_MS)
 #define SECOND_SIGNAL_NS                                                                                               \
-  (100 * FARM_CLOCK_MS) /* closer ones are copies: `timeout` and shells signal child and group                         \
-                         */
-#define BYE_NS            (10 * FARM_CLOCK_S)
+  (100 * CLOCK_MS) /* closer ones are copies: `timeout` and shells signal child and group                              \
+                    */
+#define BYE_NS            (10 * CLOCK_S)
 #define REMOTE_AHEAD_S    0.010 /* work sent ahead to a rank: twice the longest sleep of a main process */
 #define REMOTE_AHEAD_MOST 256
 
@@ -31,7 +31,7 @@ struct manager {
 static void end_with(struct manager *m, status reason, double grace_s) {
   if (m->final == STATUS_OK)
     m->final = reason;
-  const int64_t drop_ns = farm_clock_ns() + farm_clock_from_s(grace_s);
+  const int64_t drop_ns = clock_ns() + clock_from_s(grace_s);
   if (!m->draining || drop_ns < m->drop_ns)
     m->drop_ns = drop_ns;
   m->draining = true;
@@ -80,7 +80,7 @@ static void assign(struct manager *m, int rank, struct farm_job *job) {
   job->rank = rank;
   m->farm->peers[rank].out++;
   if (m->first_ns == 0)
-    m->first_ns = m->last_ns = farm_clock_ns();
+    m->first_ns = m->last_ns = clock_ns();
   if (rank == 0)
     farm_pool_submit(m->farm->pool, job);
   else
@@ -200,7 +200,7 @@ static void report(struct manager *m, struct farm_job *job, const struct farm_re
   peer->mean_wall_s += 0.1 * (result->wall_s - peer->mean_wall_s);
   m->usage.task_cpu_s += result->cpu_s;
   m->usage.tasks++;
-  m->last_ns = farm_clock_ns();
+  m->last_ns = clock_ns();
   m->dry = false;
   farm_job_table_remove(&m->table, job->handle);
   if (!m->silent) {
@@ -213,7 +213,7 @@ static void report(struct manager *m, struct farm_job *job, const struct farm_re
       fail(m, said);
     }
   }
-  m->last_ns = farm_clock_ns();
+  m->last_ns = clock_ns();
   free(job);
 }
 
@@ -244,7 +244,7 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
                    struct error *error) {
   struct manager *m = context;
   struct farm_peer *const peer = &m->farm->peers[rank];
-  peer->heard_ns = farm_clock_ns();
+  peer->heard_ns = clock_ns();
   if (peer->lost)
     return STATUS_OK;
   struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
@@ -283,7 +283,7 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
       status_fail(m->error, STATUS_STOPPED, "rank %d got signal %d (%s): stopped; the same command resumes", rank,
                   (int)frame->handle, strsignal((int)frame->handle));
       end_with(m, STATUS_STOPPED, frame->handle == SIGUSR1 ? m->farm->options.drain_s : m->farm->options.grace_s);
-      m->signal_ns = farm_clock_ns();
+      m->signal_ns = clock_ns();
       take_all_back(m);
     }
     return STATUS_OK;
@@ -300,7 +300,7 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
 
 static void mind_signals(struct manager *m) {
   for (int number; (number = farm_signal(m->farm));) {
-    const int64_t now = farm_clock_ns();
+    const int64_t now = clock_ns();
     if (m->signal_ns && now - m->signal_ns > SECOND_SIGNAL_NS) {
       m->dropping = true;
     } else if (!m->signal_ns) {
@@ -321,7 +321,7 @@ static void mind_signals(struct manager *m) {
 }
 
 static void mind_ranks(struct manager *m, int64_t now, int64_t late_ns) {
-  const int64_t limit = farm_clock_from_s(m->farm->options.lost_after_s);
+  const int64_t limit = clock_from_s(m->farm->options.lost_after_s);
   int alive = 0;
   if (m->farm->peers[0].slots != farm_pool_slots(m->farm->pool)) {
     m->farm->peers[0].slots = farm_pool_slots(m->farm->pool);
@@ -331,7 +331,7 @@ static void mind_ranks(struct manager *m, int64_t now, int64_t late_ns) {
   for (int rank = 0; rank < m->farm->ranks; rank++) {
     struct farm_peer *const peer = &m->farm->peers[rank];
     if (rank > 0 && !peer->lost) {
-      if (late_ns > FARM_CLOCK_S)
+      if (late_ns > CLOCK_S)
         peer->heard_ns += late_ns; /* it was us who did not listen */
       if (now - peer->heard_ns > limit) {
         char why[160];
@@ -388,8 +388,8 @@ static void say_goodbye(struct manager *m) {
     return;
   if (farm_link_flush(farm->link, &ignored) != STATUS_OK)
     farm->broken = true;
-  const int64_t until = farm_clock_ns() + (m->signal_ns ? FARM_CLOCK_S / 2 : BYE_NS);
-  for (int missing = 1; missing > 0 && farm_clock_ns() < until;) {
+  const int64_t until = clock_ns() + (m->signal_ns ? CLOCK_S / 2 : BYE_NS);
+  for (int missing = 1; missing > 0 && clock_ns() < until;) {
     int count;
     if (farm_link_drain(farm->link, take, m, &count, &ignored) != STATUS_OK)
       break;
@@ -409,8 +409,8 @@ static void say_goodbye(struct manager *m) {
 status farm_manage(struct farm *farm, const struct farm_manager *calls, struct error *error) {
   struct error own = {0};
   struct manager m = {.farm = farm, .calls = calls, .error = error ? error : &own};
-  const double cpu = farm_clock_cpu_s();
-  int64_t sleep_ns = FARM_SLEEP_LEAST_NS, ticked_ns = farm_clock_ns(), looped_ns = ticked_ns;
+  const double cpu = clock_cpu_s();
+  int64_t sleep_ns = FARM_SLEEP_LEAST_NS, ticked_ns = clock_ns(), looped_ns = ticked_ns;
   farm_pool_sink_to(farm->pool, (struct farm_pool_sink){&m, local_ended});
   for (int rank = 0; rank < farm->ranks; rank++) {
     farm->peers[rank].heard_ns = ticked_ns;
@@ -425,7 +425,7 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
     farm_pool_dispatch(farm->pool);
     if (farm->link)
       fail(&m, farm_link_flush(farm->link, m.error));
-    const int64_t now = farm_clock_ns();
+    const int64_t now = clock_ns();
     if (m.draining && now >= m.drop_ns)
       m.dropping = true;
     if (finished(&m))
@@ -439,7 +439,7 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
       fail(&m, farm_link_drain(farm->link, take, &m, &count, m.final == STATUS_OK ? m.error : &later));
     }
     sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(sleep_ns);
-    const int64_t after = farm_clock_ns();
+    const int64_t after = clock_ns();
     mind_ranks(&m, after, after - looped_ns);
     looped_ns = after;
     if (after - ticked_ns >= TICK_NS) {
@@ -462,7 +462,7 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
   }
   say_goodbye(&m);
   m.usage.wall_s = 1e-9 * (double)(m.last_ns - m.first_ns);
-  m.usage.manager_cpu_s = farm_clock_cpu_s() - cpu;
+  m.usage.manager_cpu_s = clock_cpu_s() - cpu;
   m.usage.start_up_s = farm->usage.start_up_s;
   farm->usage = m.usage;
   farm_job_table_free(&m.table);

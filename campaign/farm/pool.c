@@ -12,11 +12,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "campaign/farm/clock.h"
 #include "campaign/farm/server.h"
+#include "schemas/clock.h"
 
 /* Tasks shorter than this are sent ahead in numbers, so that a slot never starves while the manager handles a batch. */
-#define AHEAD_NS    (500 * FARM_CLOCK_MS / 1000)
+#define AHEAD_NS    (500 * CLOCK_MS / 1000)
 #define IDLE_DEATHS 5 /* of a slot in a row, without a task: give it up */
 
 struct slot {
@@ -54,7 +54,7 @@ status farm_pool_start(const struct farm_options *options, farm_work work, struc
   if (!pool)
     return status_fail(error, STATUS_MEMORY, "no memory for the farm");
   *pool = (struct farm_pool){.setup = {.options = *options, .work = work}, .control = -1, .mean_wall_s = 1};
-  pool->looked_ns = farm_clock_ns();
+  pool->looked_ns = clock_ns();
   pool->slots = calloc(slots, sizeof *pool->slots);
   pool->fds = calloc(slots + 2, sizeof *pool->fds);
   pool->records_size = slots * sizeof *pool->setup.records;
@@ -302,7 +302,7 @@ static void mourn(struct farm_pool *pool, int index, const struct farm_result *v
     snprintf(limit, sizeof limit, "ended at its time limit of %g s", pool->setup.options.time_limit_s);
     text = limit;
   }
-  result.wall_s = 1e-9 * (double)(farm_clock_ns() - started);
+  result.wall_s = 1e-9 * (double)(clock_ns() - started);
   result.slot = index;
   ended(pool, blamed, &result, NULL, text, strlen(text));
 }
@@ -366,12 +366,12 @@ static void hear_server(struct farm_pool *pool) {
 /* In process, the deadline is kept here, as the slot is busy. Returns when to look again. In isolation the slot keeps
  * it. */
 static int64_t keep_deadlines(struct farm_pool *pool) {
-  const int64_t now = farm_clock_ns(), late = now - pool->looked_ns;
+  const int64_t now = clock_ns(), late = now - pool->looked_ns;
   pool->looked_ns = now;
   int64_t next = INT64_MAX;
   if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0))
     return next;
-  const int64_t limit = farm_clock_from_s(pool->setup.options.time_limit_s);
+  const int64_t limit = clock_from_s(pool->setup.options.time_limit_s);
   for (int i = 0; i < pool->setup.options.slots; i++) {
     struct slot *const slot = &pool->slots[i];
     const uint64_t running = atomic_load(&pool->setup.records[i].running);
@@ -379,7 +379,7 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
     if (slot->channel < 0 || slot->jobs.count == 0)
       continue;
     /* We look every second at least. If we did not, all of us were stopped (Ctrl-Z): not the run's fault. */
-    if (running && late > 2 * FARM_CLOCK_S) {
+    if (running && late > 2 * CLOCK_S) {
       slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
       slot->forgiven = running;
     }
@@ -396,9 +396,9 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
 
 bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   const int slots = pool->setup.options.slots;
-  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = farm_clock_ns();
-  if (timeout_ns > FARM_CLOCK_S)
-    timeout_ns = FARM_CLOCK_S;
+  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
+  if (timeout_ns > CLOCK_S)
+    timeout_ns = CLOCK_S;
   if (deadline - now < timeout_ns)
     timeout_ns = deadline > now ? deadline - now : 0;
   for (int i = 0; i < slots; i++) {
@@ -409,7 +409,7 @@ bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   }
   pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
   pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
-  const struct timespec timeout = {timeout_ns / FARM_CLOCK_S, (long)(timeout_ns % FARM_CLOCK_S)};
+  const struct timespec timeout = {timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
   const int ready = ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL);
   if (ready <= 0)
     return false;

@@ -2,10 +2,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/farm/clock.h"
 #include "campaign/farm/private.h"
+#include "schemas/clock.h"
 
-#define ALIVE_EVERY_NS (2 * FARM_CLOCK_S)
+#define ALIVE_EVERY_NS (2 * CLOCK_S)
 
 struct server {
   struct farm *farm;
@@ -25,7 +25,7 @@ static void keep(struct server *server, status result) {
 static void say(struct server *server, enum farm_frame_kind kind, uint64_t handle, int parts,
                 const struct iovec *part) {
   keep(server, farm_link_send(server->farm->link, 0, kind, handle, parts, part, server->error));
-  server->said_ns = farm_clock_ns();
+  server->said_ns = clock_ns();
 }
 
 static void job_ended(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
@@ -76,13 +76,13 @@ static bool leave_alone(struct server *server, int64_t *leave_ns) {
   if (number)
     say(server, FARM_FRAME_SIGNAL, (uint64_t)number, 0, NULL);
   if (server->farm->broken && *leave_ns == 0)
-    *leave_ns = farm_clock_ns() + 2 * FARM_CLOCK_S;
-  return *leave_ns != 0 && farm_clock_ns() > *leave_ns;
+    *leave_ns = clock_ns() + 2 * CLOCK_S;
+  return *leave_ns != 0 && clock_ns() > *leave_ns;
 }
 
 status farm_serve(struct farm *farm, struct error *error) {
-  struct server server = {.farm = farm, .error = error, .said_ns = farm_clock_ns()};
-  const double cpu = farm_clock_cpu_s();
+  struct server server = {.farm = farm, .error = error, .said_ns = clock_ns()};
+  const double cpu = clock_cpu_s();
   int64_t sleep_ns = FARM_SLEEP_LEAST_NS, leave_ns = 0, looked_ns = 0;
   farm_pool_sink_to(farm->pool, (struct farm_pool_sink){&server, job_ended});
   bool empty_said = false;
@@ -91,8 +91,8 @@ status farm_serve(struct farm *farm, struct error *error) {
     const bool heard = farm_pool_wait(farm->pool, farm->signals, sleep_ns);
     keep(&server, farm_link_drain(farm->link, take, &server, &count, error));
     farm_pool_dispatch(farm->pool);
-    const int64_t now = farm_clock_ns();
-    if (now - looked_ns > 50 * FARM_CLOCK_MS || heard) {
+    const int64_t now = clock_ns();
+    if (now - looked_ns > 50 * CLOCK_MS || heard) {
       looked_ns = now;
       if (leave_alone(&server, &leave_ns)) {
         keep(&server, status_fail(error, STATUS_STOPPED, "the launcher of this rank has died"));
@@ -117,7 +117,7 @@ status farm_serve(struct farm *farm, struct error *error) {
     farm_pool_end(farm->pool);
     farm->pool = NULL;
   }
-  const double used = farm_clock_cpu_s() - cpu;
+  const double used = clock_cpu_s() - cpu;
   farm->usage.waiting_cpu_s = used;
   say(&server, FARM_FRAME_BYE, 0, 1, &(struct iovec){(void *)&used, sizeof used});
   keep(&server, farm_link_flush(farm->link, error));

@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "campaign/farm/clock.h"
+#include "schemas/clock.h"
 
 struct server {
   const struct farm_slot_setup *setup;

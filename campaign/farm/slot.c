@@ -11,11 +11,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "campaign/farm/clock.h"
 #include "campaign/farm/isolate.h"
+#include "schemas/clock.h"
 
 /* Results of short tasks are sent together: when this old, this many, or when there is nothing else to do. */
-#define FLUSH_AFTER_NS (200 * FARM_CLOCK_MS / 1000)
+#define FLUSH_AFTER_NS (200 * CLOCK_MS / 1000)
 #define FLUSH_AT_BYTES 32768
 
 void farm_slot_die_with(pid_t parent) {
@@ -65,12 +65,12 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
   const size_t memory_limit = setup->options.memory_limit;
   if (memory_limit)
     farm_isolate_limit_memory(memory_limit);
-  const int64_t start = farm_clock_ns();
-  const double cpu = farm_clock_cpu_s();
+  const int64_t start = clock_ns();
+  const double cpu = clock_cpu_s();
   const status verdict = setup->work(task, size, &result, &result_size, &error);
   struct farm_result head = {.slot = slot,
-                             .cpu_s = farm_clock_cpu_s() - cpu,
-                             .wall_s = 1e-9 * (double)(farm_clock_ns() - start),
+                             .cpu_s = clock_cpu_s() - cpu,
+                             .wall_s = 1e-9 * (double)(clock_ns() - start),
                              .exit_code = verdict,
                              .peak_memory = peak_memory(floor)};
   if (memory_limit)
@@ -99,7 +99,7 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
 static bool claim(struct farm_slot_record *record, const struct farm_frame *frame) {
   uint64_t expected = frame->handle;
   /* `running` first: a death between the two lines blames a task that main then finds still offered, and runs again. */
-  atomic_store(&record->started_ns, farm_clock_ns());
+  atomic_store(&record->started_ns, clock_ns());
   atomic_store(&record->running, frame->handle);
   if (frame->ticket < FARM_SLOT_TICKETS && atomic_compare_exchange_strong(&record->ticket[frame->ticket], &expected, 0))
     return true;
@@ -119,7 +119,7 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
   struct farm_slot_record *const record = &setup->records[slot];
   struct farm_bytes in = {0}, out = {0};
   struct farm_isolate isolate;
-  int64_t memory_floor = 0, flushed = farm_clock_ns();
+  int64_t memory_floor = 0, flushed = clock_ns();
   peak_memory(&memory_floor);
   if (!setup->options.in_process && !farm_isolate_open(&isolate, channel))
     _exit(STATUS_MEMORY);
@@ -136,7 +136,7 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
       if (!written)
         _exit(STATUS_MEMORY);
       atomic_store(&record->running, 0);
-      const int64_t now = farm_clock_ns();
+      const int64_t now = clock_ns();
       if (now - flushed > FLUSH_AFTER_NS || out.end - out.begin > FLUSH_AT_BYTES) {
         flush(channel, &out);
         flushed = now;
@@ -155,6 +155,6 @@ _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, in
     if (n <= 0)
       _exit(STATUS_OK);
     in.end += (size_t)n;
-    flushed = farm_clock_ns();
+    flushed = clock_ns();
   }
 }

@@ -7,21 +7,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 enum { ROWS_MAXIMUM = 30, HELP_VALUE = 1000, ROW_VALUE = 1001, COLUMN = 26, WIDTH = 96, WORD_MAXIMUM = 63 };
 
 const char *option_nearest(const char *typed, size_t count, const char *const *names) {
-  const char *nearest = NULL;
-  size_t length = strlen(typed), least = edit_distance_limit(length) + 1; /* must stay below */
-  for (size_t i = 0; i < count; i++) {
-    size_t distance = edit_distance(typed, length, names[i]);
-    if (distance < least) {
-      least = distance;
-      nearest = names[i];
-    }
-  }
-  return nearest;
+  struct text_guess guess = text_guess(typed);
+  for (size_t i = 0; i < count; i++)
+    text_guess_offer(&guess, names[i]);
+  return guess.nearest;
 }
 
 static status take_value(const struct command *command, const struct option_row *row, const char *text, void *options,
@@ -139,35 +133,6 @@ status option_parse(const struct command *command, int argc, char **argv, void *
   return STATUS_OK;
 }
 
-/* Words of `text`, wrapped at WIDTH, continued at `indent`; the cursor stands at column `at`. */
-static void print_wrapped(const char *text, size_t at, size_t indent, FILE *out) {
-  while (at < indent) {
-    fputc(' ', out);
-    at++;
-  }
-  while (*text) {
-    size_t word = strcspn(text, " ");
-    if (at > indent && at + word > WIDTH) {
-      fprintf(out, "\n%*s", (int)indent, "");
-      at = indent;
-    }
-    fwrite(text, 1, word, out);
-    at += word;
-    text += word;
-    while (*text == ' ') {
-      text++;
-      if (*text && at + 1 + strcspn(text, " ") <= WIDTH) {
-        fputc(' ', out);
-        at++;
-      } else if (*text) {
-        fprintf(out, "\n%*s", (int)indent, "");
-        at = indent;
-      }
-    }
-  }
-  fputc('\n', out);
-}
-
 static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,
                       FILE *out) {
   bool has_default = initial && *initial;
@@ -185,7 +150,7 @@ static void print_row(char letter, const char *name, const char *argument, const
     fputc('\n', out);
     at = 0;
   }
-  print_wrapped(text, at, COLUMN + 4, out);
+  text_wrap(text, at, COLUMN + 4, WIDTH, out);
 }
 
 void option_lines(const char *line, FILE *out) {

@@ -76,7 +76,7 @@ void option_help(const struct command *command, FILE *out);
 /* The bash completion script of all commands. */
 void option_completion(size_t count, const struct command *const *commands, FILE *out);
 
-/* The nearest of `count` names to what was typed, or NULL when none is near (schemas/edit_distance.h). */
+/* The nearest of `count` names to what was typed, or NULL when none is near (schemas/text.h). */
 const char *option_nearest(const char *typed, size_t count, const char *const *names);
 
 #endif

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 enum { SAMPLE_ROWS = 500, COLUMNS_MAXIMUM = 2000 }; /* SQLite's own limit on columns is 2000 */
 
 struct column {
@@ -137,44 +139,6 @@ static void csv_text(const char *text, FILE *out) {
   fputc('"', out);
 }
 
-/* Length of the well-formed UTF-8 sequence at `text`, 0 when there is none (overlong, surrogate, truncated, too large).
- */
-static size_t utf8_length(const unsigned char *text) {
-  unsigned char a = text[0];
-  size_t length = a < 0x80 ? 1 : a >= 0xC2 && a < 0xE0 ? 2 : a >= 0xE0 && a < 0xF0 ? 3 : a >= 0xF0 && a < 0xF5 ? 4 : 0;
-  for (size_t i = 1; i < length; i++)
-    if ((text[i] & 0xC0) != 0x80)
-      return 0;
-  if ((a == 0xE0 && text[1] < 0xA0) || (a == 0xED && text[1] > 0x9F) || (a == 0xF0 && text[1] < 0x90) ||
-      (a == 0xF4 && text[1] > 0x8F))
-    return 0;
-  return length;
-}
-
-void table_json_string(const char *text, FILE *out) {
-  fputc('"', out);
-  for (const unsigned char *c = (const unsigned char *)text; *c;) {
-    size_t length = utf8_length(c);
-    if (length == 0) {
-      fputs("\\ufffd", out);
-      c++;
-      continue;
-    }
-    if (*c == '"' || *c == '\\')
-      fprintf(out, "\\%c", *c);
-    else if (*c == '\n')
-      fputs("\\n", out);
-    else if (*c == '\t')
-      fputs("\\t", out);
-    else if (*c < 0x20 || *c == 0x7F)
-      fprintf(out, "\\u%04x", (unsigned)*c);
-    else
-      fwrite(c, 1, length, out);
-    c += length;
-  }
-  fputc('"', out);
-}
-
 static void header(struct table *table) {
   if (table->format == TABLE_TEXT) {
     print_kept(table);
@@ -236,10 +200,10 @@ static void cell(struct table *table, char kind, const char *text, const char *s
     fputs(column + 1 < table->column_count ? "," : "\r\n", table->out);
   } else {
     fputs(column == 0 ? (table->rows ? ",\n {" : "\n {") : ", ", table->out);
-    table_json_string(table->columns[column].name, table->out);
+    text_json_string(table->columns[column].name, table->out);
     fputs(": ", table->out);
     if (kind == 't')
-      table_json_string(text, table->out);
+      text_json_string(text, table->out);
     else
       fputs(kind == 'n' ? text : "null", table->out);
     if (column + 1 == table->column_count)

@@ -40,9 +40,6 @@ void table_drop(struct table *table); /* frees it, prints nothing that was not p
 /* True once the reader has gone away or writing failed: no need to make more rows. */
 bool table_broken(const struct table *table);
 
-/* One JSON string with its quotes, escaped; bytes that are no UTF-8 become U+FFFD. */
-void table_json_string(const char *text, FILE *out);
-
 /* Flush stdout; the same verdict as table_end. For commands that print text. */
 status table_flush(FILE *out, struct error *error);
 

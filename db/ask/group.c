@@ -6,7 +6,7 @@
 #include "db/ask/query.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 enum { NAMES = 32, NAME = 128 };
 
@@ -26,8 +26,9 @@ static bool ends_in(const char *column, const char *wanted) {
 
 struct choice { /* what a word may stand for */
   const char *wanted;
+  struct text_guess guess; /* its nearest is `near` */
   char found[NAME];
-  size_t matches, distance; /* of the nearest one */
+  size_t matches;
   bool exact;
   char near[NAME], known[4096], matching[1024];
 };
@@ -41,10 +42,10 @@ static status consider(void *context, size_t count, const struct query_value *va
   (void)error;
   struct choice *choice = context;
   const char *column = values[0].text, *path = count > 1 ? values[1].text : NULL, *name = path ? path : column;
-  const size_t distance = edit_distance(choice->wanted, strlen(choice->wanted), name);
-  if (distance < choice->distance) {
-    choice->distance = distance;
+  text_guess_offer(&choice->guess, name);
+  if (choice->guess.nearest == name) { /* borrowed from the row: keep a copy */
     snprintf(choice->near, sizeof choice->near, "%s", name);
+    choice->guess.nearest = choice->near;
   }
   append(choice->known, sizeof choice->known, name);
   bool exact = strcmp(column, choice->wanted) == 0 || (path && strcmp(path, choice->wanted) == 0);
@@ -69,7 +70,7 @@ static status resolve(struct store *store, const char *list, const char *what, c
       from[n - 1] = '\0';
     if (!*from)
       continue;
-    struct choice choice = {.wanted = from, .distance = edit_distance_limit(strlen(from)) + 1};
+    struct choice choice = {.wanted = from, .guess = text_guess(from)};
     const struct query_sink sink = {.context = &choice, .row = consider};
     status result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
     if (result != STATUS_OK)

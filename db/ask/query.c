@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "db/store/internal.h"
+#include "schemas/clock.h"
 
 enum { STEPS_BETWEEN_LOOKS = 10000 };
 
@@ -16,15 +17,9 @@ struct watch {     /* what authorizer and progress handler know of a query */
   bool writes, late;
 };
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static int look(void *context) {
   struct watch *watch = context;
-  watch->late = watch->deadline > 0 && now() > watch->deadline;
+  watch->late = watch->deadline > 0 && clock_s() > watch->deadline;
   return watch->late;
 }
 
@@ -206,7 +201,7 @@ static status give_rows(sqlite3_stmt *statement, const struct query_sink *sink, 
 
 status query_run(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,
                  double time_limit_s, const struct query_sink *sink, struct error *error) {
-  struct watch watch = {.deadline = time_limit_s > 0 ? now() + time_limit_s : 0};
+  struct watch watch = {.deadline = time_limit_s > 0 ? clock_s() + time_limit_s : 0};
   sqlite3_stmt *statement = NULL;
   sqlite3_set_authorizer(store->db, authorize, &watch);
   sqlite3_progress_handler(store->db, STEPS_BETWEEN_LOOKS, time_limit_s > 0 ? look : NULL, &watch);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/sample.h"
 #include "analysis/statistics/spectrum.h"
 #include "db/ask/query.h"
 #include "db/store/internal.h"
@@ -52,16 +53,11 @@ static void median_step(sqlite3_context *context, int count, sqlite3_value **val
   s->values[s->n++] = sqlite3_value_double(values[0]);
 }
 
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return x < y ? -1 : x > y;
-}
-
 static void median_final(sqlite3_context *context) {
   struct sample *s = sqlite3_aggregate_context(context, 0);
   if (!s || s->n == 0)
     return;
-  qsort(s->values, s->n, sizeof *s->values, ascending);
+  qsort(s->values, s->n, sizeof *s->values, sample_ascending);
   sqlite3_result_double(context, s->n % 2 ? s->values[s->n / 2] : (s->values[s->n / 2 - 1] + s->values[s->n / 2]) / 2);
   free(s->values);
 }

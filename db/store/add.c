@@ -38,7 +38,7 @@ static status prepare_insert(struct store *store, sqlite3_stmt **statement, cons
   fprintf(out, "INSERT INTO %s (%s", table, fixed);
   for (size_t i = 0; fields && i < fields->count; i++, columns++) {
     char name[SCHEMA_NAME_SIZE];
-    sql_column_name(fields->rows[i].path, name, sizeof name);
+    field_column_name(fields->rows[i].path, name, sizeof name);
     fprintf(out, ", \"%s\"", name);
   }
   for (size_t i = 0; i < columns; i++)

@@ -85,7 +85,7 @@ static bool range_columns(struct store *store, const char *table, const struct f
     if ((row->kind != FIELD_REAL && row->kind != FIELD_INTEGER) ||
         (row->minimum == -HUGE_VAL && row->maximum == HUGE_VAL))
       continue;
-    sql_column_name(row->path, name, sizeof name);
+    field_column_name(row->path, name, sizeof name);
     if (sqlite3_table_column_metadata(store->db, NULL, table, name, NULL, NULL, NULL, NULL, NULL) != SQLITE_OK)
       continue;
     fprintf(sql, "%siif(\"%s\" < %.17g OR \"%s\" > %.17g, ' %s is ' || \"%s\", '')", any ? " || " : "", name,

@@ -24,7 +24,7 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
   static const char doing[] = "reading a point's runs";
   char column[SCHEMA_NAME_SIZE];
   sqlite3_stmt *statement = NULL;
-  sql_column_name(row->path, column, sizeof column);
+  field_column_name(row->path, column, sizeof column);
   char *sql = sqlite3_mprintf(
       "SELECT r.replicate, r.identity, r.surplus, r.state, %s.\"%w\", r.wall_time, r.cpu_time, "
       "r.peak_memory, r.fields_path, r.seed FROM run r %s%w%s WHERE r.point_id = ?1 AND r.results_version "

@@ -55,7 +55,7 @@ static void write_table(const struct schema_table *table, FILE *out) {
   for (size_t i = 0; i < fields; i++) {
     const struct field *row = &table->fields->rows[i];
     char name[SCHEMA_NAME_SIZE];
-    sql_column_name(row->path, name, sizeof name);
+    field_column_name(row->path, name, sizeof name);
     write_column(name, sql_type(row), i + 1 == fields && !table->tail, row->unit, out);
     write_meaning(row, out);
     fputc('\n', out);
@@ -92,7 +92,7 @@ static status write_docs(sqlite3 *db, const struct schema_table *table, struct e
     const struct field *row = &table->fields->rows[i];
     char name[SCHEMA_NAME_SIZE], *meaning = NULL;
     size_t size = 0;
-    sql_column_name(row->path, name, sizeof name);
+    field_column_name(row->path, name, sizeof name);
     FILE *text = open_memstream(&meaning, &size);
     if (!text)
       return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
@@ -134,7 +134,7 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
   bool grown = false;
   for (size_t i = 0; table->fields && i < table->fields->count; i++) {
     char name[SCHEMA_NAME_SIZE];
-    sql_column_name(table->fields->rows[i].path, name, sizeof name);
+    field_column_name(table->fields->rows[i].path, name, sizeof name);
     result = has_column(db, table->name, name, &has, error);
     if (result == STATUS_OK && !has)
       result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name, name,

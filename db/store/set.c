@@ -24,7 +24,7 @@ static status prepare(struct store *store, sqlite3_stmt **statement, const char 
   fprintf(out, "INSERT INTO %s (%s", table, key);
   for (size_t i = 0; i < store->estimate_table->count; i++) {
     char name[SCHEMA_NAME_SIZE];
-    sql_column_name(store->estimate_table->rows[i].path, name, sizeof name);
+    field_column_name(store->estimate_table->rows[i].path, name, sizeof name);
     fprintf(out, ", \"%s\"", name);
   }
   fputs(") VALUES ", out);

@@ -10,12 +10,7 @@
 #include "db/store/lock.h"
 #include "db/store/migrate.h"
 #include "db/store/schema.h"
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+#include "schemas/clock.h"
 
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
@@ -246,7 +241,7 @@ status store_begin(struct store *store, struct error *error) {
   store->in_batch = true;
   store->batch_rows = 0;
   store->batch_identity_count = 0;
-  store->batch_started = now();
+  store->batch_started = clock_s();
   return STATUS_OK;
 }
 
@@ -276,7 +271,8 @@ status store_flush(struct store *store, struct error *error) {
 }
 
 status store_tick(struct store *store, struct error *error) {
-  return store->in_batch && now() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error) : STATUS_OK;
+  return store->in_batch && clock_s() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error)
+                                                                                    : STATUS_OK;
 }
 
 status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error) {

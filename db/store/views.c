@@ -219,7 +219,7 @@ status views_regenerate(sqlite3 *db, struct error *error) {
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {
   char plain[256];
   sqlite3_stmt *statement = NULL;
-  sql_column_name(path, plain, sizeof plain);
+  field_column_name(path, plain, sizeof plain);
   status result = sql_prepare(db,
                               "SELECT 1 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, "
                               "pragma_table_info(v.column1) c WHERE c.name = ?1 UNION ALL SELECT 1 FROM axis WHERE "

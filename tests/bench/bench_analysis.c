@@ -8,17 +8,13 @@
 #include "analysis/analysis.h"
 #include "analysis/statistics/estimates.h"
 #include "analysis/statistics/pooled.h"
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 static double seconds(void) {
   struct timespec t;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
 }
 
 /* One point of 200 runs with 80 fragments each: every method with 100 resamples. */
@@ -31,7 +27,7 @@ static int pooled(void) {
   for (size_t i = 0; i < RUNS * EACH; i++)
     masses[i] = 1 / (1 - random_draw(2, 2, i, 0));
   for (size_t r = 0; r < RUNS; r++)
-    qsort(masses + first[r], EACH, sizeof *masses, descending);
+    qsort(masses + first[r], EACH, sizeof *masses, sample_descending);
   struct pooled_runs runs = {RUNS, first, masses};
   for (int method = 0; method < EXPONENT_METHODS; method++) {
     struct pooled_exponent out;

@@ -4,22 +4,17 @@
 #include <time.h>
 
 #include "analysis/analysis.h"
+#include "schemas/clock.h"
 #include "tests/support/campaign_play.h"
-
-static double seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static double drive(const struct campaign *campaign, const char *path) {
   struct play play = {.slots = 8};
   struct driver_summary summary;
-  double begin = seconds();
+  double begin = clock_s();
   if (play_once(&play, campaign, path, &summary) != STATUS_OK)
     exit(STATUS_INTERNAL);
   free(play.says);
-  return seconds() - begin;
+  return clock_s() - begin;
 }
 
 int main(void) {
@@ -47,9 +42,9 @@ int main(void) {
   play_remove(path);
   struct play play = {.slots = 2, .stop_after = 1};
   struct driver_summary summary;
-  double begin = seconds();
+  double begin = clock_s();
   play_once(&play, campaign, path, &summary);
-  printf("campaign_first_run_ms_1e6 %.1f ms\n", 1e3 * (seconds() - begin));
+  printf("campaign_first_run_ms_1e6 %.1f ms\n", 1e3 * (clock_s() - begin));
   free(play.says);
   campaign_free(campaign);
   play_remove(path);

@@ -12,8 +12,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "campaign/farm/clock.h"
 #include "db/store/store.h"
+#include "schemas/clock.h"
 #include "tests/support/farm_tasks.h"
 #include "tests/support/store_fixture.h"
 
@@ -40,7 +40,7 @@ static double fill(double *list, int count, double mean, uint64_t seed) {
   double sum = 0;
   for (int i = 0; i < count; i++) {
     const double u = 1 - fixture_random(seed, 2 * (uint64_t)i), v = fixture_random(seed, 2 * (uint64_t)i + 1);
-    list[i] = mean * exp(sqrt(-2 * log(u)) * cos(2 * acos(-1) * v) - 0.5);
+    list[i] = mean * exp(sqrt(-2 * log(u)) * cos(2 * M_PI * v) - 0.5);
     sum += list[i];
   }
   return sum;
@@ -55,12 +55,12 @@ static void tasks_from(struct task_list *list, const double *cost, int count) {
 }
 
 static double since(int64_t start_ns) {
-  return 1e-9 * (double)(farm_clock_ns() - start_ns);
+  return 1e-9 * (double)(clock_ns() - start_ns);
 }
 
 /* Two bare processes with half of the work each: what the machine gives at this moment. */
 static double ideal(double sum) {
-  const int64_t start = farm_clock_ns();
+  const int64_t start = clock_ns();
   pid_t pids[SLOTS];
   for (int i = 0; i < SLOTS; i++) {
     pids[i] = fork();
@@ -118,7 +118,7 @@ static bool have(const char *program) {
 }
 
 static double piped(const char *command, const double *cost, int count) {
-  const int64_t start = farm_clock_ns();
+  const int64_t start = clock_ns();
   FILE *pipe = popen(command, "w");
   if (!pipe)
     return NAN;
@@ -254,7 +254,7 @@ static double stored_per_s(bool in_process, size_t fragments) {
       store_add_point(s.store, campaign, &s.scene, 2, fixture_axes, &point, &error) == STATUS_OK) {
     fixture_fill(s.run, &s.scene, point, session, 0, fragments);
     s.run->run.estimate_count = 0;
-    const int64_t start = farm_clock_ns();
+    const int64_t start = clock_ns();
     struct farm_manager manager = {&s, store_next, store_report, store_ticking, NULL};
     const struct farm_usage usage = farm_over(NULL, NOTHINGS, in_process, &manager).usage;
     if (store_flush(s.store, &error) == STATUS_OK && usage.tasks == NOTHINGS)

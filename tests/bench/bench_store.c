@@ -3,17 +3,12 @@
 #include <time.h>
 
 #include "analysis/statistics/estimates.h"
+#include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 
 enum { POINTS = 100, BINS = 30, REPEATS = 5, VARIANTS = 64 };
 
 static struct error error;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void need(status result) {
   if (result == STATUS_OK)
@@ -44,13 +39,13 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   int64_t points[POINTS];
   struct estimate rows[ESTIMATES_COUNT];
   unlink(path);
-  double start = now();
+  double start = clock_s();
   need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
   for (int p = 0; p < POINTS; p++) {
     struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
     need(store_add_point(store, 0, &scene, 2, fixture_axes, &points[p], &error));
   }
-  double spent = now() - start;
+  double spent = clock_s() - start;
   struct scene scene = fixture_scene(&inputs, 1, 1e30);
   for (int v = 0; v < VARIANTS; v++)
     fill(&variants[v], &scene, v);
@@ -68,14 +63,14 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
       double word = fixture_random((uint64_t)r, (uint64_t)i);
       memcpy(f->run.identity + 8 * i, &word, sizeof word);
     }
-    start = now();
+    start = clock_s();
     need(store_add_run(store, &f->run, &error));
-    spent += now() - start;
+    spent += clock_s() - start;
   }
-  start = now();
+  start = clock_s();
   need(store_close(store, &error));
   *cpu = processor() - *cpu;
-  return spent + now() - start;
+  return spent + clock_s() - start;
 }
 
 static status count_row(void *context, size_t count, const struct query_value *values, struct error *unused) {
@@ -89,9 +84,9 @@ static void ask(struct store *store, const char *name, const char *sql, int rows
   for (int i = 0; i < REPEATS; i++) {
     int rows = 0;
     const struct query_sink sink = {.context = &rows, .row = count_row};
-    double start = now();
+    double start = clock_s();
     need(query_run(store, sql, 0, NULL, 0, &sink, &error));
-    best = fmin(best, now() - start);
+    best = fmin(best, clock_s() - start);
     if (rows != rows_expected) {
       fprintf(stderr, "%s: %d rows instead of %d\n", name, rows, rows_expected);
       exit(1);
@@ -119,9 +114,9 @@ int main(int argc, char **argv) {
   printf("store_load_cpu_us_per_run %.1f us\n", 1e6 * least / (double)runs);
 
   struct store *store = NULL;
-  double start = now();
+  double start = clock_s();
   need(store_open_reader(path, &store, &error));
-  printf("store_open_reader_ms %.2f ms\n", 1e3 * (now() - start));
+  printf("store_open_reader_ms %.2f ms\n", 1e3 * (clock_s() - start));
   double bytes = 0;
   need(query_number(store, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size", 0, NULL, &bytes,
                     &error));
@@ -135,9 +130,9 @@ int main(int argc, char **argv) {
       "SELECT bin, sum(count) FROM run JOIN spectrum USING (run_id) WHERE point_id = 17 GROUP BY bin", BINS);
   ask(store, "store_runs_of_point_ms", "SELECT count(*) FROM runs WHERE point_id = 17", 1);
   store_close(store, NULL);
-  start = now();
+  start = clock_s();
   need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
-  printf("store_resume_open_ms %.2f ms\n", 1e3 * (now() - start));
+  printf("store_resume_open_ms %.2f ms\n", 1e3 * (clock_s() - start));
   need(store_close(store, &error));
   unlink(path);
   return 0;

@@ -14,7 +14,7 @@ static inline struct dem_parameters dem_disc_parameters(void) {
                                  .contact_on_bonded = true,
                                  .breaking = false,
                                  .strain_threshold = 0.03,
-                                 .angle_threshold = 4.0 * 3.14159265358979323846 / 180.0,
+                                 .angle_threshold = 4.0 * M_PI / 180.0,
                                  .threshold_modulus = NAN,
                                  .integrator = DEM_VERLET,
                                  .time_step = 1e-6};

@@ -54,8 +54,7 @@ struct reference_dem *reference_dem_create(const struct dem_tessellation *t, con
       if (!bonded && l > 1.02 * (r->body[i].radius + r->body[j].radius))
         continue;
       struct bond *b = &r->bond[r->bonds++];
-      const double di = sqrt(4.0 * t->area[i] / 3.14159265358979323846),
-                   dj = sqrt(4.0 * t->area[j] / 3.14159265358979323846);
+      const double di = sqrt(4.0 * t->area[i] / M_PI), dj = sqrt(4.0 * t->area[j] / M_PI);
       const double usual = 0.27 * (di + dj), s = bonded ? t->side[next] : usual;
       *b = (struct bond){.i = i, .j = j, .l0 = l, .phi0 = atan2(dy, dx), .beam = bonded};
       b->phi = b->phi0;
@@ -83,7 +82,7 @@ void reference_dem_state(struct reference_dem *r, const struct dem_system *s) {
 static void beam(struct reference_dem *r, struct bond *b) {
   struct body *i = &r->body[b->i], *j = &r->body[b->j];
   const double dx = j->x - i->x, dy = j->y - i->y, l = sqrt(dx * dx + dy * dy), ux = dx / l, uy = dy / l;
-  b->phi += remainder(atan2(dy, dx) - b->phi, 2.0 * 3.14159265358979323846);
+  b->phi += remainder(atan2(dy, dx) - b->phi, 2.0 * M_PI);
   const double t1 = i->angle - (b->phi - b->phi0), t2 = j->angle - (b->phi - b->phi0), stretch = l - b->l0;
   const double m1 = b->diagonal * (t2 - t1) - b->cross * t2, m2 = b->diagonal * (t1 - t2) - b->cross * t1;
   const double tension = b->alpha * stretch, shear = (m1 + m2) / l;

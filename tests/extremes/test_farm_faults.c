@@ -80,14 +80,14 @@ static void long_runs_are_dropped(void **state) {
     struct outcome_of out;
     const struct running it = launch(program, (struct launch){ALONE, .count = 10, .kind = TASK_SLEEP, .amount = 30});
     assert_true(await_descendant(&it, it.pid, CHILD, 1) > 0);
-    const int64_t start = farm_clock_ns();
+    const int64_t start = clock_ns();
     kill(it.pid, second ? SIGUSR1 : SIGTERM); /* a drain would take two minutes, the grace two seconds */
     if (second) {
       task_sleep(0.3);
       kill(it.pid, SIGTERM);
     }
     assert_true(ended(&it, 10, &out));
-    const double took = 1e-9 * (double)(farm_clock_ns() - start);
+    const double took = 1e-9 * (double)(clock_ns() - start);
     assert_int_equal(orphans(&it, 1), 0);
     assert_int_equal(out.exit_code, STATUS_STOPPED);
     assert_int_equal(out.reported, 0);

@@ -17,6 +17,7 @@
 #include <time.h>
 
 #include "db/store/internal.h"
+#include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;
@@ -33,12 +34,6 @@ static double number(struct store *store, const char *sql) {
   double value = 0;
   OK(query_number(store, sql, 0, NULL, &value, &error));
   return value;
-}
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static status fill(const char *path, int64_t runs, struct error *e) {
@@ -113,8 +108,8 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
     }
     /* After so many more runs and a moment more; every fifth while the store is being made or opened. */
     int64_t enough = (int64_t)(before + 600 * fixture_random(11, (uint64_t)i));
-    double start = now();
-    while (i % 5 && *(volatile int64_t *)added < enough && now() - start < 20)
+    double start = clock_s();
+    while (i % 5 && *(volatile int64_t *)added < enough && clock_s() - start < 20)
       usleep(200);
     usleep((useconds_t)(8000 * fixture_random(12, (uint64_t)i)));
     kill(pid, SIGKILL);
@@ -256,10 +251,10 @@ static void reader_never_blocks_the_writer(void **state) {
   sqlite3_stmt *half = NULL;
   sqlite3_prepare_v2(reader->db, "SELECT run_id FROM run", -1, &half, NULL);
   assert_int_equal(sqlite3_step(half), SQLITE_ROW);
-  double start = now();
+  double start = clock_s();
   OK(fixture_populate(writer, M, K, RUNS, true, &error));
   OK(store_flush(writer, &error));
-  double spent = now() - start;
+  double spent = clock_s() - start;
   int seen = 1;
   while (sqlite3_step(half) == SQLITE_ROW)
     seen++;

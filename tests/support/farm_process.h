@@ -11,7 +11,7 @@
 #include <fcntl.h>
 #include <sys/wait.h>
 
-#include "campaign/farm/clock.h"
+#include "schemas/clock.h"
 #include "tests/support/farm_tasks.h"
 
 #define TAG_VARIABLE "CLAST_FARM_TEST_TAG"
@@ -241,8 +241,8 @@ static inline bool ended(const struct running *running, double seconds, struct o
   *out = (struct outcome_of){0};
   int value = 0;
   pid_t got = 0;
-  const int64_t until = farm_clock_ns() + farm_clock_from_s(seconds);
-  while ((got = waitpid(running->pid, &value, WNOHANG)) == 0 && farm_clock_ns() < until)
+  const int64_t until = clock_ns() + clock_from_s(seconds);
+  while ((got = waitpid(running->pid, &value, WNOHANG)) == 0 && clock_ns() < until)
     task_sleep(0.005);
   if (got == 0) {
     pid_t pids[128];
@@ -267,8 +267,8 @@ static inline bool ended(const struct running *running, double seconds, struct o
 static inline int orphans(const struct running *running, double seconds) {
   pid_t pids[128];
   int count = 0;
-  const int64_t until = farm_clock_ns() + farm_clock_from_s(seconds);
-  while ((count = family(running, pids, 128)) > 0 && farm_clock_ns() < until)
+  const int64_t until = clock_ns() + clock_from_s(seconds);
+  while ((count = family(running, pids, 128)) > 0 && clock_ns() < until)
     task_sleep(0.01);
   for (int i = 0; i < count; i++)
     kill(pids[i], SIGKILL);

@@ -115,7 +115,7 @@ static void impact_and_collision_start(void **state) {
     if (g.vx == 0 && g.vy == 0)
       continue;
     moving++;
-    assert_true(fabs(g.vx - 200) < 1e-10 && fabs(g.vy - 400 * cos(3.14159265358979 / 6)) < 1e-10);
+    assert_true(fabs(g.vx - 200) < 1e-10 && fabs(g.vy - 400 * cos(M_PI / 6)) < 1e-10);
     assert_true(g.y < 0.015 && fabs(g.x - 0.205) < 0.015); /* the middle of the lower side of 40 cm x 20 cm */
   }
   assert_int_equal(moving, 1);

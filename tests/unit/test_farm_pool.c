@@ -12,7 +12,7 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "campaign/farm/clock.h"
+#include "schemas/clock.h"
 #include "tests/support/farm_tasks.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -206,9 +206,9 @@ static void nobody_waits_behind_a_long_task(void **state) {
     task_list_new(&list, 6);
     for (size_t i = 0; i < list.count; i++)
       list.tasks[i] = (struct task){.id = i, .kind = TASK_SLEEP, .amount = i == 0 ? 1.0 : 0.02};
-    const int64_t start_ns = farm_clock_ns();
+    const int64_t start_ns = clock_ns();
     assert_int_equal(run_list((struct farm_options){.slots = 2, .in_process = mode}, &list, &error), STATUS_OK);
-    const double wall = 1e-9 * (double)(farm_clock_ns() - start_ns);
+    const double wall = 1e-9 * (double)(clock_ns() - start_ns);
     assert_each_once(&list);
     for (size_t i = 1; i < list.count; i++)
       assert_true(list.slots[i] != list.slots[0]);

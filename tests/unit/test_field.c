@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "schemas/edit_distance.h"
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 struct thing {
   double length, limit, angle;
@@ -140,17 +140,17 @@ static void finds_by_suffix(void **state) {
 
 static void distances_count_slips(void **state) {
   (void)state;
-  assert_int_equal(edit_distance("kitten", 6, "sitting"), 3);
-  assert_int_equal(edit_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
-  assert_int_equal(edit_distance("", 0, "abc"), 3);
-  assert_int_equal(edit_distance("abc", 3, "abc"), 0);
-  assert_int_equal(edit_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
-  assert_int_equal(edit_distance_limit(1), 0);
-  assert_int_equal(edit_distance_limit(12), 4);
+  assert_int_equal(text_distance("kitten", 6, "sitting"), 3);
+  assert_int_equal(text_distance("kittens of a litter", 6, "sitting"), 3); /* only `length` bytes are read */
+  assert_int_equal(text_distance("", 0, "abc"), 3);
+  assert_int_equal(text_distance("abc", 3, "abc"), 0);
+  assert_int_equal(text_distance("simulate", 8, "simualte"), 1); /* a swap is one slip */
+  assert_int_equal(text_distance_limit(1), 0);
+  assert_int_equal(text_distance_limit(12), 4);
   char lengthy[400];
   memset(lengthy, 'a', sizeof lengthy);
   lengthy[399] = 0;
-  assert_true(edit_distance(lengthy, 399, "a") == SIZE_MAX);
+  assert_true(text_distance(lengthy, 399, "a") == SIZE_MAX);
 }
 
 static void conditions_chain(void **state) {

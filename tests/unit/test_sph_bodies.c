@@ -274,7 +274,7 @@ static void absurd_bodies_are_refused(void **state) {
     struct sph_range range;
     assert_int_equal(sph_bodies_make(&body, 1, 0, &p, &range, &error), STATUS_OK);
     assert_int_equal(p->n, 300);
-    assert_true(fabs(range.nearest / size - range.nearest / range.spacing * cbrt(4 * 3.141592653589793 / 900)) < 1e-9);
+    assert_true(fabs(range.nearest / size - range.nearest / range.spacing * cbrt(4 * M_PI / 900)) < 1e-9);
     sph_particles_free(p);
   }
 }

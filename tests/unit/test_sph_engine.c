@@ -107,7 +107,7 @@ static void impact_starts_as_described(void **state) {
   const struct sph_particles *p = run->start;
   assert_true(fabs(run->range[1].mass / 2e-4 - 1) < 1e-12);
   /* where it touches, the normal is z whatever the gap: from there it went back along its flight */
-  double r = run->shape[1].radius, way = inputs.impact.gap / cos(30 * 3.14159265358979323846 / 180);
+  double r = run->shape[1].radius, way = inputs.impact.gap / cos(30 * M_PI / 180);
   assert_true(fabs(run->shape[1].centre[0] + 0.5 * way) < 1e-12);
   assert_true(fabs(run->shape[1].centre[2] - (0.03 + r + inputs.impact.gap)) < 1e-12);
   double least = HUGE_VAL, top = 0, v[3] = {0, 0, 0};
@@ -123,7 +123,7 @@ static void impact_starts_as_described(void **state) {
     fail_msg("%g", top);
   assert_true(least >= 0.03 + 0.5 * inputs.impact.gap);
   assert_true(fabs(sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / 3200 - 1) < 1e-12);
-  assert_true(fabs(-v[2] / 3200 - cos(30 * 3.14159265358979323846 / 180)) < 1e-12); /* downwards, 30 degrees off */
+  assert_true(fabs(-v[2] / 3200 - cos(30 * M_PI / 180)) < 1e-12); /* downwards, 30 degrees off */
   struct sph_ledger ledger = sph_system_ledger(run->system);
   assert_true(fabs(ledger.kinetic / (0.5 * 2e-4 * 3200 * 3200) - 1) < 1e-9);
   sph_run_free(run);
@@ -149,7 +149,7 @@ static void stretch_and_vibration_start(void **state) {
   struct sph_inputs bar = SPH_CASE("elastic-bar", "fidelity.particles=1500");
   assert_int_equal(sph_run_create(&bar, 3, &run, NULL), STATUS_OK);
   for (size_t i = 0; i < run->start->n; i++) { /* the mode, and its sides' share: div v = (1 - 2 nu) dv_z/dz */
-    double k = 3.14159265358979323846 / 0.04,
+    double k = M_PI / 0.04,
            aside = -sph_derived_poisson_ratio(&bar.target.material) * k * 0.1 * cos(k * run->start->z[i]);
     assert_true(fabs(run->start->vz[i] - 0.1 * sin(k * run->start->z[i])) < 1e-12);
     assert_true(fabs(run->start->vy[i] - aside * run->start->y[i]) < 1e-12);

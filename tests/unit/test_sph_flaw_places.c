@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 #include "engine/sph/body/flaw_places.h"
 #include "engine/sph/body/kd_tree.h"
@@ -82,11 +83,6 @@ static void nearest_is_the_nearest(void **state) {
     }
 }
 
-static int ascending(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 /* Each flaw stands at the particle nearest to its place: found by its strength, which with ranked flaws names it. */
 static void owners_are_nearest(void **state) {
   (void)state;
@@ -128,17 +124,17 @@ static void a_seed_means_the_same_flaws(void **state) {
     double *sorted = malloc(many->count * sizeof *sorted), *all = malloc(few->count * sizeof *all);
     memcpy(sorted, many->log_strain, many->count * sizeof *sorted);
     memcpy(all, few->log_strain, few->count * sizeof *all);
-    qsort(sorted, many->count, sizeof *sorted, ascending);
-    qsort(all, few->count, sizeof *all, ascending);
+    qsort(sorted, many->count, sizeof *sorted, sample_ascending);
+    qsort(all, few->count, sizeof *all, sample_ascending);
     assert_memory_equal(sorted, all, few->count * sizeof *all); /* the weakest are the same ones */
     for (size_t i = 0; i < q->n; i++)
       for (size_t f = many->first[i]; f < many->first[i + 1]; f++) {
-        const double *at = bsearch(&many->log_strain[f], sorted, many->count, sizeof *sorted, ascending);
+        const double *at = bsearch(&many->log_strain[f], sorted, many->count, sizeof *sorted, sample_ascending);
         owner[at - sorted] = i;
       }
     for (size_t i = 0; i < p->n; i++)
       for (size_t f = few->first[i]; f < few->first[i + 1]; f++) {
-        const double *at = bsearch(&few->log_strain[f], sorted, many->count, sizeof *sorted, ascending);
+        const double *at = bsearch(&few->log_strain[f], sorted, many->count, sizeof *sorted, sample_ascending);
         assert_non_null(at);
         const uint64_t flaw = (uint64_t)(at - sorted);
         const size_t j = owner[flaw];

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include "analysis/statistics/sample.h"
 #include "tests/support/grady_kipp.h"
 
 static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_t n) {
@@ -16,11 +17,6 @@ static struct sph_flaws *make(double m, double k, int draw, uint64_t seed, size_
   struct error error = {0};
   assert_int_equal(sph_flaws_make(&law, n, NULL, NULL, 0, &flaws, &error), STATUS_OK);
   return flaws;
-}
-
-static int ascending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
 }
 
 static void ranked_is_the_law(void **state) {
@@ -34,7 +30,7 @@ static void ranked_is_the_law(void **state) {
   double *all = malloc(flaws->count * sizeof *all);
   for (size_t f = 0; f < flaws->count; f++)
     all[f] = flaws->log_strain[f];
-  qsort(all, flaws->count, sizeof *all, ascending);
+  qsort(all, flaws->count, sizeof *all, sample_ascending);
   for (size_t j = 1; j <= flaws->count; j++) /* n(eps) V = k eps^m V = j at the j-th flaw; rounding of logs only */
     assert_true(fabs(exp(8.5 * all[j - 1] + log(5e34) + log(1e-5)) / (double)j - 1) < 1e-11);
   assert_int_equal(grady_kipp_open(flaws, 7, HUGE_VAL), flaws->first[8] - flaws->first[7]);
@@ -55,7 +51,7 @@ static void count_of_flaws(void **state) {
     sum += (double)flaws->count;
     sph_flaws_free(flaws);
   }
-  double mean = (double)n * (log((double)n) + 0.5772156649), deviation = (double)n * acos(-1.0) / sqrt(6.0);
+  double mean = (double)n * (log((double)n) + 0.5772156649), deviation = (double)n * M_PI / sqrt(6.0);
   assert_true(fabs(sum / seeds - mean) < 5 * deviation / sqrt(seeds));
 }
 
@@ -96,7 +92,7 @@ static void extremes_keep_the_law(void **state) {
                        *flaws = make(ms[i], ks[j], SPH_FLAWS_RANKED, 1, 50);
       for (size_t f = 0; f < poisson->count; f++)
         assert_true(isfinite(poisson->log_strain[f]));
-      qsort(flaws->log_strain, flaws->count, sizeof *flaws->log_strain, ascending);
+      qsort(flaws->log_strain, flaws->count, sizeof *flaws->log_strain, sample_ascending);
       for (size_t f = 0; f < flaws->count; f++) {
         long double want = (logl((long double)(f + 1)) - logl(ks[j]) - logl(1e-5L)) / ms[i];
         assert_true(fabsl(flaws->log_strain[f] - want) < 1e-14L * (1 + logl(ks[j])));

@@ -231,7 +231,7 @@ static void sizes_follow(void **state) {
   struct sph_inputs in = good("impact: {projectile: mass, mass: 0.2 g}");
   assert_true(fabs(sph_derived_projectile_mass(&in) / 2e-4 - 1) < 1e-12);
   in = good("impact: {projectile: specific-energy, specific_energy: 3 kJ/kg, speed: 3.2 km/s}");
-  double mass = 4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 2700;
+  double mass = 4.0 / 3 * M_PI * 2.7e-5 * 2700;
   assert_true(fabs(sph_derived_projectile_mass(&in) / (2 * 3000 * mass / (3200.0 * 3200)) - 1) < 1e-12);
   assert_true(fabs(sph_derived_specific_energy(&in) / 3000 - 1) < 1e-12);
   /* weakest flaw of kV = 5e34 x 1.131e-4 at m = 8.5: E Gamma(1 + 1/8.5) (kV)^(-1/8.5) */
@@ -246,7 +246,7 @@ static void pores(void **state) {
   assert_true(in.target.material.porosity.distention == 1.5 && sph_derived_porous(&in.target));
   assert_true(fabs(in.target.material.porosity.fraction - 1.0 / 3) < 1e-15);
   assert_true(fabs(sph_derived_density(&in.target) - 917 / 1.5) < 1e-12);
-  assert_true(fabs(sph_derived_target_mass(&in) / (4.0 / 3 * 3.14159265358979323846 * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
+  assert_true(fabs(sph_derived_target_mass(&in) / (4.0 / 3 * M_PI * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
   accepted("target: {material: {name: porous-ice}}");
   in = good("target: {material: {name: porous-ice, porosity: {fraction: 0.6}}}");
   assert_true(fabs(in.target.material.porosity.distention - 2.5) < 1e-12);
@@ -258,7 +258,7 @@ static void pores(void **state) {
    * strength */
   struct sph_inputs thin = good("target: {material: {name: porous-ice, porosity: {distention: 2.5}}}"),
                     whole = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
-  double kv = 1.4e38 * 4.0 / 3 * 3.14159265358979323846 * 2.7e-5; /* ice's m is 9.6; E of the input's own moduli */
+  double kv = 1.4e38 * 4.0 / 3 * M_PI * 2.7e-5; /* ice's m is 9.6; E of the input's own moduli */
   double young = sph_derived_young_modulus(&whole.target.material);
   assert_true(whole.target.material.weibull.k == 1.4e38 && whole.target.material.weibull.m == 9.6);
   assert_true(fabs(whole.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv, -1 / 9.6)) - 1) <

@@ -11,7 +11,6 @@
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/body/kd_tree.h"
 
-static const double pi = 3.14159265358979323846;
 static const struct sph_shape sphere = {.kind = SPH_SHAPE_SPHERE, .centre = {1, -2, 3}, .radius = 0.5};
 static const struct sph_shape rod = {.kind = SPH_SHAPE_CYLINDER,
                                      .centre = {1, -2, 3},
@@ -35,7 +34,7 @@ static struct sph_kd_tree *tree_of(const struct sph_points *points) {
 }
 
 static double spline(double r, double h) { /* Monaghan & Lattanzio 1985, three dimensions */
-  const double q = r / h, s = 1 / (pi * h * h * h);
+  const double q = r / h, s = 1 / (M_PI * h * h * h);
   return q < 1 ? s * (1 - 1.5 * q * q + 0.75 * q * q * q) : q < 2 ? s * 0.25 * (2 - q) * (2 - q) * (2 - q) : 0;
 }
 
@@ -353,7 +352,7 @@ static void graded_points_keep_their_grading(void **state) {
     count[shell]++;
   }
   assert_true(fabs(total / (double)p.n - 1) < 1e-12);
-  assert_true(fabs(core / (2 * pi / 3 * 125) - 1) < 0.15); /* half a sphere of 5 spacings, its surfaces rough */
+  assert_true(fabs(core / (2 * M_PI / 3 * 125) - 1) < 0.15); /* half a sphere of 5 spacings, its surfaces rough */
   int shells = 0;
   for (int k = 0; k < SHELLS; k++) {
     if (count[k] < 50)

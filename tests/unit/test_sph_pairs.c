@@ -353,8 +353,7 @@ static void viscosity_of_two_by_hand(void **state) {
     c->a[4][i] = i ? -0.5 : 0.5; /* approach at 1 */
   }
   struct summed *s = sum(c, &usual);
-  const double mu = -1 / 1.01, viscous = (3 * mu * mu - 1.5 * 3 * mu) / 4,
-               slope = -0.75 / acos(-1.0);                     /* W'(1), h = 1 */
+  const double mu = -1 / 1.01, viscous = (3 * mu * mu - 1.5 * 3 * mu) / 4, slope = -0.75 / M_PI; /* W'(1), h = 1 */
   assert_true(fabs(s->a[0][0] - 2 * viscous * slope) < 1e-14); /* a_0 = -m Pi W' (x_0 - x_1)/r: pushed back */
   assert_true(s->a[0][0] < 0 && fabs(s->a[0][0] + s->a[0][1]) < 1e-15);
   assert_true(fabs(s->a[12][0] - 0.5 * 2 * viscous * -slope) < 1e-14);

@@ -85,7 +85,7 @@ static void not_thinner_than_alone(void **state) {
                                           .solid_pressure = 1e8,
                                           .sound_speed = NAN};
   const struct sph_parameters parameters = sph_parameters_default();
-  const double alone = 1 / (acos(-1.0) * pow(parameters.h_highest * SPH_BODIES_H, 3)); /* of the density at rest */
+  const double alone = 1 / (M_PI * pow(parameters.h_highest * SPH_BODIES_H, 3)); /* of the density at rest */
   assert_true(parameters.density_lowest > 0.8 * alone && parameters.density_lowest < 2 * alone);
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700.0 / 50, 1.21, SPH_WITH_DISTENTION);

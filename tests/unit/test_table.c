@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "campaign/terminal/table.h"
+#include "schemas/text.h"
 
 static char *print_rows(enum table_format format, int rows) {
   char *text = NULL;
@@ -98,7 +99,7 @@ static void test_strings(void **state) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
-    table_json_string(cases[i].text, out);
+    text_json_string(cases[i].text, out);
     fclose(out);
     assert_string_equal(text, cases[i].json);
     free(text);

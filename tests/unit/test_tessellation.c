@@ -206,7 +206,7 @@ static void disc_equals_qhull(void **state) {
           area += t->area[c];
         }
         if (radii[r] > 18) /* Gauss's circle: the boundary's cells scatter the number by about sqrt(2 pi R)/2 */
-          assert_true(fabs(area / (3.14159265358979 * radii[r] * radii[r]) - 1) < 0.03);
+          assert_true(fabs(area / (M_PI * radii[r] * radii[r]) - 1) < 0.03);
         dem_tessellation_free(t);
         oracle_free(&o);
         free(points.point);

@@ -53,7 +53,7 @@ static void values_are_exact(void **state) {
       {"1.5 MiB", "B", 1572864},
       {"3 %", "1", 0.03},
       {"3%", "1", 0.03},
-      {"180 deg", "rad", 3.14159265358979323846},
+      {"180 deg", "rad", M_PI},
       {"2 mrad", "rad", 0.002},
       {"3 J/(kg K)", "J/(K kg)", 3},
       {"3 J/kg/K", "J/(K kg)", 3},
@@ -86,7 +86,7 @@ static void degrees_are_near(void **state) {
   (void)state;
   double si;
   assert_int_equal(unit_read("4 deg", "rad", &si, NULL), STATUS_OK);
-  assert_true(fabs(si - 4 * 3.14159265358979323846 / 180) < 2e-17); /* two roundings of a value near 0.07 */
+  assert_true(fabs(si - 4 * M_PI / 180) < 2e-17); /* two roundings of a value near 0.07 */
 }
 
 static void messages_are_these(void **state) {

@@ -83,8 +83,7 @@ static long double beam_energy(const struct model *m, size_t pair, const struct 
 /* Coefficient of the contact of grains i and j, 0 if there is none: kappa, or Y / L_c. */
 static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
   const struct dem_tessellation *t = m->t;
-  const double pi = 3.14159265358979323846;
-  const double di = sqrt(4.0 * t->area[i] / pi), dj = sqrt(4.0 * t->area[j] / pi);
+  const double di = sqrt(4.0 * t->area[i] / M_PI), dj = sqrt(4.0 * t->area[j] / M_PI);
   double side = 0.0;
   bool bonded = false;
   for (size_t p = 0; p < t->pair_count; ++p)

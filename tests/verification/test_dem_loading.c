@@ -201,7 +201,7 @@ static void thresholds_are_weibulls(void **state) {
       sum[q] += log_of[q] / n, square[q] += log_of[q] * log_of[q] / n;
     both += log_of[0] * log_of[1] / n;
   }
-  const double spread = 3.14159265358979323846 / (m * sqrt(6.0));
+  const double spread = M_PI / (m * sqrt(6.0));
   for (int q = 0; q < 2; ++q) { /* five standard errors of a mean; of a deviation, ln t has kurtosis 5.4 */
     fixture_near(sum[q], -0.57721566490153286 / m, 5.0 * spread / sqrt(n), "mean of ln t");
     fixture_near(sqrt(square[q] - sum[q] * sum[q]), spread, 5.0 * spread * sqrt(4.4 / 4.0 / n), "spread of ln t");

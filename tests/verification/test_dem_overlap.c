@@ -54,7 +54,7 @@ static void random_ring(uint64_t *seed, struct dem_ring *r, double thin, double 
   for (size_t v = 0; v < r->count; ++v)
     total += angles[v] = 0.1 + 1.0 + fixture_random(seed);
   for (size_t v = 0; v < r->count; ++v) {
-    angle += angles[v] * 2.0 * 3.14159265358979323846 / total;
+    angle += angles[v] * 2.0 * M_PI / total;
     const double px = cos(angle), py = thin * sin(angle);
     r->x[v] = x + cos(turn) * px - sin(turn) * py;
     r->y[v] = y + sin(turn) * px + cos(turn) * py;
@@ -70,13 +70,12 @@ static void move_ring(struct dem_ring *r, double dx, double dy) {
 enum { KINDS = 9 };
 
 static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
-  const double pi = 3.14159265358979323846;
-  random_ring(seed, &ring[0], kind == 1 ? 1e-3 : 0.7, 0.0, 0.0, pi * fixture_random(seed));
+  random_ring(seed, &ring[0], kind == 1 ? 1e-3 : 0.7, 0.0, 0.0, M_PI * fixture_random(seed));
   switch (kind) {
   case 0: /* anyhow */
   case 1: /* needles */
     random_ring(seed, &ring[1], kind ? 1e-3 : 0.6, fixture_random(seed), fixture_random(seed),
-                pi * fixture_random(seed));
+                M_PI * fixture_random(seed));
     break;
   case 2: /* the same polygon, moved by next to nothing: sides all but parallel */
     ring[1] = ring[0];
@@ -99,12 +98,12 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     break;
   }
   case 5: /* one inside the other */
-    random_ring(seed, &ring[1], 0.5, 0.0, 0.0, pi * fixture_random(seed));
+    random_ring(seed, &ring[1], 0.5, 0.0, 0.0, M_PI * fixture_random(seed));
     for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v)
       ring[1].x[v] *= 0.2, ring[1].y[v] *= 0.2;
     break;
   case 6: /* a corner of one on a corner of the other */
-    random_ring(seed, &ring[1], 0.6, 0.0, 0.0, pi * fixture_random(seed));
+    random_ring(seed, &ring[1], 0.6, 0.0, 0.0, M_PI * fixture_random(seed));
     move_ring(&ring[1], ring[0].x[0] - ring[1].x[1], ring[0].y[0] - ring[1].y[1]);
     break;
   case 7: /* equal squares on a grid: exactly coinciding and collinear sides */
@@ -121,7 +120,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     break;
   default: /* the same, turned: the coincidences hold to rounding only */
     make_pair(seed, 7, ring);
-    const double turn = pi * fixture_random(seed), c = cos(turn), s = sin(turn);
+    const double turn = M_PI * fixture_random(seed), c = cos(turn), s = sin(turn);
     for (int k = 0; k < 2; ++k)
       for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v) {
         const double x = ring[k].x[v], y = ring[k].y[v];
@@ -315,7 +314,7 @@ static void windows_of_a_square_lattice(void **state) {
   for (uint32_t i = 0; i < 36; ++i)
     fixture_place(s, i, 77.7 + t->centroid[i].x * (1.0 - strain), 33.3 + t->centroid[i].y, 0.0);
   fixture_evaluate(s);
-  const double face = p.grain_modulus / (2.0 * h / sqrt(3.14159265358979323846)) * h * strain * h;
+  const double face = p.grain_modulus / (2.0 * h / sqrt(M_PI)) * h * strain * h;
   for (uint32_t i = 0; i < 36;
        ++i) /* overlaps are 1e-3 of a cell, the gap at rest 1e-11; positions of 77 m have roundings of 1e-14 m */
     fixture_near(s->c.fx[i], i % 6 == 0 ? -face : i % 6 == 5 ? face : 0.0, 3e-8 * face, "push of a face");

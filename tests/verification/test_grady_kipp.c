@@ -19,12 +19,12 @@ enum { PARTICLES = 50000, STEPS = 400 };
 static const double m = 8.5, k = 5e34, volume = 1.257e-5, young = 53.06e9, crack_speed = 1837;
 
 static double fracture_time(double rate) { /* t_f = alpha_GK^(-1/(m+3)) rate^(-m/(m+3)) */
-  double alpha = 8 * acos(-1.0) * pow(crack_speed, 3) * k / ((m + 1) * (m + 2) * (m + 3));
+  double alpha = 8 * M_PI * pow(crack_speed, 3) * k / ((m + 1) * (m + 2) * (m + 3));
   return pow(alpha, -1 / (m + 3)) * pow(rate, -m / (m + 3));
 }
 
 static double peak_stress(const struct sph_flaws *flaws, double rate, int growth, int cap) {
-  double radius = cbrt(3 * volume / PARTICLES / (4 * acos(-1.0)));
+  double radius = cbrt(3 * volume / PARTICLES / (4 * M_PI));
   double dt = 3 * fracture_time(rate) / STEPS, peak = 0;
   double *state = calloc(PARTICLES, sizeof *state);
   for (int step = 0; step < STEPS; step++) {
@@ -88,8 +88,7 @@ static void isolated_law(void **state) {
       double t = tf * a / 400, sum = 0;
       for (int b = 0; b < 400; b++) {
         double born = t * (b + 0.5) / 400;
-        sum += k * m * pow(rate, m) * pow(born, m - 1) * 4 * acos(-1.0) / 3 * pow(crack_speed * (t - born), 3) * t /
-               400;
+        sum += k * m * pow(rate, m) * pow(born, m - 1) * 4 * M_PI / 3 * pow(crack_speed * (t - born), 3) * t / 400;
       }
       double stress = young * rate * t * (1 - sum);
       highest = stress > highest ? stress : highest;

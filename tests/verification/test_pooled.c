@@ -12,6 +12,7 @@
 
 #include "analysis/analysis.h"
 #include "analysis/statistics/pooled.h"
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 enum { RUNS = 30, MOST = 101 };
@@ -20,11 +21,6 @@ struct made {
   size_t first[RUNS + 1];
   double masses[RUNS * MOST];
 };
-
-static int descending(const void *a, const void *b) {
-  double x = *(const double *)a, y = *(const double *)b;
-  return (x < y) - (x > y);
-}
 
 /* Runs of differing length (20 to 100) from a law of exponent 2, perhaps cut off, perhaps with a giant on top. */
 static struct pooled_runs make(struct made *made, uint64_t ensemble, double cutoff, bool giant) {
@@ -41,7 +37,7 @@ static struct pooled_runs make(struct made *made, uint64_t ensemble, double cuto
     }
     if (giant)
       made->masses[at++] = 3e4 * (1 + random_draw(43, ensemble, r, 0));
-    qsort(made->masses + made->first[r], at - made->first[r], sizeof(double), descending);
+    qsort(made->masses + made->first[r], at - made->first[r], sizeof(double), sample_descending);
   }
   made->first[RUNS] = at;
   return (struct pooled_runs){RUNS, made->first, made->masses};

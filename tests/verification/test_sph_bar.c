@@ -29,7 +29,7 @@ static struct ring ring(double particles, bool correction) {
   c.body[0].lattice.particles = particles;
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
-  const double k = acos(-1.0) / length, nu = solid_poisson(&c.physics[0].material), speed = 0.5;
+  const double k = M_PI / length, nu = solid_poisson(&c.physics[0].material), speed = 0.5;
   double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * p->z[i]);
@@ -85,7 +85,7 @@ static void free_free_bar(void **state) {
     print_message("  to the limit: %.2f kHz (%+.2f %%)\n", limit / 1e3, 100 * (limit / exact - 1));
     assert_true(fabs(limit / exact - 1) < 0.02);
     /* Rayleigh's value, but for the lattice's sum along z (bodies.h: 0.993) and what the first order leaves out */
-    assert_true(fabs(limit / exact - (1 - pow(nu * acos(-1.0) / 4, 2) / 4)) < 0.01);
+    assert_true(fabs(limit / exact - (1 - pow(nu * M_PI / 4, 2) / 4)) < 0.01);
   }
 }
 

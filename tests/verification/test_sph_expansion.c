@@ -23,7 +23,7 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
   double *r = calloc(n + 1, sizeof *r), *v = calloc(n + 1, sizeof *v), *m = calloc(n, sizeof *m),
          *u = calloc(n, sizeof *u);
   double *volume = calloc(n, sizeof *volume), *q = calloc(n, sizeof *q), *p = calloc(n, sizeof *p);
-  const double third = 4.0 / 3 * acos(-1.0);
+  const double third = 4.0 / 3 * M_PI;
   double total = 0, time = 0, before = 0;
   for (size_t k = 0; k <= n; k++)
     r[k] = radius * (double)k / (double)n;
@@ -44,7 +44,7 @@ static void by_shells(int shells, double u0, double inner, const double times[TI
     for (size_t k = 1; k <= n; k++) { /* velocities stand half a step behind */
       const double inside = p[k - 1] + q[k - 1], outside = k < n ? p[k] + q[k] : 0;
       const double mass = 0.5 * (m[k - 1] + (k < n ? m[k] : 0));
-      v[k] += 0.5 * (before + dt) * 4 * acos(-1.0) * r[k] * r[k] * (inside - outside) / mass;
+      v[k] += 0.5 * (before + dt) * 4 * M_PI * r[k] * r[k] * (inside - outside) / mass;
     }
     for (size_t k = 1; k <= n; k++)
       r[k] += dt * v[k];

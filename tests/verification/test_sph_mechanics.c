@@ -88,7 +88,7 @@ static double turned(bool correction, double steps, bool whole_body) {
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
   struct sph_parameters parameters = sph_parameters_default();
   parameters.gradient_correction = correction;
-  parameters.largest_time_step = acos(-1.0) / 2 / w / steps;
+  parameters.largest_time_step = M_PI / 2 / w / steps;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   /* about the axis (1, 1, 1)/sqrt(3): Rodrigues */
   const double n = 1 / sqrt(3.0);
@@ -116,7 +116,7 @@ static double turned(bool correction, double steps, bool whole_body) {
     if (step < (int)steps && !sph_system_step(s, HUGE_VAL))
       fail_msg("%s", sph_system_failure(s));
   }
-  assert_true(fabs(angle - acos(-1.0) / 2) < 1e-9);
+  assert_true(fabs(angle - M_PI / 2) < 1e-9);
   /* R S R^T */
   const double S[3][3] = {{first[0], first[1], first[2]},
                           {first[1], first[3], first[4]},
@@ -282,7 +282,7 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   parameters.largest_time_step = 5e-9;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   const double K = m.tillotson.A, mu = m.shear_modulus, young = 9 * K * mu / (3 * K + mu);
-  const double speed = 0.4 * sqrt((K + 4 * mu / 3) / 2700), radius = spacing * cbrt(3 / (4 * acos(-1.0)));
+  const double speed = 0.4 * sqrt((K + 4 * mu / 3) / 2700), radius = spacing * cbrt(3 / (4 * M_PI));
   double *d = calloc(p->n, sizeof *d), *before = calloc(p->n, sizeof *before), peak = 0;
   *worst = 0;
   bool back = false;

@@ -12,6 +12,7 @@
  * is shared in.
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
+#include "analysis/statistics/sample.h"
 #include "engine/sph/body/flaw_places.h"
 #include "tests/support/grady_kipp.h"
 #include "tests/support/sph_solid.h"
@@ -54,10 +55,6 @@ struct front {
 };
 
 enum { SHELLS = 20, SECTORS = 12 };
-static int by_value(const void *a, const void *b) {
-  return (*(const double *)a > *(const double *)b) - (*(const double *)a < *(const double *)b);
-}
-
 static struct front run_crack(double particles, bool correction, int growth, bool support, double ratio) {
   const double strain = 4e-4, shell = 0.5e-3;
   struct solid_case c = rod(particles);
@@ -88,7 +85,7 @@ static struct front run_crack(double particles, bool correction, int growth, boo
     for (size_t i = 0; i < p->n; i++)
       if (p->damage_cbrt[i] > 0.79 && fabs(p->z[i]) < 5e-3) { /* D > 1/2 */
         const int a = (int)(hypot(p->x[i], p->y[i]) / shell),
-                  b = (int)((atan2(p->y[i], p->x[i]) / (2 * acos(-1.0)) + 0.5) * SECTORS);
+                  b = (int)((atan2(p->y[i], p->x[i]) / (2 * M_PI) + 0.5) * SECTORS);
         if (a < SHELLS)
           arrival[a][b % SECTORS] = fmin(arrival[a][b % SECTORS], sph_system_time(c.system));
       }
@@ -96,7 +93,7 @@ static struct front run_crack(double particles, bool correction, int growth, boo
   /* The front reaches a shell when half of the sectors have been reached. */
   double reached[SHELLS];
   for (int a = 0; a < SHELLS; a++) {
-    qsort(arrival[a], SECTORS, sizeof(double), by_value);
+    qsort(arrival[a], SECTORS, sizeof(double), sample_ascending);
     reached[a] = (arrival[a][SECTORS / 2 - 1] + arrival[a][SECTORS / 2]) / 2;
   }
   enum {
@@ -114,7 +111,7 @@ static struct front run_crack(double particles, bool correction, int growth, boo
       d++, xx += p->x[i] * p->x[i] + p->y[i] * p->y[i], xz += p->x[i] * p->z[i], yz += p->y[i] * p->z[i], z += p->z[i],
           zz += p->z[i] * p->z[i];
   f.damaged = (size_t)d;
-  f.tilt = atan(hypot(xz, yz) / (xx / 2)) * 180 / acos(-1.0);
+  f.tilt = atan(hypot(xz, yz) / (xx / 2)) * 180 / M_PI;
   f.thickness = sqrt(zz / d - z * z / d / d) / spacing;
   sph_flaws_free(flaws);
   solid_end(&c);
@@ -192,7 +189,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   const struct sph_material *m = &c.physics[0].material;
   const double centre[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, young = solid_young(m),
                cg = 0.4 * sqrt((m->tillotson.A + 4 * m->shear_modulus / 3) / m->density);
-  const double alpha = 8 * acos(-1.0) * pow(cg, 3) * m->weibull.k /
+  const double alpha = 8 * M_PI * pow(cg, 3) * m->weibull.k /
                        ((m->weibull.m + 1) * (m->weibull.m + 2) * (m->weibull.m + 3)),
                q = m->weibull.m + 3;
   const double tf = pow(alpha, -1 / q) * pow(rate, -m->weibull.m / q);
@@ -213,7 +210,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   const struct sph_ledger start = sph_system_ledger(c.system);
   struct pulled r = {.n = p->n,
                      .grady_kipp = young * q * pow(q + 1, -(q + 1) / q) * pow(alpha, -1 / q) * pow(rate, 3 / q)};
-  r.particles = particle_form(flaws, in, rate, young, cg / cbrt(3 * p->mass[0] / p->density[0] / (4 * acos(-1.0))), tf);
+  r.particles = particle_form(flaws, in, rate, young, cg / cbrt(3 * p->mass[0] / p->density[0] / (4 * M_PI)), tf);
   const double end = 4 * tf;
   for (int step = 0; sph_system_time(c.system) < end; step++) {
     solid_step(&c, end);

@@ -25,7 +25,7 @@ static void rotate(double c, double s, const double from[6], double to[6]) { /* 
 /* Largest |S - expected|/|S| over particles, after 90 degrees. */
 static double turn(bool correction, bool inside_only, double *turned) {
   static const double first[6] = {3e6, 1e6, -2e6, -1e6, 4e6, -2e6};
-  const double radius = 5e-3, spin = 1e5, step = acos(-1.0) / 120;
+  const double radius = 5e-3, spin = 1e5, step = M_PI / 120;
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].material.shear_modulus = 0;
@@ -74,7 +74,7 @@ static double turn(bool correction, bool inside_only, double *turned) {
       off += pow(p->stress[k][i] - want[k], 2) * (k == 1 || k == 2 || k == 4 ? 2 : 1);
     worst = fmax(worst, sqrt(off / size));
   }
-  *turned = angle * 180 / acos(-1.0);
+  *turned = angle * 180 / M_PI;
   free(x);
   free(y);
   solid_end(&c);
@@ -106,7 +106,7 @@ static double spin(bool correction, double turns, double *energy_error, double *
   sph_bodies_spin(c.particles, c.range[0], centre, w);
   solid_start(&c);
   const struct sph_ledger start = sph_system_ledger(c.system);
-  solid_until(&c, turns * 2 * acos(-1.0) * radius / rim);
+  solid_until(&c, turns * 2 * M_PI * radius / rim);
   const struct sph_ledger end = sph_system_ledger(c.system);
   double along = 0, size = 0;
   for (int k = 0; k < 3; k++) {
@@ -161,7 +161,7 @@ static void impact(bool correction, int precision) {
     fail_msg("%s", error.message);
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaw_law law = {.weibull = solid_basalt().weibull,
-                             .volume = 4.0 / 3 * acos(-1.0) * pow(radius, 3),
+                             .volume = 4.0 / 3 * M_PI * pow(radius, 3),
                              .draw = SPH_FLAWS_RANKED,
                              .seed = 3};
   if (sph_flaws_make(&law, c.range[0].n, NULL, NULL, 0, &flaws, &error))

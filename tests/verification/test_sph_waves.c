@@ -43,7 +43,7 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   const double exact = sqrt(
       ((kind == SHEAR_WAVE ? 0 : m->tillotson.A) + (kind == SHEAR_WAVE ? 1 : 4.0 / 3) * m->shear_modulus) / m->density);
   const int moves = kind == SHEAR_WAVE ? (along + 1) % 3 : along;
-  const double k = 2 * acos(-1.0) / length;
+  const double k = 2 * M_PI / length;
   double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * solid_position(p, along)[i]);
@@ -128,7 +128,7 @@ static double pochhammer(double k, double c, double ratio2) {
 /* Phase speed of the first longitudinal mode, m/s. */
 static double rod_speed(const struct sph_material *m, double radius, double length) {
   double cs = sqrt(m->shear_modulus / m->density), bar = sqrt(solid_young(m) / m->density) / cs;
-  double ratio2 = (m->tillotson.A + 4 * m->shear_modulus / 3) / m->shear_modulus, k = 2 * acos(-1.0) / length * radius;
+  double ratio2 = (m->tillotson.A + 4 * m->shear_modulus / 3) / m->shear_modulus, k = 2 * M_PI / length * radius;
   double low = 0.8 * bar, high = 1.001 * bar;
   assert_true(pochhammer(k, low, ratio2) * pochhammer(k, high, ratio2) < 0);
   for (int it = 0; it < 60; it++) {
@@ -145,7 +145,7 @@ static void pochhammer_is_right(void **state) {
   (void)state;
   /* long waves: the bar speed, and Rayleigh's correction 1 - (nu k R)^2/4 to fourth order in kR */
   struct sph_material m = solid_basalt();
-  double bar = sqrt(solid_young(&m) / m.density), nu = solid_poisson(&m), kr = 2 * acos(-1.0) / 40;
+  double bar = sqrt(solid_young(&m) / m.density), nu = solid_poisson(&m), kr = 2 * M_PI / 40;
   assert_true(fabs(rod_speed(&m, 1, 1e3) / bar - 1) < 1e-6);
   assert_true(fabs((1 - rod_speed(&m, 1, 40) / bar) / (nu * nu * kr * kr / 4) - 1) < 2 * kr * kr);
 }
@@ -168,7 +168,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;
-  const double speed = 1e-4 * sqrt(solid_young(m) / m->density), k = 2 * acos(-1.0) / length, nu = solid_poisson(m);
+  const double speed = 1e-4 * sqrt(solid_young(m) / m->density), k = 2 * M_PI / length, nu = solid_poisson(m);
   double *shape = malloc(p->n * sizeof *shape);
   for (size_t i = 0; i < p->n; i++) {
     shape[i] = sin(k * p->z[i]);

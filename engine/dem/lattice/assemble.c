@@ -115,7 +115,7 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
     s->inertia[i] = s->p.density * t->polar_moment[i];
     s->c.mobility_x[i] = s->c.mobility_y[i] = 1.0 / s->mass[i];
     s->c.mobility_angle[i] = 1.0 / s->inertia[i];
-    s->diameter[i] = 2.0 * sqrt(t->area[i] / 3.14159265358979323846);
+    s->diameter[i] = 2.0 * sqrt(t->area[i] / M_PI);
     s->present[i] = 1;
     total += s->diameter[i];
     /* Far from the origin rounding is larger than the usual gap. */

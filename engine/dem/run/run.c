@@ -88,7 +88,7 @@ static double longest_way(const struct dem_run *run) {
     fastest = g.present ? fmax(fastest, hypot(g.vx, g.vy)) : fastest;
     area += run->tessellation->area[i];
   }
-  double diameter = sqrt(4 / 3.14159265358979323846 * area / (double)run->tessellation->cell_count);
+  double diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
   return fastest * run->inputs.fidelity.time_step / diameter;
 }
 

@@ -28,7 +28,7 @@ void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, d
 /* Two squares of side s face on, d = 2 s/sqrt(pi): pushed through each other they store at most half kappa s^4 with
  * kappa = Y/(d S_ref), S_ref = 0.54 d (printed law: half Y s^3/d of work), and have rho s^2 v^2 / 4 to spend. */
 double dem_describe_passing_speed(const struct dem_inputs *in) {
-  const double d = 2 / sqrt(3.14159265358979323846);
+  const double d = 2 / sqrt(M_PI);
   switch ((enum dem_contact_law)in->contact.law) {
   case DEM_CONTACT_CONSERVATIVE: return sqrt(2 / (0.54 * d * d) * in->grain.young_modulus / in->grain.density);
   case DEM_CONTACT_PRINTED: return sqrt(2 / d * in->grain.young_modulus / in->grain.density);

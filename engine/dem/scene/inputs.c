@@ -12,7 +12,7 @@ static const char *const laws[] = {"conservative", "printed", "off", NULL};
 static const char *const directions[] = {"extension", "compression", NULL};
 static const char *const integrators[] = {"verlet", "gear", NULL};
 
-#define DEGREE (3.14159265358979323846 / 180)
+#define DEGREE (M_PI / 180)
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
   { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct dem_inputs, path_), __VA_ARGS__ }
@@ -152,7 +152,7 @@ const struct field_table dem_inputs = FIELD_TABLE(
 
 double dem_inputs_grains(const struct dem_inputs *in) {
   if (in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION) {
-    double disc = 0.25 * 3.14159265358979323846 * pow(in->body.diameter / in->grain.spacing, 2);
+    double disc = 0.25 * M_PI * pow(in->body.diameter / in->grain.spacing, 2);
     return in->kind == DEM_DISC_COLLISION ? 2 * disc : disc;
   }
   return (double)in->body.columns * (double)in->body.rows;

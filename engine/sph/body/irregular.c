@@ -9,7 +9,6 @@
 #include "engine/sph/body/particles.h"
 #include "engine/sph/body/relax.h"
 
-static const double pi = 3.14159265358979323846;
 static const uint64_t places = (uint64_t)1 << 32; /* draws of this file start here: lattice.c's are below */
 
 static status store(const struct sph_shape *shape, const struct sph_grading *grading, size_t n, double (*at)[3],
@@ -95,8 +94,8 @@ struct shells {
 
 static void ray(double u, double turn, double d[3]) { /* u, turn: of [0, 1) */
   const double z = 2 * u - 1, across = sqrt(fmax(0, 1 - z * z));
-  d[0] = across * cos(2 * pi * turn);
-  d[1] = across * sin(2 * pi * turn);
+  d[0] = across * cos(2 * M_PI * turn);
+  d[1] = across * sin(2 * M_PI * turn);
   d[2] = z;
 }
 
@@ -129,7 +128,7 @@ static double count(const struct sph_grading *g, struct shells *shells) { /* par
   for (int k = 0; k < SHELLS; k++) {
     const double a = shells->r[k], b = shells->r[k + 1], r = 0.5 * (a + b);
     const double s = sph_relax_spacing(g, (double[3]){g->point[0] + r, g->point[1], g->point[2]});
-    const double whole = 4 * pi / 3 * (b - a) * (b * b + a * b + a * a) / (s * s * s);
+    const double whole = 4 * M_PI / 3 * (b - a) * (b * b + a * b + a * a) / (s * s * s);
     shells->number[k + 1] = shells->number[k] + whole;
     n += whole * shells->open[k];
   }

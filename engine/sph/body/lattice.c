@@ -256,7 +256,7 @@ static bool thin(const struct cut *c) {
     wider *= s->side[k] + 2 * across;
   if (s->kind == SPH_SHAPE_CYLINDER) {
     const double outer = s->radius + across, inner = fmax(0, s->inner_radius - across);
-    wider = 3.14159265358979323846 * (outer - inner) * (outer + inner) * (s->length + 2 * along);
+    wider = M_PI * (outer - inner) * (outer + inner) * (s->length + 2 * along);
   }
   return !(wider < 40 * sph_shape_volume(s));
 }

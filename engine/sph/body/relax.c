@@ -125,7 +125,7 @@ static void push(const struct work *w, size_t i, double f[3]) {
     const double d = fmax(0, depth[wall] * over);
     if (d >= 1 || !open_wall(w, wall))
       continue;
-    const double strength = 3.14159265358979323846 * (1. / 12 + d * d * (-0.5 + d * (2. / 3 - 0.25 * d)));
+    const double strength = M_PI * (1. / 12 + d * d * (-0.5 + d * (2. / 3 - 0.25 * d)));
     for (int k = 0; k < 3; k++)
       f[k] -= strength * normal[wall][k];
   }

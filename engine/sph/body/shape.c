@@ -3,8 +3,6 @@
 #include <math.h>
 #include <stddef.h>
 
-static const double pi = 3.14159265358979323846;
-
 static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -57,8 +55,8 @@ status sph_shape_check(const struct sph_shape *s, struct error *error) {
 
 double sph_shape_volume(const struct sph_shape *s) {
   switch (s->kind) {
-  case SPH_SHAPE_SPHERE: return 4 * pi / 3 * s->radius * s->radius * s->radius;
-  case SPH_SHAPE_CYLINDER: return pi * (s->radius - s->inner_radius) * (s->radius + s->inner_radius) * s->length;
+  case SPH_SHAPE_SPHERE: return 4 * M_PI / 3 * s->radius * s->radius * s->radius;
+  case SPH_SHAPE_CYLINDER: return M_PI * (s->radius - s->inner_radius) * (s->radius + s->inner_radius) * s->length;
   default: return s->side[0] * s->side[1] * s->side[2];
   }
 }
@@ -238,15 +236,15 @@ void sph_shape_place(const struct sph_shape *s, const double u[3], double point[
   }
   if (s->kind == SPH_SHAPE_SPHERE) {
     const double r = s->radius * cbrt(u[0]), z = 2 * u[1] - 1, across = r * sqrt(fmax(0, 1 - z * z));
-    point[0] = s->centre[0] + across * cos(2 * pi * u[2]);
-    point[1] = s->centre[1] + across * sin(2 * pi * u[2]);
+    point[0] = s->centre[0] + across * cos(2 * M_PI * u[2]);
+    point[1] = s->centre[1] + across * sin(2 * M_PI * u[2]);
     point[2] = s->centre[2] + r * z;
     return;
   }
   const double inner = s->inner_radius, outer = s->radius;
   const double r = sqrt(inner * inner + u[0] * (outer - inner) * (outer + inner));
-  local[0] = r * cos(2 * pi * u[1]);
-  local[1] = r * sin(2 * pi * u[1]);
+  local[0] = r * cos(2 * M_PI * u[1]);
+  local[1] = r * sin(2 * M_PI * u[1]);
   local[2] = (u[2] - 0.5) * s->length;
   sph_shape_frame(s, frame);
   for (int k = 0; k < 3; k++)

@@ -14,7 +14,7 @@ double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, 
   double p = sqrt(p2);
   a /= p, b /= p, c /= p, xy /= p, xz /= p, yz /= p;
   double half_det = (a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)) / 2;
-  double angle = half_det <= -1 ? acos(-1.0) / 3 : half_det >= 1 ? 0 : acos(half_det) / 3;
+  double angle = half_det <= -1 ? M_PI / 3 : half_det >= 1 ? 0 : acos(half_det) / 3;
   return mean + 2 * p * cos(angle);
 }
 

@@ -6,7 +6,7 @@
 #include "engine/builtin.h"
 #include "engine/sph/material/material_rows.h"
 #include "schemas/document.h"
-#include "schemas/edit_distance.h"
+#include "schemas/text.h"
 
 /* What may be off is off unless given; all else must be given. */
 #define ROW(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                                 \
@@ -79,15 +79,13 @@ status sph_materials_parse(const char *name, const char *text, struct sph_materi
 }
 
 status sph_materials_load(const char *name, struct sph_material *out, struct error *error) {
-  const char *text = sph_materials_text(name), *near = NULL;
+  const char *text = sph_materials_text(name);
   if (text)
     return sph_materials_parse(name, text, out, error);
-  size_t best = strlen(name) / 2 + 1;
-  for (size_t i = 0; sph_materials_name(i); i++) {
-    size_t distance = edit_distance(name, strlen(name), sph_materials_name(i));
-    if (distance < best)
-      best = distance, near = sph_materials_name(i);
-  }
+  struct text_guess guess = text_guess(name);
+  for (size_t i = 0; sph_materials_name(i); i++)
+    text_guess_offer(&guess, sph_materials_name(i));
+  const char *near = guess.nearest;
   return status_fail(error, STATUS_MISSING, "there is no material '%.100s'%s%s%s `clast materials` lists them", name,
                      near ? "; did you mean '" : ";", near ? near : "", near ? "'?" : "");
 }

@@ -113,7 +113,7 @@ static status dig(const struct map *m, const struct sph_crater_options *o, struc
         queue[tail++] = next[k];
       }
   }
-  out->radius = sqrt(dug / acos(-1.0));
+  out->radius = sqrt(dug / M_PI);
   free(queue);
   free(seen);
   return STATUS_OK;

@@ -5,7 +5,6 @@
 
 #include "engine/sph/body/bodies.h"
 
-static const double pi = 3.14159265358979323846;
 enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
 
 double sph_derived_bulk_modulus(const struct sph_material *m) {
@@ -102,7 +101,7 @@ struct sph_shape sph_derived_projectile(const struct sph_inputs *in) {
     mass = 2 * in->impact.specific_energy * sph_derived_target_mass(in) / (speed * speed);
   return (struct sph_shape){.kind = SPH_SHAPE_SPHERE,
                             .axis = {0, 0, 1},
-                            .radius = cbrt(3 * mass / (4 * pi * sph_derived_density(&in->projectile)))};
+                            .radius = cbrt(3 * mass / (4 * M_PI * sph_derived_density(&in->projectile)))};
 }
 
 struct sph_shape sph_derived_piston(const struct sph_inputs *in) {

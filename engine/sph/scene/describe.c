@@ -24,7 +24,6 @@ enum {
 /* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2
  * to 3 GHz). */
 enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
-static const double pi = 3.14159265358979323846;
 static const double euler = 0.57721566490153286;
 
 struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
@@ -102,7 +101,7 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
   double spacing = sph_derived_spacing(in);
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT:
-    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal\n", in->impact.speed, in->impact.angle * 180 / pi);
+    fprintf(out, "impact at %.4g m/s, %.3g degrees from the normal\n", in->impact.speed, in->impact.angle * 180 / M_PI);
     break;
   case SPH_STRETCH:
     fprintf(out,
@@ -192,7 +191,7 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
     double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
     fprintf(out,
             "  impact energy %.4g J of %.4g kg: Q = %.4g J/kg of the target; %.3g particles across the projectile\n",
-            energy, mass, sph_derived_specific_energy(in), cbrt(sph_shape_volume(&projectile) * 6 / pi) / spacing);
+            energy, mass, sph_derived_specific_energy(in), cbrt(sph_shape_volume(&projectile) * 6 / M_PI) / spacing);
   }
   if (in->kind == SPH_VIBRATION && target->strength)
     fprintf(out, "  a thin bar of that length rings at %.5g Hz\n",

@@ -7,8 +7,6 @@
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
-static const double pi = 3.14159265358979323846;
-
 enum { Z = 2 };
 
 /* A collision has two of the target. */
@@ -107,7 +105,7 @@ static status make_bodies(struct sph_run *run, struct error *error) {
  * sides' share of it, by Poisson's ratio. */
 static void ring(struct sph_run *run) {
   struct sph_particles *p = run->start;
-  double speed = run->inputs.vibration.speed, k = pi / run->inputs.target.length;
+  double speed = run->inputs.vibration.speed, k = M_PI / run->inputs.target.length;
   double ratio = run->inputs.target.strength ? sph_derived_poisson_ratio(&run->inputs.target.material) : 0;
   for (size_t i = 0; i < p->n; i++) {
     double aside = -ratio * k * speed * cos(k * p->z[i]);

@@ -226,8 +226,8 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
     s->c.weakest[i] = INFINITY;
     if (!b->weibull)
       continue;
-    const double volume = p->mass[i] / p->density[i], pi = acos(-1.0);
-    const double radius = s->p.crack_radius_support ? 2 * p->h[i] : cbrt(3 * volume / (4 * pi));
+    const double volume = p->mass[i] / p->density[i];
+    const double radius = s->p.crack_radius_support ? 2 * p->h[i] : cbrt(3 * volume / (4 * M_PI));
     const double damage = p->damage_cbrt ? p->damage_cbrt[i] : 0;
     s->c.damage[i] = damage;
     if (s->c.tension)

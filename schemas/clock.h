@@ -1,0 +1,32 @@
+/* The one monotonic clock, for durations and deadlines, and the CPU seconds of this process. */
+#ifndef CLAST_SCHEMAS_CLOCK_H
+#define CLAST_SCHEMAS_CLOCK_H
+
+#include <stdint.h>
+#include <time.h>
+
+#define CLOCK_MS INT64_C(1000000) /* ns */
+#define CLOCK_S  INT64_C(1000000000)
+
+static inline int64_t clock_ns(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (int64_t)now.tv_sec * CLOCK_S + now.tv_nsec;
+}
+
+static inline double clock_s(void) {
+  return 1e-9 * (double)clock_ns();
+}
+
+static inline double clock_cpu_s(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Seconds as ns, at most 1e18. */
+static inline int64_t clock_from_s(double seconds) {
+  return seconds > 1e9 ? (int64_t)1e18 : (int64_t)(seconds * 1e9);
+}
+
+#endif

@@ -1,0 +1,41 @@
+/* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, and the guess behind every
+ * "did you mean". */
+#ifndef CLAST_SCHEMAS_TEXT_H
+#define CLAST_SCHEMAS_TEXT_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+/* Length in bytes of the well-formed UTF-8 sequence at `text`, of which `left` bytes may be read. 0 when there is none:
+ * overlong, surrogate, cut off or above U+10FFFF (RFC 3629, section 4). */
+size_t text_utf8_length(const char *text, size_t left);
+
+/* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
+void text_json_string(const char *text, FILE *out);
+
+/* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The
+ * cursor is at column `at`, which is at most `indent`. */
+void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out);
+
+enum { TEXT_DISTANCE_LENGTH = 128 };
+
+/* Edit distance (optimal string alignment): insertions, deletions, changed letters and swapped neighbours each cost 1.
+ * `a` is `length` bytes. SIZE_MAX when a name is longer than TEXT_DISTANCE_LENGTH. */
+size_t text_distance(const char *a, size_t length, const char *b);
+
+/* The largest distance at which a name of this length is worth a guess: about a third of it; 0 for one letter. */
+size_t text_distance_limit(size_t length);
+
+/* The known name nearest to a mistyped one. Start with text_guess(typed), then offer every known name; `nearest` is the
+ * result, NULL when none is near. Names are borrowed. */
+struct text_guess {
+  const char *typed, *nearest;
+  size_t length, least; /* of `typed`; twice the distance that the next name must stay below */
+};
+struct text_guess text_guess(const char *typed);
+void text_guess_offer(struct text_guess *guess, const char *name);
+/* Offers `name`, compared by the part of it that begins at `part`. A part costs half an edit, so that a whole name wins
+ * over a part that is equally near. */
+void text_guess_offer_part(struct text_guess *guess, const char *part, const char *name);
+
+#endif
