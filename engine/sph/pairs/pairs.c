@@ -40,10 +40,12 @@ struct units {
 struct sph_pairs {
   struct sph_pair_options options;
   const struct sph_pair_kernels *kernels;
-  size_t n, in_columns, out_columns, real; /* real: bytes of a number in records */
-  bool artificial;                         /* there is artificial stress */
-  double *opposed[6];                      /* the artificial stress R of each particle, m^5/(kg s^2); NULL without */
-  double *listed[5];                       /* x y z h slack when the lists were made */
+  const struct sph_record_kernels *records; /* those of the precision */
+  bool single;                              /* records are of float */
+  size_t n, in_columns, out_columns;
+  bool artificial;    /* there is artificial stress */
+  double *opposed[6]; /* the artificial stress R of each particle, m^5/(kg s^2); NULL without */
+  double *listed[5];  /* x y z h slack when the lists were made */
   double *reach;
   struct sph_chunks lists;
   void *in; /* records of a chunk, per thread */
@@ -96,10 +98,11 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->units = (struct units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
-    p->real = options->precision == SPH_FLOAT ? sizeof(float) : sizeof(double);
+    p->single = options->precision == SPH_FLOAT;
+    p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
     p->artificial = options->artificial_stress > 0 && options->strength;
     const bool corrected = options->gradient_correction;
-    const size_t middle = options->precision == SPH_FLOAT ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
+    const size_t middle = p->single ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
     p->in_columns = p->artificial && corrected ? PAIR_WIDE : p->artificial || corrected ? middle : PAIR_NARROW;
     p->out_columns = corrected ? middle : PAIR_NARROW;
     p->listed[0] = malloc(6 * (n + PAD) * sizeof(double));
@@ -108,8 +111,8 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->room = malloc(threads_of(p) * ROOM * sizeof(double));
   }
   if (!p || !p->listed[0] || (p->artificial && !p->opposed[0]) || !p->room ||
-      sph_chunks_create(n, p->real == sizeof(float) ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists,
-                        error) != STATUS_OK) {
+      sph_chunks_create(n, p->single ? PAIR_GROUP_FLOAT : PAIR_GROUP_DOUBLE, p->kernels, &p->lists, error) !=
+          STATUS_OK) {
     sph_pairs_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for the pair loop of %zu particles", n);
   }
@@ -140,8 +143,8 @@ void sph_pairs_free(struct sph_pairs *p) {
 
 size_t sph_pairs_bytes(const struct sph_pairs *p) {
   return sizeof *p + (p->artificial ? 12 : 6) * sizeof(double) * p->n + sph_chunks_bytes(&p->lists) +
-         (p->out_capacity + p->foreign_capacity) * p->out_columns * p->real + p->in_capacity * p->in_columns * p->real +
-         threads_of(p) * ROOM * sizeof(double);
+         (p->out_capacity + p->foreign_capacity) * p->out_columns * p->records->bytes +
+         p->in_capacity * p->in_columns * p->records->bytes + threads_of(p) * ROOM * sizeof(double);
 }
 
 static double image(double along, double length) {
@@ -193,11 +196,11 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
                                       p->options.threads, error);
   if (code)
     return code;
-  if (!grow(&p->foreign, &p->foreign_capacity, p->lists.others, p->out_columns * p->real) ||
-      !grow(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, p->out_columns * p->real) ||
-      !grow(&p->in, &p->in_capacity, threads_of(p) * p->lists.most_slots, p->in_columns * p->real))
+  if (!grow(&p->foreign, &p->foreign_capacity, p->lists.others, p->out_columns * p->records->bytes) ||
+      !grow(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, p->out_columns * p->records->bytes) ||
+      !grow(&p->in, &p->in_capacity, threads_of(p) * p->lists.most_slots, p->in_columns * p->records->bytes))
     return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", p->n);
-  p->units_chosen = p->real == sizeof(double);
+  p->units_chosen = !p->single;
   return STATUS_OK;
 }
 
@@ -236,7 +239,7 @@ static void choose_units(struct sph_pairs *p, size_t n, const struct sph_pair_fi
 
 static struct sph_pair_source source_of(const struct sph_pairs *p, const struct sph_pair_fields *f) {
   const struct units *u = &p->units;
-  const double length = p->real == sizeof(double) ? 1 : p->grain;
+  const double length = p->single ? p->grain : 1;
   struct sph_pair_source s = {.column = {f->x, f->y, f->z, f->h, f->vx, f->vy, f->vz, f->mass},
                               .scale = {1, 1, 1, 0.5 / length, u->per_velocity, u->per_velocity, u->per_velocity,
                                         u->per_mass},
@@ -279,7 +282,7 @@ static void restore_tiny(unsigned before) {
 /* Returns how many pairs are within the support. */
 static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const struct sph_pair_source *source,
                         const struct sph_pair_constants *constants, void *in, void *out) {
-  const struct sph_pair_kernels *kernels = p->kernels;
+  const struct sph_record_kernels *records = p->records;
   const struct sph_pair_chunk view = {.own = c->own,
                                       .slots = c->own + c->others,
                                       .start = c->lists.start,
@@ -287,18 +290,11 @@ static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const st
                                       .neighbour = c->lists.j};
   const bool corrected = p->options.gradient_correction;
   const unsigned mode = flush_tiny();
-  const size_t size = p->out_columns * p->real;
-  double within;
+  const size_t size = p->out_columns * records->bytes;
   memset(out, 0, view.slots * size);
-  if (p->real == sizeof(double)) {
-    kernels->pack_double(source, c->first, NULL, c->own, p->in_columns, in);
-    kernels->pack_double(source, 0, c->other, c->others, p->in_columns, (double *)in + c->own * p->in_columns);
-    within = kernels->sum_double[corrected][p->artificial](&view, constants, in, out);
-  } else {
-    kernels->pack_float(source, c->first, NULL, c->own, p->in_columns, in);
-    kernels->pack_float(source, 0, c->other, c->others, p->in_columns, (float *)in + c->own * p->in_columns);
-    within = kernels->sum_float[corrected][p->artificial](&view, constants, in, out);
-  }
+  records->pack(source, c->first, NULL, c->own, p->in_columns, in);
+  records->pack(source, 0, c->other, c->others, p->in_columns, (char *)in + c->own * p->in_columns * records->bytes);
+  const double within = records->sum[corrected][p->artificial](&view, constants, in, out);
   restore_tiny(mode);
   if (c->others)
     memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
@@ -312,13 +308,14 @@ INLINE double at(bool whole, const void *record, size_t column) {
 }
 
 static void *sums_of_chunk(const struct sph_pairs *p, size_t k) {
-  return (char *)p->out + k % p->depth * p->lists.most_slots * p->out_columns * p->real;
+  return (char *)p->out + k % p->depth * p->lists.most_slots * p->out_columns * p->records->bytes;
 }
 
 /* What the own particles of chunk k got as foreign ones of all chunks before it. */
 INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
   const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW, size = p->out_columns * p->real;
+  const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW,
+               size = p->out_columns * p->records->bytes;
   char *own = sums_of_chunk(p, k);
   for (size_t q = 0; q < c->shares; q++) {
     const struct sph_chunk_share share = c->share[q];
@@ -370,8 +367,7 @@ static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_
   s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = -0.5 * acceleration * u->velocity;
   s.column[SUM_SIGNAL] = sums->signal, s.scale[SUM_SIGNAL] = u->velocity;
   for (int k = 0; k < 6 && p->options.gradient_correction; k++)
-    s.column[SUM_MOMENT + k] = sums->correction[k],
-                          s.scale[SUM_MOMENT + k] = p->real == sizeof(double) ? -1 : -p->grain / u->length;
+    s.column[SUM_MOMENT + k] = sums->correction[k], s.scale[SUM_MOMENT + k] = p->single ? -p->grain / u->length : -1;
   return s;
 }
 
@@ -407,7 +403,7 @@ static void hand_over(const struct pass *w, size_t k, double *room) {
   const struct sph_pairs *p = w->pairs;
   const struct sph_pair_fields *f = w->fields;
   const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t size = p->out_columns * p->real;
+  const size_t size = p->out_columns * p->records->bytes;
   const char *records = sums_of_chunk(p, k);
   const struct sph_pair_sums sums = sums_in(p, room);
   struct sph_pair_sink sink = sink_of(p, &sums);
@@ -415,12 +411,9 @@ static void hand_over(const struct pass *w, size_t k, double *room) {
     const size_t first = c->first + done, count = c->own - done < SPH_PIECE ? c->own - done : SPH_PIECE;
     const unsigned mode = flush_tiny();
     if (!done)
-      p->real == sizeof(double) ? add_foreign(p, k, true) : add_foreign(p, k, false);
+      p->single ? add_foreign(p, k, false) : add_foreign(p, k, true);
     sink.density = f->density + first, sink.mass = f->mass + first;
-    if (p->real == sizeof(double))
-      p->kernels->unpack_double(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
-    else
-      p->kernels->unpack_float(&sink, 0, count, p->out_columns, (const void *)(records + done * size));
+    p->records->unpack(&sink, 0, count, p->out_columns, records + done * size);
     if (p->options.gradient_correction)
       correct(p, first, count, f, &sums);
     restore_tiny(mode);
@@ -439,7 +432,7 @@ static void sum_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_chunk *c = &p->lists.chunk[k];
   if (k >= p->depth)
     wait_for(&p->lists.chunk[k - p->depth].taken);
-  void *in = (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->real;
+  void *in = (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->records->bytes;
   atomic_fetch_add(&w->within, (size_t)sum_chunk(p, c, &w->source, &w->constants, in, sums_of_chunk(p, k)));
   atomic_store_explicit(&c->summed, true, memory_order_release);
 }
@@ -475,7 +468,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
                                            .twice_beta = 2 * o->viscosity_beta,
                                            .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
                                            .norm = SPH_SPLINE_NORM *
-                                                   (p->real == sizeof(double) ? 1 : pow(p->units.length / p->grain, 4)),
+                                                   (p->single ? pow(p->units.length / p->grain, 4) : 1),
                                            .strength = o->strength,
                                            .volume_weights = o->volume_weights};
   for (int d = 0; d < 3; d++) {

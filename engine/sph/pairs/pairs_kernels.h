@@ -108,13 +108,23 @@ struct sph_near_particles {
   const uint8_t *size;
 };
 
+/* Kernels that read or write records, in one precision. */
+struct sph_record_kernels {
+  size_t bytes; /* of a number */
+  /* [gradient corrected][artificial stress]. They return how many pairs are within the support. */
+  double (*sum[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const void *in, void *out);
+  /* Makes the records of `count` particles, `stride` columns each: those from `first` on or, when `which` is not NULL,
+   * those that it names. */
+  void (*pack)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride,
+               void *in);
+  /* Brings the sums of `count` particles, whose records begin at `records`, back to columns from place `first` on. The
+   * signal of a particle without neighbours is -1. */
+  void (*unpack)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const void *records);
+};
+
 struct sph_pair_kernels {
   const char *name;
-  /* [gradient corrected][artificial stress]. They return how many pairs are within the support. */
-  double (*sum_double[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const double *in,
-                             double *out);
-  double (*sum_float[2][2])(const struct sph_pair_chunk *, const struct sph_pair_constants *, const float *in,
-                            float *out);
+  const struct sph_record_kernels *in_double, *in_float;
   /* Of the children of `count` parent boxes (8 each) those that may hold particles within reach of `own`, and that are
    * not below `lowest`: how many, and their numbers in `found` (8 times count). */
   size_t (*near_boxes)(const struct sph_near_boxes *boxes, const uint32_t *parent, size_t count,
@@ -128,16 +138,6 @@ struct sph_pair_kernels {
    * added how many that are, counted for each of those others. */
   size_t (*near_pairs)(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,
                        const double period[3], uint32_t tag, uint32_t *found, size_t *pairs);
-  /* The records of `count` particles, those from `first` on or (not NULL) those that `which` names, `stride` columns
-   * each. */
-  void (*pack_double)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride,
-                      double *in);
-  void (*pack_float)(const struct sph_pair_source *, size_t first, const uint32_t *which, size_t count, size_t stride,
-                     float *in);
-  /* The sums of `count` particles from `first` on, whose records begin at `records`; -1 for the signal of those without
-   * neighbours. */
-  void (*unpack_double)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const double *records);
-  void (*unpack_float)(const struct sph_pair_sink *, size_t first, size_t count, size_t stride, const float *records);
   /* What moments make of the sums of `count` particles: pairs_kernels_correct.h. */
   void (*correct)(const struct sph_pair_correction *, size_t count);
   /* The artificial stress R of the particles first..last-1, opposed to the tension in stress_factor S + pressure_term I

@@ -1,19 +1,26 @@
-/* Records out of columns and sums back into columns, LANES particles at a time, in one precision (pairs_kernels_sum.h,
- * which comes first, has the transposition). Columns are of double: so many particles at once as registers of those
- * hold. */
+/* Records out of columns and sums back into columns, LANES particles at a time, in one precision (vector.h). Columns
+ * are of double: so many particles at once as registers of those hold. */
 
-typedef REAL NAME(narrow) __attribute__((vector_size(WIDTH / sizeof(double) * sizeof(REAL))));
+#define vec_part       TYPED(vec_part)
+#define column_load    TYPED(column_load)
+#define column_quanta  TYPED(column_quanta)
+#define column_deliver TYPED(column_deliver)
+#define pack_records   TYPED(pack_records)
+#define unpack_records TYPED(unpack_records)
+#define record_kernels TYPED(record_kernels)
+
+typedef REAL vec_part __attribute__((vector_size(WIDTH / sizeof(double) * sizeof(REAL))));
 
 /* `scale` times what the column has for AT_ONCE particles, those from `first` on or those that `which` names. */
-INLINE double_vector NAME(column)(const double *from, double scale, size_t first, const uint32_t *which) {
-  double_vector v = {0};
+INLINE vec_double column_load(const double *from, double scale, size_t first, const uint32_t *which) {
+  vec_double v = {0};
   if (!from)
     return v;
   if (!which) {
     memcpy(&v, from + first, sizeof v);
   } else {
-#ifdef AVX512
-    v = (double_vector)_mm512_i32gather_pd(_mm256_loadu_si256((const void *)which), from, sizeof *from);
+#ifdef __AVX512F__
+    v = (vec_double)_mm512_i32gather_pd(_mm256_loadu_si256((const void *)which), from, sizeof *from);
 #else
     for (size_t lane = 0; lane < AT_ONCE; lane++)
       v[lane] = from[which[lane]];
@@ -23,9 +30,9 @@ INLINE double_vector NAME(column)(const double *from, double scale, size_t first
 }
 
 /* Positions as float records hold them: towards zero, and round the 2^32 quanta that a record can tell apart. */
-INLINE NAME(narrow) NAME(quanta)(double_vector x, double per_quantum) {
-  NAME(narrow) to = {0};
-#if FIXED
+INLINE vec_part column_quanta(vec_double x, double per_quantum) {
+  vec_part to = {0};
+#if SINGLE
   int32_t at[AT_ONCE];
   for (size_t lane = 0; lane < AT_ONCE; lane++) {
     const double t = x[lane] * per_quantum;
@@ -40,8 +47,9 @@ INLINE NAME(narrow) NAME(quanta)(double_vector x, double per_quantum) {
 }
 
 /* Of `count` particles: those from `first` on, or those that `which` names. */
-static void NAME(pack)(const struct sph_pair_source *source, size_t first, const uint32_t *which, size_t count,
-                       size_t stride, REAL *in) {
+static void pack_records(const struct sph_pair_source *source, size_t first, const uint32_t *which, size_t count,
+                         size_t stride, void *records) {
+  REAL *in = records;
   const bool artificial = source->column[PAIR_ARTIFICIAL] != NULL, corrected = source->correction[0] != NULL;
   const size_t turned = artificial ? PAIR_TURNED_TOO : PAIR_TURNED;
   REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
@@ -60,18 +68,18 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
     for (size_t part = 0; part < LANES; part += AT_ONCE) {
       const size_t from = first + k + part;
       const uint32_t *these = at ? at + part : NULL;
-      double_vector its[PAIR_NARROW], more[6], t[9], b[6];
+      vec_double its[PAIR_NARROW], more[6], t[9], b[6];
       UNROLL
       for (size_t c = 0; c < PAIR_NARROW; c++)
-        its[c] = NAME(column)(source->column[c], source->scale[c], from, these);
-      const double_vector pressure = NAME(column)(source->pressure, source->scale[PAIR_XX], from, these);
-      const double_vector factor = NAME(column)(source->stress_factor, 1, from, these);
+        its[c] = column_load(source->column[c], source->scale[c], from, these);
+      const vec_double pressure = column_load(source->pressure, source->scale[PAIR_XX], from, these);
+      const vec_double factor = column_load(source->stress_factor, 1, from, these);
       UNROLL
       for (size_t c = PAIR_XX; c < PAIR_ZZ; c++)
         its[c] *= factor;
       its[PAIR_ZZ] = -(its[PAIR_XX] + its[PAIR_YY]);
       its[PAIR_XX] += pressure, its[PAIR_YY] += pressure, its[PAIR_ZZ] += pressure;
-      const double_vector square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
+      const vec_double square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
       UNROLL
       for (size_t c = 0; c < 6; c++)
         if (source->volume_weights)
@@ -79,54 +87,53 @@ static void NAME(pack)(const struct sph_pair_source *source, size_t first, const
       if (artificial) {
         UNROLL
         for (size_t c = 0; c < 6; c++) {
-          more[c] = NAME(column)(source->column[PAIR_ARTIFICIAL + c], source->scale[PAIR_ARTIFICIAL + c], from, these);
+          more[c] = column_load(source->column[PAIR_ARTIFICIAL + c], source->scale[PAIR_ARTIFICIAL + c], from, these);
           if (source->volume_weights)
             more[c] *= square;
-          *(NAME(narrow) *)(void *)(room[PAIR_ARTIFICIAL + c] + part) = __builtin_convertvector(more[c], NAME(narrow));
+          *(vec_part *)(void *)(room[PAIR_ARTIFICIAL + c] + part) = __builtin_convertvector(more[c], vec_part);
         }
       }
       if (corrected) {
         UNROLL
         for (size_t c = 0; c < 6; c++)
-          b[c] = NAME(column)(source->correction[c], 1, from, these);
-        double_turn(its + PAIR_XX, b, t);
+          b[c] = column_load(source->correction[c], 1, from, these);
+        turn(its + PAIR_XX, b, t);
         UNROLL
         for (size_t c = 0; c < 6; c++)
           its[PAIR_XX + c] = t[c];
         UNROLL
         for (size_t c = 0; c < 3; c++)
-          *(NAME(narrow) *)(void *)(room[turned + c] + part) = __builtin_convertvector(t[6 + c], NAME(narrow));
+          *(vec_part *)(void *)(room[turned + c] + part) = __builtin_convertvector(t[6 + c], vec_part);
       }
       UNROLL
       for (size_t c = 0; c < PAIR_NARROW; c++)
-        *(NAME(narrow) *)(void *)(room[c] + part) = FIXED && c <= PAIR_Z
-                                                        ? NAME(quanta)(its[c], source->per_quantum[c])
-                                                        : __builtin_convertvector(its[c], NAME(narrow));
+        *(vec_part *)(void *)(room[c] + part) = SINGLE && c <= PAIR_Z ? column_quanta(its[c], source->per_quantum[c])
+                                                                      : __builtin_convertvector(its[c], vec_part);
     }
     for (size_t c = 0; c < stride; c += LANES) {
-      VECTOR r[LANES];
+      vec r[LANES];
       UNROLL
       for (size_t m = 0; m < LANES; m++)
-        r[m] = *(const VECTOR *)(const void *)room[c + m];
-      NAME(transpose)(r);
+        r[m] = *(const vec *)(const void *)room[c + m];
+      vec_transpose(r);
       for (size_t lane = 0; lane < left; lane++)
-        *(VECTOR *)(void *)(in + (k + lane) * stride + c) = r[lane];
+        *(vec *)(void *)(in + (k + lane) * stride + c) = r[lane];
     }
   }
 }
 
 /* Columns of the first `lanes` of the AT_ONCE particles that stand at `part` of room[column]. Lines are written whole,
  * so that few stores wait for memory. */
-INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const size_t lanes,
-                          REAL room[PAIR_WIDE][LANES], size_t part) {
-  const double_vector zero = {0}, one = zero + 1;
-  double_vector weight = one, per_mass = one;
-  if (FIXED || !sink->volume_weights) {
-    double_vector density = one;
+INLINE void column_deliver(const struct sph_pair_sink *sink, size_t first, const size_t lanes,
+                           REAL room[PAIR_WIDE][LANES], size_t part) {
+  const vec_double zero = {0}, one = zero + 1;
+  vec_double weight = one, per_mass = one;
+  if (SINGLE || !sink->volume_weights) {
+    vec_double density = one;
     memcpy(&density, sink->density + first, lanes * sizeof(double));
     weight = sink->volume_weights ? density / sink->density_unit : sink->density_unit / density;
   }
-  if (FIXED) {
+  if (SINGLE) {
     memcpy(&per_mass, sink->mass + first, lanes * sizeof(double));
     per_mass = sink->mass_unit / per_mass;
     weight *= per_mass;
@@ -135,41 +142,50 @@ INLINE void NAME(deliver)(const struct sph_pair_sink *sink, size_t first, const 
   for (size_t c = 0; c < SUM_COLUMNS; c++) {
     if (c >= SUM_MOMENT && !sink->column[c])
       break;
-    double_vector v = __builtin_convertvector(*(const NAME(narrow) *)(const void *)(room[c] + part), double_vector);
-    const double_vector own = v;
+    vec_double v = __builtin_convertvector(*(const vec_part *)(const void *)(room[c] + part), vec_double);
+    const vec_double own = v;
     if ((c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT)
       v *= weight;
-    else if (FIXED && c != SUM_SIGNAL)
+    else if (SINGLE && c != SUM_SIGNAL)
       v *= per_mass;
     v *= sink->scale[c];
     if (c == SUM_SIGNAL)
-      v = double_select(double_less(zero, own), double_keep(double_less(zero + (double)LEAST_SIGNAL, own), v), -one);
+      v = vec_select_double(vec_less_double(zero, own),
+                            vec_keep_double(vec_less_double(zero + (double)LEAST_SIGNAL, own), v), -one);
     memcpy(sink->column[c] + first, &v, lanes * sizeof(double));
   }
 }
 
 /* The sums of `count` particles from `first` on, whose records begin at `records`. */
-static void NAME(unpack)(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride,
-                         const REAL *records) {
+static void unpack_records(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride,
+                           const void *in) {
+  const REAL *records = in;
   const size_t columns = sink->column[SUM_MOMENT] ? SUM_COLUMNS : PAIR_NARROW;
   for (size_t k = 0; k < count; k += LANES) {
     const size_t left = count - k < LANES ? count - k : LANES;
     REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
     for (size_t c = 0; c < columns; c += LANES) {
-      VECTOR r[LANES];
+      vec r[LANES];
       UNROLL
       for (size_t lane = 0; lane < LANES; lane++)
-        r[lane] = *(const VECTOR *)(const void *)(records + (k + (lane < left ? lane : 0)) * stride + c);
-      NAME(transpose)(r);
+        r[lane] = vec_load(records + (k + (lane < left ? lane : 0)) * stride + c);
+      vec_transpose(r);
       UNROLL
       for (size_t m = 0; m < LANES; m++)
-        *(VECTOR *)(void *)room[c + m] = r[m];
+        *(vec *)(void *)room[c + m] = r[m];
     }
     for (size_t part = 0; part < left; part += AT_ONCE) {
       if (left - part >= AT_ONCE)
-        NAME(deliver)(sink, first + k + part, AT_ONCE, room, part);
+        column_deliver(sink, first + k + part, AT_ONCE, room, part);
       else
-        NAME(deliver)(sink, first + k + part, left - part, room, part);
+        column_deliver(sink, first + k + part, left - part, room, part);
     }
   }
 }
+
+static const struct sph_record_kernels record_kernels = {
+    .bytes = sizeof(REAL),
+    .sum = {{sum_pairs_plain, sum_pairs_artificial}, {sum_pairs_corrected, sum_pairs_both}},
+    .pack = pack_records,
+    .unpack = unpack_records,
+};

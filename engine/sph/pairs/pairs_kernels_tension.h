@@ -5,63 +5,47 @@
 
 /* One rotation: a (xx xy xz yy yz zz) loses what stands in `pq`; the columns p, q of v turn with it. t = tan of the
  * angle. */
-INLINE void NAME(rotate)(VECTOR *pp, VECTOR *qq, VECTOR *pq, VECTOR *pr, VECTOR *qr, VECTOR v[3][3], int p, int q) {
-  const VECTOR zero = {0}, difference = *qq - *pp, twice = 2 * *pq;
-  const VECTOR square = difference * difference + twice * twice + 0x1p-1000;
-  const VECTOR length = square * ROOT(square); /* of the difference and twice the element; never zero */
-  const VECTOR negative = NAME(select)(NAME(less)(difference, zero), -twice, twice);
-  const VECTOR size = NAME(select)(NAME(less)(difference, zero), -difference, difference);
-  const VECTOR t = negative * INVERSE(size + length), c = ROOT(1 + t * t), s = t * c;
-  const VECTOR r = *pr;
+INLINE void rotate(vec *pp, vec *qq, vec *pq, vec *pr, vec *qr, vec v[3][3], int p, int q) {
+  const vec zero = {0}, difference = *qq - *pp, twice = 2 * *pq;
+  const vec square = difference * difference + twice * twice + 0x1p-1000;
+  const vec length = square * vec_inverse_root(square); /* of the difference and twice the element; never zero */
+  const vec negative = vec_select(vec_less(difference, zero), -twice, twice);
+  const vec size = vec_select(vec_less(difference, zero), -difference, difference);
+  const vec t = negative * vec_inverse(size + length), c = vec_inverse_root(1 + t * t), s = t * c;
+  const vec r = *pr;
   *pp -= t * *pq, *qq += t * *pq, *pq = zero;
   *pr = c * r - s * *qr, *qr = s * r + c * *qr;
   UNROLL
   for (int k = 0; k < 3; k++) {
-    const VECTOR x = v[k][p];
+    const vec x = v[k][p];
     v[k][p] = c * x - s * v[k][q], v[k][q] = s * x + c * v[k][q];
   }
 }
 
-INLINE bool NAME(any)(NAME(choice) choice) {
-#ifdef AVX512
-  return choice != 0;
-#else
-  INT seen = 0;
-  UNROLL
-  for (int lane = 0; lane < LANES; lane++)
-    seen |= choice[lane];
-  return seen != 0;
-#endif
-}
-
-INLINE VECTOR NAME(size)(VECTOR a) {
-  return NAME(select)(NAME(less)(a, (VECTOR){0}), -a, a);
-}
-
 /* Still to be turned: a tension, and something beside the diagonal. */
-INLINE bool NAME(skew)(const VECTOR a[6], NAME(choice) pulled) {
-  const VECTOR off = a[1] * a[1] + a[2] * a[2] + a[4] * a[4], on = a[0] * a[0] + a[3] * a[3] + a[5] * a[5];
-  return NAME(any)(NAME(less)((REAL)1e-32 * on, off) & pulled);
+INLINE bool skew(const vec a[6], vec_mask pulled) {
+  const vec off = a[1] * a[1] + a[2] * a[2] + a[4] * a[4], on = a[0] * a[0] + a[3] * a[3] + a[5] * a[5];
+  return vec_any(vec_less((REAL)1e-32 * on, off) & pulled);
 }
 
 /* R of the particles first..last-1, in units of the stress given: stress_factor S + pressure_term I, xx xy xz yy yz zz.
  * Two registers of them in turn: a rotation is a chain of roots and inverses, and the one's fills the gaps of the
  * other's. */
-static void NAME(oppose)(double epsilon, const double *const stress[5], const double *stress_factor,
-                         const double *pressure_term, size_t first, size_t last, double *const out[6]) {
+static void oppose(double epsilon, const double *const stress[5], const double *stress_factor,
+                   const double *pressure_term, size_t first, size_t last, double *const out[6]) {
   enum { BOTH = 2 };
   static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-  const VECTOR zero = {0}, one = zero + 1;
+  const vec zero = {0}, one = zero + 1;
   for (size_t i = first; i < last; i += BOTH * LANES) {
-    VECTOR a[BOTH][6], v[BOTH][3][3];
-    NAME(choice) pulled[BOTH];
+    vec a[BOTH][6], v[BOTH][3][3];
+    vec_mask pulled[BOTH];
     size_t left[BOTH];
     UNROLL
     for (size_t m = 0; m < BOTH; m++) {
       const size_t at = i + m * LANES < last ? i + m * LANES : last;
       left[m] = last - at < LANES ? last - at : LANES;
-      const VECTOR pressure = NAME(load)(pressure_term + at, left[m]);
-      NAME(acting)(stress, stress_factor, at, left[m], a[m]);
+      const vec pressure = vec_load_first(pressure_term + at, left[m]);
+      acting(stress, stress_factor, at, left[m], a[m]);
       UNROLL
       for (int k = 0; k < 6; k++)
         a[m][k] += row[k] == column[k] ? pressure : zero;
@@ -69,15 +53,15 @@ static void NAME(oppose)(double epsilon, const double *const stress[5], const do
       for (int k = 0; k < 9; k++)
         v[m][k / 3][k % 3] = k % 4 == 0 ? one : zero;
       /* pressed all round by Gershgorin's circles: no tension, exactly */
-      const VECTOR xy = NAME(size)(a[m][1]), xz = NAME(size)(a[m][2]), yz = NAME(size)(a[m][4]);
-      pulled[m] = NAME(less)(zero, a[m][0] + (xy + xz)) | NAME(less)(zero, a[m][3] + (xy + yz)) |
-                  NAME(less)(zero, a[m][5] + (xz + yz));
+      const vec xy = vec_abs(a[m][1]), xz = vec_abs(a[m][2]), yz = vec_abs(a[m][4]);
+      pulled[m] = vec_less(zero, a[m][0] + (xy + xz)) | vec_less(zero, a[m][3] + (xy + yz)) |
+                  vec_less(zero, a[m][5] + (xz + yz));
     }
     bool turns[BOTH] = {true, true};
     for (int sweep = 0; sweep < 12; sweep++) {
       UNROLL
       for (int m = 0; m < BOTH; m++)
-        turns[m] = turns[m] && NAME(skew)(a[m], pulled[m]);
+        turns[m] = turns[m] && skew(a[m], pulled[m]);
       if (!turns[0] && !turns[1])
         break;
       static const int of[3][5] = {{0, 3, 1, 2, 4}, {0, 5, 2, 1, 4}, {3, 5, 4, 1, 2}},
@@ -87,18 +71,17 @@ static void NAME(oppose)(double epsilon, const double *const stress[5], const do
         UNROLL
         for (int m = 0; m < BOTH; m++)
           if (turns[m])
-            NAME(rotate)
-        (&a[m][of[t][0]], &a[m][of[t][1]], &a[m][of[t][2]], &a[m][of[t][3]], &a[m][of[t][4]], v[m], axes[t][0],
-         axes[t][1]);
+            rotate(&a[m][of[t][0]], &a[m][of[t][1]], &a[m][of[t][2]], &a[m][of[t][3]], &a[m][of[t][4]], v[m],
+                   axes[t][0], axes[t][1]);
       }
     }
     UNROLL
     for (size_t m = 0; m < BOTH; m++) {
-      VECTOR r[6] = {zero, zero, zero, zero, zero, zero};
+      vec r[6] = {zero, zero, zero, zero, zero, zero};
       UNROLL
       for (int axis = 0; axis < 3; axis++) {
-        const VECTOR value = a[m][axis == 0 ? 0 : axis == 1 ? 3 : 5];
-        const VECTOR most = NAME(keep)(NAME(less)(zero, value) & pulled[m], (REAL)-epsilon * value);
+        const vec value = a[m][axis == 0 ? 0 : axis == 1 ? 3 : 5];
+        const vec most = vec_keep(vec_less(zero, value) & pulled[m], (REAL)-epsilon * value);
         UNROLL
         for (int k = 0; k < 6; k++)
           r[k] += most * v[m][row[k]][axis] * v[m][column[k]][axis];
