@@ -8,7 +8,7 @@
 #include "campaign/design/design.h"
 #include "campaign/run.h"
 #include "campaign/terminal/progress.h"
-#include "db/ask/query.h"
+#include "db/ask/run.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
 #include "schemas/text.h"
@@ -172,8 +172,7 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
     code = try_run(looking.dearest, campaign_seed(campaign, looking.dearest, 0),
                    options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK && options->no_trial && store) {
-    query_number(store, "select avg(wall_time) from run", 0, NULL, &plan->run_s_mean, &ignored);
-    query_number(store, "select max(wall_time) from run", 0, NULL, &plan->run_s_most, &ignored);
+    ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
   }
   if (code == STATUS_OK && looking.dearest->kind->describe)
     plan->model = looking.dearest->kind->describe(looking.dearest->inputs);

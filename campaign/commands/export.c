@@ -12,16 +12,21 @@ struct options {
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
+static status write_view(struct store *store, const char *view, FILE *out, struct error *error) {
+  struct rows rows;
+  const struct query_sink sink = rows_sink(&rows, store, TABLE_CSV, out);
+  return rows_end(&rows, ask_columns_view(store, view, &sink, error), error);
+}
+
 /* Written under a temporary name and renamed: a file with its final name is whole. view NULL: the bits. */
 static status export_text(struct store *store, const char *path, const char *view, struct error *error) {
-  char temporary[4096], sql[64];
+  char temporary[4096];
   if (snprintf(temporary, sizeof temporary, "%s.part", path) >= (int)sizeof temporary)
     return status_fail(error, STATUS_USAGE, "the target's name is too long");
   FILE *out = fopen(temporary, "w");
   if (!out)
     return status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
-  snprintf(sql, sizeof sql, "select * from %s", view ? view : "");
-  status code = view ? rows_print(store, sql, 0, NULL, TABLE_CSV, out, error) : store_dump(store, out, error);
+  status code = view ? write_view(store, view, out, error) : store_dump(store, out, error);
   if (fclose(out) && !code)
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
   if (!code && rename(temporary, path))
@@ -62,7 +67,7 @@ static status run(const struct command_line *line, struct error *error) {
   return code;
 }
 
-static const struct option_row rows[] = {
+static const struct option_row option_rows[] = {
     {"csv", 0, OPTION_FLAG, NULL, offsetof(struct options, csv), 0, 0, NULL,
      "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with meaning and unit of each "
      "column."},
@@ -83,8 +88,8 @@ const struct command export_command = {
     .examples = "clast export out.db handover.db\nclast export out.db tables --csv",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
+    .options = option_rows,
+    .option_count = sizeof option_rows / sizeof option_rows[0],
     .options_size = sizeof(struct options),
     .run = run,
 };

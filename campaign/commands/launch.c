@@ -12,7 +12,10 @@
 #include "campaign/run.h"
 #include "schemas/clock.h"
 
-enum { MANY_POINTS = 64 }; /* more are not printed at the end of a run unless asked for by --json or --csv */
+enum {
+  RESAMPLES = 400,
+  MANY_POINTS = 64
+}; /* more are not printed at the end of a run unless asked for by --json or --csv */
 
 struct notes {
   struct progress *progress;
@@ -60,15 +63,15 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
                               struct error *error) {
   struct store *store = NULL;
   int64_t points = 0;
-  struct estimates_choice choice = {.campaign = campaign, .resamples = 400};
+  const struct ask_points_choice choice = {.campaign = campaign};
   status code = store_open_reader(path, &store, error);
   if (!code)
-    code = estimates_points(store, &choice, &points, error);
+    code = ask_points_count(store, &choice, &points, error);
   if (!code && format == TABLE_TEXT && points > MANY_POINTS)
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);
   else if (!code)
-    code = estimates_rows(store, &choice, format, stdout, error);
+    code = estimates_print(store, &choice, RESAMPLES, format, stdout, error);
   if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
     fflush(stdout); /* the legend comes below the table */
     fputs(estimates_legend, stderr);

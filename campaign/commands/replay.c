@@ -1,12 +1,11 @@
 /* `clast replay STORE RUN`: computes a stored run again and compares every bit. */
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/run.h"
-#include "campaign/terminal/rows.h"
+#include "campaign/commands/replay_compare.h"
+#include "db/ask/run.h"
 #include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 
@@ -15,195 +14,94 @@ struct options {
   struct table_options table;
 };
 
-struct origin { /* what the store says of the run */
-  char *scene;
-  int64_t seed, results_version;
-  char cpu_class[16]; /* whose bits they are; empty when the session does not say */
-  bool found;
-};
+/* Computes the run `from` again. Its scene is parsed into *scene; result and scene are the caller's, also on errors. */
+static status compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
+                      struct run_result *result, struct error *error) {
+  status code = scene_parse("scene of the run", from->scene, scene, error);
+  if (code)
+    return code;
 
-static status take_origin(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct origin *origin = context;
-  if (count != 4 || values[0].kind != QUERY_TEXT)
-    return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
-  origin->scene = strdup(values[0].text);
-  origin->seed = values[1].integer;
-  origin->results_version = values[2].integer;
-  if (values[3].kind == QUERY_TEXT)
-    snprintf(origin->cpu_class, sizeof origin->cpu_class, "%s", values[3].text);
-  origin->found = true;
-  return origin->scene ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
-}
-
-struct comparison {
-  const struct run_result *result;
-  const struct engine_kind *kind;
-  char (*names)[128]; /* of the columns */
-  size_t columns;
-  size_t compared, different;
-  struct table *table;
-};
-
-static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
-  struct comparison *comparison = context;
-  comparison->names = calloc(count, sizeof *comparison->names);
-  if (!comparison->names)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  for (size_t i = 0; i < count; i++)
-    snprintf(comparison->names[i], sizeof comparison->names[i], "%s", names[i]);
-  comparison->columns = count;
-  return STATUS_OK;
-}
-
-static bool same_value(const struct field *row, const struct field_value *computed, const struct query_value *stored) {
-  switch (row->kind) {
-  case FIELD_REAL:
-    if (isnan(computed->number))
-      return stored->kind == QUERY_NULL || isnan(stored->real);
-    return stored->kind != QUERY_NULL && computed->number == stored->real &&
-           signbit(computed->number) == signbit(stored->real);
-  case FIELD_INTEGER: return stored->kind == QUERY_INTEGER && computed->integer == stored->integer;
-  case FIELD_BOOLEAN: return stored->kind == QUERY_INTEGER && (computed->number != 0) == (stored->integer != 0);
-  case FIELD_CHOICE:
-  case FIELD_TEXT:
-    return stored->kind == QUERY_NULL ? !*computed->text : stored->text && strcmp(computed->text, stored->text) == 0;
+  const struct engine_kind *kind = (*scene)->kind;
+  if (kind->results_version != from->results_version)
+    return status_fail(error, STATUS_CONTENT,
+                       "run %" PRId64 " was made by results version %" PRId64
+                       " of engine %s, this program makes version %d: its bits differ on purpose; replay it with the "
+                       "program of that version (table session has its commit)",
+                       run_id, from->results_version, kind->name, kind->results_version);
+  if (fields) {
+    code = atomic_file_try(fields, "fields file", error);
+    if (code)
+      return code;
   }
-  return false;
+  const struct run_request request = {.kind = kind,
+                                      .inputs = (*scene)->inputs,
+                                      .seed = from->seed,
+                                      .fields_path = fields};
+  return run_simulate(&request, NULL, NULL, 0, result, error);
 }
 
-static void difference(struct comparison *comparison, const char *what, const char *stored, const char *computed) {
-  comparison->different++;
-  table_text(comparison->table, what);
-  table_text(comparison->table, stored);
-  table_text(comparison->table, computed);
+/* The table of differences. For people there is none when nothing differs. */
+static status print_differences(struct store *store, int64_t run_id, const struct engine_kind *kind,
+                                const struct run_result *result, enum table_format format,
+                                struct replay_compare *comparison, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  table_column(table, "result", NULL);
+  table_column(table, "stored", NULL);
+  table_column(table, "recomputed", NULL);
+  status code = replay_compare(store, run_id, kind, result, table, comparison, error);
+  if (format == TABLE_TEXT && comparison->different == 0) {
+    table_drop(table);
+    return code;
+  }
+  status ended = table_end(table, code ? NULL : error);
+  return code ? code : ended;
 }
 
-static void compare_value(struct comparison *comparison, const struct field *row, const void *object,
-                          const struct query_value *stored) {
-  struct field_value computed;
-  field_get(row, object, &computed);
-  comparison->compared++;
-  if (same_value(row, &computed, stored))
-    return;
-  char text[FIELD_TEXT_SIZE], kept[FIELD_TEXT_SIZE];
-  field_print(row, &computed, text, sizeof text);
-  if (stored->kind == QUERY_TEXT)
-    snprintf(kept, sizeof kept, "%s", stored->text);
-  else
-    snprintf(kept, sizeof kept, "%.17g", stored->real);
-  difference(comparison, row->path, kept, text);
+static status verdict(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
+                      size_t fragments, struct error *error) {
+  if (comparison->different == 0) {
+    fprintf(stderr, "run %" PRId64 ": %zu results and %zu fragment masses agree to the last bit\n", run_id,
+            comparison->compared - 1, fragments);
+    return STATUS_OK;
+  }
+  char class[200] = "";
+  const char *here = cpu_class_name(cpu_class_choose());
+  if (*stored->cpu_class && strcmp(stored->cpu_class, here) != 0)
+    snprintf(class, sizeof class,
+             "; the stored ones are of CPU class %s and these of %s, and only runs of one class have the same bits: "
+             "replay with CLAST_CPU=%s",
+             stored->cpu_class, here, stored->cpu_class);
+  return status_fail(error, STATUS_CONTENT, "run %" PRId64 ": %zu of %zu results differ%s", run_id,
+                     comparison->different, comparison->compared, class);
 }
 
-static status compare_row(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct comparison *comparison = context;
-  const struct field_table *tables[] = {&outcome_table, comparison->kind->results};
-  const void *objects[] = {&comparison->result->outcome, comparison->result->result};
-  for (size_t t = 0; t < 2; t++)
-    for (size_t i = 0; i < tables[t]->count; i++) {
-      const struct field *row = &tables[t]->rows[i];
-      char column[sizeof *comparison->names];
-      field_column_name(row->path, column, sizeof column);
-      for (size_t c = 0; c < count; c++)
-        if (strcmp(comparison->names[c], column) == 0) {
-          compare_value(comparison, row, objects[t], &values[c]);
-          break;
-        }
-    }
-  return STATUS_OK;
-}
-
-static status compare_masses(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)error;
-  struct comparison *comparison = context;
-  const struct run_result *result = comparison->result;
-  bool same = count == 1 && values[0].kind == QUERY_BLOB && values[0].size == 8 * result->fragment_count;
-  for (size_t i = 0; same && i < result->fragment_count; i++) /* blob and machine are both little-endian */
-    same = memcmp((const char *)values[0].blob + 8 * i, &result->fragments[i].mass, 8) == 0;
-  comparison->compared++;
-  if (!same)
-    difference(comparison, "fragment masses", "other", "masses");
-  return STATUS_OK;
-}
-
-static status compare(struct store *store, const struct query_parameter *run, struct comparison *comparison,
-                      struct error *error) {
-  char sql[256];
-  snprintf(sql, sizeof sql, "select * from run join result_%s using (run_id) where run_id = :run",
-           comparison->kind->name);
-  struct query_sink values = {comparison, take_names, compare_row}, masses = {comparison, NULL, compare_masses};
-  status code = query_run(store, sql, 1, run, 0, &values, error);
-  if (!code)
-    code = query_run(store, "select masses from fragment_mass where run_id = :run", 1, run, 0, &masses, error);
-  if (!code && comparison->compared < 3)
-    code = status_fail(error, STATUS_CONTENT, "the store keeps no results of run %s", run->value);
-  return code;
-}
-
-static status replay(struct store *store, const char *run_id, const struct options *options, enum table_format format,
+static status replay(struct store *store, int64_t run_id, const struct options *options, enum table_format format,
                      struct error *error) {
-  struct query_parameter run = {"run", run_id};
-  struct origin origin = {0};
-  struct query_sink sink = {&origin, NULL, take_origin};
+  struct ask_run stored;
   struct scene *scene = NULL;
   struct run_result result = {0};
-  struct comparison comparison = {.result = &result};
-  status code = query_run(
-      store,
-      "select scene, seed, results_version, json_extract(facts, '$.cpu_class') from run join point using (point_id)"
-      " left join session using (session_id) where run_id = :run",
-      1, &run, 0, &sink, error);
-  if (!code && !origin.found)
+  struct replay_compare comparison = {0};
+  status code = ask_run_read(store, run_id, &stored, error);
+  if (code)
+    goto cleanup;
+  if (!stored.scene) {
     code = status_fail(error, STATUS_USAGE,
-                       "there is no run %s; `clast query STORE \"select run_id from run\"` lists them", run_id);
-  if (!code)
-    code = scene_parse("scene of the run", origin.scene, &scene, error);
-  if (!code && scene->kind->results_version != origin.results_version)
-    code =
-        status_fail(error, STATUS_CONTENT,
-                    "run %s was made by results version %" PRId64 " of engine %s, this program makes version %d: its "
-                    "bits differ on purpose; replay it with the program of that version (table session has its commit)",
-                    run_id, origin.results_version, scene->kind->name, scene->kind->results_version);
-  if (!code && options->fields)
-    code = atomic_file_try(options->fields, "fields file", error);
-  if (!code) {
-    struct run_request request = {.kind = scene->kind,
-                                  .inputs = scene->inputs,
-                                  .seed = (uint64_t)origin.seed,
-                                  .fields_path = options->fields};
-    code = run_simulate(&request, NULL, NULL, 0, &result, error);
+                       "there is no run %" PRId64 "; `clast query STORE --named runs --with point=1` "
+                       "lists those of point 1",
+                       run_id);
+    goto cleanup;
   }
-  if (!code) {
-    comparison.kind = scene->kind;
-    comparison.table = table_new(format, stdout);
-    table_column(comparison.table, "result", NULL);
-    table_column(comparison.table, "stored", NULL);
-    table_column(comparison.table, "recomputed", NULL);
-    code = compare(store, &run, &comparison, error);
-    status ended = STATUS_OK;
-    if (format != TABLE_TEXT || comparison.different)
-      ended = table_end(comparison.table, code ? NULL : error);
-    else
-      table_drop(comparison.table);
-    code = code ? code : ended;
-  }
-  char class[160] = "";
-  const char *here = cpu_class_name(cpu_class_choose());
-  if (*origin.cpu_class && strcmp(origin.cpu_class, here) != 0)
-    snprintf(
-        class, sizeof class,
-        "; they are of CPU class %s and these of %s, and bits are promised within a class: replay with CLAST_CPU=%s",
-        origin.cpu_class, here, origin.cpu_class);
-  if (!code && comparison.different)
-    code = status_fail(error, STATUS_CONTENT, "run %s: %zu of %zu results differ%s", run_id, comparison.different,
-                       comparison.compared, class);
-  else if (!code)
-    fprintf(stderr, "run %s: %zu results and %zu fragment masses agree to the last bit\n", run_id,
-            comparison.compared - 1, result.fragment_count);
-  if (!code && options->fields && result.outcome.state == OUTCOME_INVALID)
+
+  code = compute(&stored, run_id, options->fields, &scene, &result, error);
+  if (code)
+    goto cleanup;
+  code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
+  if (code == STATUS_OK)
+    code = verdict(run_id, &stored, &comparison, result.fragment_count, error);
+  if (code == STATUS_OK && options->fields && result.outcome.state == OUTCOME_INVALID)
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
-  free(comparison.names);
-  free(origin.scene);
+cleanup:
+  ask_run_release(&stored);
   run_result_clear(&result);
   scene_free(scene);
   return code;
@@ -211,16 +109,19 @@ static status replay(struct store *store, const char *run_id, const struct optio
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
+  const char *number = line->arguments[1];
   enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
   status code = table_choose(&options->table, &format, error);
-  if (!code && strspn(line->arguments[1], "0123456789") != strlen(line->arguments[1]))
-    code = status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the store), got \"%.64s\"", line->arguments[1]);
-  if (!code)
-    code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  code = replay(store, line->arguments[1], options, format, error);
+  if (strspn(number, "0123456789") != strlen(number))
+    return status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the store), got \"%.64s\"", number);
+
+  struct store *store = NULL;
+  code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  code = replay(store, strtoll(number, NULL, 10), options, format, error);
   store_close(store, NULL);
   return code;
 }

@@ -1,30 +1,16 @@
 /* `clast retry STORE`: tries again the runs that were given up, with raised limits. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
-#include "db/ask/query.h"
+#include "db/ask/campaign.h"
 
 struct options {
   struct launch_options launch;
   const char *status, *time, *memory, *folder;
   int64_t campaign;
 };
-
-struct origin {
-  char *name, *document;
-};
-
-static status take_document(void *context, size_t count, const struct query_value *values, struct error *error) {
-  struct origin *origin = context;
-  if (count != 2 || values[0].kind != QUERY_TEXT || values[1].kind != QUERY_TEXT)
-    return status_fail(error, STATUS_CONTENT, "the store keeps no campaign document");
-  origin->name = strdup(values[0].text);
-  origin->document = strdup(values[1].text);
-  return origin->name && origin->document ? STATUS_OK : status_fail(error, STATUS_MEMORY, "out of memory");
-}
 
 /* A limit given on the command line, or twice the campaign's. */
 static status raise_limit(const char *path, const char *text, double *limit, struct error *error) {
@@ -43,63 +29,73 @@ static status raise_limit(const char *path, const char *text, double *limit, str
   return STATUS_OK;
 }
 
-/* From the store: the campaign, and how often its unlucky runs have been tried. */
-static status read_store(const char *path, const struct options *options, struct origin *origin, double *tried,
+/* Name and document of the campaign, and how often its run that failed most has been tried. */
+static status read_store(const char *path, int64_t campaign, char **name, char **document, int64_t *attempts,
                          struct error *error) {
   struct store *store = NULL;
-  struct query_sink sink = {origin, NULL, take_document};
-  char number[32] = "";
-  struct query_parameter parameter = {"campaign", number};
-  if (options->campaign)
-    snprintf(number, sizeof number, "%lld", (long long)options->campaign);
   status code = store_open_reader(path, &store, error);
-  if (!code)
-    code = query_run(store,
-                     options->campaign ? "select name, document from campaign where campaign_id = :campaign"
-                                       : "select name, document from campaign order by campaign_id desc limit 1",
-                     options->campaign ? 1 : 0, &parameter, 0, &sink, error);
-  if (!code && !origin->document)
+  if (code)
+    return code;
+  code = ask_campaign_document(store, campaign, name, document, error);
+  if (code == STATUS_OK && !*document)
     code = status_fail(error, STATUS_USAGE, "%s has no such campaign; `clast status %s` lists them", path, path);
-  if (!code)
-    code = query_number(store,
-                        "select max(n) from (select count(*) as n from attempt where not exists"
-                        " (select 1 from run where run.identity = attempt.identity) group by identity)",
-                        0, NULL, tried, error);
+  if (code == STATUS_OK)
+    code = ask_campaign_attempts(store, attempts, error);
   store_close(store, NULL);
+  return code;
+}
+
+/* The campaign of the document, with raised limits and more attempts. *out is the caller's, also on errors. */
+static status raise_limits(const struct options *options, const char *name, const char *document, int64_t attempts,
+                           struct campaign **out, struct error *error) {
+  status code = campaign_parse(name, document, strlen(document), options->folder, out, error);
+  if (code)
+    return code;
+  struct campaign *campaign = *out;
+  code = raise_limit("limits.time", options->time, &campaign->time_limit, error);
+  if (code)
+    return code;
+  code = raise_limit("limits.memory", options->memory, &campaign->memory_limit, error);
+  if (code)
+    return code;
+  campaign->attempts += attempts;
+  campaign->failures = 0; /* the user knows of these failures already */
+  return STATUS_OK;
+}
+
+static status retry(const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  const char *path = line->arguments[0];
+  char *name = NULL, *document = NULL;
+  struct campaign *campaign = NULL;
+  int64_t attempts = 0;
+  status code = read_store(path, options->campaign, &name, &document, &attempts, error);
+  if (code)
+    goto cleanup;
+  if (attempts == 0) {
+    fprintf(stderr, "%s: no run was given up; nothing to try again\n", path);
+    goto cleanup;
+  }
+  code = raise_limits(options, name, document, attempts, &campaign, error);
+  if (code == STATUS_OK)
+    code = launch_campaign(campaign, path, &options->launch, format, line, error);
+cleanup:
+  campaign_free(campaign);
+  free(name);
+  free(document);
   return code;
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  const char *path = line->arguments[0];
   enum table_format format = TABLE_TEXT;
-  struct origin origin = {0};
-  struct campaign *campaign = NULL;
-  double tried = NAN;
   status code = table_choose(&options->launch.table, &format, error);
-  if (!code && strcmp(options->status, "failed") != 0)
+  if (code == STATUS_OK && strcmp(options->status, "failed") != 0)
     code = status_fail(error, STATUS_USAGE,
                        "--status knows \"failed\" only: a run that ended with a verdict of its own "
                        "(NaN, time step, energy) would end the same way again");
-  if (!code)
-    code = read_store(path, options, &origin, &tried, error);
-  if (!code && isnan(tried)) {
-    fprintf(stderr, "%s: no run was given up; nothing to try again\n", path);
-  } else if (!code) {
-    code = campaign_parse(origin.name, origin.document, strlen(origin.document), options->folder, &campaign, error);
-    if (!code)
-      code = raise_limit("limits.time", options->time, &campaign->time_limit, error);
-    if (!code)
-      code = raise_limit("limits.memory", options->memory, &campaign->memory_limit, error);
-    if (!code) {
-      campaign->attempts += (int64_t)tried;
-      campaign->failures = 0; /* someone looks at these failures already */
-      code = launch_campaign(campaign, path, &options->launch, format, line, error);
-    }
-  }
-  campaign_free(campaign);
-  free(origin.name);
-  free(origin.document);
+  if (code == STATUS_OK)
+    code = retry(line, format, error);
   return launch_quiet_ranks(code, error);
 }
 

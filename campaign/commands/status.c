@@ -1,32 +1,11 @@
 /* `clast status STORE`: how far each campaign of a store is. */
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "db/ask/campaign.h"
 
 struct options {
   struct table_options table;
 };
-
-static const char sql[] =
-    "with done as (select campaign_id, count(*) as runs, sum(counts) as counted,"
-    "   sum(counts and state = 'end-time') as censored,"
-    "   sum(state not in ('completed', 'end-time')) as failed, sum(surplus) as surplus, sum(cpu_time) as cpu_time"
-    "   from campaign_point join run using (point_id) group by campaign_id),"
-    " tried as (select campaign_id, count(*) as failed_attempts"
-    "   from campaign_point join attempt using (point_id) group by campaign_id),"
-    " given_up as (select campaign_id, count(distinct attempt.identity) as without_result"
-    "   from campaign_point join attempt using (point_id)"
-    "   where not exists (select 1 from run where run.identity = attempt.identity) group by campaign_id),"
-    " last as (select started_at, ended_at, outcome, host, pid from session order by session_id desc limit 1)"
-    " select campaign_id as campaign, name,"
-    "   (select count(*) from campaign_point as p where p.campaign_id = campaign.campaign_id) as points,"
-    "   coalesce(runs, 0) as runs, coalesce(counted, 0) as counted, coalesce(censored, 0) as censored,"
-    "   coalesce(failed, 0) as failed, coalesce(surplus, 0) as surplus,"
-    "   coalesce(failed_attempts, 0) as failed_attempts, coalesce(without_result, 0) as without_result,"
-    "   coalesce(cpu_time, 0.0) as cpu_time,"
-    "   last.started_at as last_started, last.ended_at as last_ended,"
-    "   coalesce(last.outcome, 'running or killed') as last_outcome"
-    " from campaign left join done using (campaign_id) left join tried using (campaign_id)"
-    " left join given_up using (campaign_id) left join last on true order by campaign_id";
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
@@ -37,12 +16,14 @@ static status run(const struct command_line *line, struct error *error) {
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  code = rows_print(store, sql, 0, NULL, format, stdout, error);
+  struct rows rows;
+  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  code = rows_end(&rows, ask_campaign_progress(store, &sink, error), error);
   store_close(store, NULL);
   return code;
 }
 
-static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
+static const struct option_row option_rows[] = {TABLE_OPTIONS(struct options, table)};
 
 const struct command status_command = {
     .name = "status",
@@ -56,8 +37,8 @@ const struct command status_command = {
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
+    .options = option_rows,
+    .option_count = sizeof option_rows / sizeof option_rows[0],
     .options_size = sizeof(struct options),
     .run = run,
 };

@@ -45,6 +45,12 @@ while IFS=: read -r file line text; do
   fail "$file:$line: libraries return a status; they do not print or exit: $text"
 done < <(grep -rnE '(^|[^_a-z])(printf|puts|perror|exit|abort|_exit)[[:space:]]*\(' --include='*.c' "${order[@]}" | grep -vE ':[[:space:]]*(\*|/\*|//)')
 
+# 3b. SQL text stays in db; the one example is in the help of `clast query`, whose user writes SQL.
+while IFS=: read -r file line text; do
+  [ "$file" = campaign/commands/query.c ] || fail "$file:$line: SQL belongs into db/ask: $text"
+done < <(grep -rniE '"[^"]*(select |insert into|update [a-z_]+ set|delete from|create (table|view|index))' --include='*.[ch]' \
+  schemas engine analysis campaign | grep -vE ':[[:space:]]*(\*|/\*|//)' || true)
+
 # 4. A file's name is the prefix of what it exports.
 archives=0
 for folder in "${order[@]}"; do

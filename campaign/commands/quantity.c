@@ -1,0 +1,94 @@
+#include "campaign/commands/quantity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "analysis/statistics/estimates.h"
+#include "db/ask/point.h"
+#include "db/ask/points.h"
+
+/* Columns of ask_group after the axes. */
+enum { VERSION = 1, N = 2, MEAN = 5, HALF_WIDTH = 8, COLUMNS = 9 };
+
+struct reading {
+  struct store *store;
+  const struct quantity_choice *choice;
+  struct quantity *quantity;
+  enum exponent_method method;
+  enum estimates_window window;
+  status (*each)(void *context, const struct quantity_row *row, struct error *error);
+  void *context;
+};
+
+static status take_columns(void *context, size_t count, const char *const *names, struct error *error) {
+  struct reading *reading = context;
+  struct quantity *quantity = reading->quantity;
+  const size_t axes = quantity->axes;
+  if (count != axes + COLUMNS || (axes == 2 && strcmp(names[0], names[1]) == 0))
+    return status_fail(error, STATUS_USAGE, "%s", reading->choice->refusal);
+
+  for (size_t i = 0; i < axes; i++)
+    snprintf(quantity->column[i], sizeof quantity->column[i], "%s", names[i]);
+  const char *mean = names[axes + MEAN];
+  if (!quantity->exponent)
+    snprintf(quantity->name, sizeof quantity->name, "%.*s", (int)(strlen(mean) - strlen("_mean")), mean);
+  return STATUS_OK;
+}
+
+static status take_group(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count;
+  const struct reading *reading = context;
+  if (reading->quantity->exponent)
+    return STATUS_OK; /* ask_group only resolved the names of the inputs */
+
+  const struct query_value *rest = values + reading->quantity->axes;
+  const double mean = rest[MEAN].real;
+  const double half_width = rest[N].integer > 1 ? rest[HALF_WIDTH].real : (double)NAN;
+  const struct quantity_row row = {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width};
+  return reading->each(reading->context, &row, error);
+}
+
+static status take_point(void *context, const struct ask_points_row *point, struct error *error) {
+  const struct reading *reading = context;
+  const bool newest = reading->choice->newest;
+  if (point->n == 0 && !newest)
+    return STATUS_OK;
+
+  struct pooled_exponent fit;
+  status code = point_exponent(reading->store, point->point_id, newest ? 0 : point->results_version, reading->method,
+                               reading->window, reading->choice->resamples, 0.95, &fit, error);
+  if (code)
+    return code;
+  const bool several = point->n > 1;
+  const struct quantity_row row = {point->inputs, point->results_version, fit.fit.beta,
+                                   several ? fit.interval.lower : (double)NAN,
+                                   several ? fit.interval.upper : (double)NAN};
+  return reading->each(reading->context, &row, error);
+}
+
+status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
+                     status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
+                     struct error *error) {
+  struct reading reading = {.store = store, .choice = choice, .quantity = quantity, .each = each, .context = context};
+  *quantity = (struct quantity){.axes = choice->axis[1] ? 2 : 1};
+  snprintf(quantity->name, sizeof quantity->name, "%s", choice->name);
+  status code = estimates_named(choice->name, &quantity->exponent, &reading.method, &reading.window, error);
+  if (code)
+    return code;
+
+  char by[600];
+  snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
+           choice->axis[1] ? choice->axis[1] : "");
+  const struct query_sink groups = {&reading, take_columns, take_group};
+  code = ask_group(store, by, quantity->exponent ? "largest_fraction" : choice->name, &groups, error);
+  if (code)
+    return code;
+
+  const char *inputs[2] = {quantity->column[0], quantity->column[1]};
+  if (quantity->exponent)
+    return ask_points_rows(store, &(struct ask_points_choice){0}, choice->newest, quantity->axes, inputs, take_point,
+                           &reading, error);
+  return ask_points_share(store, inputs[0], quantity->axes == 2 ? inputs[1] : NULL, &quantity->over_other_inputs,
+                          error);
+}

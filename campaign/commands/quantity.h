@@ -1,0 +1,37 @@
+/* A quantity over one or two varied inputs, as `clast plot` and `clast map` draw it: the mean of a result over the runs
+ * that share the inputs, or an exponent fitted to the runs of each point. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_QUANTITY_H
+#define CLAST_CAMPAIGN_COMMANDS_QUANTITY_H
+
+#include "analysis/statistics/exponent.h"
+#include "db/ask/query.h"
+
+struct quantity_choice {
+  const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */
+  const char *name;    /* a result column, beta, or beta_METHOD_WINDOW */
+  bool newest;         /* exponents: of each point's newest results_version only, points without runs included */
+  size_t resamples;    /* exponents: for their intervals; 0 = no intervals */
+  const char *refusal; /* message when these are not one or two different inputs and one quantity */
+};
+
+struct quantity {
+  bool exponent;
+  size_t axes;            /* 1 or 2 */
+  char column[2][256];    /* of the axes in the views */
+  char name[256];         /* column of the quantity, or the exponent's name */
+  bool over_other_inputs; /* some means are over other inputs as well */
+};
+
+struct quantity_row {
+  const struct query_value *input; /* one for each axis; borrowed for the call */
+  int64_t results_version;
+  double value, lower, upper; /* the bounds are of the 95 % interval; NaN: unknown */
+};
+
+/* Passes every value to `each`; `quantity` is filled in except for over_other_inputs before the first call. What `each`
+ * returns when it is not STATUS_OK. STATUS_USAGE: unknown names. */
+status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
+                     status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
+                     struct error *error);
+
+#endif

@@ -1,0 +1,119 @@
+#include "campaign/commands/replay_compare.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "db/ask/run.h"
+
+struct comparison {
+  const struct run_result *result;
+  const struct engine_kind *kind;
+  char (*names)[128]; /* of the columns */
+  struct replay_compare *out;
+  struct table *table;
+};
+
+static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
+  struct comparison *comparison = context;
+  comparison->names = calloc(count, sizeof *comparison->names);
+  if (!comparison->names)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  for (size_t i = 0; i < count; i++)
+    snprintf(comparison->names[i], sizeof comparison->names[i], "%s", names[i]);
+  return STATUS_OK;
+}
+
+static bool same_value(const struct field *row, const struct field_value *computed, const struct query_value *stored) {
+  switch (row->kind) {
+  case FIELD_REAL:
+    if (isnan(computed->number))
+      return stored->kind == QUERY_NULL || isnan(stored->real);
+    return stored->kind != QUERY_NULL && computed->number == stored->real &&
+           signbit(computed->number) == signbit(stored->real);
+  case FIELD_INTEGER: return stored->kind == QUERY_INTEGER && computed->integer == stored->integer;
+  case FIELD_BOOLEAN: return stored->kind == QUERY_INTEGER && (computed->number != 0) == (stored->integer != 0);
+  case FIELD_CHOICE:
+  case FIELD_TEXT:
+    return stored->kind == QUERY_NULL ? !*computed->text : stored->text && strcmp(computed->text, stored->text) == 0;
+  }
+  return false;
+}
+
+static void difference(struct comparison *comparison, const char *what, const char *stored, const char *computed) {
+  comparison->out->different++;
+  table_text(comparison->table, what);
+  table_text(comparison->table, stored);
+  table_text(comparison->table, computed);
+}
+
+static void compare_value(struct comparison *comparison, const struct field *row, const void *object,
+                          const struct query_value *stored) {
+  struct field_value computed;
+  field_get(row, object, &computed);
+  comparison->out->compared++;
+  if (same_value(row, &computed, stored))
+    return;
+
+  char text[FIELD_TEXT_SIZE], kept[FIELD_TEXT_SIZE];
+  field_print(row, &computed, text, sizeof text);
+  if (stored->kind == QUERY_TEXT)
+    snprintf(kept, sizeof kept, "%s", stored->text);
+  else
+    snprintf(kept, sizeof kept, "%.17g", stored->real);
+  difference(comparison, row->path, kept, text);
+}
+
+static void compare_table(struct comparison *comparison, const struct field_table *table, const void *object,
+                          size_t count, const struct query_value *values) {
+  for (size_t i = 0; i < table->count; i++) {
+    if (table->rows[i].flags & FIELD_VOLATILE)
+      continue;
+    char name[sizeof *comparison->names];
+    field_column_name(table->rows[i].path, name, sizeof name);
+    size_t column = 0;
+    while (column < count && strcmp(name, comparison->names[column]) != 0)
+      column++;
+    if (column < count)
+      compare_value(comparison, &table->rows[i], object, &values[column]);
+  }
+}
+
+static status compare_row(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)error;
+  struct comparison *comparison = context;
+  compare_table(comparison, &outcome_table, &comparison->result->outcome, count, values);
+  compare_table(comparison, comparison->kind->results, comparison->result->result, count, values);
+  return STATUS_OK;
+}
+
+static void compare_masses(struct comparison *comparison, const double *masses, size_t count) {
+  const struct run_result *result = comparison->result;
+  bool same = count == result->fragment_count;
+  for (size_t i = 0; same && i < count; i++)
+    same = memcmp(&masses[i], &result->fragments[i].mass, sizeof masses[i]) == 0;
+  comparison->out->compared++;
+  if (!same)
+    difference(comparison, "fragment masses", "other", "masses");
+}
+
+status replay_compare(struct store *store, int64_t run_id, const struct engine_kind *kind,
+                      const struct run_result *result, struct table *table, struct replay_compare *out,
+                      struct error *error) {
+  *out = (struct replay_compare){0};
+  struct comparison comparison = {.result = result, .kind = kind, .out = out, .table = table};
+  const struct query_sink sink = {&comparison, take_names, compare_row};
+  double *masses = NULL;
+  size_t count = 0;
+  status code = ask_run_results(store, run_id, kind->name, &sink, error);
+  if (code == STATUS_OK)
+    code = ask_run_masses(store, run_id, &masses, &count, error);
+  if (code == STATUS_OK && masses)
+    compare_masses(&comparison, masses, count);
+  free(masses);
+  free(comparison.names);
+  if (code == STATUS_OK && out->compared < 3)
+    return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);
+  return code;
+}

@@ -1,0 +1,193 @@
+#include "db/ask/points.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Condition for the points of a choice, on any table with a column point_id. */
+static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
+  fputs(" WHERE true", sql);
+  if (choice->campaign)
+    fprintf(sql, " AND point_id IN (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)",
+            (long long)choice->campaign);
+  if (choice->point)
+    fprintf(sql, " AND point_id = %lld", (long long)choice->point);
+}
+
+/* Asks the text that was written to `out`, which is open_memstream's; closes it and frees the text. */
+static status run_written(struct store *store, FILE *out, char **sql, const struct query_sink *sink,
+                          struct error *error) {
+  fclose(out);
+  if (!*sql)
+    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
+  status code = query_run(store, *sql, 0, NULL, 0, sink, error);
+  free(*sql);
+  return code;
+}
+
+static status take_integer(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  *(int64_t *)context = values[0].integer;
+  return STATUS_OK;
+}
+
+status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
+                        struct error *error) {
+  *points = 0;
+  const struct query_sink sink = {.context = points, .row = take_integer};
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
+  fputs("SELECT count(*) FROM point", out);
+  write_choice(out, choice);
+  return run_written(store, out, &sql, &sink, error);
+}
+
+struct rows {
+  ask_points_each each;
+  void *context;
+};
+
+enum { FIRST_INPUT = 6 }; /* column of the first input in the question of ask_points_rows */
+
+static status give_row(void *context, size_t count, const struct query_value *values, struct error *error) {
+  const struct rows *rows = context;
+  const struct ask_points_row row = {.point_id = values[0].integer,
+                                     .results_version = values[1].integer,
+                                     .n = values[2].integer,
+                                     .failed = values[3].integer,
+                                     .mean = values[4].real,
+                                     .half_width = values[5].real,
+                                     .input_count = count - FIRST_INPUT,
+                                     .inputs = values + FIRST_INPUT};
+  return rows->each(rows->context, &row, error);
+}
+
+status ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest, size_t input_count,
+                       const char *const *inputs, ask_points_each each, void *context, struct error *error) {
+  struct rows rows = {each, context};
+  const struct query_sink sink = {.context = &rows, .row = give_row};
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
+  fputs("SELECT point_id, results_version, n, failed, largest_fraction_mean, largest_fraction_hw95", out);
+  for (size_t i = 0; i < input_count; i++)
+    fprintf(out, ", \"%s\"", inputs[i]);
+  fputs(" FROM points AS p", out);
+  write_choice(out, choice);
+  if (newest)
+    fputs(" AND (results_version IS NULL OR results_version ="
+          " (SELECT max(results_version) FROM point_total AS t WHERE t.point_id = p.point_id))",
+          out);
+  fputs(" ORDER BY point_id, results_version", out);
+  return run_written(store, out, &sql, &sink, error);
+}
+
+struct numbers {
+  int64_t *points;
+  size_t most, total;
+};
+
+static status take_number(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  struct numbers *numbers = context;
+  if (numbers->total < numbers->most)
+    numbers->points[numbers->total] = values[0].integer;
+  numbers->total++;
+  return STATUS_OK;
+}
+
+status ask_points_with_runs(struct store *store, size_t most, int64_t *points, size_t *total, struct error *error) {
+  struct numbers numbers = {.points = points, .most = most};
+  const struct query_sink sink = {.context = &numbers, .row = take_number};
+  status code = query_run(store, "SELECT point_id FROM point_total WHERE runs > 0 GROUP BY point_id ORDER BY point_id",
+                          0, NULL, 0, &sink, error);
+  *total = numbers.total;
+  return code;
+}
+
+struct inputs {
+  void (*each)(void *context, const struct ask_points_input *input);
+  void *context;
+};
+
+static status give_input(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  const struct inputs *inputs = context;
+  const char *unit = values[2].kind == QUERY_TEXT ? values[2].text : "";
+  inputs->each(inputs->context, &(struct ask_points_input){values[0].text, &values[1], unit});
+  return STATUS_OK;
+}
+
+status ask_points_inputs(struct store *store, int64_t point_id,
+                         void (*each)(void *context, const struct ask_points_input *input), void *context,
+                         struct error *error) {
+  struct inputs inputs = {each, context};
+  const struct query_sink sink = {.context = &inputs, .row = give_input};
+  char sql[256];
+  snprintf(sql, sizeof sql,
+           "SELECT path, value, unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path DESC",
+           (long long)point_id);
+  return query_run(store, sql, 0, NULL, 0, &sink, error);
+}
+
+status ask_points_share(struct store *store, const char *x, const char *y, bool *share, struct error *error) {
+  int64_t most = 0;
+  const struct query_sink sink = {.context = &most, .row = take_integer};
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
+  fprintf(out,
+          "SELECT coalesce(max(n), 0) FROM (SELECT count(DISTINCT point_id) AS n FROM points WHERE n > 0 GROUP BY "
+          "\"%s\"",
+          x);
+  if (y)
+    fprintf(out, ", \"%s\"", y);
+  fputs(")", out);
+  status code = run_written(store, out, &sql, &sink, error);
+  *share = most > 1;
+  return code;
+}
+
+struct versions {
+  struct ask_points_version *list;
+  size_t count, capacity;
+};
+
+static status take_version(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count;
+  struct versions *versions = context;
+  if (versions->count == versions->capacity) {
+    size_t capacity = versions->capacity ? 2 * versions->capacity : 64;
+    struct ask_points_version *list = realloc(versions->list, capacity * sizeof *list);
+    if (!list)
+      return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
+    versions->list = list;
+    versions->capacity = capacity;
+  }
+  versions->list[versions->count++] = (struct ask_points_version){values[0].integer, (int)values[1].integer};
+  return STATUS_OK;
+}
+
+status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
+                                    size_t *count, struct error *error) {
+  struct versions versions = {0};
+  const struct query_sink sink = {.context = &versions, .row = take_version};
+  char sql[512];
+  snprintf(sql, sizeof sql,
+           "SELECT point_id, results_version FROM point_total AS t WHERE runs > 0 AND (%lld = 0 OR point_id IN"
+           " (SELECT point_id FROM campaign_point WHERE campaign_id = %lld)) AND NOT EXISTS (SELECT 1 FROM"
+           " point_estimate AS e WHERE e.point_id = t.point_id AND e.results_version = t.results_version)"
+           " ORDER BY point_id, results_version",
+           (long long)campaign, (long long)campaign);
+  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  *list = versions.list;
+  *count = versions.count;
+  return code;
+}

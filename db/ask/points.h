@@ -1,0 +1,62 @@
+/* Lists of points: which of them have runs, their inputs and the statistics of their runs. db/ask/point.h reads the
+ * fragments of one point. */
+#ifndef CLAST_DB_ASK_POINTS_H
+#define CLAST_DB_ASK_POINTS_H
+
+#include "db/ask/query.h"
+
+/* A point's runs of one results_version. */
+struct ask_points_row {
+  int64_t point_id;
+  int64_t results_version; /* 0: the point has no runs */
+  int64_t n, failed;       /* runs that count; runs that failed */
+  double mean, half_width; /* of the largest fraction, with the half width of the 95 % interval of its mean. NaN: too
+                              few runs */
+  size_t input_count;
+  const struct query_value *inputs; /* values of the inputs asked for, in their order; borrowed for the call */
+};
+/* Anything but STATUS_OK ends the question with that status. It may ask the store itself. */
+typedef status (*ask_points_each)(void *context, const struct ask_points_row *row, struct error *error);
+
+/* Which points are meant; 0 is all of them. */
+struct ask_points_choice {
+  int64_t campaign, point;
+};
+
+/* How many points these are, with and without runs. */
+status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
+                        struct error *error);
+
+/* These points with the named input columns (ask_columns_axes), in the order of their numbers. Each point comes with
+ * its newest results_version only (`newest`), or once for every results_version. */
+status ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest, size_t input_count,
+                       const char *const *inputs, ask_points_each each, void *context, struct error *error);
+
+/* Numbers of the points with runs that count: the first `most` of them. *total is the number of all of them. */
+status ask_points_with_runs(struct store *store, size_t most, int64_t *points, size_t *total, struct error *error);
+
+/* One varied input of a point. */
+struct ask_points_input {
+  const char *path;
+  const struct query_value *value;
+  const char *unit; /* "" when the store does not tell it; "1" for a pure number */
+};
+/* The varied inputs of a point, last path first. What is passed to `each` is borrowed for the call. */
+status ask_points_inputs(struct store *store, int64_t point_id,
+                         void (*each)(void *context, const struct ask_points_input *input), void *context,
+                         struct error *error);
+
+/* Do several points with runs have the same value of input column `x` (and of `y`, unless it is NULL)? A mean over
+ * these runs is then a mean over other inputs as well. */
+status ask_points_share(struct store *store, const char *x, const char *y, bool *share, struct error *error);
+
+struct ask_points_version {
+  int64_t point_id;
+  int results_version;
+};
+/* The points of a campaign (0: of all) whose runs have no pooled estimates yet, in *list (to be freed by the caller).
+ */
+status ask_points_without_estimates(struct store *store, int64_t campaign, struct ask_points_version **list,
+                                    size_t *count, struct error *error);
+
+#endif

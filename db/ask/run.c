@@ -1,0 +1,83 @@
+#include "db/ask/run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct ask_run *run = context;
+  if (count != 4 || values[0].kind != QUERY_TEXT)
+    return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
+  run->scene = strdup(values[0].text);
+  if (!run->scene)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+
+  run->seed = (uint64_t)values[1].integer;
+  run->results_version = values[2].integer;
+  if (values[3].kind == QUERY_TEXT)
+    snprintf(run->cpu_class, sizeof run->cpu_class, "%s", values[3].text);
+  return STATUS_OK;
+}
+
+status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error) {
+  *run = (struct ask_run){0};
+  const struct query_sink sink = {.context = run, .row = take_run};
+  char sql[256];
+  snprintf(sql, sizeof sql,
+           "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class') FROM run JOIN point USING"
+           " (point_id) LEFT JOIN session USING (session_id) WHERE run_id = %lld",
+           (long long)run_id);
+  return query_run(store, sql, 0, NULL, 0, &sink, error);
+}
+
+void ask_run_release(struct ask_run *run) {
+  free(run->scene);
+  run->scene = NULL;
+}
+
+status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
+                       struct error *error) {
+  char sql[256];
+  snprintf(sql, sizeof sql, "SELECT * FROM run JOIN result_%.64s USING (run_id) WHERE run_id = %lld", engine,
+           (long long)run_id);
+  return query_run(store, sql, 0, NULL, 0, sink, error);
+}
+
+struct masses {
+  double *list;
+  size_t count;
+};
+
+static status take_masses(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct masses *masses = context;
+  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
+    return status_fail(error, STATUS_CONTENT, "the fragment masses of this run are damaged; `clast check` tells more");
+  masses->list = malloc(values[0].size + sizeof(double));
+  if (!masses->list)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+
+  masses->count = values[0].size / sizeof(double);
+  if (values[0].size > 0) /* the blob is little-endian float64, which is the machine's own format */
+    memcpy(masses->list, values[0].blob, values[0].size);
+  return STATUS_OK;
+}
+
+status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error) {
+  struct masses found = {0};
+  const struct query_sink sink = {.context = &found, .row = take_masses};
+  char sql[128];
+  snprintf(sql, sizeof sql, "SELECT masses FROM fragment_mass WHERE run_id = %lld", (long long)run_id);
+  status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  *masses = found.list;
+  *count = found.count;
+  return code;
+}
+
+status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error) {
+  *longest = NAN;
+  status code = query_number(store, "SELECT avg(wall_time) FROM run", 0, NULL, mean, error);
+  if (code)
+    return code;
+  return query_number(store, "SELECT max(wall_time) FROM run", 0, NULL, longest, error);
+}

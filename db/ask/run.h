@@ -1,0 +1,26 @@
+/* One stored run: what it was computed from, its results and its fragment masses; and how long runs take. */
+#ifndef CLAST_DB_ASK_RUN_H
+#define CLAST_DB_ASK_RUN_H
+
+#include "db/ask/query.h"
+
+struct ask_run {
+  char *scene; /* resolved scene as JSON; owned. NULL: the store has no such run */
+  uint64_t seed;
+  int64_t results_version;
+  char cpu_class[16]; /* that computed it: baseline, v3 or v4; "" when the session does not tell it */
+};
+status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error);
+void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
+
+/* One row: all columns of the tables run and result_<engine>. */
+status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
+                       struct error *error);
+
+/* Fragment masses in kg, largest first, to be freed by the caller. NULL: the store has none. */
+status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error);
+
+/* Wall time of all stored runs in s: mean and longest. NaN: there are none. */
+status ask_run_wall_times(struct store *store, double *mean, double *longest, struct error *error);
+
+#endif
