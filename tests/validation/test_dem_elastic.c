@@ -1,6 +1,6 @@
 /* Elastic moduli of the grain and beam solid (K99 section 3.1, figures 5 and 6): K linear in E under extension, stiffer
  * under compression by a step that no longer grows at large E; nu larger under compression, above 1 at small cohesion,
- * both tending to the pure beam lattice's. Prints the table; engine/dem/VALIDATION.md quotes it.
+ * both tending to the pure beam lattice's. Prints the table; dem_elastic.md quotes it.
  *
  * Quick: one body of 16 x 24 grains. CLAST_FULL=1: three bodies of 25 x 40. */
 #include "tests/support/run_case.h"

@@ -5,7 +5,7 @@
  * half, and from five grains over one decade.
  *
  * Quick: few seeds, a gate widened by their own error. CLAST_FULL=1: 30 seeds of each, thresholds of figure 11, and the
- * choices that the paper leaves open (contact law, damping, disorder, stop), for engine/dem/VALIDATION.md.
+ * choices that the paper leaves open (contact law, damping, disorder, stop), for dem_spectrum_choices.md.
  * CLAST_SEEDS=n changes the number. */
 #include "tests/support/run_case.h"
 

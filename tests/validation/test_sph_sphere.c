@@ -3,7 +3,7 @@
  * The paper: a nearly spherical core of 0.35 of the mass (experiment: 0.31), everything near the point of impact broken
  * to less than what is resolved, the second largest fragment a spall nearly opposite; "very similar" for other draws of
  * flaws and half the particles. Quick: a few seeds of a coarse sphere. CLAST_FULL=1: more of each, for
- * engine/sph/VALIDATION.md; CLAST_SEEDS=n changes the number, CLAST_PARTICLES=n the resolution.
+ * tests/validation/sph_sphere*.md; CLAST_SEEDS=n changes the number, CLAST_PARTICLES=n the resolution.
  *
  * Largest fragments jump when a bridge of rock holds or not, and brackets wide enough for that are wide enough for a
  * wrong speed of cracks. Damage on its way through the sphere is smooth: that is pinned first, by this code's own
