@@ -89,10 +89,10 @@ static void data(struct snapshot_file *f, const char *name, hid_t type, bool com
 
 void snapshot_file_data(struct snapshot_file *f, const char *name, enum snapshot_file_kind kind, size_t rows,
                         size_t width, const void *values, const char *units, const char *long_name) {
-  hid_t type = kind == FIELDS_FILE_REAL      ? H5T_NATIVE_DOUBLE
-               : kind == FIELDS_FILE_INTEGER ? H5T_NATIVE_INT64
-                                             : H5T_NATIVE_UCHAR;
-  data(f, name, type, kind != FIELDS_FILE_REAL, rows, width, values, units, long_name);
+  hid_t type = kind == SNAPSHOT_FILE_REAL      ? H5T_NATIVE_DOUBLE
+               : kind == SNAPSHOT_FILE_INTEGER ? H5T_NATIVE_INT64
+                                               : H5T_NATIVE_UCHAR;
+  data(f, name, type, kind != SNAPSHOT_FILE_REAL, rows, width, values, units, long_name);
 }
 
 void snapshot_file_table(struct snapshot_file *f, const char *group, const struct field_table *table,
@@ -106,9 +106,9 @@ void snapshot_file_table(struct snapshot_file *f, const char *group, const struc
     field_get(row, object, &value);
     snprintf(name, sizeof name, "%s/%s", group, row->path);
     if (row->kind == FIELD_REAL)
-      snapshot_file_data(f, name, FIELDS_FILE_REAL, 1, 0, &value.number, row->unit, row->doc);
+      snapshot_file_data(f, name, SNAPSHOT_FILE_REAL, 1, 0, &value.number, row->unit, row->doc);
     else if (row->kind == FIELD_INTEGER)
-      snapshot_file_data(f, name, FIELDS_FILE_INTEGER, 1, 0, &value.integer, row->unit, row->doc);
+      snapshot_file_data(f, name, SNAPSHOT_FILE_INTEGER, 1, 0, &value.integer, row->unit, row->doc);
     else {
       const char *text = row->kind == FIELD_BOOLEAN ? (value.number != 0 ? "true" : "false") : value.text;
       hid_t type = checked(f, H5Tcopy(H5T_C_S1));
@@ -133,7 +133,8 @@ void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t ro
       for (size_t k = 0; k < width; k++)
         values[r * width + k] = read(context, r, c, k);
     snprintf(name, sizeof name, "%s/%s", group, column[c].name);
-    snapshot_file_data(f, name, FIELDS_FILE_REAL, rows, column[c].width, values, column[c].units, column[c].long_name);
+    snapshot_file_data(f, name, SNAPSHOT_FILE_REAL, rows, column[c].width, values, column[c].units,
+                       column[c].long_name);
     free(values);
   }
 }
@@ -143,9 +144,9 @@ void snapshot_file_vtk(struct snapshot_file *f, size_t points, size_t cells, siz
   make_group(f, "VTKHDF");
   integer_attribute(f, "VTKHDF", "Version", 2, version);
   text_attribute(f, "VTKHDF", "Type", "UnstructuredGrid");
-  snapshot_file_data(f, "VTKHDF/NumberOfPoints", FIELDS_FILE_INTEGER, 1, 0, &counts[0], NULL, NULL);
-  snapshot_file_data(f, "VTKHDF/NumberOfCells", FIELDS_FILE_INTEGER, 1, 0, &counts[1], NULL, NULL);
-  snapshot_file_data(f, "VTKHDF/NumberOfConnectivityIds", FIELDS_FILE_INTEGER, 1, 0, &counts[2], NULL, NULL);
+  snapshot_file_data(f, "VTKHDF/NumberOfPoints", SNAPSHOT_FILE_INTEGER, 1, 0, &counts[0], NULL, NULL);
+  snapshot_file_data(f, "VTKHDF/NumberOfCells", SNAPSHOT_FILE_INTEGER, 1, 0, &counts[1], NULL, NULL);
+  snapshot_file_data(f, "VTKHDF/NumberOfConnectivityIds", SNAPSHOT_FILE_INTEGER, 1, 0, &counts[2], NULL, NULL);
 }
 
 static void head(struct snapshot_file *f, const char *engine, const char *doc, int results_version, uint64_t seed,

@@ -28,9 +28,9 @@ void snapshot_file_fail(struct snapshot_file *file);
 void snapshot_file_real(struct snapshot_file *file, const char *at, const char *name, double value);
 
 enum snapshot_file_kind {
-  FIELDS_FILE_REAL,
-  FIELDS_FILE_INTEGER,
-  FIELDS_FILE_BYTE
+  SNAPSHOT_FILE_REAL,
+  SNAPSHOT_FILE_INTEGER,
+  SNAPSHOT_FILE_BYTE
 }; /* double, int64_t, unsigned char */
 /* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. Groups on
  * the way are made; units and long_name may be NULL (VTK's own bookkeeping). */

@@ -9,18 +9,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "analysis/pictures/picture_body.h"
+#include "analysis/pictures/picture_cloud.h"
 #include "analysis/statistics/pooled.h"
 
-/* A body in pieces, whatever engine made it: convex cells with the number of the fragment each belongs to, 0 the
- * heaviest. All arrays borrowed. */
-struct picture_body {
-  size_t cells;
-  const uint32_t *first_vertex; /* cells + 1 */
-  const double (*vertex)[2];    /* m */
-  const uint32_t *fragment;     /* per cell */
-  size_t cracks; /* broken links between cells of one fragment are drawn as cracks; others are gaps anyway */
-  const uint32_t (*crack)[2]; /* pairs of cells; NULL for none */
-};
 struct picture_panel {
   struct picture_body body;
   const char *caption; /* under the panel, may be NULL */
@@ -35,16 +27,6 @@ status picture_fragments(const char *path, double width, const char *title, cons
  * of the area". `cells`: what its cells are called ("grains"). Empty when there is nothing or the labels are wrong. */
 void picture_fragments_numbers(const struct picture_body *body, const char *cells, char *text, size_t size);
 
-/* Particles in space, drawn as discs of their size. All arrays borrowed. */
-struct picture_cloud {
-  size_t n;
-  const double (*position)[3]; /* m, finite */
-  const double *size;          /* m, cube root of a particle's volume */
-  const double *mass;          /* kg */
-  const int64_t *fragment;     /* number of its fragment, 0 the heaviest, below n; negative: none */
-  const int64_t *part;         /* 0 core, 1 veneer, 2 dust, 3 belongs to nothing */
-  const double *value;         /* what colours it; NULL: its fragment */
-};
 enum picture_view {
   PICTURE_CUT,     /* through a plane: every particle that the plane meets, as it meets it */
   PICTURE_OUTSIDE, /* from outside, all of it, near before far */

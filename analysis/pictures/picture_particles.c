@@ -80,11 +80,11 @@ void picture_particles_numbers(const struct picture_cloud *cloud, char *text, si
   text[0] = 0;
   if (cloud->n && gather(&s) == STATUS_OK) {
     for (size_t i = 0; i < cloud->n; i++) {
-      if (cloud->part[i] == 3)
+      if (cloud->part[i] == PICTURE_LEFT_OUT)
         continue;
       searched++;
       total += cloud->mass[i];
-      if (cloud->part[i] == 2)
+      if (cloud->part[i] == PICTURE_DUST)
         dust += cloud->mass[i];
     }
     for (size_t f = 0; f < s.fragments; f++)
@@ -121,7 +121,7 @@ static void choose_discs(struct scene *s) {
     double at[3], radius = REACH * c->size[i];
     memcpy(at, c->position[i], sizeof at);
     if (look->view == PICTURE_APART) {
-      if (c->part[i] >= 2 || c->fragment[i] < 0)
+      if (c->part[i] >= PICTURE_DUST || c->fragment[i] < 0)
         continue;
       for (int d = 0; d < 3; d++)
         at[d] += SPREAD * (s->centre[c->fragment[i]][d] - s->middle[d]);
@@ -204,7 +204,7 @@ static status choose_colours(struct scene *s) {
     return STATUS_MEMORY;
   for (int all = 0; all < 2 && count == 0; all++) /* a projectile, hot and dense, does not set the range for the body */
     for (size_t k = 0; k < s->discs; k++)
-      if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != 3))
+      if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != PICTURE_LEFT_OUT))
         sorted[count++] = value[s->disc[k].id];
   qsort(sorted, count, sizeof *sorted, sample_ascending);
   double least = count ? sorted[0] : 0, most = count ? sorted[count - 1] : 1;
@@ -228,15 +228,15 @@ static status choose_colours(struct scene *s) {
 /* Golden-angle steps of hue, as for bodies of grains; `light` from -1 (far) to 1 (near). */
 static void fragment_colour(cairo_t *cairo, const struct scene *s, size_t i, double light) {
   int64_t f = s->cloud->fragment[i], part = s->cloud->part[i];
-  if (part == 3 || f < 0)
+  if (part == PICTURE_LEFT_OUT || f < 0)
     picture_canvas_colour(cairo, 0.55 + 0.1 * light, 0.01, 250, 1);
-  else if (part == 2)
+  else if (part == PICTURE_DUST)
     picture_canvas_colour(cairo, 0.90 + 0.03 * light, 0.004, 250, 1);
   else {
     double hue = fmod(252 + 137.50776 * (double)f, 360), wave = 0.03 * ((double)(f % 3) - 1);
     bool large = s->count[f] >= RESOLVED;
-    picture_canvas_colour(cairo, (large ? 0.68 : 0.84) + wave + 0.14 * light + (part == 1 ? 0.05 : 0),
-                          (large ? 0.125 : 0.05) * (part == 1 ? 0.75 : 1), hue, 1);
+    picture_canvas_colour(cairo, (large ? 0.68 : 0.84) + wave + 0.14 * light + (part == PICTURE_VENEER ? 0.05 : 0),
+                          (large ? 0.125 : 0.05) * (part == PICTURE_VENEER ? 0.75 : 1), hue, 1);
   }
 }
 
@@ -294,13 +294,13 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
   for (size_t i = 0; i < s->cloud->n; i++) {
     if (s->cloud->part[i] != 3)
       total += s->cloud->mass[i];
-    if (s->cloud->part[i] == 2)
+    if (s->cloud->part[i] == PICTURE_DUST)
       dust += s->cloud->mass[i];
   }
   for (size_t f = 0; f < MOST && f < s->fragments && s->count[f] >= RESOLVED; f++, y += 1.6 * font) {
     char text[48];
     for (sample = 0;
-         sample < s->cloud->n && !(s->cloud->fragment[sample] == (int64_t)f && s->cloud->part[sample] == 0);)
+         sample < s->cloud->n && !(s->cloud->fragment[sample] == (int64_t)f && s->cloud->part[sample] == PICTURE_CORE);)
       sample++;
     if (sample == s->cloud->n)
       continue;

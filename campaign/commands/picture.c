@@ -7,8 +7,6 @@
 
 #include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
-#include "engine/body.h"
-#include "engine/cloud.h"
 #include "schemas/unit.h"
 
 enum { WIDTH = 900 };
@@ -18,20 +16,14 @@ struct options {
 };
 
 static status draw_grains(const char *fields, const char *picture, const char *caption, struct error *error) {
-  struct body body;
-  status code = body_read(fields, &body, error);
+  struct picture_panel panel = {0};
+  status code = picture_body_read(fields, &panel.body, error);
   if (code)
     return code;
-  struct picture_panel panel = {.body = {.cells = body.cells,
-                                         .first_vertex = body.first_vertex,
-                                         .vertex = (const double(*)[2])body.vertex,
-                                         .fragment = body.fragment,
-                                         .cracks = body.cracks,
-                                         .crack = (const uint32_t(*)[2])body.crack}};
   char numbers[160];
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
   code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
-  body_clear(&body);
+  picture_body_clear(&panel.body);
   return code;
 }
 
@@ -61,7 +53,7 @@ static status choose_look(const struct options *options, struct picture_look *lo
   return STATUS_OK;
 }
 
-static void name_look(const struct picture_look *look, const struct cloud *cloud, char *text, size_t size) {
+static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
   size_t used = 0;
   text[0] = 0;
   if (*cloud->engine)
@@ -78,36 +70,27 @@ static void name_look(const struct picture_look *look, const struct cloud *cloud
 static status draw_particles(const char *fields, const char *picture, const char *caption,
                              const struct options *options, struct error *error) {
   struct picture_look look;
-  struct cloud cloud = {0};
-  double *value = NULL;
+  struct picture_cloud cloud = {0};
   const char *what;
-  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "", meaning[128] = "";
+  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
   status code = choose_look(options, &look, &what, error);
-  if (code || (code = cloud_read(fields, &cloud, error)))
+  if (code || (code = picture_cloud_read(fields, &cloud, error)))
     return code;
   if (what && !options->what) { /* what cannot crack shows its pressure */
-    if (cloud_read_column(fields, &cloud, what, &value, unit, meaning, NULL))
+    if (picture_cloud_read_column(fields, &cloud, what, &cloud.value, unit, NULL))
       what = "pressure";
   }
-  if (what && !value && (code = cloud_read_column(fields, &cloud, what, &value, unit, meaning, error)))
+  if (what && !cloud.value && (code = picture_cloud_read_column(fields, &cloud, what, &cloud.value, unit, error)))
     goto cleanup;
-  struct picture_cloud drawn = {.n = cloud.n,
-                                .position = (const double(*)[3])cloud.position,
-                                .size = cloud.size,
-                                .mass = cloud.mass,
-                                .fragment = cloud.fragment,
-                                .part = cloud.part,
-                                .value = value};
   name_look(&look, &cloud, title, sizeof title);
-  picture_particles_numbers(&drawn, numbers, sizeof numbers);
+  picture_particles_numbers(&cloud, numbers, sizeof numbers);
   look.title = caption ? caption : title;
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
-  code = picture_particles(picture, WIDTH, &drawn, &look, error);
+  code = picture_particles(picture, WIDTH, &cloud, &look, error);
 cleanup:
-  free(value);
-  cloud_clear(&cloud);
+  picture_cloud_clear(&cloud);
   return code;
 }
 
@@ -117,15 +100,15 @@ static status draw_profile(const char *fields, const char *picture, const struct
   enum { MOST = 2 };
   const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
   struct picture_profile panel[MOST];
-  struct cloud cloud;
+  struct picture_cloud cloud;
   double *depth = NULL, *values[MOST] = {NULL, NULL};
   char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
   size_t count = 0, rows = 0, panels = 0;
-  status code = cloud_read(fields, &cloud, error);
-  if (code || (code = cloud_read_axis(fields, "depth", &depth, &count, unit, error)))
+  status code = picture_cloud_read(fields, &cloud, error);
+  if (code || (code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error)))
     goto cleanup;
   for (; panels < MOST && names[panels]; panels++) {
-    if ((code = cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error)))
+    if ((code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error)))
       goto cleanup;
     if (rows != count) {
       code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
@@ -144,24 +127,24 @@ cleanup:
   free(depth);
   for (size_t k = 0; k < MOST; k++)
     free(values[k]);
-  cloud_clear(&cloud);
+  picture_cloud_clear(&cloud);
   return code;
 }
 
 static status draw(const char *fields, const char *picture, const struct options *options, struct error *error) {
-  if (cloud_in_file(fields) && options->view && !strcmp(options->view, "profile")) {
+  if (picture_cloud_in_file(fields) && options->view && !strcmp(options->view, "profile")) {
     if (options->axis || options->at)
       return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
     return draw_profile(fields, picture, options, error);
   }
-  if (cloud_in_file(fields))
+  if (picture_cloud_in_file(fields))
     return draw_particles(fields, picture, options->caption, options, error);
   if (options->what || options->view || options->axis || options->at) {
-    struct body body;
-    status code = body_read(fields, &body, error);
+    struct picture_body body;
+    status code = picture_body_read(fields, &body, error);
     if (code)
       return code;
-    body_clear(&body);
+    picture_body_clear(&body);
     return status_fail(error, STATUS_USAGE,
                        "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
                        "are for particles in space",

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/snapshot_read.h"
 #include "engine/atomic_file.h"
-#include "engine/snapshot_read.h"
 #include "schemas/field.h"
 #include "schemas/text.h"
 

@@ -32,7 +32,8 @@ only() { # header pattern, allowed folders (regex)
   done < <(grep -rnE "^#[[:space:]]*include[[:space:]]*<($1)" --include='*.[ch]' "${order[@]}")
 }
 only 'libfyaml' schemas
-only 'hdf5|Random123' engine
+only 'hdf5' 'engine|analysis/pictures'
+only 'Random123' engine
 only 'sqlite3' db
 only 'plfit|cairo' analysis
 only 'gsl' 'analysis|campaign/design'

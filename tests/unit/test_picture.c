@@ -83,7 +83,7 @@ static void make_example(struct example *e, double spread) {
   }
 }
 
-static struct picture_body body_of(const struct example *e) {
+static struct picture_body body_of(struct example *e) {
   return (struct picture_body){.cells = e->cells,
                                .first_vertex = e->first,
                                .vertex = e->vertex,
@@ -131,20 +131,20 @@ static void fragments_are_drawn(void **state) {
   assert_int_equal(picture_fragments(at("two.svg"), 900, NULL, NULL, 2, panels, NULL), STATUS_OK);
   char numbers[160];
   struct picture_body small = {.cells = 3,
-                               .first_vertex = (const uint32_t[]){0, 4, 8, 12},
-                               .vertex = (const double[12][2]){{0, 0},
-                                                               {2, 0},
-                                                               {2, 1},
-                                                               {0, 1},
-                                                               {2, 0},
-                                                               {3, 0},
-                                                               {3, 1},
-                                                               {2, 1},
-                                                               {5, 0},
-                                                               {6, 0},
-                                                               {6, 1},
-                                                               {5, 1}},
-                               .fragment = (const uint32_t[]){0, 0, 1}};
+                               .first_vertex = (uint32_t[]){0, 4, 8, 12},
+                               .vertex = (double[12][2]){{0, 0},
+                                                         {2, 0},
+                                                         {2, 1},
+                                                         {0, 1},
+                                                         {2, 0},
+                                                         {3, 0},
+                                                         {3, 1},
+                                                         {2, 1},
+                                                         {5, 0},
+                                                         {6, 0},
+                                                         {6, 1},
+                                                         {5, 1}},
+                               .fragment = (uint32_t[]){0, 0, 1}};
   picture_fragments_numbers(&small, "cells", numbers, sizeof numbers);
   assert_string_equal(numbers, "3 cells in 2 fragments, 1 of them single; largest 75.0 % of the area");
   double dark, coloured;

@@ -17,8 +17,6 @@
 #include <hdf5.h>
 
 #include "analysis/pictures/picture.h"
-#include "engine/body.h"
-#include "engine/cloud.h"
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/observe/particle_columns.h"
@@ -174,10 +172,10 @@ static void what_is_written_is_what_is_read(void **state) {
   assert_true(values[1] == pieces.fragments[0].spin[1]);
   H5Fclose(file);
 
-  struct cloud cloud;
-  if (cloud_read(at("a.hdf"), &cloud, &error))
+  struct picture_cloud cloud;
+  if (picture_cloud_read(at("a.hdf"), &cloud, &error))
     fail_msg("%s", error.message);
-  assert_true(cloud_in_file(at("a.hdf")));
+  assert_true(picture_cloud_in_file(at("a.hdf")));
   assert_int_equal(cloud.n, n);
   assert_string_equal(cloud.engine, "sph");
   assert_int_equal(cloud.seed, 7);
@@ -187,20 +185,20 @@ static void what_is_written_is_what_is_read(void **state) {
     assert_true(cloud.size[i] == cbrt(p->mass[i] / p->density[i]));
   }
   double *column;
-  char unit[32], meaning[128];
-  assert_int_equal(cloud_read_column(at("a.hdf"), &cloud, "pressure", &column, unit, meaning, &error), STATUS_OK);
+  char unit[32];
+  assert_int_equal(picture_cloud_read_column(at("a.hdf"), &cloud, "pressure", &column, unit, &error), STATUS_OK);
   assert_memory_equal(column, p->pressure, n * sizeof *column);
   assert_string_equal(unit, "Pa");
   free(column);
   const char *const bad[] = {"colour", "", "../Points", "deviator", "."};
   for (size_t k = 0; k < 5; k++) {
-    assert_int_equal(cloud_read_column(at("a.hdf"), &cloud, bad[k], &column, unit, meaning, &error), STATUS_CONTENT);
+    assert_int_equal(picture_cloud_read_column(at("a.hdf"), &cloud, bad[k], &column, unit, &error), STATUS_CONTENT);
     assert_non_null(strstr(error.message, "damage, pressure"));
     assert_null(column);
   }
-  struct body body; /* its cells are no polygons */
-  assert_int_equal(body_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
-  cloud_clear(&cloud);
+  struct picture_body body; /* its cells are no polygons */
+  assert_int_equal(picture_body_read(at("a.hdf"), &body, &error), STATUS_CONTENT);
+  picture_cloud_clear(&cloud);
   sph_fragments_clear(&pieces);
   sph_particles_free(p);
   free(flaws);
@@ -293,7 +291,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   (void)state;
   struct sph_particles *p = shattered(500);
   struct sph_fragments pieces = pieces_of(p);
-  struct cloud cloud;
+  struct picture_cloud cloud;
   struct error error = {0};
   size_t n = p->n;
   char good[512], bad[512];
@@ -304,7 +302,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   assert_int_equal(stat(good, &info), 0);
   for (long k = 0; k < 24; k++) {
     copy_file(good, bad, (long)info.st_size * k / 24);
-    assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_CONTENT);
+    assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_CONTENT);
     assert_true(cloud.n == 0 && !cloud.position);
   }
 #ifdef __SANITIZE_ADDRESS__ /* HDF5 1.10 itself reads beyond its buffers in damaged headers: not ours to mend */
@@ -321,22 +319,22 @@ static void damaged_and_foreign_files_are_refused(void **state) {
       fputc((int)(256 * random_draw(k, 900, b, 1)), file);
     }
     fclose(file);
-    status code = cloud_read(bad, &cloud, &error);
+    status code = picture_cloud_read(bad, &cloud, &error);
     assert_true(code == STATUS_OK || code == STATUS_CONTENT);
-    cloud_clear(&cloud);
+    picture_cloud_clear(&cloud);
   }
   double *wild = calloc(3 * n, sizeof *wild);
   int64_t *number = calloc(n, sizeof *number);
 #define REFUSED(words)                                                                                                 \
   do {                                                                                                                 \
-    assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_CONTENT);                                                 \
+    assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_CONTENT);                                         \
     if (!strstr(error.message, words))                                                                                 \
       fail_msg("not '%s': %s", words, error.message);                                                                  \
     copy_file(good, bad, (long)info.st_size);                                                                          \
   } while (0)
   copy_file(good, bad, (long)info.st_size);
-  assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_OK);
-  cloud_clear(&cloud);
+  assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_OK);
+  picture_cloud_clear(&cloud);
   wild[7] = NAN;
   replace(bad, "VTKHDF/Points", H5T_NATIVE_DOUBLE, 2, n, 3, wild);
   REFUSED("not finite");
@@ -364,10 +362,10 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   FILE *text = fopen(bad, "wb");
   fputs("this is no HDF5 file\n", text);
   fclose(text);
-  assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_CONTENT);
-  assert_false(cloud_in_file(bad));
+  assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_CONTENT);
+  assert_false(picture_cloud_in_file(bad));
   unlink(bad);
-  assert_int_equal(cloud_read(bad, &cloud, &error), STATUS_MISSING);
+  assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_MISSING);
   assert_int_equal(write_file(at("no/such/folder/x.hdf"), p, &pieces, NULL, &error), STATUS_IO);
   unlink(good);
   sph_fragments_clear(&pieces);
@@ -394,16 +392,10 @@ static void pictures(void **state) {
   struct sph_fragments pieces = pieces_of(p);
   struct error error = {0};
   assert_int_equal(write_file(at("p.hdf"), p, &pieces, NULL, NULL), STATUS_OK);
-  struct cloud cloud;
-  assert_int_equal(cloud_read(at("p.hdf"), &cloud, &error), STATUS_OK);
-  struct picture_cloud drawn = {.n = cloud.n,
-                                .position = (const double(*)[3])cloud.position,
-                                .size = cloud.size,
-                                .mass = cloud.mass,
-                                .fragment = cloud.fragment,
-                                .part = cloud.part};
-  char numbers[200], unit[32], meaning[128];
-  picture_particles_numbers(&drawn, numbers, sizeof numbers);
+  struct picture_cloud cloud;
+  assert_int_equal(picture_cloud_read(at("p.hdf"), &cloud, &error), STATUS_OK);
+  char numbers[200], unit[32];
+  picture_particles_numbers(&cloud, numbers, sizeof numbers);
   assert_non_null(strstr(numbers, "of the mass"));
   struct picture_look look = {.view = PICTURE_CUT,
                               .axis = 1,
@@ -424,18 +416,18 @@ static void pictures(void **state) {
   for (size_t k = 0; k < sizeof wanted / sizeof *wanted; k++) {
     double *column = NULL;
     if (wanted[k].column)
-      assert_int_equal(cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, meaning, &error),
+      assert_int_equal(picture_cloud_read_column(at("p.hdf"), &cloud, wanted[k].column, &column, unit, &error),
                        STATUS_OK);
-    drawn.value = column;
+    cloud.value = column;
     look.view = wanted[k].view;
     look.axis = wanted[k].axis;
     look.quantity = wanted[k].column;
     look.unit = unit;
-    if (picture_particles(at(wanted[k].file), 900, &drawn, &look, &error))
+    if (picture_particles(at(wanted[k].file), 900, &cloud, &look, &error))
       fail_msg("%s", error.message);
     free(column);
   }
-  drawn.value = NULL;
+  cloud.value = NULL;
   /* the core of the damage picture is light, the crater dark; paper all round is white */
   if (!keep) {
     assert_true(pixel(at("cut-damage.png"), 0.40, 0.55) > 150);
@@ -443,15 +435,15 @@ static void pictures(void **state) {
   }
   look.plane = 5;
   look.view = PICTURE_CUT;
-  assert_int_equal(picture_particles(at("none.png"), 900, &drawn, &look, &error), STATUS_USAGE);
+  assert_int_equal(picture_particles(at("none.png"), 900, &cloud, &look, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "meets no particle"));
   look.plane = 0;
-  assert_int_equal(picture_particles(at("none.jpg"), 900, &drawn, &look, &error), STATUS_USAGE);
+  assert_int_equal(picture_particles(at("none.jpg"), 900, &cloud, &look, &error), STATUS_USAGE);
   struct picture_cloud none = {0};
   assert_int_equal(picture_particles(at("none.png"), 900, &none, &look, &error), STATUS_USAGE);
   for (size_t k = 0; !keep && k < sizeof wanted / sizeof *wanted; k++)
     assert_int_equal(unlink(at(wanted[k].file)), 0);
-  cloud_clear(&cloud);
+  picture_cloud_clear(&cloud);
   sph_fragments_clear(&pieces);
   sph_particles_free(p);
   unlink(at("p.hdf"));

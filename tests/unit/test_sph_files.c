@@ -4,7 +4,7 @@
 #include <hdf5.h>
 #include <unistd.h>
 
-#include "engine/cloud.h"
+#include "analysis/pictures/picture_cloud.h"
 #include "engine/sph/run/run.h"
 
 static char folder[] = "/tmp/clast_sph_files_XXXXXX";
@@ -77,13 +77,13 @@ static void fields_hold_what_the_run_reports(void **state) {
   assert_true(scalar(file, "outcome/time") == ran.outcome.time && sph_engine.time(run) == ran.outcome.time);
   assert_true(scalar(file, "results/largest.veneer_fraction") == ran.results.sph.largest.veneer_fraction);
   H5Fclose(file);
-  struct cloud cloud;
-  if (cloud_read(path, &cloud, &error))
+  struct picture_cloud cloud;
+  if (picture_cloud_read(path, &cloud, &error))
     fail_msg("%s", error.message);
   assert_int_equal(cloud.n, run->start->n);
   assert_true(cloud.time == ran.outcome.time && cloud.seed == 5);
   double *column, mass = 0, dust = 0, flaws = 0;
-  char unit[32], meaning[128];
+  char unit[32];
   double *heaviest = calloc(cloud.n, sizeof *heaviest);
   for (size_t i = 0; i < cloud.n; i++) {
     assert_int_equal(cloud.part[i] == 3, i >= run->targets); /* the projectile belongs to nothing */
@@ -98,7 +98,7 @@ static void fields_hold_what_the_run_reports(void **state) {
   assert_true(dust / mass <= ran.outcome.dust_fraction + 1e-12);
   for (size_t f = 0; f < ran.count; f++)
     assert_true(fabs(heaviest[f] - ran.fragments[f].mass) <= 1e-12 * mass);
-  assert_int_equal(cloud_read_column(path, &cloud, "flaws", &column, unit, meaning, &error), STATUS_OK);
+  assert_int_equal(picture_cloud_read_column(path, &cloud, "flaws", &column, unit, &error), STATUS_OK);
   for (size_t i = 0; i < cloud.n; i++) {
     assert_true(i < run->targets ? column[i] >= 1 : column[i] == 0); /* every particle of the target has one */
     flaws += column[i];
@@ -107,7 +107,7 @@ static void fields_hold_what_the_run_reports(void **state) {
   free(column);
   free(heaviest);
   free(ran.fragments);
-  cloud_clear(&cloud);
+  picture_cloud_clear(&cloud);
   unlink(path);
   sph_engine.free(run);
 }

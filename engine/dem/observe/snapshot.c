@@ -135,18 +135,19 @@ static void outlines(struct snapshot_file *file, const struct dem_run *run, cons
     fragment[cells++] = (int64_t)label[i];
   }
   snapshot_file_vtk(file, points, cells, points);
-  snapshot_file_data(file, "VTKHDF/Points", FIELDS_FILE_REAL, points, 3, point, "m", "corners of the grains' outlines");
-  snapshot_file_data(file, "VTKHDF/Connectivity", FIELDS_FILE_INTEGER, points, 0, connectivity, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Offsets", FIELDS_FILE_INTEGER, cells + 1, 0, offset, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Types", FIELDS_FILE_BYTE, cells, 0, type, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/CellData/fragment", FIELDS_FILE_INTEGER, cells, 0, fragment, "1",
+  snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, points, 3, point, "m",
+                     "corners of the grains' outlines");
+  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, points, 0, connectivity, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, cells + 1, 0, offset, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, cells, 0, type, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/CellData/fragment", SNAPSHOT_FILE_INTEGER, cells, 0, fragment, "1",
                      "number of its fragment by descending mass");
-  snapshot_file_data(file, "VTKHDF/CellData/grain", FIELDS_FILE_INTEGER, cells, 0, grain, "1", "index into /grains");
-  snapshot_file_data(file, "VTKHDF/CellData/mass", FIELDS_FILE_REAL, cells, 0, mass, "kg m-1",
+  snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, grain, "1", "index into /grains");
+  snapshot_file_data(file, "VTKHDF/CellData/mass", SNAPSHOT_FILE_REAL, cells, 0, mass, "kg m-1",
                      "mass per metre of thickness");
-  snapshot_file_data(file, "VTKHDF/CellData/velocity", FIELDS_FILE_REAL, cells, 3, velocity, "m s-1",
+  snapshot_file_data(file, "VTKHDF/CellData/velocity", SNAPSHOT_FILE_REAL, cells, 3, velocity, "m s-1",
                      "velocity of the centre of mass");
-  snapshot_file_data(file, "VTKHDF/CellData/spin", FIELDS_FILE_REAL, cells, 0, spin, "rad s-1", "angular velocity");
+  snapshot_file_data(file, "VTKHDF/CellData/spin", SNAPSHOT_FILE_REAL, cells, 0, spin, "rad s-1", "angular velocity");
 cleanup:
   free(point);
   free(mass);

@@ -13,7 +13,7 @@ static void three(struct snapshot_file *file, const char *name, size_t n, const 
     room[3 * i + 1] = y[i];
     room[3 * i + 2] = z[i];
   }
-  snapshot_file_data(file, name, FIELDS_FILE_REAL, n, 3, room, units, long_name);
+  snapshot_file_data(file, name, SNAPSHOT_FILE_REAL, n, 3, room, units, long_name);
 }
 
 /* VTK's tensors have nine components, row by row. */
@@ -23,31 +23,31 @@ static void tensor(struct snapshot_file *file, const char *name, size_t n, doubl
   for (size_t i = 0; i < n; i++)
     for (int k = 0; k < 9; k++)
       room[9 * i + (size_t)k] = component[which[k]][i];
-  snapshot_file_data(file, name, FIELDS_FILE_REAL, n, 9, room, units, long_name);
+  snapshot_file_data(file, name, SNAPSHOT_FILE_REAL, n, 9, room, units, long_name);
 }
 
 static void whole_numbers(struct snapshot_file *file, const char *name, size_t n, const uint32_t *values, int64_t *room,
                           const char *long_name) {
   for (size_t i = 0; i < n; i++)
     room[i] = values[i] == UINT32_MAX ? -1 : (int64_t)values[i];
-  snapshot_file_data(file, name, FIELDS_FILE_INTEGER, n, 0, room, "1", long_name);
+  snapshot_file_data(file, name, SNAPSHOT_FILE_INTEGER, n, 0, room, "1", long_name);
 }
 
 static void grid(struct snapshot_file *file, size_t n, int64_t *room) {
   for (size_t i = 0; i <= n; i++)
     room[i] = (int64_t)i;
-  snapshot_file_data(file, "VTKHDF/Connectivity", FIELDS_FILE_INTEGER, n, 0, room, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Offsets", FIELDS_FILE_INTEGER, n + 1, 0, room, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, n, 0, room, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, n + 1, 0, room, NULL, NULL);
   unsigned char *type = (unsigned char *)room;
   for (size_t i = 0; i < n; i++)
     type[i] = VTK_VERTEX;
-  snapshot_file_data(file, "VTKHDF/Types", FIELDS_FILE_BYTE, n, 0, type, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, n, 0, type, NULL, NULL);
 }
 
 static void scalar(struct snapshot_file *file, const char *name, size_t n, const double *values, const char *units,
                    const char *long_name) {
   if (values)
-    snapshot_file_data(file, name, FIELDS_FILE_REAL, n, 0, values, units, long_name);
+    snapshot_file_data(file, name, SNAPSHOT_FILE_REAL, n, 0, values, units, long_name);
 }
 
 static const struct snapshot_file_column fragment_columns[] = {
@@ -98,9 +98,9 @@ void sph_particle_columns_add(struct snapshot_file *file, const struct sph_parti
     tensor(file, AT("deviator"), n, p->stress, room, "Pa", "deviatoric stress, undamaged: (1 - damage) of it acts");
   for (size_t i = 0; i < n; i++)
     whole[i] = p->body[i];
-  snapshot_file_data(file, AT("body"), FIELDS_FILE_INTEGER, n, 0, whole, "1", "body: 0 the target, 1 the projectile");
+  snapshot_file_data(file, AT("body"), SNAPSHOT_FILE_INTEGER, n, 0, whole, "1", "body: 0 the target, 1 the projectile");
   whole_numbers(file, AT("fragment"), n, pieces->label, whole, "number of its fragment by descending mass; -1: none");
-  snapshot_file_data(file, AT("part"), FIELDS_FILE_BYTE, n, 0, pieces->part, "1",
+  snapshot_file_data(file, AT("part"), SNAPSHOT_FILE_BYTE, n, 0, pieces->part, "1",
                      "0 core of a fragment, 1 its veneer of broken particles, 2 dust, 3 not searched for fragments");
   if (flaws)
     whole_numbers(file, AT("flaws"), n, flaws, whole, "flaws that it was given");

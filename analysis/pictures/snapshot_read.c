@@ -1,4 +1,5 @@
-#include "engine/snapshot_read.h"
+/* Reading fields files with HDF5. */
+#include "analysis/pictures/snapshot_read.h"
 
 #include <errno.h>
 #include <hdf5.h>
@@ -10,7 +11,7 @@ enum { MOST_COMPRESSED = 1100 }; /* deflate's limit is 1032 : 1 */
 
 struct snapshot_read {
   hid_t file;
-  double bytes; /* what the file can hold, compressed as well as can be */
+  double bytes; /* the most that the file can hold if it is compressed */
   H5E_auto2_t printing;
   void *printing_to;
 };
@@ -26,14 +27,11 @@ status snapshot_read_open(const char *path, struct snapshot_read **out, struct e
     return status_fail(error, STATUS_MEMORY, "no memory to read %s", path);
   H5dont_atexit(); /* it prints at exit when a damaged file could not be closed; ours are closed by then */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the status says it */
+  H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the status tells the error */
   f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (f->file < 0 || H5Fget_filesize(f->file, &size) < 0) {
     snapshot_read_close(f);
-    return status_fail(error, STATUS_CONTENT,
-                       "%s is no fields file of clast, or it is damaged; `clast simulate --fields` and "
-                       "`clast replay --fields` write such files",
-                       path);
+    return snapshot_read_refuse(path, error);
   }
   f->bytes = (double)size * MOST_COMPRESSED;
   *out = f;
@@ -47,6 +45,13 @@ void snapshot_read_close(struct snapshot_read *f) {
     H5Fclose(f->file);
   H5Eset_auto2(H5E_DEFAULT, f->printing, f->printing_to);
   free(f);
+}
+
+status snapshot_read_refuse(const char *path, struct error *error) {
+  return status_fail(error, STATUS_CONTENT,
+                     "%s is no fields file of clast, or it is damaged; `clast simulate --fields` and "
+                     "`clast replay --fields` write such files",
+                     path);
 }
 
 bool snapshot_read_has(struct snapshot_read *f, const char *name) {
@@ -66,38 +71,51 @@ static bool plain(hid_t set) {
   return good;
 }
 
+/* Rows of a data set that is plain numbers of the wanted shape; -1: it is not, or it has too many. */
+static int64_t count_rows(hid_t set, size_t width) {
+  hsize_t size[2] = {0, 0};
+  hid_t space = H5Dget_space(set);
+  if (space < 0)
+    return -1;
+  int rank = width ? 2 : 1;
+  bool good = plain(set) && H5Sget_simple_extent_ndims(space) == rank &&
+              H5Sget_simple_extent_dims(space, size, NULL) == rank && size[0] <= SNAPSHOT_READ_LARGEST &&
+              (!width || size[1] == width);
+  H5Sclose(space);
+  return good ? (int64_t)size[0] : -1;
+}
+
+static void *read_rows(const struct snapshot_read *f, hid_t set, enum snapshot_read_kind kind, size_t count) {
+  if ((double)count > f->bytes)
+    return NULL;
+  void *values = malloc((count ? count : 1) * 8);
+  if (!values || count == 0)
+    return values;
+  hid_t type = kind == SNAPSHOT_READ_REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+  if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0)
+    return values;
+  free(values);
+  return NULL;
+}
+
 void *snapshot_read_rows(struct snapshot_read *f, const char *name, size_t width, enum snapshot_read_kind kind,
                          size_t *rows) {
-  hsize_t size[2] = {0, 0};
-  void *values = NULL;
   *rows = 0;
   H5L_info_t link;
   if (H5Lget_info(f->file, name, &link, H5P_DEFAULT) < 0 || link.type == H5L_TYPE_EXTERNAL)
     return NULL;
   hid_t set = H5Dopen2(f->file, name, H5P_DEFAULT);
-  hid_t space = set < 0 ? -1 : H5Dget_space(set);
-  int rank = width ? 2 : 1;
-  if (space >= 0 && plain(set) && H5Sget_simple_extent_ndims(space) == rank &&
-      H5Sget_simple_extent_dims(space, size, NULL) == rank && size[0] <= FIELDS_READ_LARGEST &&
-      (!width || size[1] == width)) {
-    size_t count = (size_t)size[0] * (width ? width : 1);
-    values = (double)count <= f->bytes ? malloc((count ? count : 1) * 8) : NULL;
-    if (values && count &&
-        H5Dread(set, kind == FIELDS_READ_REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                values) < 0) {
-      free(values);
-      values = NULL;
-    }
-    *rows = values ? (size_t)size[0] : 0;
-  }
-  if (space >= 0)
-    H5Sclose(space);
-  if (set >= 0)
-    H5Dclose(set);
+  if (set < 0)
+    return NULL;
+  int64_t count = count_rows(set, width);
+  void *values = count < 0 ? NULL : read_rows(f, set, kind, (size_t)count * (width ? width : 1));
+  if (values)
+    *rows = (size_t)count;
+  H5Dclose(set);
   return values;
 }
 
-/* The attribute when it is a scalar of the class asked for, at most `most` bytes large. */
+/* The attribute when it is a scalar of this class and of at most `most` bytes; else -1. */
 static hid_t open_attribute(struct snapshot_read *f, const char *at, const char *name, H5T_class_t class, size_t most) {
   if (H5Lexists(f->file, at, H5P_DEFAULT) <= 0)
     return -1;

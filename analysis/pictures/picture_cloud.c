@@ -1,0 +1,158 @@
+/* Reading particles from a fields file. */
+#include "analysis/pictures/picture_cloud.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/pictures/snapshot_read.h"
+
+#define COLUMN "VTKHDF/PointData/"
+
+/* The columns that a message offers when one is not there. */
+static const char *const offered[] = {"damage",          "pressure",         "density", "energy", "distention",
+                                      "rest_distention", "smoothing_length", "flaws",   "mass"};
+
+static bool has_particles(struct snapshot_read *file) {
+  return snapshot_read_has(file, "VTKHDF") && snapshot_read_has(file, "VTKHDF/PointData");
+}
+
+bool picture_cloud_in_file(const char *path) {
+  struct snapshot_read *file;
+  if (snapshot_read_open(path, &file, NULL))
+    return false;
+  bool found = has_particles(file) && snapshot_read_has(file, COLUMN "smoothing_length");
+  snapshot_read_close(file);
+  return found;
+}
+
+/* The reason why particle i cannot be drawn; NULL: it can. */
+static const char *refuse_particle(const struct picture_cloud *cloud, size_t i) {
+  for (int d = 0; d < 3; d++)
+    if (!(fabs(cloud->position[i][d]) < 1e30)) /* sums and squares of positions stay finite */
+      return "a position is not finite";
+  if (!(cloud->mass[i] > 0 && isfinite(cloud->mass[i]) && cloud->size[i] > 0 && isfinite(cloud->size[i])))
+    return "a mass or density is not positive";
+  if (cloud->fragment[i] < -1 || cloud->fragment[i] >= (int64_t)cloud->n)
+    return "a fragment's number is out of range";
+  if (cloud->part[i] < 0 || cloud->part[i] >= PICTURE_PARTS)
+    return "a particle's part is none of core, veneer, dust";
+  return NULL;
+}
+
+/* The reason why the particles of a file are refused; NULL: they are read. */
+static const char *read_particles(struct snapshot_read *file, struct picture_cloud *cloud) {
+  size_t masses, densities, fragments, parts;
+  cloud->position = snapshot_read_rows(file, "VTKHDF/Points", 3, SNAPSHOT_READ_REAL, &cloud->n);
+  cloud->mass = snapshot_read_rows(file, COLUMN "mass", 0, SNAPSHOT_READ_REAL, &masses);
+  cloud->size = snapshot_read_rows(file, COLUMN "density", 0, SNAPSHOT_READ_REAL, &densities);
+  cloud->fragment = snapshot_read_rows(file, COLUMN "fragment", 0, SNAPSHOT_READ_INTEGER, &fragments);
+  cloud->part = snapshot_read_rows(file, COLUMN "part", 0, SNAPSHOT_READ_INTEGER, &parts);
+  if (!cloud->position || !cloud->mass || !cloud->size || !cloud->fragment || !cloud->part)
+    return "positions, masses, densities or fragments cannot be read";
+  if (masses != cloud->n || densities != cloud->n || fragments != cloud->n || parts != cloud->n)
+    return "its columns differ in length";
+
+  for (size_t i = 0; i < cloud->n; i++) {
+    cloud->size[i] = cbrt(cloud->mass[i] / cloud->size[i]); /* was the density */
+    const char *why = refuse_particle(cloud, i);
+    if (why)
+      return why;
+  }
+  return NULL;
+}
+
+status picture_cloud_read(const char *path, struct picture_cloud *cloud, struct error *error) {
+  *cloud = (struct picture_cloud){.time = NAN};
+  struct snapshot_read *file;
+  status code = snapshot_read_open(path, &file, error);
+  if (code)
+    return code;
+
+  const char *why = read_particles(file, cloud);
+  snapshot_read_text(file, "run", "engine", cloud->engine, sizeof cloud->engine);
+  snapshot_read_integer(file, "run", "seed", &cloud->seed);
+  if (!snapshot_read_real(file, "run", "time", &cloud->time))
+    cloud->time = NAN;
+  snapshot_read_close(file);
+  if (!why)
+    return STATUS_OK;
+
+  picture_cloud_clear(cloud);
+  return status_fail(error, STATUS_CONTENT, "%s is no fields file of particles, or it is damaged: %s", path, why);
+}
+
+/* A name is one link: it leads to no other group. */
+static bool is_name(const char *name) {
+  return strlen(name) < 40 && !strpbrk(name, "/.");
+}
+
+static status refuse_column(struct snapshot_read *file, const char *path, const char *name, struct error *error) {
+  char at[96], known[256] = "";
+  for (size_t k = 0; k < sizeof offered / sizeof *offered; k++) {
+    snprintf(at, sizeof at, COLUMN "%s", offered[k]);
+    if (snapshot_read_has(file, at))
+      snprintf(known + strlen(known), sizeof known - strlen(known), "%s%s", *known ? ", " : "", offered[k]);
+  }
+  return status_fail(error, STATUS_CONTENT, "%s has no '%s' for each particle; it has %s", path, name, known);
+}
+
+status picture_cloud_read_column(const char *path, const struct picture_cloud *cloud, const char *name, double **values,
+                                 char unit[32], struct error *error) {
+  *values = NULL;
+  struct snapshot_read *file;
+  status code = snapshot_read_open(path, &file, error);
+  if (code)
+    return code;
+
+  char at[96];
+  size_t rows = 0;
+  snprintf(at, sizeof at, COLUMN "%.40s", name);
+  double *read = is_name(name) && has_particles(file) ? snapshot_read_rows(file, at, 0, SNAPSHOT_READ_REAL, &rows)
+                                                      : NULL;
+  if (read && rows == cloud->n) {
+    *values = read;
+    snapshot_read_text(file, at, "units", unit, 32);
+  } else {
+    free(read);
+    code = refuse_column(file, path, name, error);
+  }
+  snapshot_read_close(file);
+  return code;
+}
+
+status picture_cloud_read_axis(const char *path, const char *name, double **values, size_t *rows, char unit[32],
+                               struct error *error) {
+  *values = NULL;
+  *rows = 0;
+  struct snapshot_read *file;
+  status code = snapshot_read_open(path, &file, error);
+  if (code)
+    return code;
+
+  char at[96];
+  snprintf(at, sizeof at, "axis/%.40s", name);
+  bool kept = snapshot_read_has(file, "axis");
+  if (kept && is_name(name))
+    *values = snapshot_read_rows(file, at, 0, SNAPSHOT_READ_REAL, rows);
+  if (*values)
+    snapshot_read_text(file, at, "units", unit, 32);
+  else if (!kept)
+    code = status_fail(error, STATUS_CONTENT, "%s has no profile: only runs with an impact or a piston keep one", path);
+  else
+    code = status_fail(error, STATUS_CONTENT,
+                       "%s has no '%s' along the axis; it has distention, damage, pressure, velocity", path, name);
+  snapshot_read_close(file);
+  return code;
+}
+
+void picture_cloud_clear(struct picture_cloud *cloud) {
+  free(cloud->position);
+  free(cloud->size);
+  free(cloud->mass);
+  free(cloud->fragment);
+  free(cloud->part);
+  free(cloud->value);
+  *cloud = (struct picture_cloud){0};
+}
