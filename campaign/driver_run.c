@@ -2,7 +2,6 @@
 
 #include <stdio.h>
 
-#include "analysis/statistics/estimates.h"
 #include "campaign/pooling.h"
 
 static status verdict(const struct driver_summary *summary, status code, struct error *error) {
@@ -47,7 +46,7 @@ status driver_run(const struct campaign *campaign, struct farm *farm, const stru
   struct store *store = NULL;
   struct driver *driver = NULL;
   char warning[1024] = "";
-  status code = store_open_writer(own.store_path, &estimates_table, &store, warning, sizeof warning, error);
+  status code = store_open_writer(own.store_path, &store, warning, sizeof warning, error);
   if (code == STATUS_OK && warning[0] && own.note)
     own.note(own.note_context, warning);
   if (code == STATUS_OK)

@@ -102,11 +102,6 @@ CREATE TABLE fragment_mass ( -- Fragment masses: any spectrum can be made from t
   masses BLOB NOT NULL -- [kg] mass of every fragment, descending: little-endian float64, 8 bytes each
 ) STRICT;
 
-CREATE TABLE fragment_motion ( -- How fragments move, for runs that were asked to keep it.
-  run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
-  motion BLOB NOT NULL -- 11 little-endian float32 per fragment, in the order of masses: position x y z (m), velocity x y z (m/s), spin x y z (rad/s), moment of inertia (kg m^2), kinetic energy (J)
-) STRICT;
-
 CREATE TABLE bin ( -- Edges of the mass bins in use.
   bin INTEGER PRIMARY KEY, -- number of a mass bin: ten per decade, bin 0 starts at 1 kg
   lower REAL NOT NULL, -- [kg] lower edge, inside the bin
@@ -643,10 +638,6 @@ INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses th
 INSERT INTO column_doc VALUES ('fragment_mass', 'masses', 'kg', 'mass of every fragment, descending: little-endian float64, 8 bytes each', 0);
 
 INSERT INTO column_doc VALUES ('fragment_mass', 'run_id', NULL, 'the run', 0);
-
-INSERT INTO column_doc VALUES ('fragment_motion', 'motion', NULL, '11 little-endian float32 per fragment, in the order of masses: position x y z (m), velocity x y z (m/s), spin x y z (rad/s), moment of inertia (kg m^2), kinetic energy (J)', 0);
-
-INSERT INTO column_doc VALUES ('fragment_motion', 'run_id', NULL, 'the run', 0);
 
 INSERT INTO column_doc VALUES ('holder', 'holder_id', NULL, 'always 1', 0);
 

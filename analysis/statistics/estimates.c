@@ -97,7 +97,7 @@ static const struct {
     {EXPONENT_BINNED, ESTIMATES_FROM_5},         {EXPONENT_BINNED, ESTIMATES_FROM_10},
     {EXPONENT_MASSES, ESTIMATES_FROM_2},         {EXPONENT_MASSES, ESTIMATES_FROM_5},
     {EXPONENT_MASSES, ESTIMATES_FROM_10},        {EXPONENT_KS, ESTIMATES_FROM_2},
-    {EXPONENT_CUTOFF, ESTIMATES_FROM_5},
+    {EXPONENT_UPPER_CUTOFF, ESTIMATES_FROM_5},
 };
 
 status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
@@ -118,20 +118,14 @@ status estimates_make(size_t n, const struct fragment *fragments, struct estimat
   for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
     struct estimate *row = &rows[i];
     double lower = estimates_window_elements(wanted[i].window) * element;
+    struct exponent_window window = {lower, largest};
     *row = (struct estimate){.window = (int)wanted[i].window,
                              .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&
                                          wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,
-                             .fit = {.method = (int)wanted[i].method,
-                                     .lower = lower,
-                                     .upper = largest,
-                                     .beta = NAN,
-                                     .standard_error = NAN,
-                                     .cutoff_mass = NAN,
-                                     .ks_distance = NAN,
-                                     .log_likelihood = NAN}};
+                             .fit = exponent_unknown(wanted[i].method, window)};
     if (!(largest > lower))
-      continue; /* nothing but dust */
-    code = exponent_fit(wanted[i].method, resolved, masses, (struct exponent_window){lower, largest}, &row->fit, error);
+      continue; /* no fragment in the window */
+    code = exponent_fit(wanted[i].method, resolved, masses, window, &row->fit, error);
     if (isinf(row->fit.cutoff_mass))
       row->fit.cutoff_mass = NAN;
   }

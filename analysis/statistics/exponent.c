@@ -1,15 +1,43 @@
 #include "analysis/statistics/exponent.h"
 
 #include <math.h>
+#include <plfit.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/cutoff.h"
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/tempered.h"
 
 const char *const exponent_method_names[] = {"least_squares", "binned", "masses", "ks", "cutoff", NULL};
+
+struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window) {
+  return (struct exponent){.method = (int)method,
+                           .lower = window.lower,
+                           .upper = window.upper,
+                           .beta = NAN,
+                           .standard_error = NAN,
+                           .cutoff_mass = NAN,
+                           .ks_distance = NAN,
+                           .log_likelihood = NAN};
+}
+
+double exponent_lower_cutoff(size_t n, const double *masses) {
+  plfit_continuous_options_t options;
+  if (n < EXPONENT_LEAST_FRAGMENTS || plfit_continuous_options_init(&options) != 0)
+    return NAN;
+  options.finite_size_correction = 0;
+  options.p_value_method = PLFIT_P_VALUE_SKIP;
+  double *copy = malloc(n * sizeof *copy); /* plfit takes a pointer to mutable masses */
+  if (!copy)
+    return NAN;
+
+  memcpy(copy, masses, n * sizeof *copy);
+  plfit_result_t result;
+  bool found = plfit_continuous(copy, n, &options, &result) == 0 && isfinite(result.alpha);
+  free(copy);
+  return found ? result.xmin : (double)NAN;
+}
 
 void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
   *first = spectrum_bin(window.lower);
@@ -18,8 +46,9 @@ void exponent_bins_inside(struct exponent_window window, int *first, int *end) {
   *end = isinf(window.upper) ? INT32_MAX : spectrum_bin(window.upper);
 }
 
-/* K99 section 3.3: log10 of the density of a bin, count over width, against log10 of its middle; every non-empty bin
- * counts the same. The standard error is the ordinary one of a slope, from the scatter of the points about the line. */
+/* Kun & Herrmann (1999) section 3.3: a straight line through log10 of each bin's density (count over width) against
+ * log10 of its middle. Every non-empty bin has the same weight. The standard error is that of a slope, from the scatter
+ * of the bins about the line. */
 static void least_squares(size_t n, const struct spectrum_bin_row *bins, int first, int end, struct exponent *out) {
   double points = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
   for (size_t i = 0; i < n; i++) {
@@ -61,14 +90,7 @@ static void binned(size_t n, const struct spectrum_bin_row *bins, int first, int
 
 static status check(enum exponent_method method, struct exponent_window window, struct exponent *out,
                     struct error *error) {
-  *out = (struct exponent){.method = (int)method,
-                           .lower = window.lower,
-                           .upper = window.upper,
-                           .beta = NAN,
-                           .standard_error = NAN,
-                           .cutoff_mass = NAN,
-                           .ks_distance = NAN,
-                           .log_likelihood = NAN};
+  *out = exponent_unknown(method, window);
   if (method < 0 || method >= EXPONENT_METHODS)
     return status_fail(error, STATUS_USAGE, "exponent: there is no method number %d", (int)method);
   if (!(window.lower > 0) || !isfinite(window.lower) || !(window.upper > window.lower))
@@ -139,7 +161,7 @@ static double *select_sorted(size_t n, const double *masses, double lower, doubl
   return inside;
 }
 
-/* Pure power law on the window of *out; u: ln(m/lower), descending. */
+/* Fits the pure power law on the window of *out; u: ln(m/lower), descending. */
 static void pure(size_t n, const double *u, double span, struct exponent *out) {
   struct power_law_group group = {.weight = (double)n, .span = span};
   for (size_t i = 0; i < n; i++)
@@ -182,7 +204,7 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
   if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
-    double lower = cutoff_lower(count, inside);
+    double lower = exponent_lower_cutoff(count, inside);
     if (isfinite(lower))
       out->lower = lower;
     while (count > 0 && inside[count - 1] < out->lower)
@@ -193,7 +215,7 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
     double span = isinf(window.upper) ? HUGE_VAL : log(window.upper / out->lower);
     for (size_t i = 0; i < count; i++)
       inside[i] = log(inside[i] / out->lower);
-    if (method == EXPONENT_CUTOFF)
+    if (method == EXPONENT_UPPER_CUTOFF)
       tempered(count, inside, span, out);
     else
       pure(count, inside, span, out);

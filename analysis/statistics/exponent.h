@@ -1,10 +1,12 @@
-/* Exponents of fragment spectra, F(m) ~ m^-beta: differential, fragments per unit mass. (The cumulative number N(>m)
- * has slope beta - 1.) Least squares on log bins is the paper's way and biased, because it drops empty bins and weighs
- * a bin of one fragment like a bin of hundreds: 1.66 for a true 2.0 at 100 fragments. Maximum likelihood is ours. Tests
- * hold both to those numbers.
+/* Exponents of fragment spectra, F(m) ~ m^-beta: differential, fragments per unit mass. The cumulative number N(>m) has
+ * slope beta - 1.
  *
- * Near-equal grains make masses nearly discrete, and a continuous fit from one grain up is badly off (2.8 for a
- * true 2.0): windows start at several mean element masses (estimates.h). */
+ * Least squares on logarithmic bins is the method of Kun & Herrmann (1999). It is biased, because it drops empty bins
+ * and gives a bin of one fragment the weight of a bin of hundreds: a true 2.0 reads 1.66 from 100 fragments. Maximum
+ * likelihood has no such bias. Tests check both numbers.
+ *
+ * Grains of nearly equal mass make the masses of small fragments nearly discrete. A continuous fit that starts at one
+ * grain then reads 2.8 for a true 2.0, so windows start at several mean element masses (estimates.h). */
 #ifndef CLAST_ANALYSIS_STATISTICS_EXPONENT_H
 #define CLAST_ANALYSIS_STATISTICS_EXPONENT_H
 
@@ -15,14 +17,15 @@
 #include "schemas/field.h"
 
 enum exponent_method {
-  EXPONENT_LEAST_SQUARES, /* K99's way: unweighted least squares of log density on log-binned, non-empty bins */
+  EXPONENT_LEAST_SQUARES, /* unweighted least squares of log density on non-empty log bins (Kun & Herrmann 1999) */
   EXPONENT_BINNED,        /* maximum likelihood on the stored bins (Virkar & Clauset 2014) */
-  EXPONENT_MASSES,        /* maximum likelihood on masses, bounded window (Hanel et al. 2017: any beta) */
-  EXPONENT_KS,     /* the same with lower cut-off by Kolmogorov-Smirnov (Clauset, Shalizi & Newman 2009; plfit) */
-  EXPONENT_CUTOFF, /* power law with exponential cut-off, maximum likelihood; cutoff_mass = HUGE_VAL for none */
+  EXPONENT_MASSES,        /* maximum likelihood on masses in a bounded window (Hanel et al. 2017), any beta */
+  EXPONENT_KS,            /* the same above exponent_lower_cutoff() */
+  EXPONENT_UPPER_CUTOFF,  /* power law times exp(-m/m_c), maximum likelihood; cutoff_mass = HUGE_VAL for none */
   EXPONENT_METHODS,
 };
-extern const char *const exponent_method_names[]; /* "least_squares"..., NULL-terminated */
+/* "least_squares"..., NULL-terminated; as stored and printed, where EXPONENT_UPPER_CUTOFF is "cutoff". */
+extern const char *const exponent_method_names[];
 
 /* [lower, upper) kg; upper = HUGE_VAL for none. Half-open, so that upper = M_1 leaves the largest fragment out: given
  * M_1, the others are independent draws below it, and the bounded fits are exact conditional likelihoods. Methods on
@@ -35,17 +38,20 @@ struct exponent_window {
 enum { EXPONENT_LEAST_FRAGMENTS = 5, EXPONENT_LEAST_BINS = 3 };
 
 struct exponent {
-  int method;            /* enum exponent_method */
-  double lower, upper;   /* the window really used, kg; upper may be HUGE_VAL */
-  int64_t n;             /* fragments in it */
-  double beta;           /* NaN when there are too few */
-  double standard_error; /* of this sample alone (fragments taken as independent); EXPONENT_KS: for its x_min taken as
-                            given, 23-38 % too small: exponent_bootstrap() */
-  double cutoff_mass;    /* EXPONENT_CUTOFF (HUGE_VAL: none needed), else NaN */
-  double
-      ks_distance; /* largest distance between the two distribution functions; EXPONENT_MASSES, EXPONENT_KS, else NaN */
-  double log_likelihood; /* of ln(m) or of the bins; NaN for least squares */
+  int method;          /* enum exponent_method */
+  double lower, upper; /* the window used, kg; upper may be HUGE_VAL */
+  int64_t n;           /* fragments in it */
+  double beta;         /* NaN when there are too few */
+  /* Of this sample alone, fragments taken as independent. EXPONENT_KS takes its lower cut-off as known: 23-38 % too
+   * small; pooled_exponent() resamples the search as well. */
+  double standard_error;
+  double cutoff_mass;    /* EXPONENT_UPPER_CUTOFF: m_c (HUGE_VAL: none needed), else NaN */
+  double ks_distance;    /* largest distance of the distribution functions; EXPONENT_MASSES, EXPONENT_KS, else NaN */
+  double log_likelihood; /* of ln(m) or of the bins, natural logarithm; NaN for least squares */
 };
+
+/* No fit yet: the window given, n = 0, everything else NaN. */
+struct exponent exponent_unknown(enum exponent_method method, struct exponent_window window);
 
 /* masses in any order (descending is fastest); values that are not positive and finite are left out. Too few fragments
  * or an empty window gives beta = NaN with n set, STATUS_OK. STATUS_USAGE: a window without 0 < lower < upper, an
@@ -56,7 +62,12 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
 status exponent_fit_bins(enum exponent_method method, size_t n, const struct spectrum_bin_row *bins,
                          struct exponent_window window, struct exponent *out, struct error *error);
 
-/* First and last-but-one bin wholly inside a window: [*first, *end); *end = INT32_MAX for an open one. */
+/* The bins wholly inside a window: first <= bin < end; *end = INT32_MAX for an open window. */
 void exponent_bins_inside(struct exponent_window window, int *first, int *end);
+
+/* The lower cut-off of a power law by the Kolmogorov-Smirnov distance (Clauset, Shalizi & Newman 2009): the mass above
+ * which plfit fits best, kg. masses: any order, all above the resolution limit. NaN when plfit finds none. Call
+ * analysis_init() first: it silences plfit's own error messages. */
+double exponent_lower_cutoff(size_t n, const double *masses);
 
 #endif

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/cutoff.h"
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 
@@ -142,7 +141,7 @@ static status prepare(struct prepared *p, const struct pooled_runs *runs, double
     for (size_t r = 0; r < runs->count; r++)
       p->plain[r] = p->method == EXPONENT_MASSES ? plain_group(runs, r, lower) : binned_group(runs, r, lower);
     return STATUS_OK;
-  case EXPONENT_CUTOFF:
+  case EXPONENT_UPPER_CUTOFF:
     p->tempered = calloc(n, sizeof *p->tempered);
     p->resampled_tempered = calloc(n, sizeof *p->resampled_tempered);
     if (!p->tempered || !p->resampled_tempered)
@@ -199,7 +198,7 @@ static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struc
     exponent_fit_bins(p->method, bins, p->rows, (struct exponent_window){p->lower, HUGE_VAL}, fit, NULL);
     return;
   }
-  if (p->method == EXPONENT_CUTOFF) {
+  if (p->method == EXPONENT_UPPER_CUTOFF) {
     double weight = 0;
     for (size_t i = 0; i < n; i++) {
       p->resampled_tempered[i] = p->tempered[chosen[i]];
@@ -223,7 +222,7 @@ static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struc
       for (size_t j = begin; j < end; j++)
         p->masses[count++] = p->all->masses[j];
     }
-    double lower = cutoff_lower(count, p->masses);
+    double lower = exponent_lower_cutoff(count, p->masses);
     fit->lower = isfinite(lower) ? lower : p->lower;
     for (size_t i = 0; i < n; i++)
       p->resampled_plain[i] = plain_group(p->all, chosen[i], fit->lower);
@@ -257,14 +256,7 @@ static status check(const struct pooled_runs *runs, double lower, struct error *
 
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
                        double level, uint64_t seed, struct pooled_exponent *out, struct error *error) {
-  *out = (struct pooled_exponent){.fit = {.method = (int)method,
-                                          .lower = lower,
-                                          .upper = HUGE_VAL,
-                                          .beta = NAN,
-                                          .standard_error = NAN,
-                                          .cutoff_mass = NAN,
-                                          .ks_distance = NAN,
-                                          .log_likelihood = NAN},
+  *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL}),
                                   .interval = {NAN, NAN, NAN, NAN, 0}};
   status code = check(runs, lower, error);
   if (code)

@@ -1,7 +1,6 @@
 /* `clast merge TARGET SOURCE...`: stores from several machines into one. */
 #include <inttypes.h>
 
-#include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/pooling.h"
 #include "db/store/store.h"
@@ -10,7 +9,7 @@ static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
   int64_t disagreeing = 0;
   char warning[512] = "";
-  status code = store_open_writer(line->arguments[0], &estimates_table, &store, warning, sizeof warning, error);
+  status code = store_open_writer(line->arguments[0], &store, warning, sizeof warning, error);
   if (code)
     return code;
   if (*warning)

@@ -104,10 +104,9 @@ static status estimate(const struct point_data *point, enum exponent_method meth
   const double lower = point_window(point, window);
   if (lower > 0)
     return pooled_exponent(&point->runs, method, lower, resamples, level, RESAMPLE_SEED, out, error);
-  *out = (struct pooled_exponent){.fit = {.method = (int)method},
-                                  .interval = {NAN, NAN, NAN, NAN, 0}}; /* no runs, or none with estimates */
-  out->fit.lower = out->fit.upper = out->fit.beta = out->fit.standard_error = NAN;
-  out->fit.cutoff_mass = out->fit.ks_distance = out->fit.log_likelihood = NAN;
+  /* no runs, or none with estimates */
+  *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){NAN, NAN}),
+                                  .interval = {NAN, NAN, NAN, NAN, 0}};
   return STATUS_OK;
 }
 

@@ -91,8 +91,6 @@ static status print_run(sqlite3 *db, int64_t run_id, const char *engine, FILE *o
   if (result == STATUS_OK)
     result = print_rows(db, "SELECT masses FROM fragment_mass WHERE run_id = ?1", run_id, " fragments", out, error);
   if (result == STATUS_OK)
-    result = print_rows(db, "SELECT motion FROM fragment_motion WHERE run_id = ?1", run_id, " motion", out, error);
-  if (result == STATUS_OK)
     result = print_rows(db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin", run_id, " spectrum",
                         out, error);
   if (result == STATUS_OK)

@@ -1,4 +1,4 @@
-/* What a run's fragments become: masses and motion as blobs, spectrum rows, their share of the point's running sums. */
+/* What a run's fragments become: masses as a blob, spectrum rows, their share of the point's running sums. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,8 +18,8 @@ static bool reserve_blob(struct store *store, size_t size) {
   return true;
 }
 
-static void put_little_endian(uint8_t *place, uint64_t bits, int bytes) {
-  for (int i = 0; i < bytes; i++)
+static void put_little_endian(uint8_t *place, uint64_t bits) {
+  for (int i = 0; i < 8; i++)
     place[i] = (uint8_t)(bits >> 8 * i);
 }
 
@@ -28,38 +28,16 @@ static status add_masses(struct store *store, int64_t run_id, const struct store
                                    "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)", adding_run, error);
   if (result != STATUS_OK)
     return result;
-  if (!reserve_blob(store, 44 * run->fragment_count + 8))
+  if (!reserve_blob(store, 8 * run->fragment_count + 8))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   for (size_t i = 0; i < run->fragment_count; i++) {
     uint64_t bits;
     memcpy(&bits, &run->fragments[i].mass, sizeof bits);
-    put_little_endian(store->blob + 8 * i, bits, 8);
+    put_little_endian(store->blob + 8 * i, bits);
   }
   sqlite3_bind_int64(store->masses, 1, run_id);
   sqlite3_bind_blob64(store->masses, 2, store->blob, 8 * run->fragment_count, SQLITE_STATIC);
-  result = sql_run(store->masses, adding_run, error);
-  if (result != STATUS_OK || !run->keep_motion)
-    return result;
-
-  result = sql_prepare_once(store->db, &store->motion, "INSERT INTO fragment_motion (run_id, motion) VALUES (?1, ?2)",
-                            adding_run, error);
-  if (result != STATUS_OK)
-    return result;
-  for (size_t i = 0; i < run->fragment_count; i++) {
-    const struct fragment *f = &run->fragments[i];
-    const double values[11] = {f->position[0], f->position[1],       f->position[2],   f->velocity[0],
-                               f->velocity[1], f->velocity[2],       f->spin[0],       f->spin[1],
-                               f->spin[2],     f->moment_of_inertia, f->kinetic_energy};
-    for (size_t k = 0; k < 11; k++) {
-      float value = (float)values[k];
-      uint32_t bits;
-      memcpy(&bits, &value, sizeof bits);
-      put_little_endian(store->blob + 44 * i + 4 * k, bits, 4);
-    }
-  }
-  sqlite3_bind_int64(store->motion, 1, run_id);
-  sqlite3_bind_blob64(store->motion, 2, store->blob, 44 * run->fragment_count, SQLITE_STATIC);
-  return sql_run(store->motion, adding_run, error);
+  return sql_run(store->masses, adding_run, error);
 }
 
 /* Bins of the run into store->bins; *masses is only read. */

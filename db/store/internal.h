@@ -22,7 +22,6 @@ struct store {
   bool writer, functions;
   char *path;
   int lock; /* descriptor, -1 for readers */
-  const struct field_table *estimate_table;
 
   struct identities identities; /* a writer's at open, a reader's at the first question */
   bool identities_loaded;
@@ -35,13 +34,13 @@ struct store {
   uint8_t batch_identities[STORE_BATCH_ROWS][16];
   size_t batch_identity_count;
 
-  sqlite3_stmt *run, *masses, *motion, *spectrum, *spectrum_together, *attempt, *estimate;
+  sqlite3_stmt *run, *masses, *spectrum, *spectrum_together, *attempt, *estimate;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
   size_t estimate_rows; /* that the statement `estimate` inserts at once */
   struct store_kind kinds[STORE_KINDS];
   size_t kind_count;
 
-  uint8_t *blob; /* scratch for masses and motion */
+  uint8_t *blob; /* scratch for masses */
   size_t blob_capacity;
   struct spectrum_bin_row *bins;
   size_t bin_capacity;
@@ -61,11 +60,11 @@ static inline bool store_run_counts(const struct store_run *run) {
          !isnan(o->mean_fragment_mass);
 }
 
-/* Masses, motion, spectrum and running sums of a run whose row is there. Within the open batch. */
+/* Masses, spectrum and running sums of a run whose row is there. Within the open batch. */
 status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
 /* Insert the estimates of a run that has none yet, within the open batch. */
-status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const void *rows,
+status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error);
 
 #endif

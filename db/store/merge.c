@@ -139,7 +139,7 @@ static status make_tables(sqlite3 *db, struct error *error) {
 }
 
 static status copy_results(sqlite3 *db, struct error *error) {
-  static const char *const tables[] = {"fragment_mass", "fragment_motion", "spectrum", "estimate"};
+  static const char *const tables[] = {"fragment_mass", "spectrum", "estimate"};
   sqlite3_stmt *statement = NULL;
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)

@@ -52,6 +52,21 @@ static status to_version_1(sqlite3 *db, struct error *error) {
   return result == STATUS_OK ? sums_rebuild(db, 0, error) : result;
 }
 
+/* Earlier programs made a table of the fragments' motion, which no command could fill. An empty one is dropped; rows,
+ * if any, are left alone. */
+static status drop_empty_motion(sqlite3 *db, struct error *error) {
+  int64_t there = 0, filled = 0;
+  status result = sql_integer(db, "SELECT count(*) FROM sqlite_schema WHERE name = 'fragment_motion'", 0, &there,
+                              error);
+  if (result != STATUS_OK || !there)
+    return result;
+  result = sql_integer(db, "SELECT EXISTS (SELECT 1 FROM fragment_motion)", 0, &filled, error);
+  if (result != STATUS_OK || filled)
+    return result;
+  return sql_execute(db, "DROP TABLE fragment_motion; DELETE FROM column_doc WHERE table_name = 'fragment_motion'",
+                     "bringing the store forward", error);
+}
+
 static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1};
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
@@ -69,17 +84,18 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
   return result;
 }
 
-status migrate_bring_forward(sqlite3 *db, const char *path, int version, const struct field_table *estimate_table,
-                             struct error *error) {
+status migrate_bring_forward(sqlite3 *db, const char *path, int version, struct error *error) {
   status result = version >= 0 && version < SCHEMA_VERSION ? back_up(db, path, version, error) : STATUS_OK;
   if (result != STATUS_OK)
     return result;
   result = sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error);
   if (result != STATUS_OK)
     return result;
-  result = schema_complete_all(db, estimate_table, error);
+  result = schema_complete_all(db, error);
   for (int i = version; version >= 0 && result == STATUS_OK && i < SCHEMA_VERSION; i++)
     result = steps[i](db, error);
+  if (result == STATUS_OK)
+    result = drop_empty_motion(db, error);
   if (result == STATUS_OK)
     result = views_regenerate(db, error);
   if (result == STATUS_OK)

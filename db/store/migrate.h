@@ -11,7 +11,6 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
 /* Create everything in an empty file, or bring an older version forward, after a copy of it as `path`.version<N>
  * (VACUUM INTO); one transaction. For the current version: add columns that the field tables gained, renew the views.
  */
-status migrate_bring_forward(sqlite3 *db, const char *path, int version, const struct field_table *estimate_table,
-                             struct error *error);
+status migrate_bring_forward(sqlite3 *db, const char *path, int version, struct error *error);
 
 #endif

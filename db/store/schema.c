@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "db/store/schema_tables.h"
-#include "db/store/views.h"
 
 static const struct schema_column result_columns[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
@@ -21,13 +20,9 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
 }
 
 /* The tables in the order in which they must be created: engines' results last. */
-static struct schema_table table_at(size_t index, const struct field_table *estimate_table) {
-  if (index >= schema_tables_count)
-    return schema_result_table(engine_at(index - schema_tables_count));
-  struct schema_table table = schema_tables[index];
-  if (strcmp(table.name, "estimate") == 0 || strcmp(table.name, "point_estimate") == 0)
-    table.fields = estimate_table;
-  return table;
+static struct schema_table table_at(size_t index) {
+  return index < schema_tables_count ? schema_tables[index]
+                                     : schema_result_table(engine_at(index - schema_tables_count));
 }
 
 /* The field tables' rows carry the choices' names in their meaning, since a column is read without the program. */
@@ -146,55 +141,11 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
   return grown ? write_docs(db, table, error) : STATUS_OK;
 }
 
-status schema_complete_all(sqlite3 *db, const struct field_table *estimate_table, struct error *error) {
+status schema_complete_all(sqlite3 *db, struct error *error) {
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < schema_tables_count + engine_count(); i++) {
-    struct schema_table table = table_at(i, estimate_table);
+    struct schema_table table = table_at(i);
     result = schema_complete(db, &table, error);
   }
   return result;
-}
-
-/* Made from a real database, so that the text cannot differ from what a store is. */
-static status write_sql(sqlite3 *db, const struct field_table *estimate_table, FILE *out, struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  status result = schema_complete_all(db, estimate_table, error);
-  if (result == STATUS_OK)
-    result = views_regenerate(db, error);
-  if (result == STATUS_OK)
-    result = sql_prepare(db,
-                         "SELECT sql || ';' FROM sqlite_schema WHERE sql IS NOT NULL UNION ALL SELECT * FROM (SELECT "
-                         "format('INSERT INTO column_doc VALUES (%Q, %Q, %Q, %Q, %d);', table_name, column_name, unit, "
-                         "meaning, deterministic) FROM column_doc ORDER BY table_name, column_name)",
-                         &statement, "writing the schema", error);
-  fprintf(out,
-          "-- The store of clast: schema of version %d.\n"
-          "-- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test "
-          "compares.\n"
-          "-- Views have, besides, one column per input that some campaign varied (table axis).\n"
-          "PRAGMA application_id = %d;\nPRAGMA user_version = %d;\n",
-          SCHEMA_VERSION, SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
-  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
-    fprintf(out, "\n%s\n", (const char *)sqlite3_column_text(statement, 0));
-  sqlite3_finalize(statement);
-  return result;
-}
-
-char *schema_sql(const struct field_table *estimate_table) {
-  char *text = NULL;
-  size_t size = 0;
-  sqlite3 *db = NULL;
-  status result = STATUS_INTERNAL;
-  FILE *out = open_memstream(&text, &size);
-  if (!out)
-    return NULL;
-  if (sqlite3_open(":memory:", &db) == SQLITE_OK)
-    result = write_sql(db, estimate_table, out, NULL);
-  sqlite3_close(db);
-  fclose(out);
-  if (result != STATUS_OK) {
-    free(text);
-    return NULL;
-  }
-  return text;
 }

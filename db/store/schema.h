@@ -31,15 +31,10 @@ struct schema_table {
 
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
 
-/* Everything as one SQL text: pragmas, tables, indexes, column docs, the views of a store in which nothing is varied;
- * what schemas/results.sql must equal. estimate_table NULL (here and below): the tables of estimates have their fixed
- * columns only. malloc'd, NULL when out of memory. */
-char *schema_sql(const struct field_table *estimate_table);
-
 /* Create what the database lacks of this table: the table, or columns that its field table has gained (NULL in old
  * rows), and their docs. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
-status schema_complete_all(sqlite3 *db, const struct field_table *estimate_table, struct error *error);
+status schema_complete_all(sqlite3 *db, struct error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* The rows of db/store/schema.h: tables that are not results of an engine. */
 #include "db/store/schema_tables.h"
 
+#include "analysis/statistics/estimates.h"
 #include "engine/outcome.h"
 
 static const struct schema_column campaign[] = {
@@ -80,14 +81,6 @@ static const struct schema_column run[] = {
 static const struct schema_column fragment_mass[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
     {"masses", "BLOB NOT NULL", "kg", "mass of every fragment, descending: little-endian float64, 8 bytes each"},
-};
-
-static const struct schema_column fragment_motion[] = {
-    {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
-    {"motion", "BLOB NOT NULL", NULL,
-     "11 little-endian float32 per fragment, in the order of masses: position x y z (m), velocity x y z (m/s), spin x "
-     "y "
-     "z (rad/s), moment of inertia (kg m^2), kinetic energy (J)"},
 };
 
 static const struct schema_column bin[] = {
@@ -188,7 +181,6 @@ const struct schema_table schema_tables[] = {
     TABLE(run, "Runs: one simulation of a point with a seed, and what every engine reports of it.", ROWID,
           .fields = &outcome_table),
     TABLE(fragment_mass, "Fragment masses: any spectrum can be made from them without a new run.", ROWID),
-    TABLE(fragment_motion, "How fragments move, for runs that were asked to keep it.", ROWID),
     TABLE(bin, "Edges of the mass bins in use.", ROWID),
     TABLE(spectrum, "Fragment mass spectrum of each run.", CLUSTERED("run_id, bin")),
     TABLE(point_total, "Running totals of each point, kept in the transaction that adds the runs.",
@@ -196,9 +188,9 @@ const struct schema_table schema_tables[] = {
     TABLE(point_spectrum, "Running pooled spectrum of each point, kept in the transaction that adds the runs.",
           CLUSTERED("point_id, results_version, bin")),
     TABLE(estimate, "Estimates made from the fragments of one run; they can be made again at any time.",
-          CLUSTERED("run_id, ordinal")),
+          CLUSTERED("run_id, ordinal"), .fields = &estimates_table),
     TABLE(point_estimate, "Estimates pooled over the runs of a point that count.",
-          CLUSTERED("point_id, results_version, ordinal")),
+          CLUSTERED("point_id, results_version, ordinal"), .fields = &estimates_table),
     TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
     TABLE(holder, "Who holds the store for writing, so that a refusal can name them.", ROWID),
 };

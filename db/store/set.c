@@ -11,20 +11,17 @@ static status prepare(struct store *store, sqlite3_stmt **statement, const char 
                       struct error *error) {
   if (*statement)
     return STATUS_OK;
-  if (!store->estimate_table)
-    return status_fail(error, STATUS_INTERNAL, "%s: estimates came, but the store was opened without their table",
-                       store->path);
   char *sql = NULL;
-  size_t size = 0, columns = store->estimate_table->count + 1;
+  size_t size = 0, columns = estimates_table.count + 1;
   FILE *out = open_memstream(&sql, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
   for (const char *c = key; *c; c++)
     columns += *c == ',';
   fprintf(out, "INSERT INTO %s (%s", table, key);
-  for (size_t i = 0; i < store->estimate_table->count; i++) {
+  for (size_t i = 0; i < estimates_table.count; i++) {
     char name[SCHEMA_NAME_SIZE];
-    field_column_name(store->estimate_table->rows[i].path, name, sizeof name);
+    field_column_name(estimates_table.rows[i].path, name, sizeof name);
     fprintf(out, ", \"%s\"", name);
   }
   fputs(") VALUES ", out);
@@ -39,13 +36,13 @@ static status prepare(struct store *store, sqlite3_stmt **statement, const char 
   return result;
 }
 
-static void bind_fields(sqlite3_stmt *statement, int index, const struct field_table *table, const void *object) {
-  for (size_t k = 0; k < table->count; k++)
-    sql_bind_field(statement, index + (int)k, &table->rows[k], object, false);
+static void bind_estimate(sqlite3_stmt *statement, int index, const struct estimate *estimate) {
+  for (size_t k = 0; k < estimates_table.count; k++)
+    sql_bind_field(statement, index + (int)k, &estimates_table.rows[k], estimate, false);
 }
 
 /* All rows of a run go in with one statement: every run has the same number of them. */
-status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const void *rows,
+status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error) {
   if (store->estimate && store->estimate_rows != count) {
     sqlite3_finalize(store->estimate);
@@ -55,25 +52,24 @@ status store_set_estimates_rows(struct store *store, int64_t run_id, size_t coun
   if (result != STATUS_OK)
     return result;
   store->estimate_rows = count;
-  const struct field_table *table = store->estimate_table;
   for (size_t i = 0; i < count; i++) {
-    int index = 1 + (int)(i * (2 + table->count));
+    int index = 1 + (int)(i * (2 + estimates_table.count));
     sqlite3_bind_int64(store->estimate, index, run_id);
     sqlite3_bind_int64(store->estimate, index + 1, (int64_t)i);
-    bind_fields(store->estimate, index + 2, table, (const char *)rows + i * table->size);
+    bind_estimate(store->estimate, index + 2, &rows[i]);
   }
   return sql_run(store->estimate, writing, error);
 }
 
 static status add_point_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
-                                  const void *rows, struct error *error) {
+                                  const struct estimate *rows, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = prepare(store, &statement, "point_estimate", "point_id, results_version, ordinal", 1, error);
   for (size_t i = 0; result == STATUS_OK && i < count; i++) {
     sqlite3_bind_int64(statement, 1, point_id);
     sqlite3_bind_int(statement, 2, results_version);
     sqlite3_bind_int64(statement, 3, (int64_t)i);
-    bind_fields(statement, 4, store->estimate_table, (const char *)rows + i * store->estimate_table->size);
+    bind_estimate(statement, 4, &rows[i]);
     result = sql_run(statement, writing, error);
   }
   sqlite3_finalize(statement);
@@ -81,7 +77,7 @@ static status add_point_estimates(struct store *store, int64_t point_id, int res
 }
 
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
-                           const void *rows, struct error *error) {
+                           const struct estimate *rows, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;

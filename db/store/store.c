@@ -26,10 +26,12 @@ static struct store *allocate(const char *path) {
 }
 
 static void release(struct store *store) {
-  sqlite3_stmt *const statements[] =
-      {store->run,         store->masses,        store->motion,     store->spectrum, store->spectrum_together,
-       store->attempt,     store->estimate,      store->point_find, store->point,    store->axis_find,
-       store->point_input, store->campaign_point};
+  sqlite3_stmt *const statements[] = {store->run,           store->masses,
+                                      store->spectrum,      store->spectrum_together,
+                                      store->attempt,       store->estimate,
+                                      store->point_find,    store->point,
+                                      store->axis_find,     store->point_input,
+                                      store->campaign_point};
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
   for (size_t i = 0; i < store->kind_count; i++)
@@ -110,8 +112,8 @@ static status write_holder(struct store *store, struct error *error) {
                       host, (long long)getpid());
 }
 
-status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
-                         size_t warning_size, struct error *error) {
+status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
+                         struct error *error) {
   bool held = false;
   int version = -1;
   *out = NULL;
@@ -121,7 +123,6 @@ status store_open_writer(const char *path, const struct field_table *estimate_ta
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
-  store->estimate_table = estimate_table;
   bool existed = access(path, F_OK) == 0;
   status result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
@@ -144,7 +145,7 @@ status store_open_writer(const char *path, const struct field_table *estimate_ta
                          "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
                          "opening for writing", error);
   if (result == STATUS_OK)
-    result = migrate_bring_forward(store->db, path, version, estimate_table, error);
+    result = migrate_bring_forward(store->db, path, version, error);
   if (result == STATUS_OK)
     result = write_holder(store, error);
   if (result == STATUS_OK)

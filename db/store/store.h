@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 
+#include "analysis/statistics/estimates.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
 #include "schemas/status.h"
@@ -17,13 +18,11 @@
 struct store;
 
 /* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer
- * or foreign one. `estimate_table` describes one row of table `estimate` (analysis owns it: estimates_table); NULL when
- * no estimates will be written. STATUS_IO: read-only, disk full, locked (the holder's host and pid are named),
+ * or foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
  * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
  * system), or "". The lock dies with the process; a child forked while the store is open shares it until it ends or
  * executes another program. */
-status store_open_writer(const char *path, const struct field_table *estimate_table, struct store **out, char *warning,
-                         size_t warning_size, struct error *error);
+status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
 /* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are
  * asked through db/ask/query.h, which works on a writer too (and sees its open batch). */
 status store_open_reader(const char *path, struct store **out, struct error *error);
@@ -52,8 +51,7 @@ struct store_run {
   const void *result;               /* kind->results->size bytes */
   const struct fragment *fragments; /* descending mass */
   size_t fragment_count;
-  bool keep_motion;      /* store each fragment's position, velocity and spin too (44 bytes per fragment) */
-  const void *estimates; /* array of structs of the estimate_table given at open, or NULL */
+  const struct estimate *estimates; /* NULL when there are none */
   size_t estimate_count;
   double wall_s, cpu_s;
   int64_t peak_memory; /* bytes */
@@ -82,9 +80,9 @@ struct store_attempt {
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error);
 
 /* The estimates of a run (run_id > 0) or of a whole point (run_id = 0, pooled): replaces those of the same owner and
- * results_version. `rows`: array of structs of the estimate_table given at open. Joins the open batch. */
+ * results_version. Joins the open batch. */
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
-                           const void *rows, struct error *error);
+                           const struct estimate *rows, struct error *error);
 /* A stopping rule has spoken: the point's replicates below `prefix` are its statistics, the others are surplus. Running
  * sums follow. Joins the open batch. */
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);

@@ -246,9 +246,7 @@ static double stored_per_s(bool in_process, size_t fragments) {
   int64_t campaign = 0, session = 0, point = 0;
   double rate = NAN;
   s.scene = fixture_scene(&inputs, 6, 1e30);
-  if (s.run &&
-      store_open_writer(fixture_path(path, "bench-farm"), &fixture_estimates_table, &s.store, NULL, 0, &error) ==
-          STATUS_OK &&
+  if (s.run && store_open_writer(fixture_path(path, "bench-farm"), &s.store, NULL, 0, &error) == STATUS_OK &&
       store_add_campaign(s.store, "bench", "", "{}", &campaign, &error) == STATUS_OK &&
       store_begin_session(s.store, "{}", &session, &error) == STATUS_OK &&
       store_add_point(s.store, campaign, &s.scene, 2, fixture_axes, &point, &error) == STATUS_OK) {

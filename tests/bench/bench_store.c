@@ -40,7 +40,7 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   struct estimate rows[ESTIMATES_COUNT];
   unlink(path);
   double start = clock_s();
-  need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
+  need(store_open_writer(path, &store, NULL, 0, &error));
   for (int p = 0; p < POINTS; p++) {
     struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
     need(store_add_point(store, 0, &scene, 2, fixture_axes, &points[p], &error));
@@ -131,7 +131,7 @@ int main(int argc, char **argv) {
   ask(store, "store_runs_of_point_ms", "SELECT count(*) FROM runs WHERE point_id = 17", 1);
   store_close(store, NULL);
   start = clock_s();
-  need(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
+  need(store_open_writer(path, &store, NULL, 0, &error));
   printf("store_resume_open_ms %.2f ms\n", 1e3 * (clock_s() - start));
   need(store_close(store, &error));
   unlink(path);

@@ -38,7 +38,7 @@ static double number(struct store *store, const char *sql) {
 
 static status fill(const char *path, int64_t runs, struct error *e) {
   struct store *store = NULL;
-  status result = store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, e);
+  status result = store_open_writer(path, &store, NULL, 0, e);
   if (result != STATUS_OK)
     return result;
   result = fixture_populate(store, M, K, runs, true, e);
@@ -90,7 +90,7 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
       struct fixture_inputs inputs;
       static struct fixture_run f;
       int64_t point;
-      if (store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, NULL) != STATUS_OK)
+      if (store_open_writer(path, &store, NULL, 0, NULL) != STATUS_OK)
         _exit(2);
       int64_t from = (int64_t)before / (M * K);
       *added = (int64_t)before;
@@ -214,11 +214,11 @@ static void without_permission(void **state) {
     struct error said = {0};
     if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
       _exit(9);
-    if (store_open_writer("test-store-closed/a.db", NULL, &store, NULL, 0, &said) != STATUS_IO)
+    if (store_open_writer("test-store-closed/a.db", &store, NULL, 0, &said) != STATUS_IO)
       _exit(1);
     if (!strstr(said.message, "permission"))
       _exit(2);
-    if (store_open_writer("test-store-closed/new.db", NULL, &store, NULL, 0, &said) != STATUS_IO)
+    if (store_open_writer("test-store-closed/new.db", &store, NULL, 0, &said) != STATUS_IO)
       _exit(3);
     if (store_open_reader("test-store-closed/a.db", &store, &said) != STATUS_OK)
       _exit(4); /* a finished store reads */
@@ -246,7 +246,7 @@ static void reader_never_blocks_the_writer(void **state) {
   char path[64];
   struct store *writer = NULL, *reader = NULL;
   OK(fill(fixture_path(path, "stays"), 50, &error));
-  OK(store_open_writer(path, &fixture_estimates_table, &writer, NULL, 0, &error));
+  OK(store_open_writer(path, &writer, NULL, 0, &error));
   OK(store_open_reader(path, &reader, &error));
   sqlite3_stmt *half = NULL;
   sqlite3_prepare_v2(reader->db, "SELECT run_id FROM run", -1, &half, NULL);
@@ -279,7 +279,7 @@ static void after_a_failure_nothing_is_pretended(void **state) {
   struct scene scene = fixture_scene(&inputs, 6, 1e30);
   static struct fixture_run f;
   int64_t point;
-  OK(store_open_writer(fixture_path(path, "failed-write"), &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(fixture_path(path, "failed-write"), &store, NULL, 0, &error));
   OK(store_add_point(store, 0, &scene, 2, fixture_axes, &point, &error));
   OK(store_flush(store, &error));
   fixture_fill(&f, &scene, point, 0, 0, 5);

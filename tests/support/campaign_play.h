@@ -216,7 +216,7 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   struct store *store = NULL;
   struct driver *driver = NULL;
   struct driver_options options = {.store_path = path, .facts = "{}", .slots = play->slots};
-  status code = store_open_writer(path, &estimates_table, &store, NULL, 0, &error);
+  status code = store_open_writer(path, &store, NULL, 0, &error);
   if (code == STATUS_OK)
     code = driver_open(campaign, store, &options, &driver, &error);
   if (code == STATUS_OK) {

@@ -24,13 +24,8 @@ struct fixture_result {
   double hardest;
   double clock;
 };
-struct fixture_estimate {
-  int window;
-  double beta;
-};
 
 static const char *const fixture_laws[] = {"plain", "deep", NULL};
-static const char *const fixture_windows[] = {"all", "tail", NULL};
 static const struct field fixture_input_rows[] = {
     {.path = "material.m",
      .kind = FIELD_REAL,
@@ -108,23 +103,6 @@ static const struct field fixture_result_rows[] = {
 };
 static const struct field_table fixture_results_table = FIELD_TABLE(fixture_result_rows, struct fixture_result,
                                                                     "fake result", "A result for tests.");
-static const struct field fixture_estimate_rows[] = {
-    {.path = "window",
-     .kind = FIELD_CHOICE,
-     .offset = offsetof(struct fixture_estimate, window),
-     .choices = fixture_windows,
-     .doc = "Window."},
-    {.path = "beta",
-     .kind = FIELD_REAL,
-     .unit = "1",
-     .offset = offsetof(struct fixture_estimate, beta),
-     .minimum = -HUGE_VAL,
-     .maximum = HUGE_VAL,
-     .doc = "Exponent."},
-};
-static const struct field_table fixture_estimates_table = FIELD_TABLE(fixture_estimate_rows, struct fixture_estimate,
-                                                                      "fake estimate", "An estimate for tests.");
-
 static const struct engine_kind fixture_kind = {.name = "fake",
                                                 .doc = "Made-up numbers.",
                                                 .results_version = 3,
@@ -151,7 +129,7 @@ enum { FIXTURE_FRAGMENTS = 60 };
 struct fixture_run { /* keeps what a store_run points to */
   struct outcome outcome;
   struct fixture_result result;
-  struct fixture_estimate estimates[2];
+  struct estimate estimates[2];
   struct fragment fragments[FIXTURE_FRAGMENTS];
   struct store_run run;
 };
@@ -195,8 +173,8 @@ static inline void fixture_fill(struct fixture_run *f, const struct scene *scene
   f->result = (struct fixture_result){.broken = 3 * replicate,
                                       .hardest = 0.5 * (double)replicate,
                                       .clock = 1e-3 * (double)getpid()};
-  f->estimates[0] = (struct fixture_estimate){.window = 0, .beta = 1.5 + 0.01 * (double)replicate};
-  f->estimates[1] = (struct fixture_estimate){.window = 1, .beta = NAN};
+  f->estimates[0] = (struct estimate){.window = ESTIMATES_FROM_2, .fit.beta = 1.5 + 0.01 * (double)replicate};
+  f->estimates[1] = (struct estimate){.window = ESTIMATES_FROM_5, .fit.beta = NAN};
   f->run = (struct store_run){.point_id = point_id,
                               .session_id = session_id,
                               .replicate = replicate,

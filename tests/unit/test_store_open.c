@@ -30,7 +30,7 @@ static double number(struct store *store, const char *sql) {
 
 static void populated(const char *path) {
   struct store *store = NULL;
-  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   OK(fixture_populate(store, 2, 2, 10, false, &error));
   OK(store_close(store, &error));
 }
@@ -54,7 +54,7 @@ static void refused(const char *path, status writing, status reading, const char
   struct store *store = NULL;
   long long before = size_of(path);
   error.message[0] = 0;
-  if (store_open_writer(path, NULL, &store, NULL, 0, &error) != writing || store)
+  if (store_open_writer(path, &store, NULL, 0, &error) != writing || store)
     fail_msg("writer: %d %s", error.status, error.message);
   if (writing != STATUS_OK && !strstr(error.message, word))
     fail_msg("writer said: %s", error.message);
@@ -135,7 +135,7 @@ static void old_store_is_brought_forward(void **state) {
             "CREATE VIEW runs AS SELECT 1; PRAGMA user_version = 0");
   assert_int_equal(store_open_reader(path, &store, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "older"));
-  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   assert_near(number(store, "PRAGMA user_version"), 1, 0);
   assert_near(number(store, "SELECT count(*) FROM point_spectrum"), rows, 0);
   assert_near(number(store, "SELECT sum(mass) FROM point_spectrum"), mass, 1e-12 * mass);
@@ -157,6 +157,27 @@ static void old_store_is_brought_forward(void **state) {
   store_close(store, NULL);
 }
 
+/* Stores of earlier programs have a table of the fragments' motion: an empty one goes, rows stay. */
+static void table_of_motion_goes_when_it_is_empty(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  for (int filled = 0; filled < 2; filled++) {
+    populated(fixture_path(path, "motion"));
+    sql(path, "CREATE TABLE fragment_motion (run_id INTEGER PRIMARY KEY REFERENCES run (run_id), motion BLOB NOT NULL) "
+              "STRICT; INSERT INTO column_doc VALUES ('fragment_motion', 'motion', NULL, 'motion', 0)");
+    if (filled)
+      sql(path, "INSERT INTO fragment_motion VALUES (1, x'00')");
+    OK(store_open_reader(path, &store, &error)); /* the version is the same: a reader may go on */
+    OK(store_close(store, &error));
+    OK(store_open_writer(path, &store, NULL, 0, &error));
+    assert_near(number(store, "SELECT count(*) FROM sqlite_schema WHERE name = 'fragment_motion'"), filled, 0);
+    assert_near(number(store, "SELECT count(*) FROM column_doc WHERE table_name = 'fragment_motion'"), filled, 0);
+    OK(store_check(store, NULL, NULL, &error));
+    OK(store_close(store, &error));
+  }
+}
+
 /* A migration that cannot finish leaves the old store as it was. */
 static void failed_migration_changes_nothing(void **state) {
   (void)state;
@@ -165,7 +186,7 @@ static void failed_migration_changes_nothing(void **state) {
   populated(fixture_path(path, "stuck"));
   sql(path,
       "DROP VIEW points; DROP TABLE point_total; DROP TABLE run; PRAGMA user_version = 0; CREATE TABLE run (odd TEXT)");
-  assert_int_not_equal(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error), STATUS_OK);
+  assert_int_not_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_OK);
   assert_null(store);
   sqlite3 *db = NULL;
   sqlite3_open(path, &db);
@@ -182,7 +203,7 @@ static int hold(const char *path, pid_t *pid) {
   *pid = fork();
   if (*pid == 0) {
     struct store *store = NULL;
-    char byte = store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error) == STATUS_OK ? 'y' : 'n';
+    char byte = store_open_writer(path, &store, NULL, 0, &error) == STATUS_OK ? 'y' : 'n';
     close(end[1]);
     if (write(ready[1], &byte, 1) != 1 || read(end[0], &byte, 1) < 0)
       _exit(1);
@@ -205,7 +226,7 @@ static void second_writer_is_told_who_holds_it(void **state) {
   pid_t pid;
   populated(fixture_path(path, "held"));
   int end = hold(path, &pid);
-  assert_int_equal(store_open_writer(path, NULL, &store, NULL, 0, &error), STATUS_IO);
+  assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_IO);
   snprintf(word, sizeof word, "process %d", (int)pid);
   gethostname(host, sizeof host - 1);
   if (!strstr(error.message, word) || !strstr(error.message, host))
@@ -215,14 +236,14 @@ static void second_writer_is_told_who_holds_it(void **state) {
   store_close(store, NULL);
   close(end);
   waitpid(pid, NULL, 0);
-  OK(store_open_writer(path, NULL, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   OK(store_close(store, &error));
   /* the lock dies with its holder, however that ends, and a child of the holder does not keep it */
   end = hold(path, &pid);
   kill(pid, SIGKILL);
   waitpid(pid, NULL, 0);
   close(end);
-  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   OK(store_close(store, &error));
 }
 
@@ -235,7 +256,7 @@ static void another_programs_lock_is_named_as_such(void **state) {
   assert_int_equal(sqlite3_exec(db, "BEGIN EXCLUSIVE", NULL, NULL, NULL), SQLITE_OK);
   if (getenv("CLAST_FULL")) { /* the writer waits 10 s before it gives up */
     struct store *store = NULL;
-    assert_int_equal(store_open_writer(path, NULL, &store, NULL, 0, &error), STATUS_IO);
+    assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_IO);
     assert_non_null(strstr(error.message, "Another program"));
   }
   sqlite3_close(db);
@@ -259,7 +280,7 @@ static void local_disk_brings_no_warning(void **state) {
   (void)state;
   char path[64], warning[300] = "left";
   struct store *store = NULL;
-  OK(store_open_writer(fixture_path(path, "warning"), NULL, &store, warning, sizeof warning, &error));
+  OK(store_open_writer(fixture_path(path, "warning"), &store, warning, sizeof warning, &error));
   assert_string_equal(warning, "");
   OK(store_close(store, &error));
 }
@@ -270,6 +291,7 @@ int main(void) {
       cmocka_unit_test(missing_and_unreachable),
       cmocka_unit_test(empty_file_is_a_new_store),
       cmocka_unit_test(old_store_is_brought_forward),
+      cmocka_unit_test(table_of_motion_goes_when_it_is_empty),
       cmocka_unit_test(failed_migration_changes_nothing),
       cmocka_unit_test(second_writer_is_told_who_holds_it),
       cmocka_unit_test(another_programs_lock_is_named_as_such),

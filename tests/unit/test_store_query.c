@@ -27,7 +27,7 @@ static struct store *reader(void) {
   static const char path[] = "test-store-query.db";
   struct store *store = NULL;
   if (access(path, F_OK) != 0) {
-    OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+    OK(store_open_writer(path, &store, NULL, 0, &error));
     OK(fixture_populate(store, M, K, RUNS, true, &error));
     OK(store_close(store, &error));
   }

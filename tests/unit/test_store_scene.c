@@ -27,7 +27,7 @@ static void line(void *context, const char *text) {
 /* One run of every built-in scene, its results those of nothing but two fragments. */
 static void populate(const char *path) {
   struct store *store = NULL;
-  OK(store_open_writer(path, &estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   for (size_t i = 0; i < scene_builtin_count(); i++) {
     struct scene *scene = NULL;
     int64_t point = 0, again = 0;

@@ -27,7 +27,7 @@ static double number(struct store *store, const char *sql) {
 
 static struct store *writer(const char *path) {
   struct store *store = NULL;
-  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   return store;
 }
 

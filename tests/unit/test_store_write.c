@@ -28,7 +28,7 @@ static double number(struct store *store, const char *sql) {
 
 static struct store *writer(const char *path) {
   struct store *store = NULL;
-  OK(store_open_writer(path, &fixture_estimates_table, &store, NULL, 0, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
   return store;
 }
 
@@ -44,7 +44,6 @@ static void every_value_comes_back(void **state) {
   OK(store_begin_session(store, "{\"a\":1}", &session, &error));
   OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &point, &error));
   fixture_fill(&f, &scene, point, session, 4, 5);
-  f.run.keep_motion = true;
   f.run.fields_path = "fields/4.h5";
   f.run.rank = 2;
   f.run.seed = UINT64_MAX;
@@ -58,10 +57,9 @@ static void every_value_comes_back(void **state) {
               1, 0);
   assert_near(number(store, "SELECT broken_count = 12 AND hardest = 2.0 FROM result_fake"), 1, 0);
   assert_near(number(store, "SELECT length(masses) FROM fragment_mass"), 40, 0);
-  assert_near(number(store, "SELECT length(motion) FROM fragment_motion"), 220, 0);
   assert_near(number(store, "SELECT count(*) FROM estimate WHERE run_id = 1"), 2, 0);
-  assert_near(number(store, "SELECT beta FROM estimates WHERE \"window\" = 'all'"), 1.54, 1e-15);
-  assert_near(number(store, "SELECT beta IS NULL FROM estimates WHERE \"window\" = 'tail'"), 1, 0);
+  assert_near(number(store, "SELECT beta FROM estimates WHERE \"window\" = 'from_2'"), 1.54, 1e-15);
+  assert_near(number(store, "SELECT beta IS NULL FROM estimates WHERE \"window\" = 'from_5'"), 1, 0);
   assert_near(number(store, "SELECT value FROM point_input WHERE path = 'material.k'"), 1e33, 0);
   assert_near(number(store, "SELECT value = 'off' FROM point_input WHERE path = 'material.threshold'"), 1, 0);
   assert_near(number(store, "SELECT count(*) FROM point_input WHERE path = 'depth'"), 0, 0); /* inactive */
@@ -69,19 +67,14 @@ static void every_value_comes_back(void **state) {
   assert_near(number(store, "SELECT json_extract(scene, '$.material.m') FROM point"), 9, 0);
   assert_near(number(store, "SELECT count(*) FROM campaign_point"), 1, 0);
 
-  /* masses: little-endian float64, descending; motion: float32, position x second of the second fragment */
+  /* masses: little-endian float64, descending */
   sqlite3_stmt *statement;
-  sqlite3_prepare_v2(store->db, "SELECT masses, motion FROM fragment_mass JOIN fragment_motion USING (run_id)", -1,
-                     &statement, NULL);
+  sqlite3_prepare_v2(store->db, "SELECT masses FROM fragment_mass", -1, &statement, NULL);
   assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
   double masses[5];
-  float motion[55];
   memcpy(masses, sqlite3_column_blob(statement, 0), sizeof masses);
-  memcpy(motion, sqlite3_column_blob(statement, 1), sizeof motion);
-  for (int i = 0; i < 5; i++) {
+  for (int i = 0; i < 5; i++)
     assert_true(masses[i] == f.fragments[i].mass);
-    assert_true(motion[11 * i] == (float)f.fragments[i].position[0]);
-  }
   sqlite3_finalize(statement);
   OK(store_close(store, &error));
 }
@@ -250,9 +243,9 @@ static void estimates_are_replaced(void **state) {
   char path[64];
   struct store *store = writer(fixture_path(path, "estimates"));
   OK(fixture_populate(store, 1, 1, 3, false, &error));
-  struct fixture_estimate rows[2] = {{.window = 0, .beta = 2}, {.window = 1, .beta = 3}};
+  struct estimate rows[2] = {{.window = ESTIMATES_FROM_2, .fit.beta = 2}, {.window = ESTIMATES_FROM_5, .fit.beta = 3}};
   OK(store_set_estimates(store, 1, 0, 3, 2, rows, &error));
-  rows[0].beta = 4;
+  rows[0].fit.beta = 4;
   OK(store_set_estimates(store, 1, 0, 3, 1, rows, &error));
   OK(store_set_estimates(store, 1, 2, 3, 1, rows, &error));
   assert_near(number(store, "SELECT count(*) FROM estimates WHERE run_id IS NULL"), 1, 0);

@@ -99,8 +99,8 @@ static void least_squares_has_its_known_bias(void **state) {
 
 static void cutoff_is_found(void **state) {
   (void)state;
-  agrees(measure(EXPONENT_CUTOFF, PURE, 1000, from_1), 1.988);
-  struct result with = measure(EXPONENT_CUTOFF, CUTOFF_AT_100, 1000, from_1);
+  agrees(measure(EXPONENT_UPPER_CUTOFF, PURE, 1000, from_1), 1.988);
+  struct result with = measure(EXPONENT_UPPER_CUTOFF, CUTOFF_AT_100, 1000, from_1);
   agrees(with, 1.991);
   assert_true(fabs(with.deviation / with.quoted - 1) < 4 * 0.05);
 }

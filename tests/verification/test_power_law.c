@@ -10,7 +10,7 @@
 #include <stdio.h>
 
 #include "analysis/analysis.h"
-#include "analysis/statistics/cutoff.h"
+#include "analysis/statistics/exponent.h"
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 #include "engine/random.h"
@@ -178,18 +178,6 @@ static void search_of_the_lower_end(void **state) {
   assert_true(fabs(fit.beta - 2.2) < 4 * fit.standard_error * 1.5 /* its search: a third more */);
   assert_true(fabs(all.beta - 2.2) > 8 * all.standard_error);
   assert_true(fit.ks_distance < all.ks_distance / 3);
-  struct cutoff_error bootstrap;
-  assert_int_equal(cutoff_bootstrap(N, masses, window, 40, 1, &bootstrap, NULL), STATUS_OK);
-  assert_int_equal(bootstrap.resamples, 40);
-  assert_true(bootstrap.beta_error > 0.9 * fit.standard_error && bootstrap.beta_error < 4 * fit.standard_error);
-  double good, bad;
-  assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &good, NULL), STATUS_OK);
-  for (int i = 0; i < 400; i++)
-    masses[i] = exp(2 * random_draw(4, 3, (uint64_t)i, 0)) + 3; /* no power law anywhere */
-  assert_int_equal(cutoff_p_value(400, masses, 1, 0.05, 1, &bad, NULL), STATUS_OK);
-  printf("  exact p: power law %.2f, none %.2f\n", good, bad);
-  assert_true(good > 0.1 && bad < 0.1);
-  assert_int_equal(cutoff_p_value(400, masses, 1, 0, 1, &bad, NULL), STATUS_USAGE);
 }
 
 int main(void) {
