@@ -41,12 +41,12 @@ static double ringing(const char *name, double scale, bool with_reference, doubl
   struct dem_tessellation *t = NULL;
   struct dem_system *system = NULL;
   struct error error = {0};
-  const struct dem_parameters p = dem_disc_parameters();
+  const struct dem_inputs in = dem_disc_inputs();
   if (!dem_disc_tessellation(0.2 * scale, 0.01069, 1, &t, &error) ||
-      dem_system_create(t, &p, &system, &error) != STATUS_OK)
+      dem_system_create(t, &in, 0, &system, &error) != STATUS_OK)
     fail("set-up:", &error);
-  dem_disc_charge(system, t, p.density, 5e4 * scale * scale);
-  struct reference_dem *reference = with_reference ? reference_dem_create(t, &p) : NULL;
+  dem_disc_charge(system, t, in.grain.density, 5e4 * scale * scale);
+  struct reference_dem *reference = with_reference ? reference_dem_create(t, &in) : NULL;
   const int steps = 2000, every = 100, reference_every = 10;
   double spent = 0.0, share = 0.0, reference_spent = 0.0;
   int samples = 0;
@@ -85,11 +85,11 @@ static void explosion(double reference_speed) {
   struct dem_tessellation *t = NULL;
   struct dem_system *system = NULL;
   struct error error = {0};
-  struct dem_parameters p = dem_disc_parameters();
-  p.breaking = true;
-  if (!dem_disc_tessellation(0.2, 0.01069, 1, &t, &error) || dem_system_create(t, &p, &system, &error) != STATUS_OK)
+  struct dem_inputs in = dem_disc_inputs();
+  in.threshold.breaking = true;
+  if (!dem_disc_tessellation(0.2, 0.01069, 1, &t, &error) || dem_system_create(t, &in, 0, &system, &error) != STATUS_OK)
     fail("set-up:", &error);
-  dem_disc_charge(system, t, p.density, 5e4);
+  dem_disc_charge(system, t, in.grain.density, 5e4);
   const double start = now();
   while (dem_system_time(system) < 20e-3 && dem_system_time(system) - dem_system_last_break(system) < 0.3e-3)
     if (!dem_system_step(system))

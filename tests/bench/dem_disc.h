@@ -6,18 +6,12 @@
 
 #include "engine/dem/step/system.h"
 
-static inline struct dem_parameters dem_disc_parameters(void) {
-  return (struct dem_parameters){.density = 5000.0,
-                                 .grain_modulus = 1e9,
-                                 .beam_modulus = 5e8,
-                                 .contact = DEM_CONTACT_CONSERVATIVE,
-                                 .contact_on_bonded = true,
-                                 .breaking = false,
-                                 .strain_threshold = 0.03,
-                                 .angle_threshold = 4.0 * M_PI / 180.0,
-                                 .threshold_modulus = NAN,
-                                 .integrator = DEM_VERLET,
-                                 .time_step = 1e-6};
+/* The default scene without breaking. */
+static inline struct dem_inputs dem_disc_inputs(void) {
+  struct dem_inputs in;
+  field_defaults(&dem_inputs, &in);
+  in.threshold.breaking = false;
+  return in;
 }
 
 static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t seed, struct dem_tessellation **out,

@@ -19,16 +19,16 @@ struct bond {
 };
 
 struct reference_dem {
-  struct dem_parameters p;
+  struct dem_inputs in;
   size_t bodies, bonds;
   struct body *body;
   struct bond *bond;
   double energy;
 };
 
-struct reference_dem *reference_dem_create(const struct dem_tessellation *t, const struct dem_parameters *p) {
+struct reference_dem *reference_dem_create(const struct dem_tessellation *t, const struct dem_inputs *in) {
   struct reference_dem *r = calloc(1, sizeof *r);
-  r->p = *p;
+  r->in = *in;
   r->bodies = t->cell_count;
   r->body = calloc(r->bodies, sizeof *r->body);
   r->bond = calloc(t->pair_count + 12 * r->bodies, sizeof *r->bond);
@@ -36,8 +36,8 @@ struct reference_dem *reference_dem_create(const struct dem_tessellation *t, con
     struct body *b = &r->body[i];
     b->x = t->centroid[i].x;
     b->y = t->centroid[i].y;
-    b->mass = p->density * t->area[i];
-    b->inertia = p->density * t->polar_moment[i];
+    b->mass = in->grain.density * t->area[i];
+    b->inertia = in->grain.density * t->polar_moment[i];
     b->present = 1;
     b->count = (int)(t->first_vertex[i + 1] - t->first_vertex[i]);
     for (int v = 0; v < b->count; ++v) {
@@ -58,9 +58,9 @@ struct reference_dem *reference_dem_create(const struct dem_tessellation *t, con
       const double usual = 0.27 * (di + dj), s = bonded ? t->side[next] : usual;
       *b = (struct bond){.i = i, .j = j, .l0 = l, .phi0 = atan2(dy, dx), .beam = bonded};
       b->phi = b->phi0;
-      b->kappa = p->grain_modulus * 0.5 * (1.0 / di + 1.0 / dj) / fmax(s, 0.5 * usual);
+      b->kappa = in->grain.young_modulus * 0.5 * (1.0 / di + 1.0 / dj) / fmax(s, 0.5 * usual);
       if (bonded) {
-        const double a = l / (p->beam_modulus * s), c = 12.0 * l * l * l / (p->beam_modulus * s * s * s);
+        const double a = l / (in->beam.young_modulus * s), c = 12.0 * l * l * l / (in->beam.young_modulus * s * s * s);
         const double beta = 1.0 / (2.0 * a + c / 12.0), delta = beta * (2.0 * a / c + 1.0 / 3.0);
         b->alpha = 1.0 / a;
         b->cross = 0.5 * beta * l * l;
@@ -169,7 +169,7 @@ static void forces(struct reference_dem *r) {
 }
 
 static void kick(struct reference_dem *r) {
-  const double h = 0.5 * r->p.time_step;
+  const double h = 0.5 * r->in.fidelity.time_step;
   for (size_t k = 0; k < r->bodies; ++k) {
     struct body *b = &r->body[k];
     b->vx += h * b->fx / b->mass, b->vy += h * b->fy / b->mass, b->spin += h * b->torque / b->inertia;
@@ -180,7 +180,8 @@ void reference_dem_step(struct reference_dem *r) {
   kick(r);
   for (size_t k = 0; k < r->bodies; ++k) {
     struct body *b = &r->body[k];
-    b->x += r->p.time_step * b->vx, b->y += r->p.time_step * b->vy, b->angle += r->p.time_step * b->spin;
+    b->x += r->in.fidelity.time_step * b->vx, b->y += r->in.fidelity.time_step * b->vy,
+        b->angle += r->in.fidelity.time_step * b->spin;
   }
   forces(r);
   kick(r);

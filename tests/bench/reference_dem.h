@@ -7,7 +7,7 @@
 
 struct reference_dem;
 struct reference_dem *reference_dem_create(const struct dem_tessellation *tessellation,
-                                           const struct dem_parameters *parameters);
+                                           const struct dem_inputs *inputs);
 void reference_dem_state(struct reference_dem *reference, const struct dem_system *system); /* start from its state */
 void reference_dem_step(struct reference_dem *reference);
 double reference_dem_energy(struct reference_dem *reference);

@@ -1,4 +1,5 @@
-/* Small systems for the tests of the moving grains. */
+/* Small systems for the tests of the moving grains. A system reads the inputs that it was created with: they must
+ * outlive it. */
 #ifndef CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
 #define CLAST_TESTS_VERIFICATION_DEM_FIXTURE_H
 
@@ -18,18 +19,13 @@
 #include "engine/dem/step/system.h"
 #include "engine/dem/step/system_layout.h"
 
-static inline struct dem_parameters fixture_parameters(void) {
-  return (struct dem_parameters){.density = 5000.0,
-                                 .grain_modulus = 1e9,
-                                 .beam_modulus = 5e8,
-                                 .contact = DEM_CONTACT_CONSERVATIVE,
-                                 .contact_on_bonded = true,
-                                 .breaking = false,
-                                 .strain_threshold = 0.03,
-                                 .angle_threshold = 0.07,
-                                 .threshold_modulus = (double)NAN,
-                                 .integrator = DEM_VERLET,
-                                 .time_step = 1e-6};
+/* The default scene without breaking, and with a threshold of its own for the angle. */
+static inline struct dem_inputs fixture_inputs(void) {
+  struct dem_inputs in;
+  field_defaults(&dem_inputs, &in);
+  in.threshold.breaking = false;
+  in.threshold.angle = 0.07;
+  return in;
 }
 
 /* |a - b| <= tolerance, or say the values. */
@@ -102,10 +98,10 @@ static inline struct dem_tessellation *fixture_disc(double radius, double spacin
   return t;
 }
 
-static inline struct dem_system *fixture_create(const struct dem_tessellation *t, const struct dem_parameters *p) {
+static inline struct dem_system *fixture_create(const struct dem_tessellation *t, const struct dem_inputs *in) {
   struct dem_system *system = NULL;
   struct error error = {0};
-  if (dem_system_create(t, p, &system, &error) != STATUS_OK)
+  if (dem_system_create(t, in, 0, &system, &error) != STATUS_OK)
     fail_msg("%s", error.message);
   return system;
 }

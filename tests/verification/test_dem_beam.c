@@ -42,13 +42,13 @@ static void stiffness(struct dem_system *s, size_t freedoms, double arm, double 
 static void stiffness_is_timoshenko(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  struct dem_system *s = fixture_create(t, &in);
   double k[36];
   stiffness(s, 6, h, k);
   /* b = 2a is G = E/2; phi = 12 EI/(G S l^2) = 2 for a square beam. */
-  const double e = p.beam_modulus, l = h, side = h, i = side * side * side / 12.0,
+  const double e = in.beam.young_modulus, l = h, side = h, i = side * side * side / 12.0,
                phi = 12.0 * e * i / (0.5 * e * side * l * l);
   const double axial = e * side / l, q = 12.0 * e * i / (l * l * l * (1.0 + phi)), near = (4.0 + phi) / 12.0,
                far = (2.0 - phi) / 12.0;
@@ -81,9 +81,9 @@ static void stiffness_is_timoshenko(void **state) {
 static void force_is_the_energys_gradient(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  struct dem_system *s = fixture_create(t, &in);
   uint64_t seed = 1;
   for (int trial = 0; trial < 50; ++trial) {
     const double turn = 3.0 * fixture_random(&seed);
@@ -107,7 +107,8 @@ static void force_is_the_energys_gradient(void **state) {
       const double down = fixture_potential(s);
       set(s, a, step);
       /* central difference: truncation (1e-5)^2 and rounding 1e-16/1e-5, of forces that are E h times strains of 0.1 */
-      fixture_near(f[a], -(up - down) / (2.0 * step), 1e-7 * p.beam_modulus * h * (a % 3 == 2 ? h : 1.0), "gradient");
+      fixture_near(f[a], -(up - down) / (2.0 * step), 1e-7 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0),
+                   "gradient");
     }
     fixture_near(f[0] + f[3], 0.0, 0.0, "momentum");
     const double about = s->c.x[0] * f[1] - s->c.y[0] * f[0] + f[2] + s->c.x[1] * f[4] - s->c.y[1] * f[3] + f[5];
@@ -121,22 +122,22 @@ static void force_is_the_energys_gradient(void **state) {
 static void rotation_and_swap(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  struct dem_system *s = fixture_create(t, &in);
   for (int k = 0; k <= 200; ++k) { /* up to 20 rad, so that the unwrapped angle passes pi thrice */
     const double angle = 0.1 * k;
     fixture_place(s, 0, 0.5 * h - 0.5 * h * cos(angle), 0.5 * h - 0.5 * h * sin(angle), angle);
     fixture_place(s, 1, 0.5 * h + 0.5 * h * cos(angle), 0.5 * h + 0.5 * h * sin(angle), angle);
     fixture_evaluate(s);
     for (size_t a = 0; a < 6; ++a) /* 20 rad have roundings of 4e-15, times E h (h) */
-      fixture_near(force(s, a), 0.0, 1e-13 * p.beam_modulus * h * (a % 3 == 2 ? h : 1.0), "rigid rotation");
+      fixture_near(force(s, a), 0.0, 1e-13 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "rigid rotation");
   }
   dem_system_free(s);
   /* u = (dx, dy, angle) of either end; swap means: turn the picture by 180 degrees. */
   double f[2][6];
   for (int swap = 0; swap < 2; ++swap) {
-    s = fixture_create(t, &p);
+    s = fixture_create(t, &in);
     const double u[2][3] = {{0.01 * h, 0.02 * h, 0.05}, {0.03 * h, -0.01 * h, -0.08}};
     for (uint32_t g = 0; g < 2; ++g) {
       const double *v = u[swap ? 1 - g : g], sign = swap ? -1.0 : 1.0;
@@ -149,7 +150,7 @@ static void rotation_and_swap(void **state) {
   }
   for (size_t a = 0; a < 6; ++a)
     fixture_near(f[0][a], (a % 3 == 2 ? 1.0 : -1.0) * f[1][(a + 3) % 6],
-                 1e-12 * p.beam_modulus * h * (a % 3 == 2 ? h : 1.0), "swap");
+                 1e-12 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "swap");
   fixture_free(t);
 }
 
@@ -157,9 +158,9 @@ static void rotation_and_swap(void **state) {
 static void cantilever(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(21, 1, h, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  struct dem_system *s = fixture_create(t, &in);
   const size_t all = 63, n = 60;
   double *k = calloc(all * all, sizeof *k);
   stiffness(s, all, h, k);
@@ -192,22 +193,22 @@ static void square_lattice_modulus(void **state) {
   (void)state;
   const uint32_t n = 6;
   struct dem_tessellation *t = fixture_squares(n, n, h, 0.0, true);
-  const struct dem_parameters p = fixture_parameters(); /* contact is on: pulled grains do not touch */
-  struct dem_system *s = fixture_create(t, &p);
+  const struct dem_inputs in = fixture_inputs(); /* contact is on: pulled grains do not touch */
+  struct dem_system *s = fixture_create(t, &in);
   const double strain = 1e-4;
   for (uint32_t i = 0; i < n * n; ++i)
     fixture_place(s, i, t->centroid[i].x, t->centroid[i].y * (1.0 + strain), 0.0);
   fixture_evaluate(s);
   double top = 0.0;
   for (uint32_t i = 0; i < n * n; ++i) {
-    const double scale = p.beam_modulus * h * strain;
+    const double scale = in.beam.young_modulus * h * strain;
     if (i / n > 0 && i / n < n - 1) /* 1e-9: rounding of lengths over the strain */
       fixture_near(s->c.fy[i], 0.0, 1e-9 * scale, "inner grains balance");
     fixture_near(s->c.fx[i], 0.0, 1e-9 * scale, "no force across");
     if (i / n == n - 1)
       top += s->c.fy[i];
   }
-  fixture_near(-top / (n * h) / strain, p.beam_modulus, 1e-9 * p.beam_modulus, "K_ext");
+  fixture_near(-top / (n * h) / strain, in.beam.young_modulus, 1e-9 * in.beam.young_modulus, "K_ext");
   dem_system_free(s);
   fixture_free(t);
 }

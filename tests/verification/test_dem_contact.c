@@ -8,9 +8,9 @@ struct impact {
 };
 
 /* Two 1 cm squares meet at 2 v; `k` is the push over the approach at the deepest point. */
-static struct impact collide(struct dem_parameters p, double v) {
+static struct impact collide(struct dem_inputs in, double v) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 1e-6 * h, false);
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_system *s = fixture_create(t, &in);
   dem_system_set_velocity(s, 0, v, 0.0, 0.0);
   dem_system_set_velocity(s, 1, -v, 0.0, 0.0);
   struct impact out = {.least_push = (double)INFINITY};
@@ -19,13 +19,13 @@ static struct impact collide(struct dem_parameters p, double v) {
     assert_true(dem_system_step(s));
     const double deep = h - (s->c.x[1] - s->c.x[0]), push = -s->c.fx[0];
     if (deep > 0.0 && began < 0.0)
-      began = dem_system_time(s) - 0.5 * p.time_step;
+      began = dem_system_time(s) - 0.5 * in.fidelity.time_step;
     if (began >= 0.0 && deep > 0.0)
       out.least_push = fmin(out.least_push, push);
     if (deep > out.deepest)
       out.deepest = deep, out.push = push;
     if (began >= 0.0 && deep <= 0.0) {
-      out.duration = dem_system_time(s) - 0.5 * p.time_step - began;
+      out.duration = dem_system_time(s) - 0.5 * in.fidelity.time_step - began;
       break;
     }
   }
@@ -40,10 +40,10 @@ static struct impact collide(struct dem_parameters p, double v) {
 /* Printed law: k = Y S / L_c = 8.862e9 dyn/cm (8.862e8 N/m per m), pi sqrt(m/2k) = 52.8 us. */
 static void printed_law(void **state) {
   (void)state;
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_PRINTED;
-  p.time_step = 1e-8;
-  const struct impact i = collide(p, 0.5);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_PRINTED;
+  in.fidelity.time_step = 1e-8;
+  const struct impact i = collide(in, 0.5);
   fixture_near(i.push / i.deepest, 8.862e8, 0.0005e8, "stiffness"); /* four digits given */
   fixture_near(i.duration, 52.8e-6, 0.05e-6, "duration");           /* three digits given */
   fixture_near(i.restitution, 1.0, 1e-4, "restitution");
@@ -52,9 +52,9 @@ static void printed_law(void **state) {
 /* Conservative law: k = kappa S^2 = 1.454e10 dyn/cm, 41.2 us, and all energy comes back. */
 static void conservative_law(void **state) {
   (void)state;
-  struct dem_parameters p = fixture_parameters();
-  p.time_step = 1e-8;
-  const struct impact i = collide(p, 0.5);
+  struct dem_inputs in = fixture_inputs();
+  in.fidelity.time_step = 1e-8;
+  const struct impact i = collide(in, 0.5);
   fixture_near(i.push / i.deepest, 1.454e9, 0.0005e9, "stiffness");
   fixture_near(i.duration, 41.2e-6, 0.05e-6, "duration");
   fixture_near(i.restitution, 1.0, 3e-4, "restitution"); /* the physics notes' bound */
@@ -63,11 +63,11 @@ static void conservative_law(void **state) {
 /* gamma_N = 2.566e4/s: a damped oscillator that may not pull, restitution 0.550. */
 static void damped_impact(void **state) {
   (void)state;
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_PRINTED;
-  p.time_step = 1e-8;
-  p.normal_damping = 2.566e4;
-  const struct impact i = collide(p, 0.5);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_PRINTED;
+  in.fidelity.time_step = 1e-8;
+  in.contact.normal_damping = 2.566e4;
+  const struct impact i = collide(in, 0.5);
   fixture_near(i.restitution, 0.550, 0.0006, "restitution"); /* three digits given */
   assert_true(i.least_push >= 0.0);
 }
@@ -78,15 +78,15 @@ static void oblique_impact_conserves(void **state) {
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.5 * h, false);
   double error[2];
   for (int fine = 0; fine < 2; ++fine) {
-    struct dem_parameters p = fixture_parameters();
-    p.time_step = fine ? 2.5e-8 : 1e-7;
-    struct dem_system *s = fixture_create(t, &p);
+    struct dem_inputs in = fixture_inputs();
+    in.fidelity.time_step = fine ? 2.5e-8 : 1e-7;
+    struct dem_system *s = fixture_create(t, &in);
     fixture_place(s, 0, 0.5 * h, 0.7 * h, 0.6);
     dem_system_set_velocity(s, 0, 20.0, -1.0, 300.0);
     dem_system_set_velocity(s, 1, -20.0, 1.0, 100.0);
     const double before = fixture_total(dem_system_ledger(s));
     double deepest = 0.0;
-    for (int k = 0; k * p.time_step < 1e-3; ++k) {
+    for (int k = 0; k * in.fidelity.time_step < 1e-3; ++k) {
       assert_true(dem_system_step(s));
       if (k % 16 == 0)
         deepest = fmax(deepest, dem_system_ledger(s).contact);
@@ -110,21 +110,21 @@ static void friction_takes_energy_out(void **state) {
   for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; ++law) {
     double error[2];
     for (int fine = 0; fine < 2; ++fine) {
-      struct dem_parameters p = fixture_parameters();
-      p.contact = law;
-      p.time_step = fine ? 1e-8 : 4e-8;
-      p.normal_damping = 1e4;
-      p.tangential_damping = 1e8; /* so stiff that Coulomb limits, until the slip has all but stopped */
-      p.friction = 0.3;
-      struct dem_system *s = fixture_create(t, &p);
+      struct dem_inputs in = fixture_inputs();
+      in.contact.law = law;
+      in.fidelity.time_step = fine ? 1e-8 : 4e-8;
+      in.contact.normal_damping = 1e4;
+      in.contact.tangential_damping = 1e8; /* so stiff that Coulomb limits, until the slip has all but stopped */
+      in.contact.friction = 0.3;
+      struct dem_system *s = fixture_create(t, &in);
       dem_system_set_velocity(s, 0, 1.0, 2.0, 0.0);
       dem_system_set_velocity(s, 1, -1.0, -2.0, 0.0);
       const double before = fixture_total(dem_system_ledger(s));
       double kinetic = dem_system_ledger(s).kinetic;
       bool limited = false;
-      for (int k = 0; k * p.time_step < 1e-4; ++k) {
+      for (int k = 0; k * in.fidelity.time_step < 1e-4; ++k) {
         assert_true(dem_system_step(s));
-        if (s->c.fx[0] < 0.0 && k * p.time_step < 20e-6) {
+        if (s->c.fx[0] < 0.0 && k * in.fidelity.time_step < 20e-6) {
           fixture_near(s->c.fy[0], 0.3 * s->c.fx[0], 0.02 * fabs(s->c.fx[0]), "Coulomb's limit");
           limited = true;
         }
@@ -149,10 +149,10 @@ static void bonded_switches(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
   for (int on = 0; on < 2; ++on) {
-    struct dem_parameters p = fixture_parameters();
-    p.contact_on_bonded = on;
-    p.beam_modulus = 0.0;
-    struct dem_system *s = fixture_create(t, &p);
+    struct dem_inputs in = fixture_inputs();
+    in.contact.bonded = on;
+    in.beam.young_modulus = 0.0;
+    struct dem_system *s = fixture_create(t, &in);
     fixture_place(s, 1, 1.49 * h, 0.5 * h, 0.0);
     fixture_evaluate(s);
     /* bonded: S_ref is the common side, so the stiffness is the printed law's Y S / L_c */
@@ -161,13 +161,13 @@ static void bonded_switches(void **state) {
     fixture_evaluate(s);
     fixture_near(s->c.fx[1], 8.862e8 * 0.01 * h, 0.0005e8 * 0.01 * h, "S_ref stays when the beam has gone");
     dem_system_free(s);
-    p.contact_on_bonded = true;
-    p.normal_damping = 1e4;
-    p.damping_on_bonded = on;
-    s = fixture_create(t, &p);
+    in.contact.bonded = true;
+    in.contact.normal_damping = 1e4;
+    in.contact.damping_bonded = on;
+    s = fixture_create(t, &in);
     fixture_place(s, 1, 1.49 * h, 0.5 * h, 0.0);
     dem_system_set_velocity(s, 1, -1.0, 0.0, 0.0);
-    p.time_step = s->p.time_step = 1e-30;
+    in.fidelity.time_step = 1e-30;
     assert_true(dem_system_step(s));
     const double reduced = 0.5 * s->mass[0];
     fixture_near(s->c.fx[1], 8.862e8 * 0.01 * h + (on ? reduced * 1e4 : 0.0), 0.0005e8 * 0.01 * h, "damping on bonded");

@@ -20,7 +20,7 @@ struct polygon {
 
 struct model {
   const struct dem_tessellation *t;
-  struct dem_parameters p;
+  struct dem_inputs in;
   bool beam[PAIRS], present[GRAINS]; /* beam: by pair of the tessellation */
 };
 
@@ -71,7 +71,7 @@ static long double beam_energy(const struct model *m, size_t pair, const struct 
   const struct dem_point *a = &m->t->centroid[i], *b = &m->t->centroid[j];
   const long double x0 = (long double)b->x - a->x, y0 = (long double)b->y - a->y, l0 = hypotl(x0, y0);
   const long double x = at[j].x - at[i].x, y = at[j].y - at[i].y, l = hypotl(x, y);
-  const long double e = m->p.beam_modulus, s = m->t->side[pair], inertia = s * s * s / 12;
+  const long double e = m->in.beam.young_modulus, s = m->t->side[pair], inertia = s * s * s / 12;
   /* the chord's turn, on the branch next to the first grain's */
   const long double chord = atan2l(x0 * y - y0 * x, x0 * x + y0 * y), turn = 2 * acosl(-1.0L);
   const long double phi = chord + turn * roundl((at[i].angle - chord) / turn);
@@ -89,10 +89,10 @@ static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
   for (size_t p = 0; p < t->pair_count; ++p)
     if (t->pair[p][0] == i && t->pair[p][1] == j)
       side = t->side[p], bonded = m->beam[p];
-  if (!m->present[i] || !m->present[j] || (bonded && !m->p.contact_on_bonded))
+  if (!m->present[i] || !m->present[j] || (bonded && !m->in.contact.bonded))
     return 0;
-  const long double law = m->p.grain_modulus * (0.5L / di + 0.5L / dj);
-  return m->p.contact == DEM_CONTACT_PRINTED ? law : law / dem_assemble_reference_side(side, di, dj);
+  const long double law = m->in.grain.young_modulus * (0.5L / di + 0.5L / dj);
+  return m->in.contact.law == DEM_CONTACT_PRINTED ? law : law / dem_assemble_reference_side(side, di, dj);
 }
 
 /* Potential of beams and, for the conservative law, of contacts. */
@@ -101,7 +101,7 @@ static long double energy(const struct model *m, const struct place *at) {
   for (size_t p = 0; p < m->t->pair_count; ++p)
     if (m->beam[p])
       sum += beam_energy(m, p, at);
-  for (uint32_t i = 0; i < GRAINS && m->p.contact == DEM_CONTACT_CONSERVATIVE; ++i)
+  for (uint32_t i = 0; i < GRAINS && m->in.contact.law == DEM_CONTACT_CONSERVATIVE; ++i)
     for (uint32_t j = i + 1; j < GRAINS; ++j) {
       const long double kappa = contact_of(m, i, j), area = kappa > 0 ? overlap_area(m, i, j, at) : 0;
       sum += kappa * area * area / 2;
@@ -127,7 +127,7 @@ static void expected_forces(const struct model *m, struct place *at, long double
     *freedom(at, k) = here;
     f[k] = (down - up) / (2 * step);
   }
-  if (m->p.contact != DEM_CONTACT_PRINTED)
+  if (m->in.contact.law != DEM_CONTACT_PRINTED)
     return;
   for (uint32_t i = 0; i < GRAINS; ++i)
     for (uint32_t j = i + 1; j < GRAINS; ++j) {
@@ -173,10 +173,10 @@ static double compare(const struct variant *v, int law, double size, double turn
   assert_int_equal(t->cell_count, GRAINS);
   if (v->no_bonds)
     t->pair_count = 0;
-  struct model m = {.t = t, .p = fixture_parameters()};
-  m.p.contact = law;
-  m.p.contact_on_bonded = v->bonded_contact;
-  struct dem_system *s = fixture_create(t, &m.p);
+  struct model m = {.t = t, .in = fixture_inputs()};
+  m.in.contact.law = law;
+  m.in.contact.bonded = v->bonded_contact;
+  struct dem_system *s = fixture_create(t, &m.in);
   for (size_t p = 0; p < t->pair_count; ++p)
     m.beam[p] = true;
   for (uint32_t i = 0; i < GRAINS; ++i)
@@ -265,12 +265,13 @@ static void damping_and_friction_as_written(void **state) {
         assert_int_equal(dem_tessellation_make(&lattice, &t, &error), STATUS_OK);
         if (!bonded)
           t->pair_count = 0;
-        struct model m = {.t = t, .p = fixture_parameters()};
-        m.p.contact = law;
-        m.p.beam_modulus = 0.0;
-        m.p.normal_damping = 3e4, m.p.tangential_damping = 2e4, m.p.friction = 0.4, m.p.damping_on_bonded = true;
-        m.p.time_step = 1e-30; /* nothing moves in the step */
-        struct dem_system *s = fixture_create(t, &m.p);
+        struct model m = {.t = t, .in = fixture_inputs()};
+        m.in.contact.law = law;
+        m.in.beam.young_modulus = 0.0;
+        m.in.contact.normal_damping = 3e4, m.in.contact.tangential_damping = 2e4, m.in.contact.friction = 0.4,
+        m.in.contact.damping_bonded = true;
+        m.in.fidelity.time_step = 1e-30; /* nothing moves in the step */
+        struct dem_system *s = fixture_create(t, &m.in);
         struct place at[GRAINS];
         uint64_t random = seed;
         for (uint32_t i = 0; i < GRAINS; ++i) {
@@ -310,10 +311,10 @@ static void damping_and_friction_as_written(void **state) {
                                    (s->c.vy[i] + s->c.spin[i] * (mx - at[i].x));
             const long double mass = (long double)s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);
             const long double elastic = coefficient * area * (law == DEM_CONTACT_PRINTED ? 1 : chord);
-            const long double normal = fmaxl(0, elastic + mass * m.p.normal_damping * (ux * nx + uy * ny));
+            const long double normal = fmaxl(0, elastic + mass * m.in.contact.normal_damping * (ux * nx + uy * ny));
             const long double slip = ux * tx + uy * ty;
-            const long double friction = copysignl(fminl(mass * m.p.tangential_damping * fabsl(slip),
-                                                         m.p.friction * normal),
+            const long double friction = copysignl(fminl(mass * m.in.contact.tangential_damping * fabsl(slip),
+                                                         m.in.contact.friction * normal),
                                                    slip);
             const long double fx = normal * nx + friction * tx, fy = normal * ny + friction * ty;
             f[3 * i] += fx, f[3 * i + 1] += fy, f[3 * i + 2] += (mx - at[i].x) * fy - (my - at[i].y) * fx;

@@ -12,11 +12,11 @@ static void driven_grains_do_work(void **state) {
   for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; ++integrator)
     for (int which = 0; which < 3; ++which) {
       struct dem_tessellation *t = fixture_squares(2, 2, 0.01, 0.0, true);
-      struct dem_parameters p = fixture_parameters();
-      p.contact = DEM_CONTACT_OFF; /* smooth: what remains is the integrator's error */
-      p.integrator = integrator;
-      p.time_step = 2e-7;
-      struct dem_system *s = fixture_create(t, &p);
+      struct dem_inputs in = fixture_inputs();
+      in.contact.law = DEM_CONTACT_OFF; /* smooth: what remains is the integrator's error */
+      in.fidelity.integrator = integrator;
+      in.fidelity.time_step = 2e-7;
+      struct dem_system *s = fixture_create(t, &in);
       dem_system_hold(s, 0, which == 0 ? 1u : which == 1 ? 2u : 4u);
       const double before = fixture_total(dem_system_ledger(s));
       for (int k = 0; k < 2000; ++k) {
@@ -121,12 +121,12 @@ static void modes_of_breaking(void **state) {
                {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0}, {-0.1, 3.0, 3.0, 0, 0}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
     struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
-    struct dem_parameters p = fixture_parameters();
-    p.breaking = true;
-    struct dem_system *s = fixture_create(t, &p);
-    fixture_place(s, 0, t->centroid[0].x, t->centroid[0].y, cases[k].first * p.angle_threshold);
-    fixture_place(s, 1, t->centroid[1].x + 0.01 * cases[k].strain * p.strain_threshold, t->centroid[1].y,
-                  cases[k].second * p.angle_threshold);
+    struct dem_inputs in = fixture_inputs();
+    in.threshold.breaking = true;
+    struct dem_system *s = fixture_create(t, &in);
+    fixture_place(s, 0, t->centroid[0].x, t->centroid[0].y, cases[k].first * in.threshold.angle);
+    fixture_place(s, 1, t->centroid[1].x + 0.01 * cases[k].strain * in.threshold.strain, t->centroid[1].y,
+                  cases[k].second * in.threshold.angle);
     fixture_evaluate(s);
     const struct dem_break *log;
     const size_t breaks = dem_system_breaks(s, &log);
@@ -135,7 +135,7 @@ static void modes_of_breaking(void **state) {
     if (breaks && log[0].bending != cases[k].bending)
       fail_msg("case %zu: bending %d", k, (int)log[0].bending);
     if (breaks)
-      fixture_near(log[0].strain, cases[k].strain * p.strain_threshold, 1e-12, "strain logged");
+      fixture_near(log[0].strain, cases[k].strain * in.threshold.strain, 1e-12, "strain logged");
     dem_system_free(s);
     fixture_free(t);
   }
@@ -158,8 +158,8 @@ static void threshold_energy_of_a_square_lattice(void **state) {
 static void grains_have_their_inertia(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2);
-  const struct dem_parameters p = fixture_parameters();
-  struct dem_system *s = fixture_create(t, &p);
+  const struct dem_inputs in = fixture_inputs();
+  struct dem_system *s = fixture_create(t, &in);
   for (uint32_t i = 0; i < t->cell_count; ++i) {
     long double area = 0, moment = 0;
     for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; ++v) {
@@ -173,8 +173,10 @@ static void grains_have_their_inertia(void **state) {
       moment += twice / 12 * (ax * ax + ay * ay + ax * bx + ay * by + bx * bx + by * by);
     }
     const struct dem_grain g = dem_system_grain(s, i);
-    fixture_near(g.mass, (double)(p.density * area), 1e-12 * g.mass, "mass"); /* roundings of coordinates of 6 cells */
-    fixture_near(g.moment_of_inertia, (double)(p.density * moment), 1e-12 * g.moment_of_inertia, "moment of inertia");
+    fixture_near(g.mass, (double)(in.grain.density * area), 1e-12 * g.mass,
+                 "mass"); /* roundings of coordinates of 6 cells */
+    fixture_near(g.moment_of_inertia, (double)(in.grain.density * moment), 1e-12 * g.moment_of_inertia,
+                 "moment of inertia");
   }
   dem_system_free(s);
   dem_tessellation_free(t);
@@ -185,18 +187,18 @@ static void grains_have_their_inertia(void **state) {
 static void thresholds_are_weibulls(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.2, 0.01, 1.0, 2);
-  struct dem_parameters p = fixture_parameters();
+  struct dem_inputs in = fixture_inputs();
   const double m = 4.0, n = (double)t->pair_count;
-  p.breaking = true;
-  p.threshold_modulus = m;
-  p.seed = 11;
-  struct dem_system *s = fixture_create(t, &p);
+  in.threshold.breaking = true;
+  in.threshold.modulus = m;
+  struct dem_system *s = NULL;
+  assert_int_equal(dem_system_create(t, &in, 11, &s, NULL), STATUS_OK);
   double sum[2] = {0}, square[2] = {0}, both = 0;
   for (size_t k = 0; k < t->pair_count; ++k) {
     const struct dem_bond_block *b = &s->bond[k / DEM_BLOCK];
     const size_t lane = k % DEM_BLOCK;
-    const double log_of[2] = {-0.5 * log(b->weight_strain[lane]) - log(b->length[lane] * p.strain_threshold),
-                              -log(b->weight_angle[lane] * p.angle_threshold)};
+    const double log_of[2] = {-0.5 * log(b->weight_strain[lane]) - log(b->length[lane] * in.threshold.strain),
+                              -log(b->weight_angle[lane] * in.threshold.angle)};
     for (int q = 0; q < 2; ++q)
       sum[q] += log_of[q] / n, square[q] += log_of[q] * log_of[q] / n;
     both += log_of[0] * log_of[1] / n;
@@ -219,10 +221,10 @@ static void grains_pass_where_said(void **state) {
       struct dem_inputs inputs = DEM_CASE("disc-explosion", law == DEM_CONTACT_PRINTED ? "contact.law=printed" : NULL);
       const double speed = (fast ? 1.1 : 0.9) * dem_describe_passing_speed(&inputs);
       struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 1e-4, false);
-      struct dem_parameters p = fixture_parameters();
-      p.contact = law;
-      p.time_step = 1e-8;
-      struct dem_system *s = fixture_create(t, &p);
+      struct dem_inputs in = fixture_inputs();
+      in.contact.law = law;
+      in.fidelity.time_step = 1e-8;
+      struct dem_system *s = fixture_create(t, &in);
       dem_system_set_velocity(s, 0, 0.5 * speed, 0.0, 0.0);
       dem_system_set_velocity(s, 1, -0.5 * speed, 0.0, 0.0);
       const double pass = 0.04 / speed; /* time to pass unhindered, four times over */

@@ -25,10 +25,10 @@ void *aligned_alloc(size_t alignment, size_t size) {
 #endif
 
 /* K99's grains on a smaller disc, the charge at the same energy per mass; the whole set moving and turning. */
-static struct dem_system *charged(const struct dem_tessellation *t, const struct dem_parameters *p, double vx,
+static struct dem_system *charged(const struct dem_tessellation *t, const struct dem_inputs *in, double vx,
                                   double spin) {
-  struct dem_system *s = fixture_create(t, p);
-  dem_disc_charge(s, t, p->density, 80.0 * p->density * 0.0314);
+  struct dem_system *s = fixture_create(t, in);
+  dem_disc_charge(s, t, in->grain.density, 80.0 * in->grain.density * 0.0314);
   for (uint32_t i = 0; i < t->cell_count; ++i) {
     const struct dem_grain g = dem_system_grain(s, i);
     if (g.present)
@@ -62,13 +62,14 @@ static void momenta_are_conserved(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; ++kind) {
-    struct dem_parameters p = fixture_parameters();
-    p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
-    p.breaking = kind >= 1;
+    struct dem_inputs in = fixture_inputs();
+    in.contact.law = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
+    in.threshold.breaking = kind >= 1;
     if (kind >= 2)
-      p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
-    p.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
-    struct dem_system *s = charged(t, &p, 3.0, 40.0);
+      in.contact.normal_damping = in.contact.tangential_damping = 1e4, in.contact.friction = 0.5,
+      in.contact.damping_bonded = true;
+    in.fidelity.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
+    struct dem_system *s = charged(t, &in, 3.0, 40.0);
     const struct momenta before = momenta(s);
     for (int k = 0; k < 2000; ++k)
       assert_true(dem_system_step(s));
@@ -76,7 +77,8 @@ static void momenta_are_conserved(void **state) {
     fixture_near(after.px, before.px, 1e-12 * before.scale, "momentum x");
     fixture_near(after.py, before.py, 1e-12 * before.scale, "momentum y");
     /* Gear corrects positions and velocities apart, so r x v is kept only to its truncation error */
-    fixture_near(after.l, before.l, (p.integrator == DEM_GEAR ? 1e-4 : 1e-10) * before.turn_scale, "angular momentum");
+    fixture_near(after.l, before.l, (in.fidelity.integrator == DEM_GEAR ? 1e-4 : 1e-10) * before.turn_scale,
+                 "angular momentum");
     const struct dem_break *log;
     assert_true(kind == 0 || dem_system_breaks(s, &log) > 20);
     dem_system_free(s);
@@ -90,14 +92,14 @@ static void energy_is_conserved(void **state) {
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   double worst[3] = {0};
   for (int fine = 0; fine < 3; ++fine) {
-    struct dem_parameters p = fixture_parameters();
-    p.time_step = 2e-6 / (1 << fine);
-    struct dem_system *s = charged(t, &p, 0.0, 0.0);
+    struct dem_inputs in = fixture_inputs();
+    in.fidelity.time_step = 2e-6 / (1 << fine);
+    struct dem_system *s = charged(t, &in, 0.0, 0.0);
     const double before = fixture_total(dem_system_ledger(s));
     const int every = 20 << fine;
     double mean = 0.0;
     int count = 0;
-    for (int k = 0; k * p.time_step < 10e-3; k += every, ++count) {
+    for (int k = 0; k * in.fidelity.time_step < 10e-3; k += every, ++count) {
       for (int i = 0; i < every; ++i)
         assert_true(dem_system_step(s));
       const double error = fixture_total(dem_system_ledger(s)) / before - 1.0;
@@ -105,7 +107,8 @@ static void energy_is_conserved(void **state) {
       worst[fine] = fmax(worst[fine], fabs(error));
     }
     dem_system_free(s);
-    print_message("          dt %.1f us: worst %.2e, mean %.2e\n", p.time_step * 1e6, worst[fine], mean / count);
+    print_message("          dt %.1f us: worst %.2e, mean %.2e\n", in.fidelity.time_step * 1e6, worst[fine],
+                  mean / count);
   }
   assert_true(worst[1] < 0.005);
   /* order 2 is a factor 4; kinks of contact and the maximum over a chaotic run leave some room */
@@ -116,15 +119,15 @@ static void energy_is_conserved(void **state) {
 /* Order by the difference to a run with far smaller steps; beams only, which is a smooth problem. */
 static double order(int integrator, double finest, const struct dem_tessellation *t) {
   double error[2];
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  p.integrator = integrator;
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  in.fidelity.integrator = integrator;
   const double span = 64e-6;
   double *exact = calloc(3 * t->cell_count, sizeof *exact);
   for (int run = 0; run < 3; ++run) {
-    p.time_step = run == 0 ? finest / 8.0 : run == 1 ? finest : 2.0 * finest;
-    struct dem_system *s = charged(t, &p, 0.0, 0.0);
-    for (int k = 0, steps = (int)lround(span / p.time_step); k < steps; ++k)
+    in.fidelity.time_step = run == 0 ? finest / 8.0 : run == 1 ? finest : 2.0 * finest;
+    struct dem_system *s = charged(t, &in, 0.0, 0.0);
+    for (int k = 0, steps = (int)lround(span / in.fidelity.time_step); k < steps; ++k)
       assert_true(dem_system_step(s));
     double sum = 0.0;
     for (uint32_t i = 0; i < t->cell_count; ++i) {
@@ -162,12 +165,12 @@ static void gear_has_its_coefficients(void **state) {
   const double published[2][6] = {{3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
                                   {3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
   for (int damped = 0; damped < 2; ++damped) {
-    struct dem_parameters p = fixture_parameters();
-    p.integrator = DEM_GEAR;
-    p.normal_damping = damped ? 1.0 : 0.0; /* forces may depend on velocities: the other first coefficient */
-    struct dem_system *s = fixture_create(t, &p);
+    struct dem_inputs in = fixture_inputs();
+    in.fidelity.integrator = DEM_GEAR;
+    in.contact.normal_damping = damped ? 1.0 : 0.0; /* forces may depend on velocities: the other first coefficient */
+    struct dem_system *s = fixture_create(t, &in);
     const double start[6] = {0.0152, 0.7e-5, 0.5e-5, -0.3e-5, 0.2e-5, 0.1e-5}; /* x and dt^k/k! d^k x of grain 1 */
-    const double dt = p.time_step;
+    const double dt = in.fidelity.time_step;
     s->c.x[1] = start[0];
     s->c.vx[1] = start[1] / dt;
     for (int k = 2; k < 6; ++k)
@@ -196,14 +199,15 @@ static void ledger_closes(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int kind = 0; kind < 4; ++kind) {
-    struct dem_parameters p = fixture_parameters();
-    p.breaking = true;
-    p.time_step = 2.5e-7;
-    p.contact_on_bonded = kind != 3; /* contacts that begin as beams break, at whatever overlap there is */
-    p.contact = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
+    struct dem_inputs in = fixture_inputs();
+    in.threshold.breaking = true;
+    in.fidelity.time_step = 2.5e-7;
+    in.contact.bonded = kind != 3; /* contacts that begin as beams break, at whatever overlap there is */
+    in.contact.law = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
     if (kind == 2)
-      p.normal_damping = p.tangential_damping = 1e4, p.friction = 0.5, p.damping_on_bonded = true;
-    struct dem_system *s = charged(t, &p, 0.0, 0.0);
+      in.contact.normal_damping = in.contact.tangential_damping = 1e4, in.contact.friction = 0.5,
+      in.contact.damping_bonded = true;
+    struct dem_system *s = charged(t, &in, 0.0, 0.0);
     const double before = fixture_total(dem_system_ledger(s));
     for (int k = 0; k < 8000; ++k)
       assert_true(dem_system_step(s));
@@ -233,11 +237,11 @@ static void rest_is_rest(void **state) {
     struct dem_tessellation *t = NULL;
     assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
     for (int law = 0; law < 3; ++law) {
-      struct dem_parameters p = fixture_parameters();
-      p.contact = law;
-      p.breaking = true;
-      p.integrator = law == 1 ? DEM_GEAR : DEM_VERLET;
-      struct dem_system *s = fixture_create(t, &p);
+      struct dem_inputs in = fixture_inputs();
+      in.contact.law = law;
+      in.threshold.breaking = true;
+      in.fidelity.integrator = law == 1 ? DEM_GEAR : DEM_VERLET;
+      struct dem_system *s = fixture_create(t, &in);
       for (int k = 0; k < 10; ++k)
         assert_true(dem_system_step(s));
       for (uint32_t i = 0; i < t->cell_count; ++i) {
@@ -257,13 +261,13 @@ static void broken_is_unbonded(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
   for (int on_bonded = 0; on_bonded < 2; ++on_bonded) {
-    struct dem_parameters p = fixture_parameters();
-    p.breaking = true;
-    p.strain_threshold = 1e-9;
-    p.contact_on_bonded = on_bonded;
-    p.normal_damping = 1e3;
-    p.damping_on_bonded = on_bonded;
-    struct dem_system *broken = fixture_create(t, &p), *unbonded = fixture_create(t, &p);
+    struct dem_inputs in = fixture_inputs();
+    in.threshold.breaking = true;
+    in.threshold.strain = 1e-9;
+    in.contact.bonded = on_bonded;
+    in.contact.normal_damping = 1e3;
+    in.contact.damping_bonded = on_bonded;
+    struct dem_system *broken = fixture_create(t, &in), *unbonded = fixture_create(t, &in);
     uint64_t seed = 9;
     for (uint32_t i = 0; i < t->cell_count; ++i) {
       const double spin = 2000.0 * fixture_random(&seed);
@@ -292,12 +296,12 @@ static void restored_run_has_the_same_bits(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   for (int integrator = 0; integrator < 2; ++integrator) {
-    struct dem_parameters p = fixture_parameters();
-    p.breaking = true;
-    p.integrator = integrator;
-    p.normal_damping = 1e3;
-    p.threshold_modulus = 5.0;
-    struct dem_system *s = charged(t, &p, 0.0, 0.0), *copy = fixture_create(t, &p);
+    struct dem_inputs in = fixture_inputs();
+    in.threshold.breaking = true;
+    in.fidelity.integrator = integrator;
+    in.contact.normal_damping = 1e3;
+    in.threshold.modulus = 5.0;
+    struct dem_system *s = charged(t, &in, 0.0, 0.0), *copy = fixture_create(t, &in);
     for (int k = 0; k < 777; ++k)
       assert_true(dem_system_step(s));
     const size_t size = dem_system_state_size(s);
@@ -331,11 +335,11 @@ static void restored_run_has_the_same_bits(void **state) {
 static void gear_starts_with_the_derivatives(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.contact = DEM_CONTACT_OFF;
-  p.time_step = 1e-7;
-  p.integrator = DEM_GEAR;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.law = DEM_CONTACT_OFF;
+  in.fidelity.time_step = 1e-7;
+  in.fidelity.integrator = DEM_GEAR;
+  struct dem_system *s = fixture_create(t, &in);
   const double stretch = 1e-5, speed = 0.2;
   fixture_place(s, 1, t->centroid[1].x + stretch, t->centroid[1].y, 0.0);
   dem_system_set_velocity(s, 0, -0.5 * speed, 0.0, 0.0);
@@ -343,7 +347,8 @@ static void gear_starts_with_the_derivatives(void **state) {
   fixture_evaluate(s);
   s->now.ready = 1;
   assert_true(dem_gear_start(s));
-  const double w = sqrt(2.0 * p.beam_modulus / s->mass[0]), turn = w * p.time_step; /* alpha = E for S = l */
+  const double w = sqrt(2.0 * in.beam.young_modulus / s->mass[0]),
+               turn = w * in.fidelity.time_step;       /* alpha = E for S = l */
   const double u = 0.5 * stretch, v = 0.5 * speed / w; /* of grain 1 about the middle; v in radians of the swing */
   const double exact[6] =
       {0, 0, -u * turn * turn / 2, -v * pow(turn, 3) / 6, u * pow(turn, 4) / 24, v * pow(turn, 5) / 120};
@@ -368,8 +373,8 @@ static void turning_grains_meet(void **state) {
       t->vertex[4 * i + v] = (struct dem_point){apart * i + (v == 1 || v == 2 ? half_width : -half_width),
                                                 v >= 2 ? half_length : -half_length};
   }
-  struct dem_parameters p = fixture_parameters();
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  struct dem_system *s = fixture_create(t, &in);
   dem_system_set_velocity(s, 1, 0.0, 0.0, 800.0); /* a quarter turn in 2000 steps */
   bool met = false;
   for (int k = 0; k < 2200 && !met; ++k) {
@@ -379,7 +384,8 @@ static void turning_grains_meet(void **state) {
   assert_true(met);
   /* its corner comes over the other's side when half_length sin a + half_width cos a = apart - half_width */
   const double reach = half_length * sin(s->c.angle[1]) + half_width * cos(s->c.angle[1]);
-  fixture_near(reach, apart - half_width, 800.0 * p.time_step * half_length, "first touch"); /* one step's way */
+  fixture_near(reach, apart - half_width, 800.0 * in.fidelity.time_step * half_length,
+               "first touch"); /* one step's way */
   dem_system_free(s);
   fixture_free(t);
 }
@@ -388,8 +394,8 @@ static void turning_grains_meet(void **state) {
 static void far_flung_grain(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
-  struct dem_parameters p = fixture_parameters();
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  struct dem_system *s = fixture_create(t, &in);
   const size_t bytes = dem_system_bytes(s);
   for (size_t k = 0; k < t->pair_count; ++k)
     if (t->pair[k][0] == 0 || t->pair[k][1] == 0)
@@ -413,9 +419,9 @@ static void step_loop_allocates_nothing(void **state) {
   (void)state;
 #ifndef __SANITIZE_ADDRESS__
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
-  struct dem_parameters p = fixture_parameters();
-  p.breaking = true;
-  struct dem_system *s = charged(t, &p, 0.0, 0.0);
+  struct dem_inputs in = fixture_inputs();
+  in.threshold.breaking = true;
+  struct dem_system *s = charged(t, &in, 0.0, 0.0);
   assert_true(dem_system_step(s));
   const size_t before = allocations;
   for (int k = 0; k < 3000; ++k)
@@ -436,32 +442,32 @@ static void extremes(void **state) {
   for (size_t a = 0; a < 4; ++a)
     for (size_t b = 0; b < 3; ++b)
       for (int integrator = 0; integrator < 2; ++integrator) {
-        struct dem_parameters p = fixture_parameters();
-        p.time_step = steps[a];
-        p.breaking = true;
-        p.strain_threshold = p.angle_threshold = thresholds[b];
-        p.integrator = integrator;
-        p.normal_damping = p.tangential_damping = b == 1 ? 1e20 : 0.0;
-        p.friction = 1.0;
-        struct dem_system *s = charged(t, &p, 0.0, 1e3);
+        struct dem_inputs in = fixture_inputs();
+        in.fidelity.time_step = steps[a];
+        in.threshold.breaking = true;
+        in.threshold.strain = in.threshold.angle = thresholds[b];
+        in.fidelity.integrator = integrator;
+        in.contact.normal_damping = in.contact.tangential_damping = b == 1 ? 1e20 : 0.0;
+        in.contact.friction = 1.0;
+        struct dem_system *s = charged(t, &in, 0.0, 1e3);
         for (int k = 0; k < 300 && dem_system_step(s); ++k) {
         }
         dem_system_ledger(s);
         dem_system_overlap_share(s);
         dem_system_free(s);
       }
-  struct dem_parameters p = fixture_parameters();
-  p.time_step = 20e-6; /* unstable without breaking: grows until it is no number */
-  struct dem_system *s = charged(t, &p, 0.0, 0.0);
-  assert_true(p.time_step > dem_system_stable_time_step(s));
+  struct dem_inputs in = fixture_inputs();
+  in.fidelity.time_step = 20e-6; /* unstable without breaking: grows until it is no number */
+  struct dem_system *s = charged(t, &in, 0.0, 0.0);
+  assert_true(in.fidelity.time_step > dem_system_stable_time_step(s));
   int taken = 0;
   while (taken < 100000 && dem_system_step(s))
     ++taken;
   assert_true(taken < 100000);
   dem_system_free(s);
-  p.density = (double)NAN;
+  in.grain.density = (double)NAN;
   struct error error = {0};
-  assert_int_equal(dem_system_create(t, &p, &s, &error), STATUS_CONTENT);
+  assert_int_equal(dem_system_create(t, &in, 0, &s, &error), STATUS_CONTENT);
   assert_null(s);
   dem_tessellation_free(t);
 }

@@ -240,15 +240,16 @@ static void chord_is_the_gradient(void **state) {
 /* A disc's bonded contacts by windows against the same disc with every contact in the general overlap. */
 static void windows_agree(double disorder) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, disorder, 3);
-  struct dem_parameters p = fixture_parameters();
-  p.beam_modulus = 0.0;
+  struct dem_inputs in = fixture_inputs();
+  in.beam.young_modulus = 0.0;
   const double sizes[] = {1e-6, 1e-4, 1e-2, 0.1, 0.3, 0.6};
   for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
     for (int friction = 0; friction < 2; ++friction) {
-      p.normal_damping = friction ? 1e3 : 0.0;
-      p.tangential_damping = friction ? 1e3 : 0.0;
-      p.friction = friction ? 0.5 : 0.0;
-      struct dem_system *window = fixture_create(t, &p), *general = fixture_create(t, &p);
+      in.fidelity.time_step = 1e-6;
+      in.contact.normal_damping = friction ? 1e3 : 0.0;
+      in.contact.tangential_damping = friction ? 1e3 : 0.0;
+      in.contact.friction = friction ? 0.5 : 0.0;
+      struct dem_system *window = fixture_create(t, &in), *general = fixture_create(t, &in);
       for (size_t pair = 0; pair < general->pair_count; ++pair) {
         general->windowed[pair] = 0;
         const int32_t lane = general->pair_lane[pair];
@@ -272,7 +273,7 @@ static void windows_agree(double disorder) {
             s->c.mobility_x[i] = s->c.mobility_y[i] = s->c.mobility_angle[i] = 0.0;
           }
         /* one step of 1e-30 s keeps positions */
-        window->p.time_step = general->p.time_step = 1e-30;
+        in.fidelity.time_step = 1e-30;
         assert_true(dem_system_step(window) && dem_system_step(general));
       } else {
         fixture_evaluate(window);
@@ -308,13 +309,13 @@ static void windows_of_a_square_lattice(void **state) {
   windows_agree(0.0);
   const double h = 0.01, strain = 1e-3;
   struct dem_tessellation *t = fixture_squares(6, 6, h, 0.0, true);
-  struct dem_parameters p = fixture_parameters();
-  p.beam_modulus = 0.0;
-  struct dem_system *s = fixture_create(t, &p);
+  struct dem_inputs in = fixture_inputs();
+  in.beam.young_modulus = 0.0;
+  struct dem_system *s = fixture_create(t, &in);
   for (uint32_t i = 0; i < 36; ++i)
     fixture_place(s, i, 77.7 + t->centroid[i].x * (1.0 - strain), 33.3 + t->centroid[i].y, 0.0);
   fixture_evaluate(s);
-  const double face = p.grain_modulus / (2.0 * h / sqrt(M_PI)) * h * strain * h;
+  const double face = in.grain.young_modulus / (2.0 * h / sqrt(M_PI)) * h * strain * h;
   for (uint32_t i = 0; i < 36;
        ++i) /* overlaps are 1e-3 of a cell, the gap at rest 1e-11; positions of 77 m have roundings of 1e-14 m */
     fixture_near(s->c.fx[i], i % 6 == 0 ? -face : i % 6 == 5 ? face : 0.0, 3e-8 * face, "push of a face");
@@ -325,7 +326,7 @@ static void windows_of_a_square_lattice(void **state) {
 /* Pairs of every shape: a random polygon cut in two along a diagonal, then pushed and turned anyhow. */
 static void windows_of_odd_shapes(void **state) {
   (void)state;
-  const struct dem_parameters base = fixture_parameters();
+  const struct dem_inputs base = fixture_inputs();
   uint64_t seed = 11;
   int windows = 0, generals = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -356,9 +357,9 @@ static void windows_of_odd_shapes(void **state) {
       t->centroid[k] = (struct dem_point){x, y};
     }
     t->side[0] = hypot(ring.x[cut_at] - ring.x[0], ring.y[cut_at] - ring.y[0]);
-    struct dem_parameters p = base;
-    p.beam_modulus = 0.0;
-    struct dem_system *window = fixture_create(t, &p), *general = fixture_create(t, &p);
+    struct dem_inputs in = base;
+    in.beam.young_modulus = 0.0;
+    struct dem_system *window = fixture_create(t, &in), *general = fixture_create(t, &in);
     general->windowed[0] = 0;
     general->bond[0].stiffness[0] = 0.0;
     const double size = pow(10.0, -1.0 + fixture_random(&seed));
@@ -372,9 +373,11 @@ static void windows_of_odd_shapes(void **state) {
     if (force > 0.0)
       ++*(window->general_count ? &generals : &windows);
     /* areas are right to 1e-12, see above, and chords are of order one */
-    fixture_near(window->c.fx[0], general->c.fx[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force x");
-    fixture_near(window->c.fy[0], general->c.fy[0], 1e-9 * force + 1e-11 * general->pair_stiffness[0], "force y");
-    fixture_near(window->c.torque[1], general->c.torque[1], 1e-9 * force + 1e-11 * general->pair_stiffness[0],
+    fixture_near(window->c.fx[0], general->c.fx[0], 1e-9 * force + 1e-11 * general->pair_contact[0].stiffness,
+                 "force x");
+    fixture_near(window->c.fy[0], general->c.fy[0], 1e-9 * force + 1e-11 * general->pair_contact[0].stiffness,
+                 "force y");
+    fixture_near(window->c.torque[1], general->c.torque[1], 1e-9 * force + 1e-11 * general->pair_contact[0].stiffness,
                  "torque");
     dem_system_free(window);
     dem_system_free(general);

@@ -231,7 +231,8 @@ LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool con
               pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
             }
           }
-          const struct contact_force f = contact_force(&sums, &pairs, touching, &s->p, velocities, &s->sums, at);
+          const struct contact_force f = contact_force(&sums, &pairs, touching, &s->in->contact, velocities, &s->sums,
+                                                       at);
           force_x += f.x;
           force_y += f.y;
           torque_1 += f.torque[0];

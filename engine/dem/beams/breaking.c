@@ -5,29 +5,38 @@
 #include "engine/dem/contacts/neighbours.h"
 #include "engine/dem/step/kernels.h"
 
-void dem_breaking_contact(const struct dem_system *s, int32_t pair, double *stiffness, double *normal,
-                          double *tangential) {
-  const bool bonded = s->alive[pair];
-  *stiffness = bonded && !s->p.contact_on_bonded ? 0.0 : s->pair_stiffness[pair];
-  const bool damped = !bonded || s->p.damping_on_bonded;
-  *normal = damped ? s->pair_normal[pair] : 0.0;
-  *tangential = damped ? s->pair_tangential[pair] : 0.0;
+struct dem_contact dem_breaking_contact(const struct dem_system *s, int32_t pair) {
+  const struct dem_contact_inputs *law = &s->in->contact;
+  struct dem_contact contact = s->pair_contact[pair];
+  if (!s->alive[pair])
+    return contact;
+  if (!law->bonded)
+    contact.stiffness = 0.0;
+  if (!law->damping_bonded)
+    contact.normal_damping = contact.tangential_damping = 0.0;
+  return contact;
 }
 
-static void lose_beam(struct dem_system *s, struct dem_bond_block *block, int lane, int32_t pair) {
+void dem_breaking_set_contact(const struct dem_system *s, int32_t pair, struct dem_bond_block *block, size_t lane) {
+  const struct dem_contact contact = dem_breaking_contact(s, pair);
+  block->stiffness[lane] = contact.stiffness;
+  block->normal_damping[lane] = contact.normal_damping;
+  block->tangential_damping[lane] = contact.tangential_damping;
+}
+
+static void remove_beam(struct dem_system *s, struct dem_bond_block *block, int lane, int32_t pair) {
   block->axial[lane] = block->cross[lane] = block->diagonal[lane] = 0.0;
   block->weight_strain[lane] = block->weight_angle[lane] = 0.0;
   s->alive[pair] = 0;
   if (s->windowed[pair])
-    dem_breaking_contact(s, pair, &block->stiffness[lane], &block->normal_damping[lane],
-                         &block->tangential_damping[lane]);
+    dem_breaking_set_contact(s, pair, block, (size_t)lane);
 }
 
 /* Where contacts act only between grains without a beam, a pair that overlaps as its beam breaks has its contact from
  * now on, at full force: the potential that appears with it, and what the second half of a Verlet step's kick does
  * without the first. What the surfaces cost is less by that; the ledger would gain it otherwise. */
 static double contact_begins(const struct dem_system *s, int32_t pair) {
-  if (s->p.contact != DEM_CONTACT_CONSERVATIVE || s->p.contact_on_bonded)
+  if (s->in->contact.law != DEM_CONTACT_CONSERVATIVE || s->in->contact.bonded)
     return 0.0;
   const uint32_t i = s->pair[pair][0], j = s->pair[pair][1];
   const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i];
@@ -38,12 +47,13 @@ static double contact_begins(const struct dem_system *s, int32_t pair) {
   s->kernels->overlap(ring, &o);
   if (o.apart || !(o.twice_area > 0.0))
     return 0.0;
-  const double push = s->pair_stiffness[pair] * 0.5 * o.twice_area, fx = -push * o.chord_y, fy = push * o.chord_x;
+  const double push = s->pair_contact[pair].stiffness * 0.5 * o.twice_area, fx = -push * o.chord_y,
+               fy = push * o.chord_x;
   double energy = 0.25 * push * o.twice_area;
-  if (s->p.integrator == DEM_VERLET) {
+  if (s->in->fidelity.integrator == DEM_VERLET) {
     const double torque_i = push * o.moment + o.origin_x * fy - o.origin_y * fx;
     const double torque_j = -push * o.moment - ((o.origin_x - dx) * fy - (o.origin_y - dy) * fx);
-    energy += 0.5 * s->p.time_step *
+    energy += 0.5 * s->in->fidelity.time_step *
               (fx * (s->c.vx[i] - s->c.vx[j]) + fy * (s->c.vy[i] - s->c.vy[j]) + torque_i * s->c.spin[i] +
                torque_j * s->c.spin[j]);
   }
@@ -57,7 +67,7 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
   const double stretch = length - block->length[lane], twist = theta_first - theta_second;
   double energy = 0.5 * block->axial[lane] * stretch * stretch + 0.5 * block->diagonal[lane] * twist * twist +
                   block->cross[lane] * theta_first * theta_second;
-  if (s->p.integrator == DEM_VERLET) {
+  if (s->in->fidelity.integrator == DEM_VERLET) {
     /* The second half of this step's kick will lack the beam: what it would have done to the grains is still theirs. */
     const uint32_t i = block->first[lane], j = block->second[lane];
     const double m1 = block->diagonal[lane] * (theta_second - theta_first) - block->cross[lane] * theta_second;
@@ -66,7 +76,7 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
     const double vx = s->c.vx[i] - s->c.vx[j], vy = s->c.vy[i] - s->c.vy[j];
     const double power = (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] +
                          m2 * s->c.spin[j];
-    energy += 0.5 * s->p.time_step * power;
+    energy += 0.5 * s->in->fidelity.time_step * power;
   }
   s->now.broken_beam += energy - contact_begins(s, pair);
   const double strain = stretch / block->length[lane];
@@ -80,14 +90,14 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
                  stretch * stretch * block->weight_strain[lane],
   };
   s->now.last_break = s->now.time;
-  lose_beam(s, block, lane, pair);
+  remove_beam(s, block, lane, pair);
 }
 
 void dem_breaking_cut(struct dem_system *s, int32_t pair) {
   if (!s->alive[pair])
     return;
   const int32_t slot = s->pair_lane[pair];
-  lose_beam(s, &s->bond[slot / DEM_BLOCK], slot % DEM_BLOCK, pair);
+  remove_beam(s, &s->bond[slot / DEM_BLOCK], slot % DEM_BLOCK, pair);
 }
 
 void dem_breaking_clear(const struct dem_system *s, struct dem_bond_block *block, int lane) {

@@ -19,8 +19,10 @@ void dem_breaking_clear(const struct dem_system *system, struct dem_bond_block *
  * and small. */
 void dem_breaking_turn(struct dem_bond_block *block, int lane, double ux, double uy, double sine, double cosine);
 
-/* Contact coefficients of a tessellation pair as they act now: zero while a bonded pair's are switched off. */
-void dem_breaking_contact(const struct dem_system *system, int32_t pair, double *stiffness, double *normal,
-                          double *tangential);
+/* Coefficients of a tessellation pair's contact as they act now: zero while the inputs switch off those of bonded
+ * pairs and the beam holds. */
+struct dem_contact dem_breaking_contact(const struct dem_system *system, int32_t pair);
+/* Writes them to the pair's lane. */
+void dem_breaking_set_contact(const struct dem_system *system, int32_t pair, struct dem_bond_block *block, size_t lane);
 
 #endif

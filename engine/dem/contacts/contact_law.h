@@ -50,7 +50,7 @@ struct contact_force {
 
 /* `touching`: lanes that overlap. Powers are added to block lanes `at`... of *booked. */
 LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums, const struct contact_pairs *pairs,
-                                                lanes_i touching, const struct dem_parameters *p, bool velocities,
+                                                lanes_i touching, const struct dem_contact_inputs *law, bool velocities,
                                                 struct dem_sums *booked, int at) {
   const lanes_d area = lanes_mask(touching, 0.5 * sums->twice_area);
   const lanes_d cx = lanes_mask(touching, sums->chord_x), cy = lanes_mask(touching, sums->chord_y);
@@ -80,14 +80,14 @@ LANES_INLINE struct contact_force contact_force(const struct contact_sums *sums,
   const lanes_d uy = (pairs->vy[1] + pairs->spin[1] * r2x) - (pairs->vy[0] + pairs->spin[0] * r1x);
   const lanes_d approach = ux * nx + uy * ny, slip = ux * tx + uy * ty;
   lanes_d elastic = pairs->stiffness * area; /* K99 eq 2 */
-  if (p->contact == DEM_CONTACT_CONSERVATIVE)
+  if (law->law == DEM_CONTACT_CONSERVATIVE)
     elastic *= length;
   /* K99 eq 3 with the sign that takes energy out; never attractive. */
   const lanes_d damped = elastic + pairs->normal_damping * approach;
   const lanes_d normal = lanes_mask(touching, lanes_max(damped, damped * 0.0));
   /* K99 eq 4, corrected: -sign(v_T) min(m gamma_T |v_T|, mu |F_N|). */
   const lanes_d speed = lanes_abs(slip);
-  const lanes_d friction = lanes_min(pairs->tangential_damping * speed, p->friction * normal);
+  const lanes_d friction = lanes_min(pairs->tangential_damping * speed, law->friction * normal);
   const lanes_d signed_friction = lanes_select(slip < 0.0, -friction, friction);
   force.x = normal * nx + signed_friction * tx;
   force.y = normal * ny + signed_friction * ty;

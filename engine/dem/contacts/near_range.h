@@ -37,11 +37,12 @@ LANES_INLINE void near_range(struct dem_system *s) {
   }
 }
 
-/* Contacts whose sums wait for a full vector. */
+/* Contacts that wait until there are enough for a full vector. */
+enum { NEAR_COLUMNS = 12 };
 struct near_batch {
   int count;
   uint32_t first[LANES], second[LANES];
-  double column[12][LANES]; /* sums, origin, coefficients, in the order of the fields below */
+  double column[NEAR_COLUMNS][LANES]; /* sums, origin, coefficients: the order of near_add */
 };
 
 LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, bool measure, bool velocities) {
@@ -50,12 +51,12 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
   for (int lane = batch->count; lane < LANES; ++lane) {
     batch->first[lane] = s->ghost;
     batch->second[lane] = s->ghost + 1;
-    for (int f = 0; f < 12; ++f)
+    for (int f = 0; f < NEAR_COLUMNS; f++)
       batch->column[f][lane] = 0.0;
   }
   const struct dem_columns *c = &s->c;
-  lanes_d v[12];
-  for (int f = 0; f < 12; ++f)
+  lanes_d v[NEAR_COLUMNS];
+  for (int f = 0; f < NEAR_COLUMNS; f++)
     v[f] = lanes_load(batch->column[f]);
   const struct contact_sums sums =
       {.twice_area = v[0], .chord_x = v[1], .chord_y = v[2], .moment = v[3], .xx = v[4], .xy = v[5], .yy = v[6]};
@@ -78,7 +79,7 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
         pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
         pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
       }
-    const struct contact_force f = contact_force(&sums, &pairs, v[0] > 0.0, &s->p, velocities, &s->sums, 0);
+    const struct contact_force f = contact_force(&sums, &pairs, v[0] > 0.0, &s->in->contact, velocities, &s->sums, 0);
     for (int lane = 0; lane < batch->count; ++lane) {
       const uint32_t i = batch->first[lane], j = batch->second[lane];
       c->fx[i] += f.x[lane];
@@ -92,47 +93,68 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
   batch->count = 0;
 }
 
-/* One by one through the general overlap. A near pair that is apart gets a new cached side (unless measuring). */
+/* A pair for the general overlap, with its coefficients as they act now. */
+struct near_candidate {
+  uint32_t first, second;
+  struct dem_contact contact;
+};
+
+LANES_INLINE struct near_candidate near_candidate(const struct dem_system *s, uint32_t code) {
+  const uint32_t slot = code & ~DEM_FROM_BOND;
+  if (code & DEM_FROM_BOND) {
+    const int32_t pair = s->lane_pair[slot];
+    return (struct near_candidate){s->pair[pair][0], s->pair[pair][1], dem_breaking_contact(s, pair)};
+  }
+  const struct dem_near_pair *near = &s->near_pair[slot];
+  if (near->pair == DEM_NO_PAIR)
+    return (struct near_candidate){near->first, near->second, near->contact};
+  return (struct near_candidate){near->first, near->second, dem_breaking_contact(s, near->pair)};
+}
+
+LANES_INLINE void near_add(struct near_batch *batch, const struct near_candidate *candidate,
+                           const struct dem_overlap *overlap) {
+  const struct dem_contact *contact = &candidate->contact;
+  const double column[NEAR_COLUMNS] = {overlap->twice_area,
+                                       overlap->chord_x,
+                                       overlap->chord_y,
+                                       overlap->moment,
+                                       overlap->xx,
+                                       overlap->xy,
+                                       overlap->yy,
+                                       overlap->origin_x,
+                                       overlap->origin_y,
+                                       contact->stiffness,
+                                       contact->normal_damping,
+                                       contact->tangential_damping};
+  batch->first[batch->count] = candidate->first;
+  batch->second[batch->count] = candidate->second;
+  for (int f = 0; f < NEAR_COLUMNS; f++)
+    batch->column[f][batch->count] = column[f];
+  batch->count++;
+}
+
+/* Evaluates the pairs one by one with the general overlap. A near pair that is apart gets a new cached side (unless
+ * measuring). */
 LANES_INLINE void near_general(struct dem_system *s, bool measure, bool velocities) {
   struct near_batch batch = {0};
   struct dem_ring ring[2];
-  for (size_t k = 0; k < s->general_count; ++k) {
-    const uint32_t code = s->general[k], slot = code & ~DEM_FROM_BOND;
-    uint32_t i, j;
-    int32_t pair;
-    double stiffness, normal, tangential;
-    if (code & DEM_FROM_BOND) {
-      pair = s->lane_pair[slot];
-      i = s->pair[pair][0];
-      j = s->pair[pair][1];
-    } else {
-      const struct dem_near_pair *near = &s->near_pair[slot];
-      pair = near->pair;
-      i = near->first;
-      j = near->second;
-      stiffness = near->stiffness, normal = near->normal_damping, tangential = near->tangential_damping;
-    }
-    if (pair != DEM_NO_PAIR)
-      dem_breaking_contact(s, pair, &stiffness, &normal, &tangential);
+  for (size_t k = 0; k < s->general_count; k++) {
+    const uint32_t code = s->general[k];
+    const struct near_candidate candidate = near_candidate(s, code);
+    const uint32_t i = candidate.first, j = candidate.second;
     dem_neighbours_ring(s, i, 0.0, 0.0, &ring[0]);
     dem_neighbours_ring(s, j, s->c.x[j] - s->c.x[i], s->c.y[j] - s->c.y[i], &ring[1]);
     struct dem_overlap overlap;
     overlap_rings(ring, &overlap);
     if (overlap.apart) {
       if (!measure && !(code & DEM_FROM_BOND))
-        dem_neighbours_cache_side(s, slot, &overlap);
+        dem_neighbours_cache_side(s, code, &overlap);
       continue;
     }
-    if (!(overlap.twice_area > 0.0) || !(stiffness > 0.0))
+    if (!(overlap.twice_area > 0.0) || !(candidate.contact.stiffness > 0.0))
       continue;
-    const double column[12] = {overlap.twice_area, overlap.chord_x, overlap.chord_y, overlap.moment,
-                               overlap.xx,         overlap.xy,      overlap.yy,      overlap.origin_x,
-                               overlap.origin_y,   stiffness,       normal,          tangential};
-    batch.first[batch.count] = i;
-    batch.second[batch.count] = j;
-    for (int f = 0; f < 12; ++f)
-      batch.column[f][batch.count] = column[f];
-    if (++batch.count == LANES)
+    near_add(&batch, &candidate, &overlap);
+    if (batch.count == LANES)
       near_flush(s, &batch, measure, velocities);
   }
   near_flush(s, &batch, measure, velocities);

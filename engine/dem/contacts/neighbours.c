@@ -188,14 +188,8 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
     return false;
   struct dem_near_pair *near = &s->near_pair[s->now.near_count];
   *near = (struct dem_near_pair){.first = j, .second = i, .pair = pair};
-  if (pair == DEM_NO_PAIR) {
-    const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
-    const double reference_side = dem_assemble_reference_side(0.0, s->diameter[i], s->diameter[j]);
-    const double effective = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);
-    near->stiffness = s->p.grain_modulus * per_length / (s->p.contact == DEM_CONTACT_PRINTED ? 1.0 : reference_side);
-    near->normal_damping = effective * s->p.normal_damping;
-    near->tangential_damping = effective * s->p.tangential_damping;
-  }
+  if (pair == DEM_NO_PAIR)
+    near->contact = dem_assemble_contact(s, i, j, 0.0);
   dem_neighbours_cache_side(s, (uint32_t)s->now.near_count, &overlap);
   ++s->now.near_count;
   return true;
@@ -205,7 +199,7 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
 static void set_skins(struct dem_system *s) {
   struct dem_columns *c = &s->c;
   double *const speed = c->list_x; /* until the positions go there */
-  const double reach = horizon_steps * s->p.time_step;
+  const double reach = horizon_steps * s->in->fidelity.time_step;
   for (size_t i = 0; i < s->count; ++i)
     speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->radius[i] * fabs(c->spin[i]);
   for (size_t i = 0; i < s->count; ++i) {
@@ -234,7 +228,7 @@ bool dem_neighbours_make(struct dem_system *s) {
   set_skins(s);
   repack_bonds(s);
   s->now.near_count = 0;
-  if (s->p.contact == DEM_CONTACT_OFF)
+  if (s->in->contact.law == DEM_CONTACT_OFF)
     return true;
   const double per_size = 1.0 / (1.5 * s->mean_diameter);
   size_t entries = 0;

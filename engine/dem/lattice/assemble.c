@@ -11,9 +11,20 @@
 /* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions, where a
  * window is seldom exact: their contact goes by the near list. */
 static const double shortest_window = 0.05;
+
 double dem_assemble_reference_side(double side, double diameter_i, double diameter_j) {
   const double usual = 0.27 * (diameter_i + diameter_j);
   return side > 0.0 ? fmax(side, 0.5 * usual) : usual;
+}
+
+struct dem_contact dem_assemble_contact(const struct dem_system *s, uint32_t i, uint32_t j, double side) {
+  const struct dem_contact_inputs *contact = &s->in->contact;
+  const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
+  const double mass = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);       /* m_eff, K99 eq 6 */
+  double stiffness = s->in->grain.young_modulus * per_length;
+  if (contact->law != DEM_CONTACT_PRINTED)
+    stiffness /= dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]);
+  return (struct dem_contact){stiffness, mass * contact->normal_damping, mass * contact->tangential_damping};
 }
 
 /* Grains are this much smaller than their cells, so that rounding gives no overlap at rest: a gap of 1e-11 cells. */
@@ -39,7 +50,7 @@ static bool allocate(struct dem_system *s, size_t vertices) {
                               &s->c.guess_spin, &s->c.list_x,
                               &s->c.list_y,     &s->c.list_angle,
                               &s->c.skin,       &s->radius};
-  const size_t basic = sizeof columns / sizeof *columns, gear = s->p.integrator == DEM_GEAR ? 12 : 0;
+  const size_t basic = sizeof columns / sizeof *columns, gear = s->in->fidelity.integrator == DEM_GEAR ? 12 : 0;
   s->arena_doubles = (basic + gear) * s->padded;
   s->arena = zeroed(s->arena_doubles, sizeof *s->arena);
   const size_t n = s->count, pairs = s->pair_count;
@@ -59,9 +70,7 @@ static bool allocate(struct dem_system *s, size_t vertices) {
   s->held_spin = zeroed(n, sizeof *s->held_spin);
   s->held = zeroed(n, sizeof *s->held);
   s->pair = zeroed(pairs, sizeof *s->pair);
-  s->pair_stiffness = zeroed(pairs, sizeof *s->pair_stiffness);
-  s->pair_normal = zeroed(pairs, sizeof *s->pair_normal);
-  s->pair_tangential = zeroed(pairs, sizeof *s->pair_tangential);
+  s->pair_contact = zeroed(pairs, sizeof *s->pair_contact);
   s->alive = zeroed(pairs, 1);
   s->windowed = zeroed(pairs, 1);
   s->bond_capacity = (pairs + DEM_BLOCK - 1) / DEM_BLOCK;
@@ -84,10 +93,9 @@ static bool allocate(struct dem_system *s, size_t vertices) {
   s->cell_low = malloc(n * sizeof *s->cell_low);
   if (!s->arena || !s->mass || !s->inertia || !s->diameter || !s->first_vertex || !s->outline_x || !s->outline_y ||
       !s->first_partner || !s->partner || !s->partner_pair || !s->freedoms || !s->present || !s->held_vx ||
-      !s->held_vy || !s->held_spin || !s->held || !s->pair || !s->pair_stiffness || !s->pair_normal ||
-      !s->pair_tangential || !s->alive || !s->windowed || !s->pair_lane || !s->lane_pair || !s->bond || !s->log ||
-      !s->near || !s->near_pair || !s->general || !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key ||
-      !s->cell_low)
+      !s->held_vy || !s->held_spin || !s->held || !s->pair || !s->pair_contact || !s->alive || !s->windowed ||
+      !s->pair_lane || !s->lane_pair || !s->bond || !s->log || !s->near || !s->near_pair || !s->general ||
+      !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key || !s->cell_low)
     return false;
   double *next = s->arena;
   for (size_t k = 0; k < basic; ++k, next += s->padded)
@@ -105,14 +113,14 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
     if (sides < 3 || sides > DEM_MAX_VERTICES)
       return status_fail(error, STATUS_CONTENT, "grain %zu has %u sides; 3 to %d can be used.", i, sides,
                          DEM_MAX_VERTICES);
-    if (!(t->area[i] > 0.0 && t->area[i] < 1e30 && t->polar_moment[i] > 0.0 && t->polar_moment[i] < 1e30))
+    s->mass[i] = s->in->grain.density * t->area[i];
+    s->inertia[i] = s->in->grain.density * t->polar_moment[i];
+    if (!(s->mass[i] > 0.0 && s->mass[i] < 1e30 && s->inertia[i] > 0.0 && s->inertia[i] < 1e30))
       return status_fail(error, STATUS_CONTENT,
-                         "grain %zu has area %g m2 and polar moment %g m4; both must be positive.", i, t->area[i],
-                         t->polar_moment[i]);
+                         "grain %zu has mass %g kg/m and moment of inertia %g kg m; both must be positive.", i,
+                         s->mass[i], s->inertia[i]);
     s->c.x[i] = t->centroid[i].x;
     s->c.y[i] = t->centroid[i].y;
-    s->mass[i] = s->p.density * t->area[i];
-    s->inertia[i] = s->p.density * t->polar_moment[i];
     s->c.mobility_x[i] = s->c.mobility_y[i] = 1.0 / s->mass[i];
     s->c.mobility_angle[i] = 1.0 / s->inertia[i];
     s->diameter[i] = 2.0 * sqrt(t->area[i] / M_PI);
@@ -180,90 +188,96 @@ static void window(struct dem_system *s, struct dem_bond_block *block, size_t la
 }
 
 /* Thresholds of a beam: Weibull with the printed threshold as its scale, so that modulus -> infinity gives K99. */
-static double threshold(const struct dem_system *s, double scale, size_t pair, uint64_t draw) {
-  if (isnan(s->p.threshold_modulus))
+static double threshold(const struct dem_inputs *in, uint64_t seed, double scale, size_t pair, uint64_t draw) {
+  if (field_is_off(in->threshold.modulus))
     return scale;
-  const double u = random_draw(s->p.seed, RANDOM_THRESHOLD, pair, draw);
-  return scale * pow(-log1p(-u), 1.0 / s->p.threshold_modulus);
+  const double u = random_draw(seed, RANDOM_THRESHOLD, pair, draw);
+  return scale * pow(-log1p(-u), 1.0 / in->threshold.modulus);
 }
 
-static status bonds(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
-  const struct dem_parameters *p = &s->p;
-  for (size_t k = 0; k < s->pair_count; ++k) {
-    const uint32_t i = t->pair[k][0], j = t->pair[k][1];
-    if (i >= j || j >= s->count)
-      return status_fail(error, STATUS_CONTENT,
-                         "pair %zu joins grains %u and %u: the first must be lower, both below %zu.", k, i, j,
-                         s->count);
-    const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i], length = hypot(dx, dy), side = t->side[k];
-    if (!(side > 0.0 && side < 1e30 && length > 0.0))
-      return status_fail(error, STATUS_CONTENT, "pair %zu has a common side of %g m and centres %g m apart.", k, side,
-                         length);
-    s->pair[k][0] = i;
-    s->pair[k][1] = j;
-    ++s->first_partner[i + 2];
-    ++s->first_partner[j + 2];
-    s->alive[k] = 1;
-    s->pair_lane[k] = (int32_t)k;
-    s->lane_pair[k] = (int32_t)k;
-    struct dem_bond_block *block = &s->bond[k / DEM_BLOCK];
-    const size_t lane = k % DEM_BLOCK;
-    dem_breaking_clear(s, block, (int)lane);
-    block->first[lane] = i;
-    block->second[lane] = j;
-    /* K99 eqs 7-12 with b = 2a and I = S^3/12. */
-    const double a = length / (p->beam_modulus * side), b = 2.0 * a;
-    const double c = length * length * length / (p->beam_modulus * side * side * side / 12.0);
-    const double beta = p->beam_modulus > 0.0 ? 1.0 / (b + c / 12.0) : 0.0;
-    const double delta = p->beam_modulus > 0.0 ? beta * (b / c + 1.0 / 3.0) : 0.0;
-    block->reference_x[lane] = dx / length;
-    block->reference_y[lane] = dy / length;
-    block->length[lane] = length; /* bond_rest makes these three the step's own to the last bit */
-    block->axial[lane] = p->beam_modulus * side / length;
-    block->cross[lane] = 0.5 * beta * length * length;
-    block->diagonal[lane] = delta * length * length;
-    if (p->breaking) {
-      const double strain = length * threshold(s, p->strain_threshold, k, 0);
-      block->weight_strain[lane] = fmin(DBL_MAX, 1.0 / (strain * strain));
-      block->weight_angle[lane] = fmin(DBL_MAX, 1.0 / threshold(s, p->angle_threshold, k, 1));
-    }
-    const double per_length = 0.5 * (1.0 / s->diameter[i] + 1.0 / s->diameter[j]); /* 1 / L_c */
-    const double effective = s->mass[i] * s->mass[j] / (s->mass[i] + s->mass[j]);  /* K99 eq 6 */
-    s->pair_stiffness[k] = p->grain_modulus * per_length /
-                           (p->contact == DEM_CONTACT_PRINTED
-                                ? 1.0
-                                : dem_assemble_reference_side(side, s->diameter[i], s->diameter[j]));
-    s->pair_normal[k] = effective * p->normal_damping;
-    s->pair_tangential[k] = effective * p->tangential_damping;
-    if (p->contact == DEM_CONTACT_OFF)
-      continue;
-    const double size = 0.5 * (s->diameter[i] + s->diameter[j]);
-    uint32_t side_i, side_j;
-    if (side < shortest_window * size || !common_side(t, i, j, 1e-9 * size, &side_i, &side_j))
-      continue;
-    s->windowed[k] = 1;
-    window(s, block, lane, 0, i, side_i);
-    window(s, block, lane, 1, j, side_j);
-    dem_breaking_contact(s, (int32_t)k, &block->stiffness[lane], &block->normal_damping[lane],
-                         &block->tangential_damping[lane]);
-  }
-  for (size_t lane = s->pair_count; lane < s->bond_capacity * DEM_BLOCK; ++lane) {
-    s->lane_pair[lane] = DEM_NO_PAIR;
-    dem_breaking_clear(s, &s->bond[lane / DEM_BLOCK], (int)(lane % DEM_BLOCK));
-  }
-  s->now.bond_blocks = s->bond_capacity;
-  for (size_t i = 0; i < s->count; ++i)
+/* Constants of one beam: K99 eqs 7-12 with b = 2a and I = S^3/12, and the weights of the breaking rule, eq 13. */
+static void beam(const struct dem_inputs *in, uint64_t seed, size_t pair, double length, double side,
+                 struct dem_bond_block *block, size_t lane) {
+  const double e = in->beam.young_modulus;
+  const double a = length / (e * side), b = 2.0 * a;
+  const double c = length * length * length / (e * side * side * side / 12.0);
+  const double beta = e > 0.0 ? 1.0 / (b + c / 12.0) : 0.0;
+  const double delta = e > 0.0 ? beta * (b / c + 1.0 / 3.0) : 0.0;
+  block->axial[lane] = e * side / length;
+  block->cross[lane] = 0.5 * beta * length * length;
+  block->diagonal[lane] = delta * length * length;
+  if (!in->threshold.breaking)
+    return;
+
+  const double strain = length * threshold(in, seed, in->threshold.strain, pair, 0);
+  block->weight_strain[lane] = fmin(DBL_MAX, 1.0 / (strain * strain));
+  block->weight_angle[lane] = fmin(DBL_MAX, 1.0 / threshold(in, seed, in->threshold.angle, pair, 1));
+}
+
+/* Contact of one pair, and its window where the pair has one. */
+static void contact(struct dem_system *s, const struct dem_tessellation *t, size_t pair, struct dem_bond_block *block,
+                    size_t lane) {
+  const uint32_t i = t->pair[pair][0], j = t->pair[pair][1];
+  const double side = t->side[pair], size = 0.5 * (s->diameter[i] + s->diameter[j]);
+  s->pair_contact[pair] = dem_assemble_contact(s, i, j, side);
+  if (s->in->contact.law == DEM_CONTACT_OFF || side < shortest_window * size)
+    return;
+
+  uint32_t side_i, side_j;
+  if (!common_side(t, i, j, 1e-9 * size, &side_i, &side_j))
+    return;
+  s->windowed[pair] = 1;
+  window(s, block, lane, 0, i, side_i);
+  window(s, block, lane, 1, j, side_j);
+  dem_breaking_set_contact(s, (int32_t)pair, block, lane);
+}
+
+static status bond(struct dem_system *s, const struct dem_tessellation *t, uint64_t seed, size_t pair,
+                   struct error *error) {
+  const uint32_t i = t->pair[pair][0], j = t->pair[pair][1];
+  if (i >= j || j >= s->count)
+    return status_fail(error, STATUS_CONTENT,
+                       "pair %zu joins grains %u and %u: the first must be lower, both below %zu.", pair, i, j,
+                       s->count);
+  const double dx = s->c.x[j] - s->c.x[i], dy = s->c.y[j] - s->c.y[i], length = hypot(dx, dy), side = t->side[pair];
+  if (!(side > 0.0 && side < 1e30 && length > 0.0))
+    return status_fail(error, STATUS_CONTENT, "pair %zu has a common side of %g m and centres %g m apart.", pair, side,
+                       length);
+
+  struct dem_bond_block *block = &s->bond[pair / DEM_BLOCK];
+  const size_t lane = pair % DEM_BLOCK;
+  s->pair[pair][0] = i;
+  s->pair[pair][1] = j;
+  s->alive[pair] = 1;
+  s->pair_lane[pair] = (int32_t)pair;
+  s->lane_pair[pair] = (int32_t)pair;
+  block->first[lane] = i;
+  block->second[lane] = j;
+  block->reference_x[lane] = dx / length;
+  block->reference_y[lane] = dy / length;
+  block->length[lane] = length; /* bond_rest makes these three the step's own to the last bit */
+  beam(s->in, seed, pair, length, side, block, lane);
+  contact(s, t, pair, block, lane);
+  return STATUS_OK;
+}
+
+/* Neighbours of each grain, as compressed rows. The rows' ends are counted two entries ahead, so that filling the rows
+ * moves each end to its place. */
+static void partners(struct dem_system *s) {
+  for (size_t k = 0; k < s->pair_count; k++)
+    for (int end = 0; end < 2; end++)
+      s->first_partner[s->pair[k][end] + 2]++;
+  for (size_t i = 0; i < s->count; i++)
     s->first_partner[i + 2] += s->first_partner[i + 1];
-  for (size_t k = 0; k < s->pair_count; ++k)
-    for (int end = 0; end < 2; ++end) {
+  for (size_t k = 0; k < s->pair_count; k++)
+    for (int end = 0; end < 2; end++) {
       const uint32_t at = s->first_partner[s->pair[k][end] + 1]++;
       s->partner[at] = s->pair[k][1 - end];
       s->partner_pair[at] = (uint32_t)k;
     }
-  return STATUS_OK;
 }
 
-status dem_assemble(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
+status dem_assemble(struct dem_system *s, const struct dem_tessellation *t, uint64_t seed, struct error *error) {
   if (t->cell_count == 0 || t->cell_count > 0x0fffffffu || t->pair_count > 0x3fffffffu)
     return status_fail(error, STATUS_CONTENT, "a system needs 1 to 2^28 grains; there are %zu.", t->cell_count);
   s->count = t->cell_count;
@@ -272,6 +286,16 @@ status dem_assemble(struct dem_system *s, const struct dem_tessellation *t, stru
   s->ghost = (uint32_t)s->count;
   if (!allocate(s, t->first_vertex[t->cell_count] - t->first_vertex[0]))
     return status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
-  status done = grains(s, t, error);
-  return done == STATUS_OK ? bonds(s, t, error) : done;
+
+  s->now.bond_blocks = s->bond_capacity;
+  for (size_t lane = 0; lane < s->bond_capacity * DEM_BLOCK; lane++) {
+    s->lane_pair[lane] = DEM_NO_PAIR;
+    dem_breaking_clear(s, &s->bond[lane / DEM_BLOCK], (int)(lane % DEM_BLOCK));
+  }
+  status code = grains(s, t, error);
+  for (size_t k = 0; k < s->pair_count && !code; k++)
+    code = bond(s, t, seed, k, error);
+  if (!code)
+    partners(s);
+  return code;
 }

@@ -97,7 +97,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     results->first_break = log[0].time;
     results->last_break = log[breaks - 1].time;
   }
-  if (run->inputs.kind == DEM_UNIAXIAL || run->inputs.kind == DEM_COMPRESSION)
+  if (dem_inputs_loaded(&run->inputs))
     dem_loading_results(run, results);
 }
 

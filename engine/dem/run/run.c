@@ -37,31 +37,6 @@ void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *f
   va_end(arguments);
 }
 
-static struct dem_parameters parameters_of(const struct dem_inputs *in, uint64_t seed) {
-  return (struct dem_parameters){
-      .density = in->grain.density,
-      .grain_modulus = in->grain.young_modulus,
-      .beam_modulus = in->beam.young_modulus,
-      .contact = in->contact.law,
-      .contact_on_bonded = in->contact.bonded,
-      .normal_damping = in->contact.normal_damping,
-      .tangential_damping = in->contact.tangential_damping,
-      .friction = in->contact.friction,
-      .damping_on_bonded = in->contact.damping_bonded,
-      .breaking = in->threshold.breaking,
-      .strain_threshold = in->threshold.strain,
-      .angle_threshold = in->threshold.angle,
-      .threshold_modulus = in->threshold.modulus,
-      .seed = seed,
-      .integrator = in->fidelity.integrator,
-      .time_step = in->fidelity.time_step,
-  };
-}
-
-static bool loaded(const struct dem_run *run) {
-  return run->inputs.kind == DEM_UNIAXIAL || run->inputs.kind == DEM_COMPRESSION;
-}
-
 static void held_force(const struct dem_run *run, double force[2]) {
   force[0] = force[1] = 0;
   const uint32_t *layers[2] = {run->lower, run->upper};
@@ -112,11 +87,10 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
   run->inputs = *inputs;
   run->seed = seed;
   run->charge = UINT32_MAX;
-  struct dem_parameters parameters = parameters_of(inputs, seed);
   struct dem_ledger ledger;
   double magnitude;
   if ((code = dem_protocol_body(inputs, seed, &run->tessellation, error)) ||
-      (code = dem_system_create(run->tessellation, &parameters, &run->system, error)))
+      (code = dem_system_create(run->tessellation, &run->inputs, seed, &run->system, error)))
     goto cleanup;
   run->held = calloc(run->tessellation->cell_count, 1);
   if (!run->held) {
@@ -173,7 +147,7 @@ static void check_energy(struct dem_run *run) {
   }
   double drift = fabs(closed - run->state.closed_start), bound = run->inputs.fidelity.energy_bound;
   /* Under a load the work starts from nothing: judge once the sides move at their full speed. */
-  if (loaded(run) && dem_system_time(run->system) < run->inputs.loading.ramp)
+  if (dem_inputs_loaded(&run->inputs) && dem_system_time(run->system) < run->inputs.loading.ramp)
     return;
   if (!field_is_off(bound) && input > 0 && drift > bound * input)
     dem_run_end(run, DEM_STOP_FAULT, OUTCOME_ENERGY,
@@ -185,7 +159,7 @@ static void check_energy(struct dem_run *run) {
 static void check_stop(struct dem_run *run) {
   double time = dem_system_time(run->system), last = dem_system_last_break(run->system);
   double half_step = 0.5 * run->inputs.fidelity.time_step;
-  if (loaded(run))
+  if (dem_inputs_loaded(&run->inputs))
     return; /* loading.c ends these */
   const struct dem_break *log;
   bool broke = dem_system_breaks(run->system, &log) > 0;
@@ -202,7 +176,7 @@ static void check_stop(struct dem_run *run) {
 
 void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
   double dt = run->inputs.fidelity.time_step;
-  bool is_loaded = loaded(run);
+  bool is_loaded = dem_inputs_loaded(&run->inputs);
   for (uint64_t k = 0; k < max_steps && !run->state.finished; k++) {
     if (is_loaded)
       dem_loading_drive(run);

@@ -129,7 +129,7 @@ char *dem_describe_scene(const struct dem_inputs *in) {
     struct dem_run *run = NULL;
     struct error error = {0};
     probe.stop.end_time = 1e-12;
-    if (probe.kind == DEM_UNIAXIAL || probe.kind == DEM_COMPRESSION)
+    if (dem_inputs_loaded(&probe))
       probe.kind = DEM_BLOCK_IMPACT; /* the same body without its record */
     probe.impact.speed = 1;
     if (dem_run_create(&probe, 1, &run, &error))

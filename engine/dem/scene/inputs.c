@@ -4,8 +4,6 @@
 
 #include <math.h>
 
-#include "engine/dem/step/system.h"
-
 static const char *const kinds[] = {"disc-explosion", "block-impact",   "uniaxial",
                                     "compression",    "disc-collision", NULL};
 static const char *const laws[] = {"conservative", "printed", "off", NULL};
@@ -150,16 +148,23 @@ const struct field_table dem_inputs = FIELD_TABLE(
     rows, struct dem_inputs, "dem scene",
     "Discrete elements in the plane: Voronoi grains joined by breakable beams (Kun, D'Addetta, Herrmann & Ramm 1999).");
 
+static bool discs(const struct dem_inputs *in) {
+  return in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION;
+}
+
+bool dem_inputs_loaded(const struct dem_inputs *in) {
+  return in->kind == DEM_UNIAXIAL || in->kind == DEM_COMPRESSION;
+}
+
 double dem_inputs_grains(const struct dem_inputs *in) {
-  if (in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION) {
-    double disc = 0.25 * M_PI * pow(in->body.diameter / in->grain.spacing, 2);
-    return in->kind == DEM_DISC_COLLISION ? 2 * disc : disc;
-  }
-  return (double)in->body.columns * (double)in->body.rows;
+  if (!discs(in))
+    return (double)in->body.columns * (double)in->body.rows;
+  double disc = 0.25 * M_PI * pow(in->body.diameter / in->grain.spacing, 2);
+  return in->kind == DEM_DISC_COLLISION ? 2 * disc : disc;
 }
 
 double dem_inputs_end_time(const struct dem_inputs *in) {
-  if (in->kind != DEM_UNIAXIAL && in->kind != DEM_COMPRESSION)
+  if (!dem_inputs_loaded(in))
     return in->stop.end_time;
   double strain = in->loading.strain_end, rate = in->loading.rate, ramp = in->loading.ramp;
   return strain >= rate * ramp / 2 ? strain / rate + ramp / 2 : sqrt(2 * ramp * strain / rate);
@@ -167,7 +172,7 @@ double dem_inputs_end_time(const struct dem_inputs *in) {
 
 status dem_inputs_check(const struct dem_inputs *in, struct error *error) {
   double grains = dem_inputs_grains(in);
-  bool disc = in->kind == DEM_DISC_EXPLOSION || in->kind == DEM_DISC_COLLISION;
+  bool disc = discs(in);
   if (disc && !(in->body.diameter >= 4 * in->grain.spacing))
     return status_fail(error, STATUS_CONTENT,
                        "body.diameter is %.4g m, grain.spacing %.4g m: a disc needs a diameter of at least 4 spacings",
@@ -184,17 +189,16 @@ status dem_inputs_check(const struct dem_inputs *in, struct error *error) {
     return status_fail(error, STATUS_CONTENT,
                        "the run ends before its first time step of %.4g s: lower fidelity.time_step",
                        in->fidelity.time_step);
-  if (in->kind == DEM_UNIAXIAL || in->kind == DEM_COMPRESSION) {
-    if (in->body.rows < 4 || in->body.columns < 4)
-      return status_fail(error, STATUS_CONTENT,
-                         "a loaded block needs at least 4 columns and 4 rows: two rows are held, strains are measured "
-                         "between the others");
-    if (in->loading.strain_end < 0.5 * in->loading.rate * in->loading.ramp)
-      return status_fail(
-          error, STATUS_CONTENT,
-          "loading.strain_end %.4g is reached while the sides still accelerate (strain %.4g at the end of "
-          "loading.ramp): shorten the ramp or lower loading.rate",
-          in->loading.strain_end, 0.5 * in->loading.rate * in->loading.ramp);
-  }
+  if (!dem_inputs_loaded(in))
+    return STATUS_OK;
+  if (in->body.rows < 4 || in->body.columns < 4)
+    return status_fail(error, STATUS_CONTENT,
+                       "a loaded block needs at least 4 columns and 4 rows: two rows are held, strains are measured "
+                       "between the others");
+  if (in->loading.strain_end < 0.5 * in->loading.rate * in->loading.ramp)
+    return status_fail(error, STATUS_CONTENT,
+                       "loading.strain_end %.4g is reached while the sides still accelerate (strain %.4g at the end of "
+                       "loading.ramp): shorten the ramp or lower loading.rate",
+                       in->loading.strain_end, 0.5 * in->loading.rate * in->loading.ramp);
   return STATUS_OK;
 }

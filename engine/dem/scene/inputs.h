@@ -1,4 +1,6 @@
-/* The typed scene of engine `dem`: every input of every protocol, one row each in inputs.c. SI throughout. */
+/* The typed scene of engine `dem`: every input of every protocol, with one row each in inputs.c. SI units throughout.
+ *
+ * The physics reads these sections by const pointer. Ranges and defaults stand in the rows alone. */
 #ifndef CLAST_ENGINE_DEM_SCENE_INPUTS_H
 #define CLAST_ENGINE_DEM_SCENE_INPUTS_H
 
@@ -12,6 +14,8 @@ enum dem_kind {
   DEM_DISC_COLLISION,
 };
 enum dem_direction { DEM_EXTENSION, DEM_SHORTENING };
+enum dem_contact_law { DEM_CONTACT_CONSERVATIVE, DEM_CONTACT_PRINTED, DEM_CONTACT_OFF };
+enum dem_integrator { DEM_VERLET, DEM_GEAR };
 
 struct dem_inputs {
   int kind; /* enum dem_kind: the protocol */
@@ -20,50 +24,56 @@ struct dem_inputs {
     int64_t columns, rows; /* grains */
   } body;
   struct {
-    double density, young_modulus, spacing, disorder;
+    double density;           /* kg/m^3; the thickness is 1 m, so masses are in kg per metre */
+    double young_modulus;     /* Y, Pa */
+    double spacing, disorder; /* m; 1 */
   } grain;
   struct {
-    double young_modulus;
+    double young_modulus; /* E, Pa */
   } beam;
   struct {
     bool breaking;
-    double strain, angle, modulus; /* modulus: NaN = off */
+    double strain, angle; /* t_epsilon; t_Theta, rad */
+    double modulus;       /* Weibull modulus of thresholds drawn for each beam; NaN = off */
   } threshold;
-  struct {
-    int law; /* enum dem_contact_law */
-    bool bonded;
-    double normal_damping, tangential_damping, friction;
-    bool damping_bonded;
+  struct dem_contact_inputs {
+    int law;                                   /* enum dem_contact_law */
+    bool bonded;                               /* contact acts between grains that a beam joins, too */
+    double normal_damping, tangential_damping; /* gamma_N, gamma_T, 1/s */
+    double friction;                           /* mu */
+    bool damping_bonded;                       /* damping and friction act between grains that a beam joins, too */
   } contact;
   struct {
     double energy; /* J/m */
   } charge;
   struct {
-    double speed, angle;
+    double speed, angle; /* m/s; rad */
   } impact;
   struct {
-    int direction; /* enum dem_direction */
-    double rate, ramp, strain_end, residual;
+    int direction;                           /* enum dem_direction */
+    double rate, ramp, strain_end, residual; /* 1/s; s; 1; 1, NaN = off */
   } loading;
   struct {
-    double speed, impact_parameter;
+    double speed, impact_parameter; /* m/s; diameters */
   } collision;
   struct {
-    double quiet_time, end_time;
+    double quiet_time, end_time; /* s */
   } stop;
   struct {
-    double time_step;
+    double time_step;    /* s */
     int integrator;      /* enum dem_integrator */
-    double energy_bound; /* NaN = off */
+    double energy_bound; /* share of the energy put in; NaN = off */
   } fidelity;
 };
 
 extern const struct field_table dem_inputs;
 
-/* Conditions across fields: sizes that cannot be run, times that contradict. STATUS_CONTENT with a remedy. */
+/* Checks conditions across fields: sizes that cannot be run, times that contradict. STATUS_CONTENT with a remedy. */
 status dem_inputs_check(const struct dem_inputs *inputs, struct error *error);
 
-/* Grains the body (or both bodies) will have, near enough to plan memory and time. */
+/* Whether moving sides load the body (uniaxial, compression). */
+bool dem_inputs_loaded(const struct dem_inputs *inputs);
+/* Estimated number of grains of the body (or of both bodies), to plan memory and time. */
 double dem_inputs_grains(const struct dem_inputs *inputs);
 /* Simulated time at which the run ends at the latest, s. */
 double dem_inputs_end_time(const struct dem_inputs *inputs);

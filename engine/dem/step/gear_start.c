@@ -27,7 +27,7 @@ static bool runge_kutta(struct dem_system *s, const struct trial *t, double *con
   double *const guess[3] = {s->c.guess_vx, s->c.guess_vy, s->c.guess_spin};
   const double *const force[3] = {s->c.fx, s->c.fy, s->c.torque};
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  const double dt = s->p.time_step;
+  const double dt = s->in->fidelity.time_step;
   accelerations(s, a);
   for (int k = 0; k < 3; ++k)
     for (size_t g = 0; g < s->padded; ++g) {
@@ -57,7 +57,7 @@ static bool runge_kutta(struct dem_system *s, const struct trial *t, double *con
 
 bool dem_gear_start(struct dem_system *s) {
   const size_t n = s->padded, arrays = 3 * (4 + TRIAL_STEPS + 1), size = dem_system_state_size(s);
-  const double dt = s->p.time_step;
+  const double dt = s->in->fidelity.time_step;
   double *memory = malloc(arrays * n * sizeof *memory);
   void *state = malloc(size);
   struct trial t;

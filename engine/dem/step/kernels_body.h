@@ -36,7 +36,7 @@ static void kernels_rest(struct dem_system *s) {
 }
 
 static void kernels_forces(struct dem_system *s) {
-  if (s->p.contact == DEM_CONTACT_OFF) {
+  if (s->in->contact.law == DEM_CONTACT_OFF) {
     kernels_beams_only(s);
     return;
   }
@@ -46,7 +46,7 @@ static void kernels_forces(struct dem_system *s) {
 }
 
 static void kernels_measure(struct dem_system *s) {
-  if (s->p.contact == DEM_CONTACT_OFF) {
+  if (s->in->contact.law == DEM_CONTACT_OFF) {
     kernels_measure_beams(s);
     return;
   }

@@ -36,7 +36,7 @@ LANES_INLINE void motion_check(const struct dem_system *s, size_t g, lanes_i *mo
 
 LANES_INLINE bool motion_verlet_drift(struct dem_system *s, bool *moved_out) {
   struct dem_columns *c = &s->c;
-  const double dt = s->p.time_step, half = 0.5 * dt;
+  const double dt = s->in->fidelity.time_step, half = 0.5 * dt;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};
   double *const position[3] = {c->x, c->y, c->angle};
@@ -60,7 +60,7 @@ LANES_INLINE bool motion_verlet_drift(struct dem_system *s, bool *moved_out) {
 
 LANES_INLINE void motion_verlet_kick(struct dem_system *s) {
   struct dem_columns *c = &s->c;
-  const double half = 0.5 * s->p.time_step;
+  const double half = 0.5 * s->in->fidelity.time_step;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};
   for (int k = 0; k < 3; ++k)
@@ -71,7 +71,7 @@ LANES_INLINE void motion_verlet_kick(struct dem_system *s) {
 
 LANES_INLINE bool motion_gear_predict(struct dem_system *s, bool *moved_out) {
   struct dem_columns *c = &s->c;
-  const double dt = s->p.time_step;
+  const double dt = s->in->fidelity.time_step;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const position[3] = {c->x, c->y, c->angle};
   double *const guess[3] = {c->guess_vx, c->guess_vy, c->guess_spin};
   lanes_i moved = {0}, lost = {0};
@@ -97,7 +97,7 @@ LANES_INLINE bool motion_gear_predict(struct dem_system *s, bool *moved_out) {
 
 LANES_INLINE void motion_gear_correct(struct dem_system *s) {
   struct dem_columns *c = &s->c;
-  const double dt = s->p.time_step, position_share = s->velocities ? 3.0 / 20.0 : 3.0 / 16.0;
+  const double dt = s->in->fidelity.time_step, position_share = s->velocities ? 3.0 / 20.0 : 3.0 / 16.0;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const position[3] = {c->x, c->y, c->angle};
   double *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};

@@ -10,27 +10,6 @@
 #include "engine/dem/step/gear_start.h"
 #include "engine/dem/step/kernels.h"
 
-static status check(const struct dem_parameters *p, struct error *error) {
-  const struct {
-    const char *name;
-    double value, low;
-  } positive[] = {{"density", p->density, 1e-30},
-                  {"grain modulus", p->grain_modulus, 0.0},
-                  {"beam modulus", p->beam_modulus, 0.0},
-                  {"normal damping", p->normal_damping, 0.0},
-                  {"tangential damping", p->tangential_damping, 0.0},
-                  {"friction", p->friction, 0.0},
-                  {"time step", p->time_step, 1e-30},
-                  {"strain threshold", p->breaking ? p->strain_threshold : 1.0, 0.0},
-                  {"angle threshold", p->breaking ? p->angle_threshold : 1.0, 0.0},
-                  {"threshold modulus", isnan(p->threshold_modulus) ? 1.0 : p->threshold_modulus, 1e-3}};
-  for (size_t k = 0; k < sizeof positive / sizeof *positive; ++k)
-    if (!(positive[k].value >= positive[k].low && positive[k].value < 1e30))
-      return status_fail(error, STATUS_CONTENT, "%s is %g; it must be a finite number not below %g.", positive[k].name,
-                         positive[k].value, positive[k].low);
-  return STATUS_OK;
-}
-
 void dem_system_evaluate(struct dem_system *s, double dt) {
   memset(s->c.fx, 0, s->padded * sizeof(double));
   memset(s->c.fy, 0, s->padded * sizeof(double));
@@ -59,44 +38,51 @@ static bool make_ready(struct dem_system *s) {
   return true;
 }
 
-status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_parameters *parameters,
+/* Whether contact forces need velocities: for damping and friction, and for the work that the printed law does. */
+static bool needs_velocities(const struct dem_contact_inputs *contact) {
+  if (contact->law == DEM_CONTACT_OFF)
+    return false;
+  if (contact->law == DEM_CONTACT_PRINTED || contact->normal_damping > 0.0)
+    return true;
+  return contact->tangential_damping > 0.0 && contact->friction > 0.0;
+}
+
+status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_inputs *inputs, uint64_t seed,
                          struct dem_system **out, struct error *error) {
   *out = NULL;
-  status done = check(parameters, error);
-  if (done != STATUS_OK)
-    return done;
   struct dem_system *s = aligned_alloc(64, (sizeof *s + 63) / 64 * 64);
   if (!s)
     return status_fail(error, STATUS_MEMORY, "not enough memory for a system.");
   memset(s, 0, sizeof *s);
-  s->p = *parameters;
+  s->in = inputs;
   s->kernels = dem_kernels_choose();
-  s->velocities = s->p.contact != DEM_CONTACT_OFF &&
-                  (s->p.contact == DEM_CONTACT_PRINTED || s->p.normal_damping > 0.0 ||
-                   (s->p.tangential_damping > 0.0 && s->p.friction > 0.0));
-  done = dem_assemble(s, tessellation, error);
-  if (done == STATUS_OK)
-    s->kernels->rest(s);
-  if (done == STATUS_OK && !make_ready(s))
-    done = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
-  if (done != STATUS_OK) {
-    dem_system_free(s);
-    return done;
+  s->velocities = needs_velocities(&inputs->contact);
+
+  status code = dem_assemble(s, tessellation, seed, error);
+  if (code)
+    goto cleanup;
+  s->kernels->rest(s);
+  if (!make_ready(s)) {
+    code = status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
+    goto cleanup;
   }
   *out = s;
-  return STATUS_OK;
+  s = NULL;
+cleanup:
+  dem_system_free(s);
+  return code;
 }
 
 void dem_system_free(struct dem_system *s) {
   if (!s)
     return;
-  void *const blocks[] = {s->arena,     s->mass,      s->inertia,        s->diameter,    s->first_vertex,
-                          s->outline_x, s->outline_y, s->first_partner,  s->partner,     s->partner_pair,
-                          s->freedoms,  s->present,   s->held_vx,        s->held_vy,     s->held_spin,
-                          s->held,      s->pair,      s->pair_stiffness, s->pair_normal, s->pair_tangential,
-                          s->alive,     s->windowed,  s->pair_lane,      s->lane_pair,   s->bond,
-                          s->near,      s->near_pair, s->general,        s->cell_head,   s->cell_grain,
-                          s->cell_next, s->cell_key,  s->cell_low,       s->log};
+  void *const blocks[] = {s->arena,     s->mass,      s->inertia,       s->diameter,  s->first_vertex,
+                          s->outline_x, s->outline_y, s->first_partner, s->partner,   s->partner_pair,
+                          s->freedoms,  s->present,   s->held_vx,       s->held_vy,   s->held_spin,
+                          s->held,      s->pair,      s->pair_contact,  s->alive,     s->windowed,
+                          s->pair_lane, s->lane_pair, s->bond,          s->near,      s->near_pair,
+                          s->general,   s->cell_head, s->cell_grain,    s->cell_next, s->cell_key,
+                          s->cell_low,  s->log};
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
     free(blocks[k]);
   free(s);
@@ -184,23 +170,23 @@ static void book_holds(struct dem_system *s, double dt) {
 }
 
 bool dem_system_step(struct dem_system *s) {
-  const double dt = s->p.time_step;
+  const double dt = s->in->fidelity.time_step;
   bool moved = false;
   if (!s->now.ready && !make_ready(s))
     return false;
-  if (s->p.integrator == DEM_GEAR && !s->now.gear_started) {
+  if (s->in->fidelity.integrator == DEM_GEAR && !s->now.gear_started) {
     if (!dem_gear_start(s))
       return false;
     s->now.gear_started = 1;
   }
   book_holds(s, 0.5 * dt);
-  const bool finite = s->p.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved)
-                                                  : s->kernels->verlet_drift(s, &moved);
+  const bool finite = s->in->fidelity.integrator == DEM_GEAR ? s->kernels->gear_predict(s, &moved)
+                                                             : s->kernels->verlet_drift(s, &moved);
   s->now.time = (double)++s->now.steps * dt;
   if (!finite || (moved && !dem_neighbours_make(s)))
     return false;
   dem_system_evaluate(s, dt);
-  if (s->p.integrator == DEM_GEAR)
+  if (s->in->fidelity.integrator == DEM_GEAR)
     s->kernels->gear_correct(s);
   else
     s->kernels->verlet_kick(s);
@@ -227,12 +213,12 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
                               .friction = s->now.friction,
                               .broken_beam = s->now.broken_beam,
                               .external_work = s->now.external_work};
-  if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
+  if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
     ledger.contact = 0.0;
   measure(s);
   for (int lane = 0; lane < DEM_BLOCK; ++lane) {
     ledger.beam += s->sums.beam[lane];
-    if (s->p.contact == DEM_CONTACT_CONSERVATIVE)
+    if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
       ledger.contact += s->sums.contact[lane];
   }
   for (uint32_t i = 0; i < s->count; ++i)
@@ -242,7 +228,7 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
 }
 
 double dem_system_overlap_share(struct dem_system *s) {
-  if (s->p.contact == DEM_CONTACT_OFF || s->pair_count == 0)
+  if (s->in->contact.law == DEM_CONTACT_OFF || s->pair_count == 0)
     return 0.0;
   measure(s);
   return (double)s->sums.overlaps / (double)s->pair_count;

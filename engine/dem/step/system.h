@@ -7,28 +7,7 @@
 #include <stdbool.h>
 
 #include "engine/dem/lattice/tessellation.h"
-
-enum dem_contact_law { DEM_CONTACT_CONSERVATIVE, DEM_CONTACT_PRINTED, DEM_CONTACT_OFF };
-enum dem_integrator { DEM_VERLET, DEM_GEAR };
-
-struct dem_parameters {
-  double density;            /* kg/m^3; unit thickness: masses are kg per m of thickness */
-  double grain_modulus;      /* Y, Pa */
-  double beam_modulus;       /* E, Pa */
-  int contact;               /* enum dem_contact_law */
-  bool contact_on_bonded;    /* contact acts between bonded neighbours too */
-  double normal_damping;     /* gamma_N, 1/s */
-  double tangential_damping; /* gamma_T, 1/s */
-  double friction;           /* mu */
-  bool damping_on_bonded;    /* damping and friction act on bonded pairs too */
-  bool breaking;             /* beams may break */
-  double strain_threshold;   /* t_eps */
-  double angle_threshold;    /* t_Theta, rad */
-  double threshold_modulus;  /* Weibull modulus of thresholds drawn per beam; NaN = all equal (K99) */
-  uint64_t seed;
-  int integrator;   /* enum dem_integrator */
-  double time_step; /* s */
-};
+#include "engine/dem/scene/inputs.h"
 
 struct dem_break {
   double time;   /* s */
@@ -45,7 +24,9 @@ struct dem_ledger {
 
 struct dem_system; /* opaque; layout in system_layout.h, for this folder only */
 
-status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_parameters *parameters,
+/* Builds the grains at rest. The system keeps `inputs`: they must outlive it. `seed` draws the thresholds of beams.
+ * STATUS_CONTENT: a grain or pair that cannot be used. STATUS_MEMORY. */
+status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_inputs *inputs, uint64_t seed,
                          struct dem_system **out, struct error *error);
 void dem_system_free(struct dem_system *system); /* NULL is fine */
 size_t dem_system_bytes(const struct dem_system *system);

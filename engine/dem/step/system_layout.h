@@ -42,11 +42,17 @@ struct dem_near_block {
   dem_lane vertex_x[3], vertex_y[3]; /* other's body frame */
 };
 
+/* Coefficients of one contact. */
+struct dem_contact {
+  double stiffness;                          /* kappa (conservative law) or Y/L_c (printed law); 0 = no contact */
+  double normal_damping, tangential_damping; /* m_eff gamma, kg/s; 0 = none */
+};
+
 struct dem_near_pair {
   uint32_t first, second; /* first < second */
   int32_t pair;           /* tessellation pair, or DEM_NO_PAIR */
   uint32_t unused;
-  double stiffness, normal_damping, tangential_damping;
+  struct dem_contact contact; /* of a pair that is no tessellation pair */
 };
 
 /* A pair for the general overlap: near list position, or bond lane with the high bit set. */
@@ -82,7 +88,7 @@ struct dem_columns { /* padded to blocks of eight */
 };
 
 struct dem_system {
-  struct dem_parameters p;
+  const struct dem_inputs *in; /* borrowed */
   struct dem_progress now;
   size_t count, padded; /* grains; with ghosts, a multiple of eight */
   uint32_t ghost;       /* the first of two ghosts */
@@ -108,12 +114,11 @@ struct dem_system {
   /* tessellation pairs */
   size_t pair_count;
   uint32_t (*pair)[2];
-  double *pair_stiffness;                /* kappa or Y/L_c by the pair's own S_ref, fixed for good */
-  double *pair_normal, *pair_tangential; /* m_eff gamma */
-  unsigned char *alive;                  /* beam */
-  unsigned char *windowed;               /* contact handled by the bond block's window */
-  int32_t *pair_lane;                    /* lane in the bond blocks, or DEM_NO_PAIR */
-  int32_t *lane_pair;                    /* and back */
+  struct dem_contact *pair_contact; /* fixed at the start, with the pair's own S_ref */
+  unsigned char *alive;             /* beam */
+  unsigned char *windowed;          /* contact handled by the bond block's window */
+  int32_t *pair_lane;               /* lane in the bond blocks, or DEM_NO_PAIR */
+  int32_t *lane_pair;               /* and back */
   struct dem_bond_block *bond;
   size_t bond_capacity; /* blocks */
 
