@@ -1,3 +1,4 @@
+/* Fields files with HDF5. */
 #include "engine/snapshot_file.h"
 
 #include <hdf5.h>
@@ -11,7 +12,7 @@ enum { COMPRESSED_FROM = 4096, CHUNK = 16384 }; /* rows */
 
 struct snapshot_file {
   hid_t file, access;
-  bool failed, memory; /* any call that HDF5 refused, memory that was not there: judged once, at the end */
+  bool failed, memory; /* HDF5 refused a call; memory was out. save() reports both */
   H5E_auto2_t printing;
   void *printing_to;
 };
@@ -43,7 +44,7 @@ static void attribute(struct snapshot_file *f, const char *at, const char *name,
   H5Oclose(object);
 }
 
-/* Text is ASCII of fixed length: VTK asks for it. */
+/* VTK needs ASCII of fixed length. */
 static void text_attribute(struct snapshot_file *f, const char *at, const char *name, const char *text) {
   hid_t type = checked(f, H5Tcopy(H5T_C_S1));
   size_t length = strlen(text);
@@ -89,10 +90,10 @@ static void data(struct snapshot_file *f, const char *name, hid_t type, bool com
 
 void snapshot_file_data(struct snapshot_file *f, const char *name, enum snapshot_file_kind kind, size_t rows,
                         size_t width, const void *values, const char *units, const char *long_name) {
-  hid_t type = kind == SNAPSHOT_FILE_REAL      ? H5T_NATIVE_DOUBLE
-               : kind == SNAPSHOT_FILE_INTEGER ? H5T_NATIVE_INT64
-                                               : H5T_NATIVE_UCHAR;
-  data(f, name, type, kind != SNAPSHOT_FILE_REAL, rows, width, values, units, long_name);
+  const hid_t types[] = {[SNAPSHOT_FILE_REAL] = H5T_NATIVE_DOUBLE,
+                         [SNAPSHOT_FILE_INTEGER] = H5T_NATIVE_INT64,
+                         [SNAPSHOT_FILE_BYTE] = H5T_NATIVE_UCHAR};
+  data(f, name, types[kind], kind != SNAPSHOT_FILE_REAL, rows, width, values, units, long_name);
 }
 
 void snapshot_file_table(struct snapshot_file *f, const char *group, const struct field_table *table,
@@ -119,8 +120,20 @@ void snapshot_file_table(struct snapshot_file *f, const char *group, const struc
   }
 }
 
-void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t rows, size_t count,
-                           const struct snapshot_file_column *column, snapshot_file_reader read, const void *context) {
+/* Number k of a column's member. */
+static double number_of(const struct snapshot_file_column *column, const char *object, size_t k) {
+  const char *member = object + column->offset;
+  switch (column->member) {
+  case SNAPSHOT_FILE_DOUBLE: return ((const double *)member)[k];
+  case SNAPSHOT_FILE_UINT32: return ((const uint32_t *)member)[k];
+  case SNAPSHOT_FILE_UINT64: return (double)((const uint64_t *)member)[k];
+  case SNAPSHOT_FILE_BOOL: return ((const bool *)member)[k];
+  }
+  return 0;
+}
+
+void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t rows, const void *structs, size_t size,
+                           size_t count, const struct snapshot_file_column *column) {
   for (size_t c = 0; c < count; c++) {
     size_t width = column[c].width ? column[c].width : 1;
     double *values = malloc((rows ? rows : 1) * width * sizeof *values);
@@ -131,7 +144,7 @@ void snapshot_file_columns(struct snapshot_file *f, const char *group, size_t ro
     }
     for (size_t r = 0; r < rows; r++)
       for (size_t k = 0; k < width; k++)
-        values[r * width + k] = read(context, r, c, k);
+        values[r * width + k] = number_of(&column[c], (const char *)structs + r * size, k);
     snprintf(name, sizeof name, "%s/%s", group, column[c].name);
     snapshot_file_data(f, name, SNAPSHOT_FILE_REAL, rows, column[c].width, values, column[c].units,
                        column[c].long_name);
@@ -172,7 +185,7 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
   *out = NULL;
   if (!f)
     return status_fail(error, STATUS_MEMORY, "no memory for a fields file");
-  H5dont_atexit(); /* it prints at exit when a damaged file could not be closed; ours are closed by then */
+  H5dont_atexit(); /* its own exit handler prints when a damaged file could not be closed */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   f->file = -1;

@@ -1,11 +1,13 @@
-/* Self-describing HDF5 files: `h5dump -A` alone explains one. Every data set says its unit and meaning; tables of
- * inputs and results go in as scalars with their documentation; what VTK reads (VTKHDF 1.0) stands beside it.
+/* Writing fields files: self-describing HDF5, `h5dump -A` alone explains one. Every data set says its unit and meaning.
+ * Inputs and results are scalars with their documentation. Particles or cells are also a VTKHDF 1.0 grid, which VTK and
+ * ParaView open as it is.
  *
  * The file is made in memory and written whole: a full disk or a forbidden folder is one clean error. Calls between
- * open and save do not fail by themselves; what HDF5 refused on the way is told by save. */
+ * open and save return nothing: save reports what HDF5 refused. */
 #ifndef CLAST_ENGINE_SNAPSHOT_FILE_H
 #define CLAST_ENGINE_SNAPSHOT_FILE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,37 +21,52 @@ status snapshot_file_open(const char *engine, const char *doc, int results_versi
                           const struct field_table *table, const void *inputs, struct snapshot_file **out,
                           struct error *error);
 void snapshot_file_close(struct snapshot_file *file); /* NULL is fine */
-/* STATUS_IO with the system's reason; nothing is left behind then. STATUS_INTERNAL, STATUS_MEMORY. */
+/* STATUS_IO with the system's reason: no file is left behind. STATUS_INTERNAL, STATUS_MEMORY. */
 status snapshot_file_save(struct snapshot_file *file, const char *path, struct error *error);
-/* Memory that the writer needed could not be had: save will say so. */
+/* Tells that the caller found no memory for its data: save returns STATUS_MEMORY. */
 void snapshot_file_fail(struct snapshot_file *file);
 
-/* An attribute of a group or data set that is there. */
+/* An attribute of a group or data set that exists. */
 void snapshot_file_real(struct snapshot_file *file, const char *at, const char *name, double value);
 
-enum snapshot_file_kind {
-  SNAPSHOT_FILE_REAL,
-  SNAPSHOT_FILE_INTEGER,
-  SNAPSHOT_FILE_BYTE
-}; /* double, int64_t, unsigned char */
-/* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. Groups on
- * the way are made; units and long_name may be NULL (VTK's own bookkeeping). */
+/* double, int64_t, unsigned char */
+enum snapshot_file_kind { SNAPSHOT_FILE_REAL, SNAPSHOT_FILE_INTEGER, SNAPSHOT_FILE_BYTE };
+/* rows x width values; width 0: rows values in one dimension. Integers and bytes of many rows are compressed. The
+ * groups of the path are made. units and long_name may be NULL (VTK's own bookkeeping). */
 void snapshot_file_data(struct snapshot_file *file, const char *name, enum snapshot_file_kind kind, size_t rows,
                         size_t width, const void *values, const char *units, const char *long_name);
-/* Every active row of a table as a scalar under `group`, with its unit and documentation. */
+/* Every active row of a field table as a scalar under `group`, with its unit and documentation. */
 void snapshot_file_table(struct snapshot_file *file, const char *group, const struct field_table *table,
                          const void *object);
 
-/* Columns of doubles out of a reader of (row, column, component). */
+/* One column of a table whose rows are structs: a member (a number, or `width` numbers in a row), written as double. */
 struct snapshot_file_column {
   const char *name, *units, *long_name;
-  size_t width; /* 0: one value a row */
+  size_t width;  /* 0: one number, in one dimension */
+  size_t offset; /* of the member, or of its first number */
+  enum snapshot_file_member {
+    SNAPSHOT_FILE_DOUBLE,
+    SNAPSHOT_FILE_UINT32,
+    SNAPSHOT_FILE_UINT64,
+    SNAPSHOT_FILE_BOOL
+  } member;
 };
-typedef double (*snapshot_file_reader)(const void *context, size_t row, size_t column, size_t component);
-void snapshot_file_columns(struct snapshot_file *file, const char *group, size_t rows, size_t count,
-                           const struct snapshot_file_column *column, snapshot_file_reader read, const void *context);
+/* The initialiser of a column: its struct and member, the width, the unit and the meaning. The second form gives a name
+ * that is not the member's. */
+#define SNAPSHOT_FILE_COLUMN(struct_, member_, width_, units_, long_name_)                                             \
+  SNAPSHOT_FILE_COLUMN_NAMED(#member_, struct_, member_, width_, units_, long_name_)
+#define SNAPSHOT_FILE_COLUMN_NAMED(name_, struct_, member_, width_, units_, long_name_)                                  \
+  {                                                                                                                      \
+    name_, units_, long_name_, width_, offsetof(struct struct_, member_),                                              \
+    _Generic(((struct struct_ *)0)->member_, double : SNAPSHOT_FILE_DOUBLE, double * : SNAPSHOT_FILE_DOUBLE,           \
+             uint32_t : SNAPSHOT_FILE_UINT32, uint32_t * : SNAPSHOT_FILE_UINT32, uint64_t : SNAPSHOT_FILE_UINT64,      \
+             bool : SNAPSHOT_FILE_BOOL) \
+  }
+/* Writes `count` columns of `rows` structs, `size` bytes each. */
+void snapshot_file_columns(struct snapshot_file *file, const char *group, size_t rows, const void *structs, size_t size,
+                           size_t count, const struct snapshot_file_column *column);
 
-/* The head of a VTKHDF 1.0 unstructured grid: version, type, counts. The rest are data sets under VTKHDF/. */
+/* The head of a VTKHDF 1.0 unstructured grid: version, type, counts. The other data sets are written under VTKHDF/. */
 void snapshot_file_vtk(struct snapshot_file *file, size_t points, size_t cells, size_t connectivity);
 
 #endif

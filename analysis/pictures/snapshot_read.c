@@ -25,7 +25,7 @@ status snapshot_read_open(const char *path, struct snapshot_read **out, struct e
   struct snapshot_read *f = calloc(1, sizeof *f);
   if (!f)
     return status_fail(error, STATUS_MEMORY, "no memory to read %s", path);
-  H5dont_atexit(); /* it prints at exit when a damaged file could not be closed; ours are closed by then */
+  H5dont_atexit(); /* its own exit handler prints when a damaged file could not be closed */
   H5Eget_auto2(H5E_DEFAULT, &f->printing, &f->printing_to);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* HDF5 prints nothing: the status tells the error */
   f->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "engine/sph/run/run.h"
+#include "engine/sph/observe/observe.h"
 
 static void complete(void *inputs, const bool *given) {
   sph_inputs_complete(inputs, given);

@@ -33,6 +33,7 @@ static void near(double got, double want, double relative, const char *what) {
 }
 
 static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
+                                                  .mass = SIDE * SIDE * HIGH * 1e-6,
                                                   .spacing = 1e-3,
                                                   .ejection_speed = 5,
                                                   .distention = 2};
@@ -40,10 +41,10 @@ static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
 static void untouched(void **state) {
   (void)state;
   struct sph_particles *p = slab();
-  struct sph_crater c;
-  assert_int_equal(sph_crater_find(p, p, &options, &c, NULL), STATUS_OK);
-  assert_true(c.volume == 0 && c.depth == 0 && c.radius == 0 && c.ejected_mass == 0 && c.compaction_volume == 0 &&
-              c.compacted_mass == 0);
+  struct sph_results c = {0};
+  assert_int_equal(sph_crater_measure(p, p, &options, &c, NULL), STATUS_OK);
+  assert_true(c.crater.volume == 0 && c.crater.depth == 0 && c.crater.radius == 0 && c.ejecta.mass_fraction == 0 &&
+              c.compaction.volume == 0 && c.compaction.mass_fraction == 0);
   sph_particles_free(p);
 }
 
@@ -62,17 +63,20 @@ static void thrown_out(void **state) {
     if (hypot(now->x[i] - 24e-3, now->y[i] - 24e-3) < 3e-3 && depth < 5e-3)
       now->z[i] -= 10e-3; /* pushed in, far off */
   }
-  struct sph_crater c;
-  assert_int_equal(sph_crater_find(start, now, &options, &c, NULL), STATUS_OK);
-  near(c.ejected_mass, (double)count * 1e-6, 1e-12, "ejected mass");
-  near(c.ejected_momentum, (double)count * 20e-6, 1e-12, "ejected momentum");
-  near(c.ejecta_volume, (double)count * 1e-9, 1e-12, "ejecta's volume");
+  struct sph_results c = {0};
+  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  near(c.ejecta.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "ejected mass");
+  near(c.ejecta.momentum, (double)count * 20e-6, 1e-12, "ejected momentum");
   /* columns of two spacings, highest particle of each: the edge is blurred by a column, and shallow rims are not seen
    */
-  near(c.volume, (double)count * 1e-9, 0.15, "volume");
-  near(c.depth, 12e-3, 0.1, "depth");
-  near(c.radius, 12e-3, 0.1, "radius");
-  assert_true(c.compaction_volume == 0);
+  near(c.crater.volume, (double)count * 1e-9, 0.15, "volume");
+  near(c.crater.depth, 12e-3, 0.1, "depth");
+  near(c.crater.radius, 12e-3, 0.1, "radius");
+  assert_true(c.compaction.volume == 0);
+  assert_true(c.crater.compaction_share == 0);
+  now->rest_distention[0] = 1; /* half a cubic millimetre of pores, against the ejecta's volume */
+  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  near(c.crater.compaction_share, 0.5 / (0.5 + (double)count), 1e-12, "share of compaction, with the ejecta's volume");
   sph_particles_free(start);
   sph_particles_free(now);
 }
@@ -89,16 +93,16 @@ static void compacted(void **state) {
       now->damage_cbrt[i] = 1;
       count++;
     }
-  struct sph_crater c;
-  assert_int_equal(sph_crater_find(start, now, &options, &c, NULL), STATUS_OK);
-  assert_true(c.ejected_mass == 0);
-  near(c.compacted_mass, (double)count * 1e-6, 1e-12, "compacted mass");
-  near(c.compaction_volume, (double)count * 0.5e-9, 1e-12, "closed pores");
-  near(c.depth, 10e-3, 0.05, "depth");
-  near(c.volume, c.compaction_volume, 0.2,
+  struct sph_results c = {0};
+  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  assert_true(c.ejecta.mass_fraction == 0);
+  near(c.compaction.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "compacted mass");
+  near(c.compaction.volume, (double)count * 0.5e-9, 1e-12, "closed pores");
+  near(c.crater.depth, 10e-3, 0.05, "depth");
+  near(c.crater.volume, c.compaction.volume, 0.2,
        "the crater is what pores left"); /* columns across the rim, 2 mm of 10, are not dug */
-  near(c.compaction_depth, 19e-3, 1e-9, "depth of compacted matter"); /* from the first layer to the last of it */
-  near(c.compaction_reach, hypot(19e-3, 10e-3), 0.05, "reach");
+  near(c.compaction.depth, 19e-3, 1e-9, "depth of compacted matter"); /* from the first layer to the last of it */
+  near(c.compaction.reach, hypot(19e-3, 10e-3), 0.05, "reach");
   struct sph_crater_layer layer[40];
   size_t layers = sph_crater_profile(start, now, &options, layer, 40);
   assert_int_equal(layers, HIGH);
@@ -124,13 +128,13 @@ static void nothing_left(void **state) {
       now->vz[n++] = 20;
     }
   struct sph_crater_options ball = options;
-  struct sph_crater c;
+  struct sph_results c = {0};
   ball.count = n;
-  assert_int_equal(sph_crater_find(start, now, &ball, &c, NULL), STATUS_OK);
-  near(c.volume, (double)n * 1e-9, 0.15,
+  assert_int_equal(sph_crater_measure(start, now, &ball, &c, NULL), STATUS_OK);
+  near(c.crater.volume, (double)n * 1e-9, 0.15,
        "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
-  near(c.radius, radius, 0.1, "radius");
-  near(c.depth, 2 * radius, 0.05, "depth");
+  near(c.crater.radius, radius, 0.1, "radius");
+  near(c.crater.depth, 2 * radius, 0.05, "depth");
   sph_particles_free(start);
   sph_particles_free(now);
 }
@@ -142,10 +146,10 @@ static void hardly_porous(void **state) {
   for (size_t i = 0; i < now->n; i++)
     start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
   struct sph_crater_options few = options;
-  struct sph_crater c;
+  struct sph_results c = {0};
   few.distention = 1.005;
-  assert_int_equal(sph_crater_find(start, now, &few, &c, NULL), STATUS_OK);
-  assert_true(c.compacted_mass == 0 && c.compaction_depth == 0 && c.compaction_volume > 0);
+  assert_int_equal(sph_crater_measure(start, now, &few, &c, NULL), STATUS_OK);
+  assert_true(c.compaction.mass_fraction == 0 && c.compaction.depth == 0 && c.compaction.volume > 0);
   sph_particles_free(start);
   sph_particles_free(now);
 }

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "engine/sph/run/run.h"
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
 

@@ -19,7 +19,7 @@
 #include "analysis/pictures/picture.h"
 #include "engine/random.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/observe/particle_columns.h"
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/inputs.h"
 #include "tests/support/sweep.h"
 
@@ -94,7 +94,7 @@ static status write_file(const char *path, const struct sph_particles *p, const 
   field_defaults(&sph_inputs, &inputs);
   assert_int_equal(snapshot_file_open("sph", "what it models", 3, 7, &sph_inputs, &inputs, &file, error), STATUS_OK);
   snapshot_file_real(file, "run", "time", 2.5e-5);
-  sph_particle_columns_add(file, p, pieces, flaws);
+  sph_snapshot_particles(file, p, pieces, flaws);
   status code = snapshot_file_save(file, path, error);
   snapshot_file_close(file);
   return code;

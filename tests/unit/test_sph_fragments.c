@@ -162,7 +162,7 @@ static void equals_brute_force(void **state) {
     }
     several += found.count > 5;
     assert_true(found.mass == mass); /* sums of small integers */
-    assert_true(found.bare_largest == largest_core && found.bare_second <= largest_core);
+    assert_true(found.core_largest == largest_core && found.core_second <= largest_core);
     for (size_t f = 1; f < found.count; f++)
       assert_true(found.fragments[f - 1].mass >= found.fragments[f].mass);
     sph_fragments_clear(&found);
@@ -220,7 +220,7 @@ static void veneer_is_one_layer_and_nearest_decides(void **state) {
     assert_int_equal(with.label[i], label[i]);
   assert_int_equal(with.part[4], SPH_FRAGMENTS_VENEER);
   assert_int_equal(with.part[5], SPH_FRAGMENTS_DUST);
-  assert_true(with.fragments[0].mass == 5 && with.bare_largest == 4 && with.bare_second == 2 && with.dust_mass == 1);
+  assert_true(with.fragments[0].mass == 5 && with.core_largest == 4 && with.core_second == 2 && with.dust_mass == 1);
   assert_int_equal(with.resolved, 2);
   assert_int_equal(with.fragments[2].first, 5);
   sph_fragments_clear(&with);
@@ -481,13 +481,13 @@ static void nothing_all_dust_all_one(void **state) {
   outcome_fragments(&outcome, f.count, f.fragments);
   assert_int_equal(f.count, 9);
   assert_int_equal(f.resolved, 0);
-  assert_true(f.dust_mass == 9 && f.bare_largest == 0 && outcome.dust_fraction == 1 && outcome.single_count == 9);
+  assert_true(f.dust_mass == 9 && f.core_largest == 0 && outcome.dust_fraction == 1 && outcome.single_count == 9);
   sph_fragments_clear(&f);
   for (int i = 0; i < 9; i++)
     p->damage_cbrt[i] = 0.99;
   f = find(p, &o);
   assert_int_equal(f.count, 1);
-  assert_true(f.fragments[0].mass == 9 && f.dust_mass == 0 && f.bare_largest == 9 && f.bare_second == 0);
+  assert_true(f.fragments[0].mass == 9 && f.dust_mass == 0 && f.core_largest == 9 && f.core_second == 0);
   sph_fragments_clear(&f);
   const double bad[][2] = {{0, 1}, {1.5, 1}, {NAN, 1}, {1, 0}, {1, -1}, {1, NAN}, {1, 100}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {

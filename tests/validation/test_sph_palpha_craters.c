@@ -18,8 +18,8 @@
 #include "engine/fragments.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/observe/results.h"
-#include "engine/sph/run/run.h"
 
 static bool full(void) {
   const char *text = getenv("CLAST_FULL");
@@ -49,7 +49,7 @@ static struct result run(const char *name, uint64_t seed, const char *particles)
   if (scene->kind->finish(made, &r.outcome, &r.sph, &fragments, &count, &error))
     fail_msg("%s", error.message);
   struct sph_run *inside = made;
-  struct sph_crater_options options = sph_report_crater(inside);
+  struct sph_crater_options options = sph_report_crater_options(inside);
   r.layers = sph_crater_profile(inside->start, inside->now, &options, r.axis, sizeof r.axis / sizeof r.axis[0]);
   free(fragments);
   scene->kind->free(made);

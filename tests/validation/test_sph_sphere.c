@@ -11,7 +11,7 @@
 #include "tests/support/run_case.h"
 
 #include "analysis/statistics/sample.h"
-#include "engine/sph/run/run.h"
+#include "engine/sph/observe/observe.h"
 
 enum { MOST_RUNS = 1000 };
 static const double radius = 0.03;
@@ -43,7 +43,8 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
     sph_run_advance(run, 1000);
   assert_int_equal(sph_report_finish(run, &s.outcome, &s.results, &fragments, &count, &error), STATUS_OK);
   free(fragments);
-  assert_int_equal(sph_report_pieces(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces, &error),
+  assert_int_equal(sph_report_fragments(run, inputs->fragments.static_strength, inputs->fragments.veneer, &pieces,
+                                        &error),
                    STATUS_OK);
   double near = 0, core = 0, middle[3] = {0, 0, 0};
   for (size_t i = 0; i < run->targets; i++) {

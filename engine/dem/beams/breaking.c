@@ -84,8 +84,7 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
       .time = s->now.time,
       .beam = (uint32_t)pair,
       .strain = strain,
-      .angle_first = theta_first,
-      .angle_second = theta_second,
+      .angle = {theta_first, theta_second},
       .bending = fmax(fabs(theta_first), fabs(theta_second)) * block->weight_angle[lane] >
                  stretch * stretch * block->weight_strain[lane],
   };

@@ -10,91 +10,115 @@
 
 enum { OUTLINE_CORNERS = 64, VTK_POLYGON = 7 };
 
-/* What a column's reader looks at. */
-struct view {
-  const struct dem_run *run;
-  const void *rows;
+struct grain_row {
+  double position[2], angle, velocity[2], spin, mass, moment_of_inertia;
+  bool present;
+  double fragment;
 };
-
+#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(grain_row, member, width, __VA_ARGS__)
 static const struct snapshot_file_column grain_columns[] = {
-    {"position", "m", "centre of mass", 2},
-    {"angle", "rad", "rotation since the start, counter-clockwise", 0},
-    {"velocity", "m s-1", "velocity of the centre of mass", 2},
-    {"spin", "rad s-1", "angular velocity, counter-clockwise", 0},
-    {"mass", "kg m-1", "mass per metre of thickness", 0},
-    {"moment_of_inertia", "kg m", "about the centre of mass, per metre of thickness", 0},
-    {"present", "1", "0: the explosive grain, burnt", 0},
-    {"fragment", "1", "number of its fragment by descending mass; -1: none", 0},
+    COLUMN(position, 2, "m", "centre of mass"),
+    COLUMN(angle, 0, "rad", "rotation since the start, counter-clockwise"),
+    COLUMN(velocity, 2, "m s-1", "velocity of the centre of mass"),
+    COLUMN(spin, 0, "rad s-1", "angular velocity, counter-clockwise"),
+    COLUMN(mass, 0, "kg m-1", "mass per metre of thickness"),
+    COLUMN(moment_of_inertia, 0, "kg m", "about the centre of mass, per metre of thickness"),
+    COLUMN(present, 0, "1", "0: the explosive grain, burnt"),
+    COLUMN(fragment, 0, "1", "number of its fragment by descending mass; -1: none"),
 };
-static double grain_value(const void *context, size_t row, size_t column, size_t k) {
-  const struct view *view = context;
-  const uint32_t *label = view->rows;
-  struct dem_grain g = dem_system_grain(view->run->system, (uint32_t)row);
-  const double values[] = {k ? g.y : g.x,   g.angle,
-                           k ? g.vy : g.vx, g.spin,
-                           g.mass,          g.moment_of_inertia,
-                           g.present,       label[row] == UINT32_MAX ? -1.0 : (double)label[row]};
-  return values[column];
-}
+#undef COLUMN
 
+struct beam_row {
+  uint32_t grains[2];
+  double side, length;
+  bool alive;
+  double strain;
+};
+#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(beam_row, member, width, __VA_ARGS__)
 static const struct snapshot_file_column beam_columns[] = {
-    {"grains", "1", "indices of the two grains that it joins", 2},
-    {"side", "m", "length of their common side at the start: the beam's section", 0},
-    {"length", "m", "distance of the two centres of mass at the start", 0},
-    {"alive", "1", "1: it holds, 0: broken", 0},
-    {"strain", "1", "strain now", 0},
+    COLUMN(grains, 2, "1", "indices of the two grains that it joins"),
+    COLUMN(side, 0, "m", "length of their common side at the start: the beam's section"),
+    COLUMN(length, 0, "m", "distance of the two centres of mass at the start"),
+    COLUMN(alive, 0, "1", "1: it holds, 0: broken"),
+    COLUMN(strain, 0, "1", "strain now"),
 };
-static double beam_value(const void *context, size_t row, size_t column, size_t k) {
-  const struct dem_run *run = ((const struct view *)context)->run;
-  const struct dem_tessellation *t = run->tessellation;
-  struct dem_point a = t->centroid[t->pair[row][0]], b = t->centroid[t->pair[row][1]];
-  const double values[] = {t->pair[row][k], t->side[row], hypot(b.x - a.x, b.y - a.y),
-                           dem_system_beam_alive(run->system, row), dem_system_beam_strain(run->system, row)};
-  return values[column];
-}
+#undef COLUMN
 
+#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(dem_break, member, width, __VA_ARGS__)
 static const struct snapshot_file_column break_columns[] = {
-    {"time", "s", "when the beam broke", 0},
-    {"beam", "1", "index into /beams", 0},
-    {"strain", "1", "its strain when it broke", 0},
-    {"angle", "rad", "rotations of its two ends when it broke", 2},
-    {"bending", "1", "1: the bending term of the breaking rule was the larger one", 0},
+    COLUMN(time, 0, "s", "when the beam broke"),
+    COLUMN(beam, 0, "1", "index into /beams"),
+    COLUMN(strain, 0, "1", "its strain when it broke"),
+    COLUMN(angle, 2, "rad", "rotations of its two ends when it broke"),
+    COLUMN(bending, 0, "1", "1: the bending term of the breaking rule was the larger one"),
 };
-static double break_value(const void *context, size_t row, size_t column, size_t k) {
-  const struct dem_break *b = (const struct dem_break *)((const struct view *)context)->rows + row;
-  const double values[] = {b->time, b->beam, b->strain, k ? b->angle_second : b->angle_first, b->bending};
-  return values[column];
-}
+#undef COLUMN
 
+#define COLUMN(member, ...) SNAPSHOT_FILE_COLUMN(dem_sample, member, 0, __VA_ARGS__)
 static const struct snapshot_file_column curve_columns[] = {
-    {"time", "s", "end of the steps averaged", 0},
-    {"strain", "1", "axial strain, extension positive", 0},
-    {"stress", "Pa", "force on the sides over the first width, extension positive", 0},
-    {"lateral_strain", "1", "change of the width at half height over its first value", 0},
-    {"broken", "1", "beams broken so far", 0},
+    COLUMN(time, "s", "end of the steps averaged"),
+    COLUMN(strain, "1", "axial strain, extension positive"),
+    COLUMN(stress, "Pa", "force on the sides over the first width, extension positive"),
+    COLUMN(lateral_strain, "1", "change of the width at half height over its first value"),
+    COLUMN(broken, "1", "beams broken so far"),
 };
-static double curve_value(const void *context, size_t row, size_t column, size_t k) {
-  (void)k;
-  const struct dem_sample *s = &((const struct view *)context)->run->sample[row];
-  const double values[] = {s->time, s->strain, s->stress, s->lateral_strain, (double)s->broken};
-  return values[column];
+#undef COLUMN
+
+#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(fragment, member, width, __VA_ARGS__)
+static const struct snapshot_file_column fragment_columns[] = {
+    COLUMN(mass, 0, "kg m-1", "mass per metre of thickness, descending"),
+    COLUMN(position, 2, "m", "centre of mass"),
+    COLUMN(velocity, 2, "m s-1", "velocity of the centre of mass"),
+    SNAPSHOT_FILE_COLUMN_NAMED("spin", fragment, spin[2], 0, "rad s-1", "angular momentum over moment of inertia"),
+    COLUMN(moment_of_inertia, 0, "kg m", "about the centre of mass"),
+    COLUMN(kinetic_energy, 0, "J m-1", "translation, rotation and inner motion"),
+    COLUMN(count, 0, "1", "grains in it"),
+    COLUMN(first, 0, "1", "its lowest grain"),
+};
+#undef COLUMN
+
+#define COLUMNS(group, count, rows, list)                                                                              \
+  snapshot_file_columns(file, group, count, rows, sizeof *(rows), sizeof list / sizeof list[0], list)
+
+static void add_grains(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
+  size_t n = run->tessellation->cell_count;
+  struct grain_row *row = malloc(n * sizeof *row);
+  if (!row) {
+    snapshot_file_fail(file);
+    return;
+  }
+  for (uint32_t i = 0; i < n; i++) {
+    struct dem_grain g = dem_system_grain(run->system, i);
+    row[i] = (struct grain_row){.position = {g.x, g.y},
+                                .angle = g.angle,
+                                .velocity = {g.vx, g.vy},
+                                .spin = g.spin,
+                                .mass = g.mass,
+                                .moment_of_inertia = g.moment_of_inertia,
+                                .present = g.present,
+                                .fragment = label[i] == UINT32_MAX ? -1.0 : (double)label[i]};
+  }
+  COLUMNS("grains", n, row, grain_columns);
+  free(row);
 }
 
-static const struct snapshot_file_column fragment_columns[] = {
-    {"mass", "kg m-1", "mass per metre of thickness, descending", 0},
-    {"position", "m", "centre of mass", 2},
-    {"velocity", "m s-1", "velocity of the centre of mass", 2},
-    {"spin", "rad s-1", "angular momentum over moment of inertia", 0},
-    {"moment_of_inertia", "kg m", "about the centre of mass", 0},
-    {"kinetic_energy", "J m-1", "translation, rotation and inner motion", 0},
-    {"count", "1", "grains in it", 0},
-    {"first", "1", "its lowest grain", 0},
-};
-static double fragment_value(const void *context, size_t row, size_t column, size_t k) {
-  const struct fragment *f = (const struct fragment *)((const struct view *)context)->rows + row;
-  const double values[] = {f->mass,           f->position[k], f->velocity[k], f->spin[2], f->moment_of_inertia,
-                           f->kinetic_energy, f->count,       f->first};
-  return values[column];
+static void add_beams(struct snapshot_file *file, const struct dem_run *run) {
+  const struct dem_tessellation *t = run->tessellation;
+  struct beam_row *row = malloc((t->pair_count + 1) * sizeof *row);
+  if (!row) {
+    snapshot_file_fail(file);
+    return;
+  }
+  for (size_t i = 0; i < t->pair_count; i++) {
+    struct dem_point a = t->centroid[t->pair[i][0]], b = t->centroid[t->pair[i][1]];
+    row[i] = (struct beam_row){.grains = {t->pair[i][0], t->pair[i][1]},
+                               .side = t->side[i],
+                               .length = hypot(b.x - a.x, b.y - a.y),
+                               .alive = dem_system_beam_alive(run->system, i),
+                               .strain = dem_system_beam_strain(run->system, i)};
+  }
+  COLUMNS("beams", t->pair_count, row, beam_columns);
+  free(row);
 }
 
 /* Outlines of the grains that are left, as VTK reads them. */
@@ -163,21 +187,17 @@ cleanup:
 static void content(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label,
                     const struct outcome *outcome, const struct dem_results *results, const struct fragment *fragments,
                     size_t fragment_count) {
-  const struct dem_tessellation *t = run->tessellation;
   const struct dem_break *log = NULL;
   size_t breaks = dem_system_breaks(run->system, &log);
   snapshot_file_table(file, "inputs", &dem_inputs, &run->inputs);
   snapshot_file_table(file, "outcome", &outcome_table, outcome);
   snapshot_file_table(file, "results", &dem_results, results);
-#define COLUMNS(group, context, count, list, read)                                                                     \
-  snapshot_file_columns(file, group, count, sizeof list / sizeof list[0], list, read, &(struct view){run, context})
-  COLUMNS("grains", label, t->cell_count, grain_columns, grain_value);
-  COLUMNS("beams", NULL, t->pair_count, beam_columns, beam_value);
-  COLUMNS("breaks", log, breaks, break_columns, break_value);
-  COLUMNS("fragments", fragments, fragment_count, fragment_columns, fragment_value);
+  add_grains(file, run, label);
+  add_beams(file, run);
+  COLUMNS("breaks", breaks, log, break_columns);
+  COLUMNS("fragments", fragment_count, fragments, fragment_columns);
   if (run->sample)
-    COLUMNS("curve", NULL, run->state.samples, curve_columns, curve_value);
-#undef COLUMNS
+    COLUMNS("curve", run->state.samples, run->sample, curve_columns);
   outlines(file, run, label);
 }
 

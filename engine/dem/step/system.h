@@ -10,10 +10,10 @@
 #include "engine/dem/scene/inputs.h"
 
 struct dem_break {
-  double time;   /* s */
-  uint32_t beam; /* index into the tessellation's pairs */
-  double strain, angle_first, angle_second;
-  bool bending; /* mode: the bending term was the larger one */
+  double time;             /* s */
+  uint32_t beam;           /* index into the tessellation's pairs */
+  double strain, angle[2]; /* angle: rotations of the two ends, rad */
+  bool bending;            /* mode: the bending term was the larger one */
 };
 
 /* Energy per term, J/m. closed = kinetic + beam + contact + broken_beam + damping + friction - external_work; for the

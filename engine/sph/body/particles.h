@@ -42,6 +42,12 @@ struct sph_particles {
       rest_distention; /* what it would be at P = 0: pores that are closed for good (palpha.h); filled when read back */
 };
 
+/* D of particle i; 0 without damage. */
+static inline double sph_particles_damage(const struct sph_particles *p, size_t i) {
+  double cbrt = p->damage_cbrt ? p->damage_cbrt[i] : 0;
+  return cbrt * cbrt * cbrt;
+}
+
 /* Allocates all arrays that the flags (enum sph_particle_arrays) ask for, zeroed (distention: 1). STATUS_MEMORY. */
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
 void sph_particles_free(struct sph_particles *particles); /* NULL is fine */

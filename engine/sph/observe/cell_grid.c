@@ -1,3 +1,4 @@
+/* Hashed cells of several sizes. */
 #include "engine/sph/observe/cell_grid.h"
 
 #include <math.h>
@@ -22,7 +23,7 @@ struct sph_cell_grid {
 
 struct level {
   double size[3];
-  int64_t wrap[3]; /* cells round a periodic axis; 1: too few to tell apart, all particles stand in one; 0: open */
+  int64_t wrap[3]; /* cells along a periodic axis; 1: fewer than three, all in one cell; 0: the axis is open */
 };
 
 static struct level level_at(const struct sph_cell_grid *t, int number) {
@@ -51,7 +52,7 @@ static int64_t cell_along(const struct level *level, int axis, double x) {
   return at;
 }
 
-/* Neighbours along x are neighbours in memory; rows are scattered by odd multipliers. */
+/* Cells that are neighbours along x have neighbouring buckets. Odd multipliers scatter rows and levels. */
 static size_t bucket_of(const struct sph_cell_grid *t, int level, const int64_t at[3]) {
   return (size_t)((uint64_t)at[0] + (uint64_t)at[1] * 0x9e3779b97f4a7c15u + (uint64_t)at[2] * 0xc2b2ae3d27d4eb4fu +
                   (uint64_t)level * 0x165667b19e3779f9u) &
@@ -65,7 +66,7 @@ static size_t home_of(const struct sph_cell_grid *t, const struct level *level, 
   return bucket_of(t, item->level, at);
 }
 
-/* Counting sort into buckets; within one by ascending id. */
+/* Counting sort into buckets; inside a bucket by ascending id. */
 static void sort_items(struct sph_cell_grid *t, const struct level *level, const struct item *from, uint32_t *bucket) {
   for (size_t k = 0; k < t->n; k++) {
     bucket[k] = (uint32_t)home_of(t, &level[from[k].level], &from[k]);
@@ -75,9 +76,33 @@ static void sort_items(struct sph_cell_grid *t, const struct level *level, const
     t->start[b + 1] += t->start[b];
   for (size_t k = t->n; k-- > 0;)
     t->item[--t->start[bucket[k] + 1]] = from[k];
-  for (size_t b = 0; b <= t->mask; b++) /* each start has slid to the place before: back */
+  for (size_t b = 0; b <= t->mask; b++) /* the loop above moved each start to the entry before it: move it back */
     t->start[b] = t->start[b + 1];
   t->start[t->mask + 1] = (uint32_t)t->n;
+}
+
+/* The particles that are not absent. Returns the largest reach h, m. */
+static double collect_items(struct sph_cell_grid *t, size_t n, const double *x, const double *y, const double *z,
+                            const double *h, const uint8_t *role, double reach, struct item *items) {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++) {
+    if (role[i] == SPH_CELL_GRID_ABSENT)
+      continue;
+    items[t->n++] = (struct item){.at = {x[i], y[i], z[i]},
+                                  .half = 0.5 * reach * h[i],
+                                  .id = (uint32_t)i,
+                                  .role = role[i]};
+    largest = fmax(largest, reach * h[i]);
+  }
+  return largest;
+}
+
+/* The finest level whose cells are at least reach h wide. Level 0 has cells of `largest`. */
+static uint8_t level_for(const struct item *item, double largest) {
+  uint8_t level = 0;
+  for (double bound = largest; 4 * item->half <= bound && level < LEVELS - 1; bound /= 2)
+    level++;
+  return level;
 }
 
 status sph_cell_grid_create(size_t n, const double *x, const double *y, const double *z, const double *h,
@@ -89,37 +114,23 @@ status sph_cell_grid_create(size_t n, const double *x, const double *y, const do
   struct item *from = malloc((n + 1) * sizeof *from);
   uint32_t *bucket = malloc((n + 1) * sizeof *bucket);
   struct level level[LEVELS];
-  double largest = 0;
-  if (t && from && bucket) {
-    for (size_t i = 0; i < n; i++) {
-      if (role[i] == SPH_CELL_GRID_ABSENT)
-        continue;
-      from[t->n++] = (struct item){.at = {x[i], y[i], z[i]},
-                                   .half = 0.5 * reach * h[i],
-                                   .id = (uint32_t)i,
-                                   .role = role[i]};
-      largest = fmax(largest, reach * h[i]);
-    }
-    for (t->mask = 1; t->mask < 2 * t->n;)
-      t->mask = 2 * t->mask + 1;
-    t->item = malloc((t->n + 1) * sizeof *t->item);
-    t->start = calloc(t->mask + 2, sizeof *t->start);
-  }
-  if (!t || !from || !bucket || !t->item || !t->start) {
-    sph_cell_grid_free(t);
-    code = status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles touch", n);
-    goto cleanup;
-  }
-  t->coarsest = largest * (1 + 1e-9); /* the rounding of a distance does not leap over a cell */
+  if (!t || !from || !bucket)
+    goto no_memory;
+
+  double largest = collect_items(t, n, x, y, z, h, role, reach, from);
+  for (t->mask = 1; t->mask < 2 * t->n;)
+    t->mask = 2 * t->mask + 1;
+  t->item = malloc((t->n + 1) * sizeof *t->item);
+  t->start = calloc(t->mask + 2, sizeof *t->start);
+  if (!t->item || !t->start)
+    goto no_memory;
+
+  t->coarsest = largest * (1 + 1e-9); /* a rounded distance must not skip a cell */
   for (int d = 0; d < 3; d++)
     t->period[d] = periodic[d] > 0 ? periodic[d] : 0;
   t->levels = 1;
-  for (size_t k = 0; k < t->n; k++) { /* a level holds reach h up to its cells */
-    double bound = largest;
-    while (4 * from[k].half <= bound && from[k].level < LEVELS - 1) {
-      bound /= 2;
-      from[k].level++;
-    }
+  for (size_t k = 0; k < t->n; k++) {
+    from[k].level = level_for(&from[k], largest);
     if (from[k].level >= t->levels)
       t->levels = from[k].level + 1;
   }
@@ -127,6 +138,10 @@ status sph_cell_grid_create(size_t n, const double *x, const double *y, const do
     level[l] = level_at(t, l);
   sort_items(t, level, from, bucket);
   *out = t;
+  goto cleanup;
+no_memory:
+  sph_cell_grid_free(t);
+  code = status_fail(error, STATUS_MEMORY, "no memory to find which of %zu particles are neighbours", n);
 cleanup:
   free(from);
   free(bucket);
@@ -148,7 +163,8 @@ struct visit {
   bool passive, periodic;
 };
 
-/* `count` buckets, one after the other. */
+/* The items of one level in `count` successive buckets. own: the buckets are those of the item's own cell, where a pair
+ * is visited from the lower id only. */
 static void visit_buckets(const struct visit *visit, const struct item *item, int number, bool own, size_t bucket,
                           size_t count) {
   const struct sph_cell_grid *t = visit->t;
@@ -170,7 +186,8 @@ static void visit_buckets(const struct visit *visit, const struct item *item, in
   }
 }
 
-/* From the finer of two levels to the coarser, whose cells hold the reach of both; on one level forwards only. */
+/* The cells round an item. A pair of two levels is found from its finer item, because the coarser cells hold the reach
+ * of both. On the item's own level only the cells that follow its own are visited. */
 static void visit_level(const struct visit *visit, const struct item *item, int number, const struct level *level) {
   int64_t home[3];
   int low[3], high[3];
@@ -186,7 +203,7 @@ static void visit_level(const struct visit *visit, const struct item *item, int 
       int first = own ? 0 : low[0], count = high[0] - first + 1;
       size_t row = bucket_of(visit->t, number, (int64_t[3]){home[0] + first, home[1] + b, home[2] + a});
       if (!visit->periodic && !own &&
-          row + (size_t)count <= visit->t->mask + 1) { /* a row of cells is a row of buckets */
+          row + (size_t)count <= visit->t->mask + 1) { /* the row of cells is a row of buckets */
         visit_buckets(visit, item, number, false, row, (size_t)count);
         continue;
       }

@@ -1,3 +1,4 @@
+/* Crater, ejecta and closed pores of a target. */
 #include "engine/sph/observe/crater.h"
 
 #include <math.h>
@@ -5,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE_MOST = 2048 }; /* columns along one side */
-static const double compacted = 1.01;
+enum { SIDE_MOST = 2048 };            /* columns along one side */
+static const double compacted = 1.01; /* distention below which matter counts as compacted */
 
 static double distention(const struct sph_particles *start, size_t i) {
   return start->distention ? start->distention[i] : 1;
 }
 
-/* At P = 0: torn matter stands in (undamaged) tension, in which the pores of its elastic branch are open again, and yet
- * closed ones stay closed. */
+/* Distention at P = 0. Fractured matter is under (undamaged) tension, which opens the pores of the elastic branch
+ * again; at rest only the pores that are closed for good count. */
 static double at_rest(const struct sph_particles *now, size_t i) {
   return now->rest_distention ? now->rest_distention[i] : 1;
 }
@@ -29,9 +30,9 @@ static double off_axis(const struct sph_particles *p, size_t i, const double axi
 /* A map of columns over the target's outline at the start. */
 struct map {
   size_t nx, ny;
-  double x, y, size;
-  double *before, *after; /* highest particle at the start and now, -inf where none is */
-  double *bottom;         /* lowest particle at the start */
+  double x, y, size;      /* m: corner, and side of a column */
+  double *before, *after; /* m, highest particle at the start and now, -inf where there is none */
+  double *bottom;         /* m, lowest particle at the start */
 };
 
 static bool column_of(const struct map *m, double x, double y, size_t *at) {
@@ -42,24 +43,36 @@ static bool column_of(const struct map *m, double x, double y, size_t *at) {
   return true;
 }
 
-static status make_map(const struct sph_particles *start, const struct sph_particles *now,
-                       const struct sph_crater_options *o, struct map *m, struct error *error) {
+static status make_map(const struct sph_particles *start, const struct sph_crater_options *o, struct map *m,
+                       struct error *error) {
   double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    low[0] = fmin(low[0], start->x[i]), high[0] = fmax(high[0], start->x[i]);
-    low[1] = fmin(low[1], start->y[i]), high[1] = fmax(high[1], start->y[i]);
+    low[0] = fmin(low[0], start->x[i]);
+    low[1] = fmin(low[1], start->y[i]);
+    high[0] = fmax(high[0], start->x[i]);
+    high[1] = fmax(high[1], start->y[i]);
   }
   double widest = fmax(high[0] - low[0], high[1] - low[1]);
   *m = (struct map){.x = low[0], .y = low[1], .size = fmax(2 * o->spacing, widest / (SIDE_MOST - 1))};
   m->nx = (size_t)((high[0] - low[0]) / m->size) + 1;
   m->ny = (size_t)((high[1] - low[1]) / m->size) + 1;
-  m->before = malloc(3 * m->nx * m->ny * sizeof(double));
+
+  size_t columns = m->nx * m->ny;
+  m->before = malloc(3 * columns * sizeof(double));
   if (!m->before)
     return status_fail(error, STATUS_MEMORY, "no memory for a map of the crater");
-  m->after = m->before + m->nx * m->ny;
-  m->bottom = m->after + m->nx * m->ny;
-  for (size_t k = 0; k < m->nx * m->ny; k++)
-    m->before[k] = m->after[k] = -HUGE_VAL, m->bottom[k] = HUGE_VAL;
+  m->after = m->before + columns;
+  m->bottom = m->after + columns;
+  for (size_t k = 0; k < columns; k++) {
+    m->before[k] = -HUGE_VAL;
+    m->after[k] = -HUGE_VAL;
+    m->bottom[k] = HUGE_VAL;
+  }
+  return STATUS_OK;
+}
+
+static void fill_map(const struct sph_particles *start, const struct sph_particles *now,
+                     const struct sph_crater_options *o, struct map *m) {
   for (size_t i = o->first; i < o->first + o->count; i++) {
     size_t at;
     if (column_of(m, start->x[i], start->y[i], &at)) {
@@ -69,89 +82,132 @@ static status make_map(const struct sph_particles *start, const struct sph_parti
     if (!is_ejected(now, i, o->ejection_speed) && column_of(m, now->x[i], now->y[i], &at))
       m->after[at] = fmax(m->after[at], now->z[i]);
   }
-  return STATUS_OK;
 }
 
-/* The connected region round the axis, at least one spacing deep. A column through which all has gone is as deep as the
- * target was there. */
-static status dig(const struct map *m, const struct sph_crater_options *o, struct sph_crater *out,
-                  struct error *error) {
-  size_t *queue = malloc(m->nx * m->ny * sizeof *queue), head = 0, tail = 0, at;
-  unsigned char *seen = calloc(m->nx * m->ny, 1);
-  if (!queue || !seen) {
-    free(queue);
-    free(seen);
+/* Columns to visit: each enters once. */
+struct queue {
+  size_t *column, head, tail;
+  bool *seen; /* by column */
+};
+
+static void enter(struct queue *q, size_t column) {
+  if (q->seen[column])
+    return;
+  q->seen[column] = true;
+  q->column[q->tail++] = column;
+}
+
+/* The axis' column and those round it: a lattice may leave the axis' column empty. */
+static void enter_axis(const struct map *m, const double axis[2], struct queue *q) {
+  size_t at;
+  if (!column_of(m, axis[0], axis[1], &at))
+    return;
+  for (size_t j = 0; j < m->ny; j++)
+    for (size_t i = 0; i < m->nx; i++) {
+      double x = m->x + ((double)i + 0.5) * m->size, y = m->y + ((double)j + 0.5) * m->size;
+      if (hypot(x - axis[0], y - axis[1]) < 1.5 * m->size)
+        enter(q, j * m->nx + i);
+    }
+}
+
+static void enter_neighbours(const struct map *m, size_t at, struct queue *q) {
+  size_t i = at % m->nx, j = at / m->nx;
+  if (i > 0)
+    enter(q, at - 1);
+  if (i + 1 < m->nx)
+    enter(q, at + 1);
+  if (j > 0)
+    enter(q, at - m->nx);
+  if (j + 1 < m->ny)
+    enter(q, at + m->nx);
+}
+
+/* The connected region round the axis, at least one spacing deep. A column that has lost all its particles is as deep
+ * as the target was there. */
+static status measure_hole(const struct map *m, const struct sph_crater_options *o, struct sph_results *results,
+                           struct error *error) {
+  size_t columns = m->nx * m->ny;
+  struct queue q = {.column = malloc(columns * sizeof *q.column), .seen = calloc(columns, sizeof *q.seen)};
+  if (!q.column || !q.seen) {
+    free(q.column);
+    free(q.seen);
     return status_fail(error, STATUS_MEMORY, "no memory for a map of the crater");
   }
-  double area = m->size * m->size, dug = 0;
-  if (column_of(m, o->axis[0], o->axis[1], &at)) {
-    /* the columns round the axis, too: the lattice may leave its own empty */
-    for (size_t j = 0; j < m->ny; j++)
-      for (size_t i = 0; i < m->nx; i++)
-        if (hypot(m->x + ((double)i + 0.5) * m->size - o->axis[0], m->y + ((double)j + 0.5) * m->size - o->axis[1]) <
-            1.5 * m->size) {
-          queue[tail++] = j * m->nx + i;
-          seen[j * m->nx + i] = 1;
-        }
-  }
-  while (head < tail) {
-    at = queue[head++];
+
+  double area = m->size * m->size, dug = 0, volume = 0, depth = 0;
+  enter_axis(m, o->axis, &q);
+  while (q.head < q.tail) {
+    size_t at = q.column[q.head++];
     if (m->before[at] == -HUGE_VAL)
       continue;
     double deep = m->before[at] - fmax(m->after[at], m->bottom[at]);
     if (!(deep >= o->spacing))
       continue;
     dug += area;
-    out->volume += deep * area;
-    out->depth = fmax(out->depth, deep);
-    size_t i = at % m->nx, j = at / m->nx;
-    const size_t next[4] = {i > 0 ? at - 1 : at, i + 1 < m->nx ? at + 1 : at, j > 0 ? at - m->nx : at,
-                            j + 1 < m->ny ? at + m->nx : at};
-    for (int k = 0; k < 4; k++)
-      if (!seen[next[k]]) {
-        seen[next[k]] = 1;
-        queue[tail++] = next[k];
-      }
+    volume += deep * area;
+    depth = fmax(depth, deep);
+    enter_neighbours(m, at, &q);
   }
-  out->radius = sqrt(dug / M_PI);
-  free(queue);
-  free(seen);
+  results->crater.depth = depth;
+  results->crater.radius = sqrt(dug / M_PI);
+  results->crater.volume = sph_results_finite(volume);
+  free(q.column);
+  free(q.seen);
   return STATUS_OK;
 }
 
-status sph_crater_find(const struct sph_particles *start, const struct sph_particles *now,
-                       const struct sph_crater_options *o, struct sph_crater *out, struct error *error) {
-  *out = (struct sph_crater){0};
-  if (!o->count || !(o->spacing > 0))
-    return STATUS_OK;
+/* Sums over the target's particles. Near the axis: within two spacings. */
+static void measure_matter(const struct sph_particles *start, const struct sph_particles *now,
+                           const struct sph_crater_options *o, struct sph_results *results) {
   double top = -HUGE_VAL;
-  for (size_t i = o->first; i < o->first + o->count; i++) {
+  for (size_t i = o->first; i < o->first + o->count; i++)
     if (off_axis(start, i, o->axis) < 2 * o->spacing)
       top = fmax(top, start->z[i]);
-  }
+
+  double ejected_mass = 0, momentum = 0, ejecta_volume = 0, compacted_mass = 0, closed_volume = 0, depth = 0, reach = 0;
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    double alpha = at_rest(now, i),
-           closed = o->distention > 1 ? (distention(start, i) - alpha) / distention(start, i) : 0;
+    double alpha = at_rest(now, i), alpha_start = distention(start, i);
+    double closed = o->distention > 1 ? (alpha_start - alpha) / alpha_start : 0;
     double volume = start->mass[i] / start->density[i];
-    bool crushed = closed > 0 && alpha < compacted && distention(start, i) >= compacted;
+    bool crushed = closed > 0 && alpha < compacted && alpha_start >= compacted;
     if (crushed)
-      out->compacted_mass += now->mass[i];
+      compacted_mass += now->mass[i];
     if (is_ejected(now, i, o->ejection_speed)) {
-      out->ejected_mass += now->mass[i];
-      out->ejected_momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
-      out->ejecta_volume += volume;
+      ejected_mass += now->mass[i];
+      momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
+      ejecta_volume += volume;
       continue;
     }
-    out->compaction_volume += fmax(closed, 0) * volume; /* the solid's own volume is kept */
+    closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
     if (crushed && off_axis(start, i, o->axis) < 2 * o->spacing)
-      out->compaction_depth = fmax(out->compaction_depth, top - start->z[i]);
-    if (closed > 0 && distention(start, i) - alpha > 0.01 * (o->distention - 1))
-      out->compaction_reach = fmax(out->compaction_reach, hypot(off_axis(start, i, o->axis), top - start->z[i]));
+      depth = fmax(depth, top - start->z[i]);
+    if (closed > 0 && alpha_start - alpha > 0.01 * (o->distention - 1))
+      reach = fmax(reach, hypot(off_axis(start, i, o->axis), top - start->z[i]));
   }
+
+  results->ejecta.mass_fraction = sph_results_share(ejected_mass, o->mass);
+  results->ejecta.momentum = sph_results_finite(momentum);
+  results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
+  if (!(o->distention > 1))
+    return;
+  results->compaction.mass_fraction = sph_results_share(compacted_mass, o->mass);
+  results->compaction.volume = sph_results_finite(closed_volume);
+  results->compaction.depth = depth;
+  results->compaction.reach = reach;
+}
+
+status sph_crater_measure(const struct sph_particles *start, const struct sph_particles *now,
+                          const struct sph_crater_options *o, struct sph_results *results, struct error *error) {
+  if (!o->count || !(o->spacing > 0))
+    return STATUS_OK;
+  measure_matter(start, now, o, results);
+
   struct map map;
-  status code = make_map(start, now, o, &map, error);
-  if (!code)
-    code = dig(&map, o, out, error);
+  status code = make_map(start, o, &map, error);
+  if (code)
+    return code;
+  fill_map(start, now, o, &map);
+  code = measure_hole(&map, o, results, error);
   free(map.before);
   return code;
 }
@@ -170,13 +226,13 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
     if (!(layer >= 0 && layer < (double)most))
       continue;
     struct sph_crater_layer *l = &layers[(size_t)layer];
-    double d = now->damage_cbrt ? now->damage_cbrt[i] : 0;
-    l->depth += 1; /* a count, for now */
+    l->depth += 1; /* the number of particles, until the loop ends */
     l->distention += at_rest(now, i);
-    l->damage += d * d * d;
+    l->damage += sph_particles_damage(now, i);
     l->pressure += now->pressure[i];
     l->velocity += now->vz[i];
   }
+
   size_t count = 0;
   for (size_t k = 0; k < most; k++) {
     struct sph_crater_layer l = layers[k];

@@ -1,12 +1,13 @@
-#include "engine/sph/observe/plate.h"
-
+/* The shock fronts in a plate that a piston hits: places, speeds and the states behind them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 
-struct sph_plate_layer { /* of matter that stood one spacing deep at the start: sums over its particles */
+/* A layer of matter that was one spacing thick at the start: sums over its particles. */
+struct sph_plate_layer {
   double x, density, count;
 };
 
@@ -52,8 +53,9 @@ size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *lay
   return count;
 }
 
-/* From the far side: the first place as dense as halfway from what is ahead of a front to what is behind it. */
-static double passes(const struct sph_run *run, double ahead, double behind) {
+/* The place of a front: the first one, from the far side, where density reaches the mean of the values ahead of the
+ * front and behind it. */
+static double front_place(const struct sph_run *run, double ahead, double behind) {
   double level = (ahead + behind) / 2, before = NAN, at = NAN;
   for (size_t k = (size_t)run->inputs.fidelity.points; k-- > 0;) {
     const struct sph_plate_layer *l = &run->layer[k];
@@ -72,11 +74,11 @@ void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, do
   const struct sph_plane_shock *exact = &run->exact;
   double between = exact->has_precursor ? exact->precursor.density : exact->first_density;
   fill_layers(run, p);
-  *precursor = exact->has_precursor ? passes(run, exact->first_density, between) : (double)NAN;
-  *shock = exact->has_shock ? passes(run, between, exact->shock.density) : (double)NAN;
+  *precursor = exact->has_precursor ? front_place(run, exact->first_density, between) : (double)NAN;
+  *shock = exact->has_shock ? front_place(run, between, exact->shock.density) : (double)NAN;
 }
 
-/* Slope of places against times by least squares, from half of the run on: by then a front has its final form. */
+/* Slope of places against times by least squares over the second half of the run, when a front has its final form. */
 static double speed(const struct sph_run *run, size_t offset) {
   double from = run->inputs.stop.end_time / 2, n = 0, t = 0, x = 0, tt = 0, tx = 0;
   for (size_t k = 0; k < run->state.samples; k++) {
@@ -84,11 +86,16 @@ static double speed(const struct sph_run *run, size_t offset) {
     memcpy(&place, (const char *)&run->sample[k] + offset, sizeof place);
     if (!(time >= 0) || isnan(place))
       continue;
-    n++, t += time, x += place, tt += time * time, tx += time * place;
+    n++;
+    t += time;
+    x += place;
+    tt += time * time;
+    tx += time * place;
   }
   return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
 }
 
+/* Means over the particles between two places. */
 struct plateau {
   double density, pressure, distention;
 };
@@ -105,29 +112,40 @@ static struct plateau between(const struct sph_run *run, double low, double high
     sum.distention += p->distention ? p->distention[i] : (double)NAN;
     n++;
   }
-  return (struct plateau){sum.density / n, sum.pressure / n, sum.distention / n}; /* NaN of none */
+  return (struct plateau){sum.density / n, sum.pressure / n, sum.distention / n}; /* NaN without particles */
 }
 
-void sph_plate_report(const struct sph_run *run, struct sph_results *r) {
+/* The middle half from the piston to the front. */
+static void report_shock(const struct sph_run *run, double piston, double shock, struct sph_results *r) {
   const struct sph_plane_shock *exact = &run->exact;
+  struct plateau p = between(run, piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4);
+  r->shock.speed = speed(run, offsetof(struct sph_sample, front));
+  r->shock.density = p.density;
+  r->shock.pressure = p.pressure;
+  r->shock.distention = p.distention;
+  r->shock.speed_exact = exact->shock.speed;
+  r->shock.density_exact = exact->shock.density;
+  r->shock.pressure_exact = exact->shock.pressure;
+  r->shock.distention_exact = run->now->distention ? exact->shock.distention : (double)NAN;
+}
+
+/* Well ahead of the shock, which is some spacings wide, and behind the precursor's own rise. */
+static void report_precursor(const struct sph_run *run, double from, double precursor, struct sph_results *r) {
+  const struct sph_plane_shock *exact = &run->exact;
+  struct plateau p = between(run, from + (precursor - from) * 0.4, from + (precursor - from) * 0.7);
+  r->precursor.speed = speed(run, offsetof(struct sph_sample, precursor));
+  r->precursor.pressure = p.pressure;
+  r->precursor.distention = p.distention;
+  r->precursor.speed_exact = exact->precursor.speed;
+  r->precursor.pressure_exact = exact->precursor.pressure;
+  r->precursor.distention_exact = exact->precursor.distention;
+}
+
+void sph_plate_report(const struct sph_run *run, struct sph_results *results) {
   double shock, precursor, piston = run->inputs.piston.speed * sph_system_time(run->system);
   sph_plate_look(run, run->now, &shock, &precursor);
-  if (exact->has_shock) { /* the middle half from the piston to the front */
-    struct plateau p = between(run, piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4);
-    r->shock.speed = speed(run, offsetof(struct sph_sample, front));
-    r->shock.density = p.density, r->shock.pressure = p.pressure, r->shock.distention = p.distention;
-    r->shock.speed_exact = exact->shock.speed;
-    r->shock.density_exact = exact->shock.density;
-    r->shock.pressure_exact = exact->shock.pressure;
-    r->shock.distention_exact = run->now->distention ? exact->shock.distention : (double)NAN;
-  }
-  if (exact->has_precursor) { /* well ahead of the shock, which is spread over some spacings, and behind its own rise */
-    double from = exact->has_shock ? shock : piston;
-    struct plateau p = between(run, from + (precursor - from) * 0.4, from + (precursor - from) * 0.7);
-    r->precursor.speed = speed(run, offsetof(struct sph_sample, precursor));
-    r->precursor.pressure = p.pressure, r->precursor.distention = p.distention;
-    r->precursor.speed_exact = exact->precursor.speed;
-    r->precursor.pressure_exact = exact->precursor.pressure;
-    r->precursor.distention_exact = exact->precursor.distention;
-  }
+  if (run->exact.has_shock)
+    report_shock(run, piston, shock, results);
+  if (run->exact.has_precursor)
+    report_precursor(run, run->exact.has_shock ? shock : piston, precursor, results);
 }

@@ -1,10 +1,10 @@
-/* What stretch, vibration and piston record along the way, at equal times of the simulation. */
+/* What stretch, vibration and piston record during a run, at equal intervals of simulated time. */
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/observe/plate.h"
+#include "engine/sph/observe/observe.h"
 
-enum { SAMPLES = 400 }; /* looks over the whole run: a look costs about a tenth of a step */
+enum { SAMPLES = 400 }; /* over the whole run: a sample costs about a tenth of a step */
 
 status sph_protocol_record_start(struct sph_run *run, struct error *error) {
   if (run->inputs.kind != SPH_STRETCH && run->inputs.kind != SPH_VIBRATION && run->inputs.kind != SPH_PISTON)
@@ -18,13 +18,14 @@ status sph_protocol_record_start(struct sph_run *run, struct error *error) {
   return run->sample ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for %zu samples", run->sample_capacity);
 }
 
-/* Mean axial stress between the grips, by volume, as the damaged solid bears it. */
+/* Mean axial stress that the damaged solid bears between the grips, weighted by volume. */
 static double axial_stress(const struct sph_run *run, const struct sph_particles *p) {
   double half = run->inputs.target.length / 2 - run->inputs.stretch.grip, sum = 0, volume = 0;
   for (size_t i = 0; i < p->n; i++) {
     if (fabs(run->start->z[i]) > half)
       continue;
-    double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0, part = p->mass[i] / p->density[i];
+    double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0; /* not sph_particles_damage(): other last bits */
+    double part = p->mass[i] / p->density[i];
     double pressure = p->pressure[i] < 0 ? (1 - d) * p->pressure[i] : p->pressure[i];
     sum += part * (-pressure + (p->stress[5] ? (1 - d) * p->stress[5][i] : 0));
     volume += part;
@@ -32,7 +33,7 @@ static double axial_stress(const struct sph_run *run, const struct sph_particles
   return volume > 0 ? sum / volume : 0;
 }
 
-/* Projection of the velocities on the mode they started in, over its first size. */
+/* Amplitude of the mode that the run started with: projection of the velocities on it, over its value at the start. */
 static double mode(const struct sph_run *run, const struct sph_particles *p) {
   double sum = 0, norm = 0;
   for (size_t i = 0; i < p->n; i++) {
@@ -59,6 +60,7 @@ void sph_protocol_record(struct sph_run *run) {
   double time = sph_system_time(run->system);
   if (!run->sample || time < (double)state->samples * run->sample_interval || state->samples >= run->sample_capacity)
     return;
+
   const struct sph_particles *p = sph_run_read(run);
   struct sph_sample *sample = &run->sample[state->samples++];
   *sample = (struct sph_sample){.time = time, .damage = sph_system_damage(run->system, NULL)};

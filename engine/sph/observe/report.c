@@ -4,13 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/observe/plate.h"
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 
-enum { INITIAL_H = 0, PIECE = 100 }; /* a piece of a rod is more than 1/PIECE of it */
+/* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
+enum { INITIAL_H = 0, ROD_PARTS = 100 };
 
-status sph_report_pieces(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *pieces,
-                         struct error *error) {
+status sph_report_fragments(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *out,
+                            struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   const struct sph_fragments_body bodies[SPH_RUN_BODIES] = {
       {.static_strength = static_strength},
@@ -24,94 +25,112 @@ status sph_report_pieces(const struct sph_run *run, double static_strength, bool
   memcpy(options.periodic, run->periodic, sizeof options.periodic);
   options.bodies = bodies;
   options.body_count = (size_t)run->body_count;
-  return sph_fragments_find(run->now, &options, pieces, error);
+  return sph_fragments_find(run->now, &options, out, error);
 }
 
-static double not_infinite(double value) {
-  return isfinite(value) ? value : (double)NAN;
-}
-/* As it is: a part is summed in the order of the whole, so that roundings do not lift it above; a share that is not
- * within 0..1 is an error of the sums, which `clast check` names. */
-static double share(double part, double whole) {
-  return whole > 0 ? not_infinite(part / whole) : (double)NAN;
-}
 static double norm(const double v[3]) {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
-static double largest_mass(const struct sph_fragments *pieces) {
-  return pieces->count ? pieces->fragments[0].mass : 0;
+
+static double largest_share(const struct sph_fragments *found) {
+  return sph_results_share(found->count ? found->fragments[0].mass : 0, found->mass);
 }
 
-/* M_1/M by the three recipes; `asked` is the one of the inputs. */
-static status variants(const struct sph_run *run, const struct sph_fragments *asked, struct sph_results *results,
-                       struct error *error) {
+static status find_largest_share(const struct sph_run *run, double static_strength, double *share,
+                                 struct error *error) {
+  struct sph_fragments found;
+  status code = sph_report_fragments(run, static_strength, true, &found, error);
+  if (code)
+    return code;
+  *share = largest_share(&found);
+  sph_fragments_clear(&found);
+  return STATUS_OK;
+}
+
+/* M_1/M by three rules. `found`: by the rules of the inputs. */
+static status report_largest(const struct sph_run *run, const struct sph_fragments *found, struct sph_results *results,
+                             struct error *error) {
   double strength = run->inputs.fragments.static_strength;
-  struct sph_fragments other;
+  results->largest.bare_fraction = sph_results_share(found->core_largest, found->mass);
+  results->largest.veneer_fraction = largest_share(found);
   status code = STATUS_OK;
-  results->largest.bare_fraction = share(asked->bare_largest, asked->mass);
-  results->largest.veneer_fraction = share(largest_mass(asked), asked->mass);
-  if (!run->inputs.fragments.veneer) {
-    if ((code = sph_report_pieces(run, strength, true, &other, error)))
-      return code;
-    results->largest.veneer_fraction = share(largest_mass(&other), other.mass);
-    sph_fragments_clear(&other);
-  }
+  if (!run->inputs.fragments.veneer)
+    code = find_largest_share(run, strength, &results->largest.veneer_fraction, error);
+  if (code)
+    return code;
   results->largest.dynamic_fraction = results->largest.veneer_fraction;
-  if (!field_is_off(strength)) {
-    if ((code = sph_report_pieces(run, NAN, true, &other, error)))
-      return code;
-    results->largest.dynamic_fraction = share(largest_mass(&other), other.mass);
-    sph_fragments_clear(&other);
-  }
-  return code;
+  if (!field_is_off(strength))
+    code = find_largest_share(run, NAN, &results->largest.dynamic_fraction, error);
+  if (code)
+    return code;
+
+  results->largest.axis_middle = sph_results_finite(found->axis_ratio[0]);
+  results->largest.axis_short = sph_results_finite(found->axis_ratio[1]);
+  if (found->count)
+    results->largest.speed = sph_results_finite(norm(found->fragments[0].velocity));
+  return STATUS_OK;
 }
 
-static void second(const struct sph_run *run, const struct sph_fragments *pieces, struct sph_results *results) {
-  if (pieces->count < 2)
+static void report_second(const struct sph_run *run, const struct sph_fragments *found, struct sph_results *results) {
+  if (found->count < 2)
     return;
-  const struct fragment *f = &pieces->fragments[1];
+  const struct fragment *f = &found->fragments[1];
   results->second.mass = f->mass;
   if (run->inputs.kind != SPH_IMPACT)
     return;
+
   double centre[3] = {0, 0, 0}, away[3], cosine = 0;
-  for (size_t k = 0; k < pieces->count; k++)
+  for (size_t k = 0; k < found->count; k++)
     for (int d = 0; d < 3; d++)
-      centre[d] += pieces->fragments[k].mass * pieces->fragments[k].position[d] / pieces->mass;
+      centre[d] += found->fragments[k].mass * found->fragments[k].position[d] / found->mass;
   for (int d = 0; d < 3; d++)
     away[d] = f->position[d] - centre[d];
   for (int d = 0; d < 3; d++)
     cosine += away[d] * run->impact_direction[d] / norm(away);
-  results->second.angle = not_infinite(acos(cosine > 1    ? 1
-                                            : cosine < -1 ? -1
-                                                          : cosine)); /* not of fmin, which makes 1 of NaN */
+  if (cosine > 1) /* not fmin(), which turns NaN into 1 */
+    cosine = 1;
+  if (cosine < -1)
+    cosine = -1;
+  results->second.angle = sph_results_finite(acos(cosine));
 }
 
-static void damage(const struct sph_run *run, struct sph_results *results) {
+/* Means over the target by mass. */
+static void report_damage(const struct sph_run *run, struct sph_results *results) {
   const struct sph_particles *p = run->now;
-  double mass = 0, sum = 0, whole = 0, pores = 0;
+  double mass = 0, damage = 0, undamaged = 0, distention = 0;
   for (size_t i = 0; i < run->targets; i++) {
-    double d = p->damage_cbrt ? p->damage_cbrt[i] * p->damage_cbrt[i] * p->damage_cbrt[i] : 0;
+    double d = sph_particles_damage(p, i);
     mass += p->mass[i];
-    sum += p->mass[i] * d;
-    pores += p->rest_distention ? p->mass[i] * p->rest_distention[i] : 0;
-    whole += d < run->inputs.fragments.damage ? p->mass[i] : 0;
+    damage += p->mass[i] * d;
+    distention += p->rest_distention ? p->mass[i] * p->rest_distention[i] : 0;
+    undamaged += d < run->inputs.fragments.damage ? p->mass[i] : 0;
   }
-  results->mean_damage = share(sum, mass);
+  results->mean_damage = sph_results_share(damage, mass);
+  results->undamaged_fraction = sph_results_share(undamaged, mass);
   if (p->rest_distention && mass > 0)
-    results->mean_distention = not_infinite(pores / mass);
-  results->undamaged_fraction = share(whole, mass);
+    results->mean_distention = sph_results_finite(distention / mass);
 }
 
-static status stretch(const struct sph_run *run, struct sph_results *results, struct error *error) {
-  struct sph_fragments pieces;
-  status code = sph_report_pieces(run, NAN, false, &pieces, error);
+/* The time of the first damage, and whether and when fracture ceased. */
+static void report_fracture(const struct sph_run *run, struct sph_results *results) {
+  bool quiet = run->state.stop == SPH_STOP_QUIET, broke = !isnan(run->state.first_damage);
+  results->fracture_ceased = quiet || (run->state.stop == SPH_STOP_END_TIME && !broke);
+  results->first_damage = run->state.first_damage;
+  if (quiet)
+    results->cease_time = run->state.quiet_since;
+}
+
+static status report_stretch(const struct sph_run *run, struct sph_results *results, struct error *error) {
+  struct sph_fragments found;
+  status code = sph_report_fragments(run, NAN, false, &found, error);
   if (code)
     return code;
-  size_t large = 0;
-  for (size_t k = 0; k < pieces.count; k++)
-    large += pieces.fragments[k].mass * PIECE > pieces.mass;
-  results->cracks = large ? (double)large - 1 : 0;
-  sph_fragments_clear(&pieces);
+  size_t parts = 0;
+  for (size_t k = 0; k < found.count; k++)
+    parts += found.fragments[k].mass * ROD_PARTS > found.mass;
+  results->cracks = parts ? (double)parts - 1 : 0;
+  sph_fragments_clear(&found);
+
   if (run->state.peak_stress > 0) {
     results->peak.stress = run->state.peak_stress;
     results->peak.strain = run->state.peak_strain;
@@ -130,128 +149,112 @@ static double rebound(const struct sph_run *run) {
     }
     speed[b] /= mass;
   }
-  return not_infinite((speed[1] - speed[0]) / run->inputs.collision.speed);
+  return sph_results_finite((speed[1] - speed[0]) / run->inputs.collision.speed);
 }
 
-/* The impact comes down on z at x = y = 0; an oblique one is not followed. */
-struct sph_crater_options sph_report_crater(const struct sph_run *run) {
+/* The impact moves down along z at x = y = 0. The axis of an oblique impact is not followed. */
+struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
+  bool porous = sph_derived_porous(&in->target);
   return (struct sph_crater_options){.first = run->range[0].first,
                                      .count = run->range[0].n,
+                                     .mass = run->range[0].mass,
                                      .spacing = sph_derived_fine_spacing(in),
                                      .ejection_speed = in->crater.ejection_speed,
-                                     .distention = sph_derived_porous(&in->target)
-                                                       ? in->target.material.porosity.distention
-                                                       : 1};
+                                     .distention = porous ? in->target.material.porosity.distention : 1};
 }
 
-static status crater(const struct sph_run *run, struct sph_results *results, struct error *error) {
-  struct sph_crater c;
-  struct sph_crater_options options = sph_report_crater(run);
-  status code = sph_crater_find(run->start, run->now, &options, &c, error);
-  if (code)
-    return code;
-  results->ejecta.mass_fraction = share(c.ejected_mass, run->range[0].mass);
-  results->ejecta.momentum = not_infinite(c.ejected_momentum);
-  results->crater.depth = c.depth;
-  results->crater.radius = c.radius;
-  results->crater.volume = not_infinite(c.volume);
-  results->crater.compaction_share = share(c.compaction_volume, c.compaction_volume + c.ejecta_volume);
-  if (options.distention > 1) {
-    results->compaction.mass_fraction = share(c.compacted_mass, run->range[0].mass);
-    results->compaction.volume = not_infinite(c.compaction_volume);
-    results->compaction.depth = c.compaction_depth;
-    results->compaction.reach = c.compaction_reach;
+/* The results that only one protocol has. */
+static status report_protocol(const struct sph_run *run, struct sph_results *results, struct error *error) {
+  struct sph_crater_options options;
+  switch (run->inputs.kind) {
+  case SPH_STRETCH: return report_stretch(run, results, error);
+  case SPH_IMPACT:
+    options = sph_report_crater_options(run);
+    return sph_crater_measure(run->start, run->now, &options, results, error);
+  case SPH_COLLISION: results->rebound = rebound(run); return STATUS_OK;
+  case SPH_PISTON: sph_plate_report(run, results); return STATUS_OK;
+  case SPH_VIBRATION: /* half a period between two crossings of zero */
+    if (run->state.crossings > 1)
+      results->frequency = (double)(run->state.crossings - 1) /
+                           (2 * (run->state.crossing_last - run->state.crossing_first));
+    return STATUS_OK;
+  default: return STATUS_OK;
   }
-  return STATUS_OK;
 }
 
 static bool closed(const struct sph_run *run) {
   return !run->start->held && !run->start->damping;
 }
 
-/* What changes of momentum are measured against: bodies that stop each other must not make a small error look large. */
+/* The scale of momentum errors: the larger sum of momenta, at the start or now. Bodies that stop each other do not make
+ * a small error look large. */
 static double momentum_scale(const struct sph_run *run, const struct sph_ledger *ledger) {
   return fmax(ledger->momentum_scale, run->state.momentum_scale_start);
 }
 
-/* Angular momentum about axis k keeps where both other directions are open. */
+/* Angular momentum about axis k is conserved where both other directions are open. */
 static double angular_change(const struct sph_run *run, const struct sph_ledger *ledger, int k) {
-  const bool keeps = isnan(run->periodic[(k + 1) % 3]) && isnan(run->periodic[(k + 2) % 3]);
-  return keeps ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
+  bool conserved = isnan(run->periodic[(k + 1) % 3]) && isnan(run->periodic[(k + 2) % 3]);
+  return conserved ? ledger->angular_momentum[k] - run->state.angular_start[k] : 0;
 }
 
-static void shares_of_steps(const struct sph_run *run, struct sph_results *results) {
+/* Energies, clamps and the error of angular momentum. `input`: energy put in, J. */
+static void report_ledger(const struct sph_run *run, const struct sph_ledger *ledger, double input,
+                          struct sph_results *results) {
+  results->energy.kinetic = sph_results_finite(ledger->kinetic);
+  results->energy.internal = sph_results_finite(ledger->internal);
+  results->energy.damped = sph_results_finite(ledger->damped);
+  results->energy.work_of_held = sph_results_finite(ledger->work_of_held);
+  results->energy.clamped = sph_results_finite(ledger->clamped);
+  results->energy_input = sph_results_finite(input);
+  results->clamped_share = sph_results_share(fabs(ledger->clamped), input);
+
+  double change[3];
+  for (int k = 0; k < 3; k++)
+    change[k] = angular_change(run, ledger, k);
+  double scale = fmax(norm(run->state.angular_start), momentum_scale(run, ledger) * sph_run_extent(run));
+  if (closed(run))
+    results->angular_momentum_error = sph_results_share(norm(change), scale);
+}
+
+static void report_steps(const struct sph_run *run, const struct sph_ledger *ledger, struct sph_results *results) {
   double steps = (double)sph_system_steps(run->system);
   const uint64_t *by = run->state.limited;
-  results->limited.courant = share((double)by[SPH_LIMIT_COURANT], steps);
-  results->limited.force = share((double)by[SPH_LIMIT_FORCE], steps);
-  results->limited.damage = share((double)by[SPH_LIMIT_DAMAGE], steps);
-  results->limited.distention = share((double)by[SPH_LIMIT_DISTENTION], steps);
-  results->limited.energy = share((double)by[SPH_LIMIT_ENERGY], steps);
-  results->limited.density = share((double)by[SPH_LIMIT_DENSITY], steps);
+  results->limited.courant = sph_results_share((double)by[SPH_LIMIT_COURANT], steps);
+  results->limited.force = sph_results_share((double)by[SPH_LIMIT_FORCE], steps);
+  results->limited.damage = sph_results_share((double)by[SPH_LIMIT_DAMAGE], steps);
+  results->limited.distention = sph_results_share((double)by[SPH_LIMIT_DISTENTION], steps);
+  results->limited.energy = sph_results_share((double)by[SPH_LIMIT_ENERGY], steps);
+  results->limited.density = sph_results_share((double)by[SPH_LIMIT_DENSITY], steps);
+  results->density_held_share = sph_results_share((double)ledger->density_held, steps * (double)run->start->n);
+  results->neighbours = sph_results_finite(sph_system_neighbours(run->system));
 }
 
 static status fill_results(const struct sph_run *run, const struct sph_ledger *ledger, double input,
-                           const struct sph_fragments *pieces, struct sph_results *results, struct error *error) {
-  const struct sph_inputs *in = &run->inputs;
-  field_defaults(&sph_results, results); /* off, zero */
-  double steps = (double)sph_system_steps(run->system), change[3];
+                           const struct sph_fragments *found, struct sph_results *results, struct error *error) {
+  field_defaults(&sph_results, results); /* every quantity is off or zero */
   results->stop_reason = run->state.stop;
   results->particles = (int64_t)run->targets;
   results->projectile_particles = (int64_t)(run->start->n - run->targets);
   results->flaws = (int64_t)run->flaw_count;
-  results->target_mass = pieces->mass;
-  if (sph_derived_has_projectile(in)) {
+  results->target_mass = found->mass;
+  if (sph_derived_has_projectile(&run->inputs)) {
+    double speed = run->inputs.impact.speed;
     results->projectile_mass = run->range[1].mass;
-    results->specific_energy = not_infinite(0.5 * run->range[1].mass * in->impact.speed * in->impact.speed /
-                                            run->range[0].mass);
+    results->specific_energy = sph_results_finite(0.5 * run->range[1].mass * speed * speed / run->range[0].mass);
   }
-  bool broke = !isnan(run->state.first_damage);
-  results->fracture_ceased = run->state.stop == SPH_STOP_QUIET || (run->state.stop == SPH_STOP_END_TIME && !broke);
-  results->first_damage = run->state.first_damage;
-  if (run->state.stop == SPH_STOP_QUIET)
-    results->cease_time = run->state.quiet_since;
-  damage(run, results);
-  status code = variants(run, pieces, results, error);
-  if (!code && in->kind == SPH_STRETCH)
-    code = stretch(run, results, error);
-  if (!code && in->kind == SPH_IMPACT)
-    code = crater(run, results, error);
-  if (code)
-    return code;
-  results->largest.axis_middle = share(pieces->axis_ratio[0], 1);
-  results->largest.axis_short = share(pieces->axis_ratio[1], 1);
-  if (pieces->count)
-    results->largest.speed = not_infinite(norm(pieces->fragments[0].velocity));
-  second(run, pieces, results);
-  results->energy.kinetic = not_infinite(ledger->kinetic);
-  results->energy.internal = not_infinite(ledger->internal);
-  results->energy.damped = not_infinite(ledger->damped);
-  results->energy.work_of_held = not_infinite(ledger->work_of_held);
-  results->energy.clamped = not_infinite(ledger->clamped);
-  results->energy_input = not_infinite(input);
-  results->clamped_share = input > 0 ? not_infinite(fabs(ledger->clamped) / input) : (double)NAN;
-  results->density_held_share = share((double)ledger->density_held, steps * (double)run->start->n);
-  for (int k = 0; k < 3; k++)
-    change[k] = angular_change(run, ledger, k);
-  double scale = fmax(norm(run->state.angular_start), momentum_scale(run, ledger) * sph_run_extent(run));
-  if (closed(run) && scale > 0)
-    results->angular_momentum_error = not_infinite(norm(change) / scale);
-  shares_of_steps(run, results);
-  results->neighbours = not_infinite(sph_system_neighbours(run->system));
-  if (run->state.crossings > 1)
-    results->frequency = (double)(run->state.crossings - 1) /
-                         (2 * (run->state.crossing_last - run->state.crossing_first));
-  if (in->kind == SPH_COLLISION)
-    results->rebound = rebound(run);
-  if (in->kind == SPH_PISTON)
-    sph_plate_report(run, results);
-  return STATUS_OK;
+  report_fracture(run, results);
+  report_damage(run, results);
+  report_second(run, found, results);
+  report_ledger(run, ledger, input, results);
+  report_steps(run, ledger, results);
+  status code = report_largest(run, found, results, error);
+  return code ? code : report_protocol(run, results, error);
 }
 
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,
-                         const struct sph_fragments *pieces, struct outcome *outcome) {
+                         const struct sph_fragments *found, struct outcome *outcome) {
   *outcome = (struct outcome){
       .state = run->state.finished ? run->state.outcome_state : OUTCOME_END_TIME,
       .steps = (int64_t)sph_system_steps(run->system),
@@ -260,40 +263,40 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   };
   snprintf(outcome->message, sizeof outcome->message, "%s",
            run->state.finished ? run->state.message : "not finished: results of a snapshot");
-  outcome_fragments(outcome, pieces->count, pieces->fragments);
-  double translation = 0, change[3];
-  outcome->energy_error = input > 0 ? not_infinite(fabs(sph_run_closed(ledger) - run->state.energy_start) / input)
-                                    : (double)NAN;
+  outcome_fragments(outcome, found->count, found->fragments);
+
+  double change[3], translation = 0;
   for (int k = 0; k < 3; k++)
     change[k] = ledger->momentum[k] - run->state.momentum_start[k];
-  const double scale = momentum_scale(run, ledger);
-  outcome->momentum_error = closed(run) && scale > 0 ? not_infinite(norm(change) / scale) : (double)NAN;
-  for (size_t k = 0; k < pieces->count; k++) {
-    double v = norm(pieces->fragments[k].velocity);
-    translation += 0.5 * pieces->fragments[k].mass * v * v;
+  for (size_t k = 0; k < found->count; k++) {
+    double v = norm(found->fragments[k].velocity);
+    translation += 0.5 * found->fragments[k].mass * v * v;
   }
-  outcome->kinetic_energy_share = input > 0 ? not_infinite(translation / input) : (double)NAN;
+  outcome->energy_error = sph_results_share(fabs(sph_run_closed(ledger) - run->state.energy_start), input);
+  outcome->kinetic_energy_share = sph_results_share(translation, input);
+  outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error) {
   *fragments = NULL;
   *count = 0;
-  struct sph_fragments pieces;
   sph_run_read(run);
-  status code = sph_report_pieces(run, run->inputs.fragments.static_strength, run->inputs.fragments.veneer, &pieces,
-                                  error);
+  const struct sph_inputs *in = &run->inputs;
+  struct sph_fragments found;
+  status code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
   if (code)
     return code;
+
   struct sph_ledger ledger = sph_system_ledger(run->system);
   double input = run->state.energy_input + fabs(ledger.work_of_held);
-  code = fill_results(run, &ledger, input, &pieces, results, error);
+  code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
-    fill_outcome(run, &ledger, input, &pieces, outcome);
-    *fragments = pieces.fragments;
-    *count = pieces.count;
-    pieces.fragments = NULL;
+    fill_outcome(run, &ledger, input, &found, outcome);
+    *fragments = found.fragments;
+    *count = found.count;
+    found.fragments = NULL;
   }
-  sph_fragments_clear(&pieces);
+  sph_fragments_clear(&found);
   return code;
 }

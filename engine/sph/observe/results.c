@@ -1,3 +1,4 @@
+/* The rows of the results of engine `sph`. */
 #include "engine/sph/observe/results.h"
 
 #include <math.h>
@@ -136,3 +137,11 @@ static const struct field rows[] = {
 
 const struct field_table sph_results = FIELD_TABLE(rows, struct sph_results, "sph results",
                                                    "What engine sph reports beyond the common outcome.");
+
+double sph_results_finite(double value) {
+  return isfinite(value) ? value : (double)NAN;
+}
+
+double sph_results_share(double part, double whole) {
+  return whole > 0 ? sph_results_finite(part / whole) : (double)NAN;
+}

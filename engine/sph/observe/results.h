@@ -1,4 +1,5 @@
-/* What engine `sph` reports beyond struct outcome: table result_sph. Off (NaN) where a quantity does not apply. */
+/* What engine `sph` reports beyond struct outcome: table result_sph. A quantity that does not apply is off (NaN).
+ * Whoever measures a result fills it here: report.c, crater.c, plate.c. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 
@@ -53,5 +54,11 @@ struct sph_results {
 };
 
 extern const struct field_table sph_results;
+
+/* A result that is not finite is off (NaN). */
+double sph_results_finite(double value);
+/* part / whole; off when the whole is not above 0. The value is not clamped: a share outside of 0..1 is an error of the
+ * sums, and `clast check` reports it. Sum a part in the order of the whole, so that rounding does not lift it above. */
+double sph_results_share(double part, double whole);
 
 #endif

@@ -1,3 +1,4 @@
+/* Fragments of SPH particles: cores, veneer, dust. */
 #include "engine/sph/observe/sph_fragments.h"
 
 #include <math.h>
@@ -11,19 +12,20 @@ struct sph_fragments_options sph_fragments_default(void) {
   return (struct sph_fragments_options){.damage = 1, .link_length = 1, .veneer = true, .periodic = {NAN, NAN, NAN}};
 }
 
+/* Members are the particles that are not left out. */
 struct search {
   const struct sph_particles *p;
   const struct sph_fragments_options *options;
   struct sph_fragments *out;
-  uint8_t *role;                  /* enum sph_cell_grid_role */
-  uint32_t *parent;               /* of the cores */
-  double *core_mass;              /* by root */
-  double *nearest;                /* by broken particle: r^2 to its nearest whole one */
-  uint32_t *mate;                 /* by broken particle: that one, UINT32_MAX for none */
-  struct fragment_member *member; /* of what is not left out */
-  uint32_t *place, *particle;     /* particle -> member and back */
-  uint32_t (*link)[2];            /* between members */
-  uint32_t *label;                /* by member */
+  uint8_t *role;     /* by particle: enum sph_cell_grid_role; active: unbroken, passive: may join a veneer */
+  uint32_t *parent;  /* by particle: union-find of the cores */
+  double *core_mass; /* by particle that is a root: kg of its core; else 0 */
+  double *nearest;   /* by broken particle: r^2 to its nearest unbroken one, m^2 */
+  uint32_t *mate;    /* by broken particle: that unbroken one; UINT32_MAX: none */
+  struct fragment_member *member; /* by member */
+  uint32_t *place, *particle;     /* member of a particle (UINT32_MAX: left out), particle of a member */
+  uint32_t (*link)[2];            /* between members: a forest, so fewer than members */
+  uint32_t *label;                /* by member: its fragment */
   size_t members, links;
 };
 
@@ -31,7 +33,7 @@ static bool is_left_out(const struct sph_fragments_options *options, const struc
   return options->bodies && options->bodies[p->body[i]].left_out;
 }
 
-/* BA95 section 4.4, first step: tension of the damaged stress against the static strength. */
+/* Largest tension of the damaged stress, Pa: step 1 compares it with the static strength. */
 static double tension(const struct sph_particles *p, size_t i, double damage) {
   double left = 1 - damage, pressure = p->pressure[i] < 0 ? left * p->pressure[i] : p->pressure[i];
   if (!p->stress[0])
@@ -41,7 +43,28 @@ static double tension(const struct sph_particles *p, size_t i, double damage) {
          pressure;
 }
 
-static void sort_out(struct search *s) {
+static bool is_unbroken(struct search *s, size_t i) {
+  const struct sph_particles *p = s->p;
+  double damage = sph_particles_damage(p, i);
+  if (p->damage_cbrt && !(damage < s->options->damage))
+    return false;
+  if (!s->options->bodies || !(tension(p, i, damage) > s->options->bodies[p->body[i]].static_strength))
+    return true;
+  s->out->broken++;
+  return false;
+}
+
+static void add_member(struct search *s, size_t i) {
+  const struct sph_particles *p = s->p;
+  s->place[i] = (uint32_t)s->members;
+  s->particle[s->members] = (uint32_t)i;
+  s->member[s->members++] = (struct fragment_member){.mass = p->mass[i],
+                                                     .position = {p->x[i], p->y[i], p->z[i]},
+                                                     .velocity = {p->vx[i], p->vy[i], p->vz[i]}};
+}
+
+/* Members, and the role of each particle in the search. */
+static void classify(struct search *s) {
   const struct sph_particles *p = s->p;
   const double *h = s->options->h ? s->options->h : p->h;
   for (size_t i = 0; i < p->n; i++) {
@@ -53,24 +76,19 @@ static void sort_out(struct search *s) {
     s->place[i] = UINT32_MAX;
     if (is_left_out(s->options, p, i))
       continue;
-    s->place[i] = (uint32_t)s->members;
-    s->particle[s->members] = (uint32_t)i;
-    s->member[s->members++] = (struct fragment_member){.mass = p->mass[i],
-                                                       .position = {p->x[i], p->y[i], p->z[i]},
-                                                       .velocity = {p->vx[i], p->vy[i], p->vz[i]}};
+
+    add_member(s, i);
+    s->out->part[i] = SPH_FRAGMENTS_DUST; /* until it joins a veneer */
+    bool unbroken = is_unbroken(s, i);
     double sum = p->x[i] + p->y[i] + p->z[i] + p->vx[i] + p->vy[i] + p->vz[i] + p->mass[i] + h[i];
-    double damage = p->damage_cbrt ? p->damage_cbrt[i] * p->damage_cbrt[i] * p->damage_cbrt[i] : 0;
-    bool whole = damage < s->options->damage || !p->damage_cbrt;
-    if (whole && s->options->bodies && tension(p, i, damage) > s->options->bodies[p->body[i]].static_strength) {
-      whole = false;
-      s->out->broken++;
-    }
-    s->out->part[i] = SPH_FRAGMENTS_DUST; /* until something is found for it */
     if (!isfinite(sum) || !(h[i] > 0))
       continue;
-    s->role[i] = whole ? SPH_CELL_GRID_ACTIVE : s->options->veneer ? SPH_CELL_GRID_PASSIVE : SPH_CELL_GRID_ABSENT;
-    if (whole)
+    if (unbroken) {
       s->out->part[i] = SPH_FRAGMENTS_CORE;
+      s->role[i] = SPH_CELL_GRID_ACTIVE;
+    } else if (s->options->veneer) {
+      s->role[i] = SPH_CELL_GRID_PASSIVE;
+    }
   }
 }
 
@@ -78,47 +96,51 @@ static bool friends(const struct search *s, uint32_t i, uint32_t j) {
   return s->options->across_bodies || s->p->body[i] == s->p->body[j];
 }
 
+/* Step 2: joins the cores of two unbroken particles. */
 static void join(void *context, uint32_t i, uint32_t j, double square) {
   struct search *s = context;
   (void)square;
   if (!friends(s, i, j) || !fragments_join(s->parent, i, j))
     return;
-  s->link[s->links][0] = s->place[i]; /* a forest: fewer links than particles */
+  s->link[s->links][0] = s->place[i];
   s->link[s->links++][1] = s->place[j];
 }
 
-/* Nearest, then the heavier fragment, then the one with the lower first particle. */
-static void veneer(void *context, uint32_t i, uint32_t j, double square) {
+/* Step 3: of the unbroken particles near a broken one keeps the nearest, then the one of the heavier core, then the one
+ * of the core with the lower first particle. */
+static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   struct search *s = context;
   if (!friends(s, i, j))
     return;
-  uint32_t broken = s->role[i] == SPH_CELL_GRID_PASSIVE ? i : j, whole = broken == i ? j : i;
+  uint32_t broken = s->role[i] == SPH_CELL_GRID_PASSIVE ? i : j, unbroken = broken == i ? j : i;
   if (square > s->nearest[broken])
     return;
   if (square == s->nearest[broken]) {
-    uint32_t now = fragments_root(s->parent, s->mate[broken]), then = fragments_root(s->parent, whole);
-    if (now == then || s->core_mass[then] < s->core_mass[now] ||
-        (s->core_mass[then] == s->core_mass[now] && then > now))
+    uint32_t old = fragments_root(s->parent, s->mate[broken]), new = fragments_root(s->parent, unbroken);
+    if (new == old || s->core_mass[new] < s->core_mass[old])
+      return;
+    if (s->core_mass[new] == s->core_mass[old] && new > old)
       return;
   }
   s->nearest[broken] = square;
-  s->mate[broken] = whole;
+  s->mate[broken] = unbroken;
 }
 
-static status link_up(struct search *s, struct error *error) {
+/* Links of the cores, then of the veneer. */
+static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
-  struct sph_cell_grid *touching = NULL;
+  struct sph_cell_grid *grid = NULL;
   status code = sph_cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role,
-                                     s->options->link_length, s->options->periodic, &touching, error);
+                                     s->options->link_length, s->options->periodic, &grid, error);
   if (code)
     return code;
-  sph_cell_grid_visit(touching, false, join, s);
+  sph_cell_grid_visit(grid, false, join, s);
   for (size_t i = 0; i < p->n; i++)
     if (s->role[i] == SPH_CELL_GRID_ACTIVE)
       s->core_mass[fragments_root(s->parent, (uint32_t)i)] += p->mass[i];
   if (s->options->veneer)
-    sph_cell_grid_visit(touching, true, veneer, s);
-  sph_cell_grid_free(touching);
+    sph_cell_grid_visit(grid, true, choose_mate, s);
+  sph_cell_grid_free(grid);
   for (size_t i = 0; i < p->n; i++)
     if (s->mate[i] != UINT32_MAX) {
       s->out->part[i] = SPH_FRAGMENTS_VENEER;
@@ -128,29 +150,29 @@ static status link_up(struct search *s, struct error *error) {
   return STATUS_OK;
 }
 
-/* The fragment of particle i, named by a particle of it. */
-static uint32_t fragment_of(struct search *s, size_t i) {
+/* The particle that is the root of the core to which particle i belongs, as core or as veneer. */
+static uint32_t root_of(struct search *s, size_t i) {
   return fragments_root(s->parent, s->mate[i] != UINT32_MAX ? s->mate[i] : (uint32_t)i);
 }
 
-/* Members stand at the image nearest to their fragment's root. */
+/* Moves each member to the image nearest to the root of its fragment. */
 static void unwrap(struct search *s) {
   for (int d = 0; d < 3; d++) {
     double period = s->options->periodic[d];
     if (!(period > 0))
       continue;
     for (size_t k = 0; k < s->members; k++) {
-      double origin = s->member[s->place[fragment_of(s, s->particle[k])]].position[d];
-      double along = s->member[k].position[d] - origin;
-      s->member[k].position[d] = s->particle[k] == fragment_of(s, s->particle[k])
-                                     ? origin
-                                     : origin + along - period * nearbyint(along / period);
+      uint32_t root = root_of(s, s->particle[k]);
+      if (root == s->particle[k])
+        continue;
+      double origin = s->member[s->place[root]].position[d], along = s->member[k].position[d] - origin;
+      s->member[k].position[d] = origin + along - period * nearbyint(along / period);
     }
   }
 }
 
-/* A fragment that goes round the box has no end: it cannot turn but about that axis. */
-static status hold_round(struct search *s, struct error *error) {
+/* A fragment that spans the periodic box has no ends along that axis: it can turn about that axis only. */
+static status stop_endless_spins(struct search *s, struct error *error) {
   for (int d = 0; d < 3; d++) {
     double period = s->options->periodic[d];
     if (!(period > 0))
@@ -158,8 +180,10 @@ static status hold_round(struct search *s, struct error *error) {
     double(*range)[2] = malloc((s->out->count + 1) * sizeof *range);
     if (!range)
       return status_fail(error, STATUS_MEMORY, "no memory for %zu fragments", s->out->count);
-    for (size_t f = 0; f < s->out->count; f++)
-      range[f][0] = HUGE_VAL, range[f][1] = -HUGE_VAL;
+    for (size_t f = 0; f < s->out->count; f++) {
+      range[f][0] = HUGE_VAL;
+      range[f][1] = -HUGE_VAL;
+    }
     for (size_t k = 0; k < s->members; k++) {
       double *of = range[s->label[k]], x = s->member[k].position[d];
       of[0] = fmin(of[0], x);
@@ -175,7 +199,8 @@ static status hold_round(struct search *s, struct error *error) {
   return STATUS_OK;
 }
 
-/* Of a solid ellipsoid I_1 = M (b^2 + c^2)/5 and so on, a the longest: its squared axes from the principal moments. */
+/* Axis ratios of the solid ellipsoid with the largest fragment's principal moments: I_1 = M (b^2 + c^2)/5 and so on
+ * give its squared axes a^2 >= b^2 >= c^2. */
 static void measure_shape(const struct search *s, double ratio[2]) {
   double tensor[6] = {0}, value[3], axis[3][3];
   const struct fragment *f = s->out->fragments;
@@ -204,6 +229,23 @@ static void measure_shape(const struct search *s, double ratio[2]) {
   ratio[1] = sqrt(shortest / longest);
 }
 
+/* Kinetic energy of a member in the frame of the largest fragment; 0 if it is not finite. */
+static double energy_of(const struct search *s, const struct fragment_member *m) {
+  const double *frame = s->out->fragments[0].velocity;
+  double x = m->velocity[0] - frame[0], y = m->velocity[1] - frame[1], z = m->velocity[2] - frame[2];
+  double energy = 0.5 * m->mass * (x * x + y * y + z * z);
+  return isfinite(energy) ? energy : 0;
+}
+
+static void note_core(struct sph_fragments *out, double core) {
+  if (core > out->core_second)
+    out->core_second = core;
+  if (out->core_second > out->core_largest) {
+    out->core_second = out->core_largest;
+    out->core_largest = core;
+  }
+}
+
 static void sum_up(struct search *s) {
   struct sph_fragments *out = s->out;
   const struct sph_particles *p = s->p;
@@ -214,22 +256,11 @@ static void sum_up(struct search *s) {
     out->mass += p->mass[i];
     if (out->part[i] == SPH_FRAGMENTS_DUST)
       out->dust_mass += p->mass[i];
-    if (s->label[k] != 0) {
-      const double *v = s->member[k].velocity, *with = out->fragments[0].velocity;
-      double x = v[0] - with[0], y = v[1] - with[1], z = v[2] - with[2],
-             energy = 0.5 * p->mass[i] * (x * x + y * y + z * z);
-      if (isfinite(energy))
-        out->ejected_energy += energy;
-    }
-    double core = s->core_mass[i]; /* of a root; else 0 */
-    if (core > p->mass[i])
+    if (s->label[k] != 0)
+      out->ejected_energy += energy_of(s, &s->member[k]);
+    if (s->core_mass[i] > p->mass[i])
       out->resolved++;
-    if (core > out->bare_second)
-      out->bare_second = core;
-    if (out->bare_second > out->bare_largest) {
-      out->bare_second = out->bare_largest;
-      out->bare_largest = core;
-    }
+    note_core(out, s->core_mass[i]);
   }
   for (size_t f = 0; f < out->count; f++)
     out->fragments[f].first = s->particle[out->fragments[f].first];
@@ -250,60 +281,72 @@ static status check(const struct sph_particles *p, const struct sph_fragments_op
   return STATUS_OK;
 }
 
+static bool allocate(struct search *s, size_t n) {
+  s->out->label = malloc(n * sizeof *s->out->label);
+  s->out->part = malloc(n);
+  s->role = malloc(n);
+  s->parent = malloc(n * sizeof *s->parent);
+  s->core_mass = calloc(n, sizeof *s->core_mass);
+  s->nearest = malloc(n * sizeof *s->nearest);
+  s->mate = malloc(n * sizeof *s->mate);
+  s->member = malloc(n * sizeof *s->member);
+  s->place = malloc(n * sizeof *s->place);
+  s->particle = malloc(n * sizeof *s->particle);
+  s->link = malloc(n * sizeof *s->link);
+  s->label = malloc(n * sizeof *s->label);
+  return s->out->label && s->out->part && s->role && s->parent && s->core_mass && s->nearest && s->mate && s->member &&
+         s->place && s->particle && s->link && s->label;
+}
+
+static void free_search(struct search *s) {
+  free(s->role);
+  free(s->parent);
+  free(s->core_mass);
+  free(s->nearest);
+  free(s->mate);
+  free(s->member);
+  free(s->place);
+  free(s->particle);
+  free(s->link);
+  free(s->label);
+}
+
+static status find(struct search *s, struct error *error) {
+  if (!allocate(s, s->p->n + 1))
+    return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", s->p->n);
+  classify(s);
+  status code = link_members(s, error);
+  if (code)
+    return code;
+  unwrap(s);
+  code = fragments_find_space(s->members, s->member, s->links, (const uint32_t(*)[2])s->link, s->label,
+                              &s->out->fragments, &s->out->count, error);
+  if (code)
+    return code;
+  code = stop_endless_spins(s, error);
+  if (code)
+    return code;
+  sum_up(s);
+  measure_shape(s, s->out->axis_ratio);
+  return STATUS_OK;
+}
+
 status sph_fragments_find(const struct sph_particles *p, const struct sph_fragments_options *options,
-                          struct sph_fragments *pieces, struct error *error) {
-  *pieces = (struct sph_fragments){.n = p->n, .axis_ratio = {NAN, NAN}};
-  size_t room = p->n + 1;
-  struct search s = {.p = p, .options = options, .out = pieces};
+                          struct sph_fragments *out, struct error *error) {
+  *out = (struct sph_fragments){.n = p->n, .axis_ratio = {NAN, NAN}};
+  struct search search = {.p = p, .options = options, .out = out};
   status code = check(p, options, error);
+  if (!code)
+    code = find(&search, error);
   if (code)
-    goto cleanup;
-  pieces->label = malloc(room * sizeof *pieces->label);
-  pieces->part = malloc(room);
-  s.role = malloc(room);
-  s.parent = malloc(room * sizeof *s.parent);
-  s.core_mass = calloc(room, sizeof *s.core_mass);
-  s.nearest = malloc(room * sizeof *s.nearest);
-  s.mate = malloc(room * sizeof *s.mate);
-  s.member = malloc(room * sizeof *s.member);
-  s.place = malloc(room * sizeof *s.place);
-  s.particle = malloc(room * sizeof *s.particle);
-  s.link = malloc(room * sizeof *s.link);
-  s.label = malloc(room * sizeof *s.label);
-  if (!pieces->label || !pieces->part || !s.role || !s.parent || !s.core_mass || !s.nearest || !s.mate || !s.member ||
-      !s.place || !s.particle || !s.link || !s.label) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", p->n);
-    goto cleanup;
-  }
-  sort_out(&s);
-  if ((code = link_up(&s, error)))
-    goto cleanup;
-  unwrap(&s);
-  if ((code = fragments_find_space(s.members, s.member, s.links, (const uint32_t(*)[2])s.link, s.label,
-                                   &pieces->fragments, &pieces->count, error)) ||
-      (code = hold_round(&s, error)))
-    goto cleanup;
-  sum_up(&s);
-  measure_shape(&s, pieces->axis_ratio);
-cleanup:
-  if (code)
-    sph_fragments_clear(pieces);
-  free(s.role);
-  free(s.parent);
-  free(s.core_mass);
-  free(s.nearest);
-  free(s.mate);
-  free(s.member);
-  free(s.place);
-  free(s.particle);
-  free(s.link);
-  free(s.label);
+    sph_fragments_clear(out);
+  free_search(&search);
   return code;
 }
 
-void sph_fragments_clear(struct sph_fragments *pieces) {
-  free(pieces->label);
-  free(pieces->part);
-  free(pieces->fragments);
-  *pieces = (struct sph_fragments){0};
+void sph_fragments_clear(struct sph_fragments *fragments) {
+  free(fragments->label);
+  free(fragments->part);
+  free(fragments->fragments);
+  *fragments = (struct sph_fragments){0};
 }

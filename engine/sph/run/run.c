@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 
 enum {

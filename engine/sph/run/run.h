@@ -6,9 +6,7 @@
 #include "engine/engine.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/plane_shock.h"
-#include "engine/sph/observe/crater.h"
 #include "engine/sph/observe/results.h"
-#include "engine/sph/observe/sph_fragments.h"
 #include "engine/sph/scene/inputs.h"
 #include "engine/sph/step/system.h"
 
@@ -75,18 +73,6 @@ double sph_run_extent(const struct sph_run *run); /* m, the target's reach: a le
  * run. */
 status sph_protocol_bodies(struct sph_run *run, struct error *error);
 
-/* protocol_record.c: what stretch, vibration and piston record along the way. */
-status sph_protocol_record_start(struct sph_run *run, struct error *error);
-void sph_protocol_record(struct sph_run *run); /* after a step */
-
-/* report.c */
-struct sph_crater_options sph_report_crater(const struct sph_run *run);
-/* The target's fragments as the inputs ask for, but for the two choices given; of the particles last read. */
-status sph_report_pieces(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *pieces,
-                         struct error *error);
-status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
-                         struct fragment **fragments, size_t *count, struct error *error);
-
 /* describe.c */
 char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
@@ -94,8 +80,7 @@ double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, 
 struct sph_parameters
 sph_describe_parameters(const struct sph_inputs *inputs); /* fidelity and options; not `periodic` */
 
-/* fields.c, restart.c */
-status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error);
+/* restart.c */
 status sph_restart_save(struct sph_run *run, const char *path, struct error *error);
 status sph_restart_load(const struct sph_inputs *inputs, const char *path, struct sph_run **out, struct error *error);
 
