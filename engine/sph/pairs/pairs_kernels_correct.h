@@ -1,9 +1,9 @@
-/* The gradient correction (pairs.h; Bonet & Lok 1999), LANES particles at a time; always in double
- * (pairs_kernels_sum.h, which comes first, has the vectors). Symmetric: xx xy xz yy yz zz. */
+/* The gradient correction (pairs.h; Bonet & Lok 1999), always in double, LANES particles at a time. Symmetric tensors
+ * have the columns xx xy xz yy yz zz. */
 
 enum { AT_ONCE = LANES }; /* numbers of double in a register */
 
-/* The stress that acts, xx xy xz yy yz zz, out of the deviator and its factor. */
+/* The deviator times its factor; the stored deviator lacks zz, as its trace is zero. */
 INLINE void acting(const double *const stress[5], const double *factor, size_t i, size_t lanes, vec out[6]) {
   const vec f = vec_load_first(factor + i, lanes);
   UNROLL
@@ -12,9 +12,10 @@ INLINE void acting(const double *const stress[5], const double *factor, size_t i
   out[5] = -(out[0] + out[3]);
 }
 
-/* T = sigma B, of which the first six are xx xy xz yy yz zz, the others yx zx zy: it is not symmetric. */
+/* T = sigma B, which is not symmetric: xx xy xz yy yz zz, then yx zx zy. */
 INLINE void turn(const vec s[6], const vec b[6], vec t[9]) {
-  static const int place[3][3] = {{0, 1, 2}, {6, 3, 4}, {7, 8, 5}}, of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
+  static const int place[3][3] = {{0, 1, 2}, {6, 3, 4}, {7, 8, 5}};
+  static const int of[3][3] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}};
   UNROLL
   for (int row = 0; row < 3; row++) {
     UNROLL
@@ -23,7 +24,7 @@ INLINE void turn(const vec s[6], const vec b[6], vec t[9]) {
   }
 }
 
-/* Each row of a gradient times B. */
+/* Multiplies each row of a gradient by B. */
 INLINE void times(const vec b[6], const vec g[9], vec out[9]) {
   UNROLL
   for (int row = 0; row < 9; row += 3) {
@@ -33,43 +34,51 @@ INLINE void times(const vec b[6], const vec g[9], vec out[9]) {
   }
 }
 
-INLINE vec between(vec x, double low, double high) {
+/* A smooth step: 0 below `low`, 1 above `high`. */
+INLINE vec smooth_step(vec x, double low, double high) {
   const vec zero = {0}, part = (x - low) / (high - low);
   const vec t = vec_select(vec_less(x, zero + low), zero, vec_select(vec_less(zero + high, x), zero + 1, part));
   return t * t * (3 - 2 * t);
 }
 
-/* B, the inverse of the moment, as far as there are enough neighbours all round; else 1, and what lies between for what
- * is between. In a body the mean eigenvalue is 1, 0.3 in a corner, and the determinant over its cube at least 0.8, in a
- * sharp point 0.6; among debris, a few neighbours anywhere, it is anything below: a strain made of those would be
- * noise, and its forces stiff. */
+/* B, the inverse of the moment M, where a particle has enough neighbours on all sides; B = 1 where it has not; a smooth
+ * mixture in between. Two numbers decide. The mean eigenvalue of M is 1 inside a body and 0.3 in a corner. The
+ * determinant over the cube of that mean is at least 0.8 in a body and 0.6 in a sharp point; among debris, with a few
+ * neighbours anywhere, it is lower: there a corrected strain is noise, and its forces are stiff. */
 INLINE void invert(const vec m[6], vec inverse[6]) {
-  const vec a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3], zero = {0};
-  const vec determinant = m[0] * a + m[1] * b + m[2] * c, mean = (m[0] + m[3] + m[5]) / 3, cube = mean * mean * mean;
-  const double low = 0.1; /* no inverse of what is not above: no division by it, either */
+  const vec zero = {0};
+  const vec a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
+  const vec determinant = m[0] * a + m[1] * b + m[2] * c;
+  const vec mean = (m[0] + m[3] + m[5]) / 3, cube = mean * mean * mean;
+  const double low = 0.1; /* below it B = 1, and nothing is divided by the mean */
   const vec_mask solid = vec_less(zero + low, mean);
   const vec round = vec_select(solid, determinant, zero) / vec_select(solid, cube, zero + 1);
-  const vec share = between(mean, low, 0.2) * between(round, 0.3, 0.6);
-  const vec_mask any = vec_less(zero, share);
-  const vec s = vec_keep(any, share) / vec_select(any, determinant, zero + 1);
-  inverse[0] = 1 - share + s * a, inverse[1] = s * b, inverse[2] = s * c;
-  inverse[3] = 1 - share + s * (m[0] * m[5] - m[2] * m[2]);
+  const vec part = smooth_step(mean, low, 0.2) * smooth_step(round, 0.3, 0.6);
+  const vec_mask any = vec_less(zero, part);
+  const vec s = vec_keep(any, part) / vec_select(any, determinant, zero + 1);
+  inverse[0] = 1 - part + s * a;
+  inverse[1] = s * b;
+  inverse[2] = s * c;
+  inverse[3] = 1 - part + s * (m[0] * m[5] - m[2] * m[2]);
   inverse[4] = s * (m[1] * m[2] - m[0] * m[4]);
-  inverse[5] = 1 - share + s * (m[0] * m[3] - m[1] * m[1]);
+  inverse[5] = 1 - part + s * (m[0] * m[3] - m[1] * m[1]);
 }
 
-/* Of `lanes` particles from the i-th on. */
+/* Corrects the particles i .. i + lanes - 1. */
 INLINE void correct_some(const struct sph_pair_correction *c, size_t i, const size_t lanes) {
   vec b[6], moment[6], g[9], out[9];
   UNROLL
-  for (int k = 0; k < 6; k++)
-    b[k] = vec_load_first(c->old[k] + i, lanes), moment[k] = vec_load_first(c->correction[k] + i, lanes);
+  for (int k = 0; k < 6; k++) {
+    b[k] = vec_load_first(c->old[k] + i, lanes);
+    moment[k] = vec_load_first(c->correction[k] + i, lanes);
+  }
   UNROLL
   for (int k = 0; k < 9; k++)
     g[k] = vec_load_first(c->gradient[k] + i, lanes);
+
+  /* The work of the forces, rho (sigma/rho^2) : gradient, with the B that they were made with. */
   times(b, g, out);
-  vec power = vec_load_first(c->pressure_term + i, lanes) *
-              (out[0] + out[4] + out[8]); /* rho (sigma/rho^2) : gradient */
+  vec power = vec_load_first(c->pressure_term + i, lanes) * (out[0] + out[4] + out[8]);
   if (c->stress[0]) {
     vec s[6];
     acting(c->stress, c->stress_factor, i, lanes, s);
@@ -77,15 +86,16 @@ INLINE void correct_some(const struct sph_pair_correction *c, size_t i, const si
              s[4] * (out[5] + out[7]);
   }
   power *= vec_load_first(c->density + i, lanes);
-  memcpy(c->power + i, &power, lanes * sizeof(double));
+  vec_store_first(c->power + i, power, lanes);
+
   invert(moment, b);
   times(b, g, out);
   UNROLL
   for (int k = 0; k < 6; k++)
-    memcpy(c->correction[k] + i, &b[k], lanes * sizeof(double));
+    vec_store_first(c->correction[k] + i, b[k], lanes);
   UNROLL
   for (int k = 0; k < 9; k++)
-    memcpy(c->gradient[k] + i, &out[k], lanes * sizeof(double));
+    vec_store_first(c->gradient[k] + i, out[k], lanes);
 }
 
 static void correct(const struct sph_pair_correction *c, size_t count) {

@@ -1,5 +1,4 @@
-/* Who is near whom (neighbours.h), eight at a time in every CPU class; in double, whatever the precision of the sums.
- */
+/* The search for neighbours (neighbours.h). Eight candidates at a time in every CPU class, always in double. */
 
 typedef double near_vector __attribute__((vector_size(64)));
 
@@ -24,7 +23,7 @@ INLINE near_vector near_load(const double *from) {
   return v;
 }
 
-/* Those of `mask` to the front of `to`; up to 8 are written. */
+/* Writes the lanes in `mask` to the front of `to`; up to 8 places are written. */
 INLINE void near_compress(double *to, unsigned mask, near_vector v) {
 #ifdef __AVX512F__
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd((__mmask8)mask, (__m512d)v));
@@ -43,7 +42,7 @@ INLINE void near_compress_numbers(uint32_t *to, unsigned mask, const uint32_t *f
 #endif
 }
 
-/* Sets bits of those of `mask`. */
+/* Sets `bits` in the numbers of the lanes in `mask`. */
 INLINE void near_tag(uint32_t number[8], unsigned mask, uint32_t bits) {
 #ifdef __AVX512F__
   const __m256i its = _mm256_loadu_si256((const __m256i *)(const void *)number);
@@ -55,7 +54,7 @@ INLINE void near_tag(uint32_t number[8], unsigned mask, uint32_t bits) {
 #endif
 }
 
-/* From `d` to its nearest image. */
+/* The nearest periodic image of a distance `d`. */
 INLINE near_vector near_image(near_vector d, double period, const bool wrapped) {
   if (!wrapped || !(period > 0))
     return d;
@@ -63,7 +62,7 @@ INLINE near_vector near_image(near_vector d, double period, const bool wrapped) 
   return d - (turns - 6755399441055744.0) * period;
 }
 
-/* How far from a coordinate to an interval: 0 inside. */
+/* The distance of a coordinate from an interval: 0 inside. */
 INLINE near_vector near_gap(near_vector d, near_vector half) {
   typedef int64_t bits __attribute__((vector_size(64)));
   const near_vector gap = (near_vector)((bits)d & INT64_MAX) - half, zero = {0};

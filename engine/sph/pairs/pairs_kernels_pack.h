@@ -1,17 +1,21 @@
-/* Records out of columns and sums back into columns, LANES particles at a time, in one precision (vector.h). Columns
- * are of double: so many particles at once as registers of those hold. */
+/* Columns to records before a chunk is summed, and records of sums back to columns after it, in one precision. LANES
+ * particles at a time are transposed in a block; columns are of double, so the block is filled by AT_ONCE particles, as
+ * many as a register of doubles holds. */
 
 #define vec_part       TYPED(vec_part)
 #define column_load    TYPED(column_load)
 #define column_quanta  TYPED(column_quanta)
-#define column_deliver TYPED(column_deliver)
+#define column_store   TYPED(column_store)
+#define pack_columns   TYPED(pack_columns)
+#define unpack_columns TYPED(unpack_columns)
 #define pack_records   TYPED(pack_records)
 #define unpack_records TYPED(unpack_records)
 #define record_kernels TYPED(record_kernels)
 
 typedef REAL vec_part __attribute__((vector_size(WIDTH / sizeof(double) * sizeof(REAL))));
 
-/* `scale` times what the column has for AT_ONCE particles, those from `first` on or those that `which` names. */
+/* A column times `scale`, for the AT_ONCE particles from `first` on or, with `which`, for those that it names. A column
+ * that is NULL counts as zero. */
 INLINE vec_double column_load(const double *from, double scale, size_t first, const uint32_t *which) {
   vec_double v = {0};
   if (!from)
@@ -29,14 +33,14 @@ INLINE vec_double column_load(const double *from, double scale, size_t first, co
   return v * scale;
 }
 
-/* Positions as float records hold them: towards zero, and round the 2^32 quanta that a record can tell apart. */
+/* Positions as float records hold them: in units of 1/per_quantum, rounded towards zero, modulo 2^32. */
 INLINE vec_part column_quanta(vec_double x, double per_quantum) {
   vec_part to = {0};
 #if SINGLE
   int32_t at[AT_ONCE];
   for (size_t lane = 0; lane < AT_ONCE; lane++) {
     const double t = x[lane] * per_quantum;
-    const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* NaN: anything, the step ends on it elsewhere */
+    const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* any value does for NaN: the step fails elsewhere */
     at[lane] = (int32_t)(uint32_t)(uint64_t)whole;
   }
   memcpy(&to, at, sizeof at);
@@ -46,86 +50,99 @@ INLINE vec_part column_quanta(vec_double x, double per_quantum) {
   return to;
 }
 
-/* Of `count` particles: those from `first` on, or those that `which` names. */
+INLINE void column_store(REAL block[PAIR_WIDE][LANES], size_t column, size_t part, vec_double v) {
+  *(vec_part *)(void *)(block[column] + part) = __builtin_convertvector(v, vec_part);
+}
+
+/* Fills the rows of a block (one per column of the records) with AT_ONCE particles, from lane `part` on. */
+INLINE void pack_columns(const struct sph_pair_source *source, size_t first, const uint32_t *which, size_t part,
+                         REAL block[PAIR_WIDE][LANES]) {
+  const bool artificial = source->column[PAIR_ARTIFICIAL] != NULL, corrected = source->correction[0] != NULL;
+  vec_double its[PAIR_NARROW];
+  UNROLL
+  for (size_t c = 0; c < PAIR_NARROW; c++)
+    its[c] = column_load(source->column[c], source->scale[c], first, which);
+
+  const vec_double pressure = column_load(source->pressure, source->scale[PAIR_XX], first, which);
+  const vec_double factor = column_load(source->stress_factor, 1, first, which);
+  const vec_double square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
+  UNROLL
+  for (size_t c = PAIR_XX; c < PAIR_ZZ; c++)
+    its[c] *= factor;
+  its[PAIR_ZZ] = -(its[PAIR_XX] + its[PAIR_YY]);
+  its[PAIR_XX] += pressure;
+  its[PAIR_YY] += pressure;
+  its[PAIR_ZZ] += pressure;
+  UNROLL
+  for (size_t c = 0; c < 6; c++)
+    if (source->volume_weights)
+      its[PAIR_XX + c] *= square; /* sigma, not sigma/rho^2 */
+
+  if (artificial) {
+    UNROLL
+    for (size_t c = PAIR_ARTIFICIAL; c < PAIR_ARTIFICIAL + 6; c++) {
+      const vec_double r = column_load(source->column[c], source->scale[c], first, which);
+      column_store(block, c, part, source->volume_weights ? r * square : r);
+    }
+  }
+  if (corrected) {
+    vec_double b[6], t[9];
+    UNROLL
+    for (size_t c = 0; c < 6; c++)
+      b[c] = column_load(source->correction[c], 1, first, which);
+    turn(its + PAIR_XX, b, t);
+    UNROLL
+    for (size_t c = 0; c < 6; c++)
+      its[PAIR_XX + c] = t[c];
+    UNROLL
+    for (size_t c = 0; c < 3; c++)
+      column_store(block, (artificial ? PAIR_TURNED_TOO : PAIR_TURNED) + c, part, t[6 + c]);
+  }
+
+  UNROLL
+  for (size_t c = 0; c < PAIR_NARROW; c++) {
+    if (SINGLE && c <= PAIR_Z)
+      *(vec_part *)(void *)(block[c] + part) = column_quanta(its[c], source->per_quantum[c]);
+    else
+      column_store(block, c, part, its[c]);
+  }
+}
+
 static void pack_records(const struct sph_pair_source *source, size_t first, const uint32_t *which, size_t count,
                          size_t stride, void *records) {
-  REAL *in = records;
-  const bool artificial = source->column[PAIR_ARTIFICIAL] != NULL, corrected = source->correction[0] != NULL;
-  const size_t turned = artificial ? PAIR_TURNED_TOO : PAIR_TURNED;
-  REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
-  memset(room, 0, sizeof room); /* there are more columns than are used */
+  REAL block[PAIR_WIDE][LANES] __attribute__((aligned(64)));
+  memset(block, 0, sizeof block); /* not all columns are used */
   for (size_t k = 0; k < count; k += LANES) {
     const size_t left = count - k < LANES ? count - k : LANES;
     const uint32_t *at = which ? which + k : NULL;
     uint32_t last[LANES];
-    if (left < LANES) { /* the last ones, the very last again and again */
+    if (left < LANES) { /* fill up with the last particle */
       for (size_t lane = 0; lane < LANES; lane++) {
         const size_t m = lane < left ? k + lane : count - 1;
         last[lane] = which ? which[m] : (uint32_t)(first + m);
       }
       at = last;
     }
-    for (size_t part = 0; part < LANES; part += AT_ONCE) {
-      const size_t from = first + k + part;
-      const uint32_t *these = at ? at + part : NULL;
-      vec_double its[PAIR_NARROW], more[6], t[9], b[6];
-      UNROLL
-      for (size_t c = 0; c < PAIR_NARROW; c++)
-        its[c] = column_load(source->column[c], source->scale[c], from, these);
-      const vec_double pressure = column_load(source->pressure, source->scale[PAIR_XX], from, these);
-      const vec_double factor = column_load(source->stress_factor, 1, from, these);
-      UNROLL
-      for (size_t c = PAIR_XX; c < PAIR_ZZ; c++)
-        its[c] *= factor;
-      its[PAIR_ZZ] = -(its[PAIR_XX] + its[PAIR_YY]);
-      its[PAIR_XX] += pressure, its[PAIR_YY] += pressure, its[PAIR_ZZ] += pressure;
-      const vec_double square = its[PAIR_DENSITY] * its[PAIR_DENSITY];
-      UNROLL
-      for (size_t c = 0; c < 6; c++)
-        if (source->volume_weights)
-          its[PAIR_XX + c] *= square; /* sigma, not sigma/rho^2 */
-      if (artificial) {
-        UNROLL
-        for (size_t c = 0; c < 6; c++) {
-          more[c] = column_load(source->column[PAIR_ARTIFICIAL + c], source->scale[PAIR_ARTIFICIAL + c], from, these);
-          if (source->volume_weights)
-            more[c] *= square;
-          *(vec_part *)(void *)(room[PAIR_ARTIFICIAL + c] + part) = __builtin_convertvector(more[c], vec_part);
-        }
-      }
-      if (corrected) {
-        UNROLL
-        for (size_t c = 0; c < 6; c++)
-          b[c] = column_load(source->correction[c], 1, from, these);
-        turn(its + PAIR_XX, b, t);
-        UNROLL
-        for (size_t c = 0; c < 6; c++)
-          its[PAIR_XX + c] = t[c];
-        UNROLL
-        for (size_t c = 0; c < 3; c++)
-          *(vec_part *)(void *)(room[turned + c] + part) = __builtin_convertvector(t[6 + c], vec_part);
-      }
-      UNROLL
-      for (size_t c = 0; c < PAIR_NARROW; c++)
-        *(vec_part *)(void *)(room[c] + part) = SINGLE && c <= PAIR_Z ? column_quanta(its[c], source->per_quantum[c])
-                                                                      : __builtin_convertvector(its[c], vec_part);
-    }
+    for (size_t part = 0; part < LANES; part += AT_ONCE)
+      pack_columns(source, first + k + part, at ? at + part : NULL, part, block);
+
+    REAL *to = (REAL *)records + k * stride;
     for (size_t c = 0; c < stride; c += LANES) {
       vec r[LANES];
       UNROLL
       for (size_t m = 0; m < LANES; m++)
-        r[m] = *(const vec *)(const void *)room[c + m];
+        r[m] = vec_load(block[c + m]);
       vec_transpose(r);
       for (size_t lane = 0; lane < left; lane++)
-        *(vec *)(void *)(in + (k + lane) * stride + c) = r[lane];
+        vec_store(to + lane * stride + c, r[lane]);
     }
   }
 }
 
-/* Columns of the first `lanes` of the AT_ONCE particles that stand at `part` of room[column]. Lines are written whole,
- * so that few stores wait for memory. */
-INLINE void column_deliver(const struct sph_pair_sink *sink, size_t first, const size_t lanes,
-                           REAL room[PAIR_WIDE][LANES], size_t part) {
+/* The sums of AT_ONCE particles, of which the first `lanes` exist, out of the block's lanes from `part` on. A column is
+ * written in whole cache lines, so that few stores wait for memory. */
+INLINE void unpack_columns(const struct sph_pair_sink *sink, size_t first, const size_t lanes,
+                           REAL block[PAIR_WIDE][LANES], size_t part) {
   const vec_double zero = {0}, one = zero + 1;
   vec_double weight = one, per_mass = one;
   if (SINGLE || !sink->volume_weights) {
@@ -142,7 +159,7 @@ INLINE void column_deliver(const struct sph_pair_sink *sink, size_t first, const
   for (size_t c = 0; c < SUM_COLUMNS; c++) {
     if (c >= SUM_MOMENT && !sink->column[c])
       break;
-    vec_double v = __builtin_convertvector(*(const vec_part *)(const void *)(room[c] + part), vec_double);
+    vec_double v = __builtin_convertvector(*(const vec_part *)(const void *)(block[c] + part), vec_double);
     const vec_double own = v;
     if ((c >= SUM_GRADIENT && c < SUM_HEATING) || c >= SUM_MOMENT)
       v *= weight;
@@ -156,14 +173,13 @@ INLINE void column_deliver(const struct sph_pair_sink *sink, size_t first, const
   }
 }
 
-/* The sums of `count` particles from `first` on, whose records begin at `records`. */
 static void unpack_records(const struct sph_pair_sink *sink, size_t first, size_t count, size_t stride,
                            const void *in) {
   const REAL *records = in;
   const size_t columns = sink->column[SUM_MOMENT] ? SUM_COLUMNS : PAIR_NARROW;
   for (size_t k = 0; k < count; k += LANES) {
     const size_t left = count - k < LANES ? count - k : LANES;
-    REAL room[PAIR_WIDE][LANES] __attribute__((aligned(64)));
+    REAL block[PAIR_WIDE][LANES] __attribute__((aligned(64)));
     for (size_t c = 0; c < columns; c += LANES) {
       vec r[LANES];
       UNROLL
@@ -172,13 +188,13 @@ static void unpack_records(const struct sph_pair_sink *sink, size_t first, size_
       vec_transpose(r);
       UNROLL
       for (size_t m = 0; m < LANES; m++)
-        *(vec *)(void *)room[c + m] = r[m];
+        vec_store(block[c + m], r[m]);
     }
     for (size_t part = 0; part < left; part += AT_ONCE) {
       if (left - part >= AT_ONCE)
-        column_deliver(sink, first + k + part, AT_ONCE, room, part);
+        unpack_columns(sink, first + k + part, AT_ONCE, block, part);
       else
-        column_deliver(sink, first + k + part, left - part, room, part);
+        unpack_columns(sink, first + k + part, left - part, block, part);
     }
   }
 }

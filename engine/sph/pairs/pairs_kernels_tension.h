@@ -1,94 +1,119 @@
 /* The artificial stress of Monaghan 2000 (J. Comput. Phys. 159, 290) in the principal axes of the stress, as in Gray,
  * Monaghan & Swift 2001: R = -epsilon times the tensile part of sigma/rho^2. It repels particles that a tension would
- * pull into clumps. LANES particles at a time, by Jacobi's rotations; always in double (pairs_kernels_sum.h, which
- * comes first, has the vectors). */
+ * pull into clumps. Always in double, LANES particles at a time, by Jacobi's rotations. */
 
-/* One rotation: a (xx xy xz yy yz zz) loses what stands in `pq`; the columns p, q of v turn with it. t = tan of the
- * angle. */
+/* One rotation of a symmetric matrix: its element `pq` becomes zero, and the columns p and q of v turn with it. t is
+ * the tangent of the angle. */
 INLINE void rotate(vec *pp, vec *qq, vec *pq, vec *pr, vec *qr, vec v[3][3], int p, int q) {
   const vec zero = {0}, difference = *qq - *pp, twice = 2 * *pq;
   const vec square = difference * difference + twice * twice + 0x1p-1000;
-  const vec length = square * vec_inverse_root(square); /* of the difference and twice the element; never zero */
+  const vec length = square * vec_inverse_root(square); /* never zero */
   const vec negative = vec_select(vec_less(difference, zero), -twice, twice);
   const vec size = vec_select(vec_less(difference, zero), -difference, difference);
   const vec t = negative * vec_inverse(size + length), c = vec_inverse_root(1 + t * t), s = t * c;
   const vec r = *pr;
-  *pp -= t * *pq, *qq += t * *pq, *pq = zero;
-  *pr = c * r - s * *qr, *qr = s * r + c * *qr;
+  *pp -= t * *pq;
+  *qq += t * *pq;
+  *pq = zero;
+  *pr = c * r - s * *qr;
+  *qr = s * r + c * *qr;
   UNROLL
   for (int k = 0; k < 3; k++) {
     const vec x = v[k][p];
-    v[k][p] = c * x - s * v[k][q], v[k][q] = s * x + c * v[k][q];
+    v[k][p] = c * x - s * v[k][q];
+    v[k][q] = s * x + c * v[k][q];
   }
 }
 
-/* Still to be turned: a tension, and something beside the diagonal. */
-INLINE bool skew(const vec a[6], vec_mask pulled) {
+/* Is any particle under tension (`pulled`) whose matrix is not yet diagonal? */
+INLINE bool not_diagonal(const vec a[6], vec_mask pulled) {
   const vec off = a[1] * a[1] + a[2] * a[2] + a[4] * a[4], on = a[0] * a[0] + a[3] * a[3] + a[5] * a[5];
   return vec_any(vec_less((REAL)1e-32 * on, off) & pulled);
 }
 
-/* R of the particles first..last-1, in units of the stress given: stress_factor S + pressure_term I, xx xy xz yy yz zz.
- * Two registers of them in turn: a rotation is a chain of roots and inverses, and the one's fills the gaps of the
- * other's. */
+enum { AXIS_XX = 0, AXIS_YY = 3, AXIS_ZZ = 5 };
+static const int tensor_row[6] = {0, 0, 0, 1, 1, 2}, tensor_column[6] = {0, 1, 2, 1, 2, 2};
+
+/* Loads the stress a of the particles at .. at + lanes - 1, and the identity v. Returns which of them may be under
+ * tension: where all of Gershgorin's circles are negative there is none. */
+INLINE vec_mask tension_load(const double *const stress[5], const double *stress_factor, const double *pressure_term,
+                             size_t at, size_t lanes, vec a[6], vec v[3][3]) {
+  const vec zero = {0}, one = zero + 1, pressure = vec_load_first(pressure_term + at, lanes);
+  acting(stress, stress_factor, at, lanes, a);
+  UNROLL
+  for (int k = 0; k < 6; k++)
+    a[k] += tensor_row[k] == tensor_column[k] ? pressure : zero;
+  UNROLL
+  for (int k = 0; k < 9; k++)
+    v[k / 3][k % 3] = k % 4 == 0 ? one : zero;
+  const vec xy = vec_abs(a[1]), xz = vec_abs(a[2]), yz = vec_abs(a[4]);
+  return vec_less(zero, a[AXIS_XX] + (xy + xz)) | vec_less(zero, a[AXIS_YY] + (xy + yz)) |
+         vec_less(zero, a[AXIS_ZZ] + (xz + yz));
+}
+
+/* One of the three rotations of a sweep, which makes the element xy, xz or yz zero. */
+INLINE void tension_rotate(vec a[6], vec v[3][3], int rotation) {
+  static const int of[3][5] = {{0, 3, 1, 2, 4}, {0, 5, 2, 1, 4}, {3, 5, 4, 1, 2}}; /* pp qq pq pr qr */
+  static const int axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
+  const int *at = of[rotation];
+  rotate(&a[at[0]], &a[at[1]], &a[at[2]], &a[at[3]], &a[at[4]], v, axes[rotation][0], axes[rotation][1]);
+}
+
+/* R out of the eigenvalues on the diagonal of a and the eigenvectors v. */
+INLINE void tension_oppose(double epsilon, const vec a[6], const vec v[3][3], vec_mask pulled, vec r[6]) {
+  static const int diagonal[3] = {AXIS_XX, AXIS_YY, AXIS_ZZ};
+  const vec zero = {0};
+  UNROLL
+  for (int k = 0; k < 6; k++)
+    r[k] = zero;
+  UNROLL
+  for (int axis = 0; axis < 3; axis++) {
+    const vec value = a[diagonal[axis]];
+    const vec most = vec_keep(vec_less(zero, value) & pulled, -epsilon * value);
+    UNROLL
+    for (int k = 0; k < 6; k++)
+      r[k] += most * v[tensor_row[k]][axis] * v[tensor_column[k]][axis];
+  }
+}
+
+/* R of the particles first .. last - 1 (sph_pair_kernels). Two registers of particles are rotated in turn: a rotation
+ * is a chain of roots and inverses, and the instructions of one register fill the gaps of the other. */
 static void oppose(double epsilon, const double *const stress[5], const double *stress_factor,
                    const double *pressure_term, size_t first, size_t last, double *const out[6]) {
-  enum { BOTH = 2 };
-  static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
-  const vec zero = {0}, one = zero + 1;
+  enum { BOTH = 2, SWEEPS = 12 };
   for (size_t i = first; i < last; i += BOTH * LANES) {
-    vec a[BOTH][6], v[BOTH][3][3];
+    vec a[BOTH][6], v[BOTH][3][3], r[6];
     vec_mask pulled[BOTH];
     size_t left[BOTH];
+    bool turns[BOTH] = {true, true};
     UNROLL
     for (size_t m = 0; m < BOTH; m++) {
       const size_t at = i + m * LANES < last ? i + m * LANES : last;
       left[m] = last - at < LANES ? last - at : LANES;
-      const vec pressure = vec_load_first(pressure_term + at, left[m]);
-      acting(stress, stress_factor, at, left[m], a[m]);
-      UNROLL
-      for (int k = 0; k < 6; k++)
-        a[m][k] += row[k] == column[k] ? pressure : zero;
-      UNROLL
-      for (int k = 0; k < 9; k++)
-        v[m][k / 3][k % 3] = k % 4 == 0 ? one : zero;
-      /* pressed all round by Gershgorin's circles: no tension, exactly */
-      const vec xy = vec_abs(a[m][1]), xz = vec_abs(a[m][2]), yz = vec_abs(a[m][4]);
-      pulled[m] = vec_less(zero, a[m][0] + (xy + xz)) | vec_less(zero, a[m][3] + (xy + yz)) |
-                  vec_less(zero, a[m][5] + (xz + yz));
+      pulled[m] = tension_load(stress, stress_factor, pressure_term, at, left[m], a[m], v[m]);
     }
-    bool turns[BOTH] = {true, true};
-    for (int sweep = 0; sweep < 12; sweep++) {
+
+    for (int sweep = 0; sweep < SWEEPS; sweep++) {
       UNROLL
       for (int m = 0; m < BOTH; m++)
-        turns[m] = turns[m] && skew(a[m], pulled[m]);
+        turns[m] = turns[m] && not_diagonal(a[m], pulled[m]);
       if (!turns[0] && !turns[1])
         break;
-      static const int of[3][5] = {{0, 3, 1, 2, 4}, {0, 5, 2, 1, 4}, {3, 5, 4, 1, 2}},
-                       axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
       UNROLL
-      for (int t = 0; t < 3; t++) {
+      for (int rotation = 0; rotation < 3; rotation++) {
         UNROLL
         for (int m = 0; m < BOTH; m++)
           if (turns[m])
-            rotate(&a[m][of[t][0]], &a[m][of[t][1]], &a[m][of[t][2]], &a[m][of[t][3]], &a[m][of[t][4]], v[m],
-                   axes[t][0], axes[t][1]);
+            tension_rotate(a[m], v[m], rotation);
       }
     }
+
     UNROLL
     for (size_t m = 0; m < BOTH; m++) {
-      vec r[6] = {zero, zero, zero, zero, zero, zero};
-      UNROLL
-      for (int axis = 0; axis < 3; axis++) {
-        const vec value = a[m][axis == 0 ? 0 : axis == 1 ? 3 : 5];
-        const vec most = vec_keep(vec_less(zero, value) & pulled[m], (REAL)-epsilon * value);
-        UNROLL
-        for (int k = 0; k < 6; k++)
-          r[k] += most * v[m][row[k]][axis] * v[m][column[k]][axis];
-      }
+      tension_oppose(epsilon, a[m], v[m], pulled[m], r);
       UNROLL
       for (int k = 0; k < 6; k++)
-        memcpy(out[k] + i + m * LANES, &r[k], left[m] * sizeof(double));
+        vec_store_first(out[k] + i + m * LANES, r[k], left[m]);
     }
   }
 }
