@@ -1,13 +1,13 @@
 /* A campaign: many runs of one scene. The document (`clast run campaign.yaml`) is read here into a plain struct; the
  * plain keys are rows of campaign_table, the few keys that are unions (vary, set, design, keep) are read by hand and
- * their JSON Schema fragments stand in campaign_schema.c.
+ * their JSON Schema fragments are in campaign_schema.c.
  *
  *     name: thresholds
  *     scene: disc-explosion             # built-in name, or a file relative to the campaign's folder
  *     vary:
- *       beam.threshold.strain: [1 %, 3 %, 6 %]
- *       beam.threshold.angle: {from: 1 deg, to: 7 deg, n: 4}
- *     set: {grain.friction: 0.2}
+ *       threshold.strain: [1 %, 3 %, 6 %]
+ *       threshold.angle: {from: 1 deg, to: 7 deg, n: 4}
+ *     set: {contact.friction: 0.2}
  *     seeds: {first: 1, per_point: 30}  # or {until: {quantity: largest_fraction, half_width: 0.01}, max: 200}
  *     design: grid                      # or list, or {kind: random | latin_hypercube | sobol, points: 64, seed: 1}
  *     keep: {fields: none}              # none | all | extremes | first N

@@ -1,3 +1,4 @@
+/* Opening, closing and walking through a document. */
 #include "schemas/document.h"
 
 #include <errno.h>
@@ -12,10 +13,13 @@
 status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error) {
   *out = NULL;
   if (size > DOCUMENT_LARGEST)
-    return status_fail(error, STATUS_CONTENT, "%s: error: larger than %d MiB, which no input of clast is", name,
+    return status_fail(error, STATUS_CONTENT, "%s: error: larger than %d MiB; no input of clast is that large", name,
                        DOCUMENT_LARGEST >> 20);
-  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-    text += 3, size -= 3; /* byte order mark */
+  if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0) { /* byte order mark */
+    text += 3;
+    size -= 3;
+  }
+
   struct document *document = calloc(1, sizeof *document);
   if (document) {
     document->name = strdup(name);
@@ -29,8 +33,11 @@ status document_parse(const char *name, const char *text, size_t size, struct do
   memcpy(document->text, text, size);
   document->text[size] = 0;
   status code = document_guard(document) ? document_build(document) : STATUS_CONTENT;
-  if (code == STATUS_OK)
-    return *out = document, STATUS_OK;
+  if (code == STATUS_OK) {
+    *out = document;
+    return STATUS_OK;
+  }
+
   const char *report = NULL;
   if (code == STATUS_CONTENT)
     document_finish(document, &report);

@@ -4,7 +4,8 @@
  *       the line
  *       ^~~~
  * Refused: unknown keys (the nearest known one is named), duplicate keys, a second document, NUL bytes, invalid UTF-8,
- * anchors' cycles, nesting or size beyond sane limits (4 MiB, depth 32), values out of range or of the wrong dimension.
+ * aliases inside what they refer to, more than 4 MiB, nesting deeper than 32, values out of range or of the wrong
+ * dimension.
  *
  * Opaque over libfyaml: no other folder includes <libfyaml.h>. */
 #ifndef CLAST_SCHEMAS_DOCUMENT_H
@@ -15,8 +16,8 @@
 struct document;                            /* owns the text and the tree */
 typedef struct document_node document_node; /* borrowed from its document */
 
-/* STATUS_MISSING when there is no such file, STATUS_IO when unreadable (a directory, permission), STATUS_CONTENT when
- * it is no YAML mapping: *error holds the located report. */
+/* STATUS_MISSING when the file does not exist, STATUS_IO when unreadable (a directory, permission), STATUS_CONTENT when
+ * it is not a YAML mapping: *error holds the located report. */
 status document_open(const char *path, struct document **out, struct error *error);
 status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error);
 void document_free(struct document *document); /* NULL is fine */
@@ -38,11 +39,10 @@ bool document_value(document_node *node, const struct field *row, struct field_v
 
 /* Read the nested mapping `node` into *object (already holding defaults) through the table. Keys listed in `also`
  * (NULL-terminated, may be NULL) belong to the caller and are left alone; every other unknown key is reported.
- * `when` conditions are judged after all keys are read. Returns false when anything was reported. */
+ * `when` conditions are judged after all keys are read. Returns false when an error was reported. */
 bool document_read(document_node *node, const struct field_table *table, const char *const *also, void *object);
-/* The same, and tells which rows the document gives, good or bad (`given`, one per row; NULL is fine). `complete` (NULL
- * is fine) is called when all keys are read and before conditions are judged: it fills in what was not given and
- * follows from what was. */
+/* The same. given[i] (NULL is fine) tells whether the document gives row i, well or badly. `complete` (NULL is fine) is
+ * called after all keys are read and before conditions are judged: it derives the values that were not given. */
 typedef void (*document_complete)(void *object, const bool *given);
 bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
                          bool *given, document_complete complete);
@@ -50,8 +50,8 @@ bool document_read_given(document_node *node, const struct field_table *table, c
 /* Add a located error about a node (or a key of it). Errors are counted; the report is ordered by line. */
 void document_report(document_node *node, const char *path, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-/* Report every key of the mapping that is not among `known` (NULL-terminated, may be NULL) and that no call above has
- * marked as seen. */
+/* Reports every key of the mapping that is neither in `known` (NULL-terminated, may be NULL) nor marked as seen by a
+ * call above. */
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);
 
 /* STATUS_OK when nothing was reported; else STATUS_CONTENT with the whole report in *report (owned by the document). */

@@ -1,3 +1,5 @@
+/* The tree of a document, made from libfyaml's events. Our own tree, not libfyaml's document: limits on depth, size and
+ * aliases hold while it grows, and every duplicate key, tag and lost alias of a file is reported in one go. */
 #include <libfyaml.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,8 +9,7 @@
 enum { PATH_SIZE = 200 };
 
 struct anchor {
-  const char *name; /* in the text, not terminated */
-  size_t length;
+  char *name; /* malloc'd */
   document_node *node;
 };
 
@@ -18,7 +19,7 @@ struct builder {
   document_node *key[DOCUMENT_DEEPEST];  /* the key that waits for its value, per level */
   size_t depth;
   struct anchor *anchors;
-  size_t anchor_count;
+  size_t anchor_count, documents;
   bool failed; /* out of memory or a limit: stop */
 };
 
@@ -91,21 +92,23 @@ static void attach(struct builder *b, document_node *node) {
   document_node *parent = b->open[b->depth - 1], **key = &b->key[b->depth - 1];
   if (parent->kind == DOCUMENT_SEQUENCE) {
     append(b, parent, NULL, node);
-  } else if (!*key) {
+    return;
+  }
+  if (!*key) {
     if (node->kind != DOCUMENT_SCALAR && !node->faulty) {
       document_report(node, where(b, (char[PATH_SIZE]){0}), "expected a word as key, got %s",
                       document_value_what(node));
       node->faulty = true;
     }
     *key = node;
-  } else {
-    if (node->end == node->start + 1 && node->plain && !node->text[0]) { /* nothing: point at its key */
-      node->start = (*key)->start;
-      node->end = (*key)->end;
-    }
-    append(b, parent, *key, node);
-    *key = NULL;
+    return;
   }
+  if (node->end == node->start + 1 && node->plain && !node->text[0]) { /* nothing: point at its key */
+    node->start = (*key)->start;
+    node->end = (*key)->end;
+  }
+  append(b, parent, *key, node);
+  *key = NULL;
 }
 
 static document_node *copy(struct builder *b, const document_node *from, size_t depth) {
@@ -141,35 +144,44 @@ static void remember(struct builder *b, struct fy_token *token, document_node *n
     b->failed = true;
     return;
   }
-  char *kept = malloc(length + 1);
+  char *kept = strndup(name, length);
   if (!kept) {
     b->failed = true;
     return;
   }
-  memcpy(kept, name, length);
-  kept[length] = 0;
-  b->anchors[b->anchor_count++] = (struct anchor){kept, length, node};
+  b->anchors[b->anchor_count++] = (struct anchor){kept, node};
+}
+
+/* The last node before here with this anchor, or NULL. */
+static document_node *anchored(const struct builder *b, const char *name, size_t length) {
+  for (size_t i = b->anchor_count; i-- > 0;)
+    if (strncmp(b->anchors[i].name, name, length) == 0 && !b->anchors[i].name[length])
+      return b->anchors[i].node;
+  return NULL;
+}
+
+static bool is_open(const struct builder *b, const document_node *node) {
+  for (size_t i = 0; i < b->depth; i++)
+    if (b->open[i] == node)
+      return true;
+  return false;
 }
 
 static document_node *alias(struct builder *b, struct fy_token *token, size_t start, size_t end) {
   size_t length = 0;
   const char *name = fy_token_get_text(token, &length);
-  const document_node *target = NULL;
-  for (size_t i = b->anchor_count; name && i-- > 0 && !target;)
-    if (b->anchors[i].length == length && memcmp(b->anchors[i].name, name, length) == 0)
-      target = b->anchors[i].node;
-  bool open = false;
-  for (size_t i = 0; i < b->depth; i++)
-    open = open || b->open[i] == target;
-  if (target && !open)
+  const document_node *target = name ? anchored(b, name, length) : NULL;
+  const bool inside = target && is_open(b, target);
+  if (target && !inside)
     return copy(b, target, b->depth);
+
   char path[PATH_SIZE];
-  int shown = length < 60 ? (int)length : 60;
-  if (target)
-    document_report_at(b->document, start, end, where(b, path), "alias '*%.*s' stands inside what it refers to", shown,
-                       name);
+  const int shown = length < 60 ? (int)length : 60;
+  where(b, path);
+  if (inside)
+    document_report_at(b->document, start, end, path, "alias '*%.*s' stands inside what it refers to", shown, name);
   else
-    document_report_at(b->document, start, end, where(b, path), "alias '*%.*s' has no anchor '&%.*s' before it", shown,
+    document_report_at(b->document, start, end, path, "alias '*%.*s' has no anchor '&%.*s' before it", shown,
                        name ? name : "", shown, name ? name : "");
   document_node *node = create(b, DOCUMENT_SCALAR, "", 0, start, end);
   if (node)
@@ -179,9 +191,9 @@ static document_node *alias(struct builder *b, struct fy_token *token, size_t st
 
 static document_node *scalar(struct builder *b, struct fy_token *token, size_t start, size_t end) {
   size_t length = 0;
-  const char *text = token ? fy_token_get_text(token, &length) : "";
+  const char *text = token ? fy_token_get_text(token, &length) : NULL;
   if (!text)
-    text = "", length = 0;
+    text = ""; /* and length is 0 */
   size_t bad = document_guard_text(text, length);
   document_node *node = create(b, DOCUMENT_SCALAR, text, bad, start, end);
   if (!node)
@@ -200,11 +212,23 @@ static int by_text(const void *a, const void *b) {
   int order = strcmp((*left)->text, (*right)->text);
   if (order)
     return order;
-  return (*left)->start < (*right)->start ? -1 : (*left)->start > (*right)->start;
+  return ((*left)->start > (*right)->start) - ((*left)->start < (*right)->start);
+}
+
+static void report_duplicate(struct builder *b, document_node *key, const document_node *first) {
+  if (b->document->error_count >= DOCUMENT_MOST_ERRORS) {
+    b->document->error_count++; /* only counted */
+    return;
+  }
+  char path[PATH_SIZE], whole[2 * PATH_SIZE];
+  where(b, path);
+  snprintf(whole, sizeof whole, "%s%s%.150s", path, *path ? "." : "", key->text);
+  document_report(key, whole, "given twice; the first is in line %zu; remove one",
+                  document_report_line(b->document, first->start));
 }
 
 /* Sorted, not pairwise: a file of a hundred thousand keys must not take minutes. */
-static void report_duplicates(struct builder *b, document_node *mapping) {
+static void report_duplicates(struct builder *b, const document_node *mapping) {
   document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
   if (!keys) {
     b->failed = true;
@@ -216,14 +240,8 @@ static void report_duplicates(struct builder *b, document_node *mapping) {
   for (size_t i = 1, first = 0; i < mapping->count; i++) {
     if (strcmp(keys[first]->text, keys[i]->text) != 0 || keys[i]->faulty || keys[first]->faulty)
       first = i;
-    else if (b->document->error_count < DOCUMENT_MOST_ERRORS) {
-      char path[PATH_SIZE], whole[2 * PATH_SIZE];
-      where(b, path);
-      snprintf(whole, sizeof whole, "%s%s%.150s", path, *path ? "." : "", keys[i]->text);
-      document_report(keys[i], whole, "given twice; the first is in line %zu; remove one",
-                      document_report_line(b->document, keys[first]->start));
-    } else
-      b->document->error_count++;
+    else
+      report_duplicate(b, keys[i], keys[first]);
   }
   free(keys);
 }
@@ -258,57 +276,70 @@ static void report_tag(struct builder *b, document_node *node) {
     document_report(node, where(b, path), "a tag; write the value without '!'");
 }
 
+/* False: this is a second document. */
+static bool take_document(struct builder *b, const struct fy_event *event, size_t start, size_t end) {
+  if (++b->documents > 1) {
+    document_report_at(b->document, start, end, NULL, "a second document starts here; one file holds one document");
+    b->failed = true;
+    return false;
+  }
+  struct fy_document_state *state = event->document_start.document_state;
+  const struct fy_version *version = fy_document_state_version_explicit(state) ? fy_document_state_version(state)
+                                                                               : NULL;
+  if (version && (version->major != 1 || version->minor != 2))
+    document_report_at(b->document, 0, 0, NULL, "expected YAML 1.2, got a %%YAML %d.%d line; remove it", version->major,
+                       version->minor);
+  return true;
+}
+
+static void take_collection(struct builder *b, enum document_kind kind, struct fy_token *anchor,
+                            const struct fy_token *tag, size_t start, size_t end) {
+  document_node *node = create(b, kind, "", 0, start, end);
+  remember(b, anchor, node);
+  if (tag)
+    report_tag(b, node);
+  open_collection(b, node);
+}
+
+static void take_scalar(struct builder *b, const struct fy_event *event, size_t start, size_t end) {
+  const char *text = b->document->text;
+  const char before = start ? text[start - 1] : 0;
+  if ((before == '"' || before == '\'') && end >= start && end < b->document->size && text[end] == before) {
+    start--; /* libfyaml's marks leave out the quotes */
+    end++;
+  }
+  document_node *node = scalar(b, event->scalar.value, start, end);
+  remember(b, event->scalar.anchor, node);
+  if (event->scalar.tag && node) {
+    report_tag(b, node);
+    node->faulty = true; /* the tag's meaning is unknown: readers pass over the value */
+  }
+  attach(b, node);
+}
+
 /* One event into the tree. False: the document's end. */
-static bool take(struct builder *b, struct fy_event *event, size_t *documents) {
+static bool take(struct builder *b, struct fy_event *event) {
   const struct fy_mark *from = fy_event_start_mark(event), *to = fy_event_end_mark(event);
   size_t start = from ? from->input_pos : 0, end = to ? to->input_pos : start;
-  const char *text = b->document->text;
-  if (start && end >= start && end < b->document->size && (text[start - 1] == '"' || text[start - 1] == '\'') &&
-      text[end] == text[start - 1] && event->type == FYET_SCALAR)
-    start--, end++; /* libfyaml's marks leave out the quotes, and the star of an alias */
-  if (event->type == FYET_ALIAS && start && text[start - 1] == '*')
-    start--;
   switch (event->type) {
   case FYET_STREAM_END: return false;
-  case FYET_DOCUMENT_START:
-    if (++*documents > 1) {
-      document_report_at(b->document, start, end, NULL, "a second document starts here; one file holds one document");
-      b->failed = true;
-      return false;
-    }
-    if (fy_document_state_version_explicit(event->document_start.document_state)) {
-      const struct fy_version *version = fy_document_state_version(event->document_start.document_state);
-      if (version && (version->major != 1 || version->minor != 2))
-        document_report_at(b->document, 0, 0, NULL, "expected YAML 1.2, got a %%YAML %d.%d line; remove it",
-                           version->major, version->minor);
-    }
-    return true;
+  case FYET_DOCUMENT_START: return take_document(b, event, start, end);
   case FYET_MAPPING_START:
-  case FYET_SEQUENCE_START: {
-    bool mapping = event->type == FYET_MAPPING_START;
-    document_node *node = create(b, mapping ? DOCUMENT_MAPPING : DOCUMENT_SEQUENCE, "", 0, start, end);
-    remember(b, mapping ? event->mapping_start.anchor : event->sequence_start.anchor, node);
-    if (mapping ? event->mapping_start.tag : event->sequence_start.tag)
-      report_tag(b, node);
-    open_collection(b, node);
+    take_collection(b, DOCUMENT_MAPPING, event->mapping_start.anchor, event->mapping_start.tag, start, end);
     return true;
-  }
+  case FYET_SEQUENCE_START:
+    take_collection(b, DOCUMENT_SEQUENCE, event->sequence_start.anchor, event->sequence_start.tag, start, end);
+    return true;
   case FYET_MAPPING_END:
   case FYET_SEQUENCE_END: close_collection(b, end); return true;
-  case FYET_SCALAR: {
-    document_node *node = scalar(b, event->scalar.value, start, end);
-    remember(b, event->scalar.anchor, node);
-    if (event->scalar.tag && node) {
-      report_tag(b, node);
-      node->faulty = true; /* what it is meant to be is not known: readers pass over it */
-    }
-    attach(b, node);
+  case FYET_SCALAR: take_scalar(b, event, start, end); return true;
+  case FYET_ALIAS:
+    if (start && b->document->text[start - 1] == '*')
+      start--; /* libfyaml's mark leaves out the star */
+    attach(b, alias(b, event->alias.anchor, start, end));
     return true;
-  }
-  case FYET_ALIAS: attach(b, alias(b, event->alias.anchor, start, end)); return true;
   default: return true;
   }
-  return true;
 }
 
 static void silence(struct fy_diag *diag, void *user, const char *text, size_t length) {
@@ -333,53 +364,63 @@ static void report_syntax(struct document *document, struct fy_diag *diag) {
   document_report_at(document, offset, 0, NULL, "no valid YAML: %s", error->msg);
 }
 
-status document_build(struct document *document) {
-  status code = STATUS_CONTENT;
-  struct builder b = {.document = document};
-  struct fy_parser *parser = NULL;
-  struct fy_diag_cfg words;
-  fy_diag_cfg_default(&words);
-  words.fp = NULL;
-  words.output_fn = silence;
-  struct fy_diag *diag = fy_diag_create(&words);
-  b.anchors = calloc(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
-  if (diag) {
+static struct fy_diag *create_diag(void) {
+  struct fy_diag_cfg quiet;
+  fy_diag_cfg_default(&quiet);
+  quiet.fp = NULL;
+  quiet.output_fn = silence;
+  struct fy_diag *diag = fy_diag_create(&quiet);
+  if (diag)
     fy_diag_set_collect_errors(diag, true);
+  return diag;
+}
+
+static status take_all(struct builder *b, struct fy_parser *parser, struct fy_diag *diag) {
+  for (bool more = true; more && !b->failed;) {
+    struct fy_event *event = fy_parser_parse(parser);
+    if (!event) {
+      report_syntax(b->document, diag);
+      return STATUS_CONTENT;
+    }
+    more = take(b, event);
+    fy_parser_event_free(parser, event);
+  }
+  if (!b->failed)
+    return STATUS_OK;
+  return b->document->error_count ? STATUS_CONTENT : STATUS_MEMORY;
+}
+
+static status check_root(struct document *document) {
+  const document_node *root = document->root;
+  if (root && root->kind == DOCUMENT_MAPPING)
+    return STATUS_OK;
+  if (!root || (root->kind == DOCUMENT_SCALAR && root->plain && !root->text[0]))
+    document_report_at(document, 0, 0, NULL, "the document is empty; expected keys and values, such as 'name: first'");
+  else
+    document_report_at(document, root->start, root->end, NULL,
+                       "expected keys and values, such as 'name: first', got %s", document_value_what(root));
+  return STATUS_CONTENT;
+}
+
+status document_build(struct document *document) {
+  status code = STATUS_MEMORY;
+  struct builder b = {.document = document};
+  struct fy_diag *diag = create_diag();
+  struct fy_parser *parser = NULL;
+  b.anchors = calloc(DOCUMENT_MOST_ANCHORS, sizeof *b.anchors);
+  if (diag && b.anchors)
     parser = fy_parser_create(
         &(struct fy_parse_cfg){.flags = FYPCF_QUIET | FYPCF_COLLECT_DIAG | FYPCF_JSON_NONE | FYPCF_DEFAULT_VERSION_1_2,
                                .diag = diag});
-  }
-  if (!parser || !b.anchors || fy_parser_set_string(parser, document->text, document->size) != 0) {
-    code = STATUS_MEMORY;
+  if (!parser || fy_parser_set_string(parser, document->text, document->size) != 0)
     goto cleanup;
-  }
-  size_t documents = 0;
-  bool more = true;
-  while (more && !b.failed) {
-    struct fy_event *event = fy_parser_parse(parser);
-    if (!event) {
-      report_syntax(document, diag);
-      goto cleanup;
-    }
-    more = take(&b, event, &documents);
-    fy_parser_event_free(parser, event);
-  }
-  if (b.failed) {
-    if (document->error_count == 0)
-      code = STATUS_MEMORY;
-    goto cleanup;
-  }
-  const document_node *root = document->root;
-  if (!root || (root->kind == DOCUMENT_SCALAR && root->plain && !root->text[0]))
-    document_report_at(document, 0, 0, NULL, "the document is empty; expected keys and values, such as 'name: first'");
-  else if (root->kind != DOCUMENT_MAPPING)
-    document_report_at(document, root->start, root->end, NULL,
-                       "expected keys and values, such as 'name: first', got %s", document_value_what(root));
-  else
-    code = STATUS_OK;
+
+  code = take_all(&b, parser, diag);
+  if (!code)
+    code = check_root(document);
 cleanup:
   for (size_t i = 0; i < b.anchor_count; i++)
-    free((char *)(uintptr_t)b.anchors[i].name);
+    free(b.anchors[i].name);
   free(b.anchors);
   fy_parser_destroy(parser);
   fy_diag_destroy(diag);

@@ -1,3 +1,4 @@
+/* A mapping into a struct, through its field table. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,38 +65,52 @@ static void unknown(const struct reading *r, const document_node *mapping, docum
   free(words);
 }
 
+/* What stands under a key: a row's value, a section, or neither. */
+struct meaning {
+  const struct field *row;
+  bool section;
+};
+
+static struct meaning meaning_of(const struct field_table *table, const char *path, size_t length) {
+  struct meaning found = {0};
+  for (size_t k = 0; k < table->count && !found.row; k++) {
+    const char *known = table->rows[k].path;
+    if (strcmp(known, path) == 0)
+      found.row = &table->rows[k];
+    else if (strncmp(known, path, length) == 0 && known[length] == '.')
+      found.section = true;
+  }
+  return found;
+}
+
+static void read_row(struct reading *r, const struct field *row, document_node *key, document_node *node) {
+  struct place *place = &r->places[row - r->table->rows];
+  if (place->key)
+    return; /* a duplicate: reported already, the first one counts */
+  struct field_value value;
+  *place = (struct place){.key = key, .value = node, .good = document_value(node, row, &value)};
+  if (place->good)
+    field_set_unchecked(row, r->object, &value);
+}
+
 static void walk(struct reading *r, document_node *mapping, const char *prefix) {
-  const struct field_table *table = r->table;
   for (size_t i = 0; i < mapping->count; i++) {
     document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
     if (key->faulty || (!*prefix && listed(key->text, r->also)))
       continue;
     mapping->pairs[i].seen = true;
+
     char path[PATH_SIZE];
-    int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
-    bool fits = length > 0 && length < PATH_SIZE - 2 && !strchr(key->text, '.'), section = false;
-    const struct field *row = NULL;
-    for (size_t k = 0; fits && k < table->count && !row; k++) {
-      if (strcmp(table->rows[k].path, path) == 0)
-        row = &table->rows[k];
-      section = section ||
-                (strncmp(table->rows[k].path, path, (size_t)length) == 0 && table->rows[k].path[length] == '.');
-    }
-    if (row) {
-      struct place *place = &r->places[row - table->rows];
-      struct field_value value;
-      if (place->key)
-        continue; /* a duplicate: reported already, the first one counts */
-      place->key = key;
-      place->value = node;
-      place->good = document_value(node, row, &value);
-      if (place->good)
-        field_set_unchecked(row, r->object, &value);
-    } else if (section && node->kind == DOCUMENT_MAPPING) {
+    const int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
+    const bool fits = length > 0 && length < PATH_SIZE - 2 && !strchr(key->text, '.');
+    const struct meaning meaning = fits ? meaning_of(r->table, path, (size_t)length) : (struct meaning){0};
+    if (meaning.row) {
+      read_row(r, meaning.row, key, node);
+    } else if (meaning.section && node->kind == DOCUMENT_MAPPING) {
       path[length] = '.';
       path[length + 1] = 0;
       walk(r, node, path);
-    } else if (section) {
+    } else if (meaning.section) {
       document_report(node, document_value_path(node, path, sizeof path), "expected keys and values below it, got %s",
                       document_value_is_null(node) ? "nothing" : document_value_what(node));
     } else {
@@ -151,10 +166,42 @@ static bool complete_object(const struct reading *r, bool *given, document_compl
   return true;
 }
 
+/* A required row that is active was not given. */
+static void report_missing(document_node *node, const struct field *row) {
+  char path[PATH_SIZE], whole[2 * PATH_SIZE];
+  const size_t at = holder(node, row->path)->start;
+  document_value_path(node, path, sizeof path);
+  snprintf(whole, sizeof whole, "%s%s%s", path, *path ? "." : "", row->path);
+  document_report_at(node->document, at, at + 1, whole, "is missing and has no default; %s",
+                     row->doc ? row->doc : "give it");
+}
+
+/* A row was given whose condition is not met. */
+static void report_inactive(const struct reading *r, const struct field *row, const struct place *place) {
+  char path[PATH_SIZE], why[600];
+  field_describe_inactive(r->table, row, r->object, why, sizeof why);
+  document_value_path(place->value, path, sizeof path);
+  document_report(place->key, path, "has no effect: it is %s; remove one or change the other", why);
+}
+
+static void judge_conditions(const struct reading *r, document_node *node) {
+  for (size_t i = 0; i < r->table->count; i++) {
+    const struct field *row = &r->table->rows[i];
+    const struct place *place = &r->places[i];
+    if (!judgeable(r, row))
+      continue;
+    const bool active = field_is_active(r->table, row, r->object);
+    if (active && row->flags & FIELD_REQUIRED && !place->key)
+      report_missing(node, row);
+    if (!active && place->key)
+      report_inactive(r, row, place);
+  }
+}
+
 bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
                          bool *given, document_complete complete) {
-  struct document *document = node->document;
-  size_t before = document->error_count;
+  const struct document *document = node->document;
+  const size_t before = document->error_count;
   if (node->faulty)
     return false;
   if (node->kind != DOCUMENT_MAPPING) {
@@ -174,25 +221,7 @@ bool document_read_given(document_node *node, const struct field_table *table, c
   walk(&r, node, "");
   if (!complete_object(&r, given, complete))
     document_report(node, NULL, "no memory to read it");
-  for (size_t i = 0; i < table->count; i++) {
-    const struct field *row = &table->rows[i];
-    char why[600], path[PATH_SIZE], whole[2 * PATH_SIZE];
-    if (!judgeable(&r, row))
-      continue;
-    if (field_is_active(table, row, object)) {
-      if (!(row->flags & FIELD_REQUIRED) || r.places[i].key)
-        continue;
-      size_t at = holder(node, row->path)->start;
-      document_value_path(node, path, sizeof path);
-      snprintf(whole, sizeof whole, "%s%s%s", path, *path ? "." : "", row->path);
-      document_report_at(document, at, at + 1, whole, "is missing and has no default; %s",
-                         row->doc ? row->doc : "give it");
-    } else if (r.places[i].key) {
-      field_describe_inactive(table, row, object, why, sizeof why);
-      document_value_path(r.places[i].value, path, sizeof path);
-      document_report(r.places[i].key, path, "has no effect: it is %s; remove one or change the other", why);
-    }
-  }
+  judge_conditions(&r, node);
   free(r.places);
   return document->error_count == before;
 }

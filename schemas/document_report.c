@@ -1,3 +1,4 @@
+/* Errors about places in a document, as file:line:col with the line and a marker below it. */
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,88 +51,116 @@ static bool continues(char byte) {
   return ((unsigned char)byte & 0xC0) == 0x80;
 }
 
+/* The part of a line that is shown around an error, bytes of the text: [from, to) of the line [begin, finish). */
+struct excerpt {
+  size_t begin, finish, from, to;
+  bool readable; /* UTF-8. Else the line may hold anything: each byte beyond ASCII is shown as '?', in one column */
+};
+
+static struct excerpt excerpt_around(const struct document *document, size_t start) {
+  const char *text = document->text;
+  struct excerpt e = {.begin = start, .finish = start};
+  while (e.begin && text[e.begin - 1] != '\n')
+    e.begin--;
+  while (e.finish < document->size && text[e.finish] != '\n' && text[e.finish] != '\r')
+    e.finish++;
+
+  e.from = e.begin;
+  e.to = e.finish;
+  if (e.finish - e.begin > SHOWN) {
+    if (start - e.begin > BEFORE)
+      e.from = start - BEFORE;
+    if (e.to - e.from > SHOWN)
+      e.to = e.from + SHOWN;
+    while (e.from < start && continues(text[e.from]))
+      e.from++;
+    while (e.to > start && e.to < e.finish && continues(text[e.to]))
+      e.to--;
+  }
+  e.readable = document_guard_text(text + e.from, e.to - e.from) == e.to - e.from;
+  return e;
+}
+
+/* The guard reports a byte before it has seen the rest: control characters may follow. */
+static void write_line(const char *text, const struct excerpt *e, FILE *out) {
+  fprintf(out, "  %s", e->from > e->begin ? "..." : "");
+  for (size_t i = e->from; i < e->to; i++) {
+    const unsigned char byte = (unsigned char)text[i];
+    const bool control = (byte < 0x20 && byte != '\t') || byte == 0x7F;
+    fputc(control || (byte >= 0x80 && !e->readable) ? '?' : byte, out);
+  }
+  fputs(e->to < e->finish ? "...\n" : "\n", out);
+}
+
+/* ^~~~ below bytes [start, end). */
+static void write_marker(const char *text, const struct excerpt *e, size_t start, size_t end, FILE *out) {
+  fputs(e->from > e->begin ? "     " : "  ", out);
+  for (size_t i = e->from; i < start; i++)
+    if (!e->readable || !continues(text[i]))
+      fputc(text[i] == '\t' ? '\t' : ' ', out);
+  fputc('^', out);
+  for (size_t i = start + 1; i < end && i < e->to; i++)
+    if (!e->readable || !continues(text[i]))
+      fputc('~', out);
+  fputc('\n', out);
+}
+
 /* One error as text. Columns count characters from 1, as editors do. */
 static void write_error(const struct document *document, const struct document_error *error, FILE *out) {
   const char *text = document->text;
-  size_t start = error->start < document->size ? error->start : document->size;
-  size_t begin = start, finish = start, column = 1;
-  while (begin && text[begin - 1] != '\n')
-    begin--;
-  while (finish < document->size && text[finish] != '\n' && text[finish] != '\r')
-    finish++;
-  for (size_t i = begin; i < start; i++)
+  const size_t start = error->start < document->size ? error->start : document->size;
+  const struct excerpt e = excerpt_around(document, start);
+  size_t column = 1;
+  for (size_t i = e.begin; i < start; i++)
     column += !continues(text[i]);
   fprintf(out, "%s:%zu:%zu: error: %s\n", document->name, document_report_line(document, start), column,
           error->message ? error->message : "(no memory for the message)");
-  size_t from = begin, to = finish;
-  if (finish - begin > SHOWN) {
-    if (start - begin > BEFORE)
-      from = start - BEFORE;
-    if (to - from > SHOWN)
-      to = from + SHOWN;
-    while (from < start && continues(text[from]))
-      from++;
-    while (to > start && to < finish && continues(text[to]))
-      to--;
-  }
-  if (from == to)
+  if (e.from == e.to)
     return;
-  /* A line that is no UTF-8 may hold anything: its bytes beyond ASCII are shown as '?', one column each. */
-  bool readable = document_guard_text(text + from, to - from) == to - from;
-  fprintf(out, "  %s", from > begin ? "..." : "");
-  for (size_t i = from; i < to; i++) { /* the guard reports a byte before anything is known of the rest */
-    unsigned char byte = (unsigned char)text[i];
-    fputc((byte < 0x20 && byte != '\t') || byte == 0x7F || (byte >= 0x80 && !readable) ? '?' : byte, out);
-  }
-  fprintf(out, "%s\n  %s", to < finish ? "..." : "", from > begin ? "   " : "");
-  for (size_t i = from; i < start; i++)
-    if (!readable || !continues(text[i]))
-      fputc(text[i] == '\t' ? '\t' : ' ', out);
-  fputc('^', out);
-  size_t end = error->end < to ? error->end : to;
-  for (size_t i = start + 1; i < end; i++)
-    if (!readable || !continues(text[i]))
-      fputc('~', out);
-  fputc('\n', out);
+  write_line(text, &e, out);
+  write_marker(text, &e, start, error->end, out);
 }
 
 static int by_place(const void *a, const void *b) {
   const struct document_error *left = a, *right = b;
   if (left->start != right->start)
     return left->start < right->start ? -1 : 1;
-  return left->order < right->order ? -1 : left->order > right->order;
+  return (left->order > right->order) - (left->order < right->order);
+}
+
+/* Appends one error to the report `out`, of which `size` is the length, unless it would grow beyond `limit`. */
+static bool append_error(const struct document *document, const struct document_error *error, FILE *out,
+                         const size_t *size, size_t limit) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *memory = open_memstream(&text, &length);
+  if (!memory)
+    return false;
+  write_error(document, error, memory);
+  const bool whole = fclose(memory) == 0;
+  fflush(out); /* *size is up to date after this */
+  const bool fits = whole && *size + length <= limit;
+  if (fits)
+    fwrite(text, 1, length, out);
+  free(text);
+  return fits;
 }
 
 char *document_report_text(struct document *document) {
-  /* The whole must fit into struct error, with room for the closing line. */
-  enum { ROOM = sizeof((struct error *)0)->message - 128 };
-  size_t kept = document->error_count < DOCUMENT_MOST_ERRORS ? document->error_count : DOCUMENT_MOST_ERRORS;
+  enum { LIMIT = sizeof((struct error *)0)->message - 128 }; /* it must fit into struct error, with its last line */
+  const size_t kept = document->error_count < DOCUMENT_MOST_ERRORS ? document->error_count : DOCUMENT_MOST_ERRORS;
   qsort(document->errors, kept, sizeof *document->errors, by_place);
+
   char *text = NULL;
   size_t size = 0, shown = 0;
   FILE *out = open_memstream(&text, &size);
   if (!out)
     return NULL;
-  for (; shown < kept; shown++) {
-    char *one = NULL;
-    size_t one_size = 0;
-    FILE *line = open_memstream(&one, &one_size);
-    if (!line)
-      break;
-    write_error(document, &document->errors[shown], line);
-    bool whole = fclose(line) == 0;
-    fflush(out);
-    bool fits = whole && size + one_size <= ROOM;
-    if (fits)
-      fwrite(one, 1, one_size, out);
-    free(one);
-    if (!fits)
-      break;
-  }
+  while (shown < kept && append_error(document, &document->errors[shown], out, &size, LIMIT))
+    shown++;
   if (shown < document->error_count)
     fprintf(out, "%.60s: error: and %zu more; correct the ones above first\n", document->name,
             document->error_count - shown);
-  fflush(out);
   if (fclose(out) != 0) {
     free(text);
     return NULL;

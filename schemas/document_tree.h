@@ -1,4 +1,4 @@
-/* Inside of documents: shared by the document_*.c files, used by nobody else. */
+/* The inside of a document, shared by the document_*.c files only. */
 #ifndef CLAST_SCHEMAS_DOCUMENT_TREE_H
 #define CLAST_SCHEMAS_DOCUMENT_TREE_H
 
@@ -21,10 +21,10 @@ struct document_pair {
 struct document_node {
   struct document *document;
   struct document_node *next;  /* all nodes, for freeing */
-  document_node *parent, *key; /* where it stands: NULL at the root, key NULL in a list */
+  document_node *parent, *key; /* NULL at the root; the key is NULL in a list */
   enum document_kind kind;
   bool plain;        /* scalar without quotes: the core schema gives it a type */
-  bool faulty;       /* an error about it was reported already: readers pass over it in silence */
+  bool faulty;       /* an error about it was reported already: readers skip it */
   size_t start, end; /* bytes in the text */
   struct document_pair *pairs;
   size_t count, capacity;
@@ -67,8 +67,8 @@ const char *document_value_path(const document_node *node, char *path, size_t si
 const char *document_value_what(const document_node *node);
 bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */
 
-/* Report a key that nobody knows: `known` are the names that may stand beside it, `elsewhere` (may be NULL) a whole
- * path that was perhaps meant. */
+/* Reports a key that no table knows. `known`: the names that are allowed beside it. `elsewhere` (may be NULL): a whole
+ * path that may have been meant. */
 void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere);
 
 #endif

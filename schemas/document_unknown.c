@@ -1,3 +1,4 @@
+/* Keys that no table knows, and which one may have been meant. */
 #include <string.h>
 
 #include "schemas/document_tree.h"
@@ -5,27 +6,33 @@
 
 enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
+/* "a, b, c", cut with "..." when it is too long. */
+static void write_list(const char *const *words, char list[LIST_SIZE]) {
+  size_t used = 0;
+  *list = 0;
+  for (size_t i = 0; words && words[i] && used < LIST_SIZE; i++) {
+    int n = snprintf(list + used, LIST_SIZE - used, "%s%s", i ? ", " : "", words[i]);
+    used += n > 0 ? (size_t)n : 0;
+  }
+  if (used >= LIST_SIZE)
+    memcpy(list + LIST_SIZE - 4, "...", 4);
+}
+
 void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere) {
   if (key->faulty)
     return;
   struct document *document = key->document;
-  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: do not search for what nobody will see */
+  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: nobody will see the guess */
     document->error_count++;
     return;
   }
-  char whole[PATH_SIZE], list[LIST_SIZE] = "";
-  snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
   struct text_guess guess = text_guess(key->text);
-  size_t used = 0;
-  for (size_t i = 0; known && known[i]; i++) {
+  for (size_t i = 0; known && known[i]; i++)
     text_guess_offer(&guess, known[i]);
-    if (used < sizeof list) {
-      int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", known[i]);
-      used += n > 0 ? (size_t)n : 0;
-    }
-  }
-  if (used >= sizeof list)
-    memcpy(list + sizeof list - 4, "...", 4);
+
+  char whole[PATH_SIZE], list[LIST_SIZE];
+  snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
+  write_list(known, list);
   if (strcmp(key->text, "<<") == 0)
     document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
   else if (guess.nearest)

@@ -1,3 +1,4 @@
+/* One scalar through its row, and what a node is called in messages. */
 #include <string.h>
 
 #include "schemas/document_tree.h"
@@ -31,18 +32,7 @@ static void describe(const struct field *row, char *text, size_t size) {
   case FIELD_REAL:
   case FIELD_INTEGER: field_describe_range(row, text, size); break;
   case FIELD_BOOLEAN: snprintf(text, size, "true or false"); break;
-  case FIELD_CHOICE: {
-    size_t used = 0;
-    for (size_t i = 0; row->choices[i] && used < size; i++) {
-      int n = snprintf(text + used, size - used, "%s%s",
-                       !i                    ? ""
-                       : row->choices[i + 1] ? ", "
-                                             : " or ",
-                       row->choices[i]);
-      used += n > 0 ? (size_t)n : 0;
-    }
-    break;
-  }
+  case FIELD_CHOICE: field_describe_choices(row, text, size); break;
   case FIELD_TEXT: snprintf(text, size, "text"); break;
   }
 }
@@ -65,7 +55,8 @@ const char *document_value_path(const document_node *node, char *path, size_t si
   return path;
 }
 
-/* field_parse's message begins with the row's path; the node's own is the same or longer ("vary." before it). */
+/* field_parse's message begins with the row's path. The node's own path replaces it: it is the same or longer, such as
+ * "vary." before it. */
 static void report(document_node *node, const struct field *row, const char *message) {
   char path[PATH_SIZE] = "";
   size_t length = strlen(row->path);
@@ -76,29 +67,39 @@ static void report(document_node *node, const struct field *row, const char *mes
   document_report(node, *path ? path : row->path, "%s", message);
 }
 
+/* `True` and `FALSE` are booleans of the core schema, too: the row's own spelling of them. */
+static const char *own_spelling(const struct field *row, const char *text) {
+  static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
+  if (row->kind != FIELD_BOOLEAN)
+    return text;
+  if (any_of(text, yes))
+    return "true";
+  return any_of(text, no) ? "false" : text;
+}
+
+static status read_value(const document_node *node, const struct field *row, struct field_value *value,
+                         struct error *error) {
+  const bool null = document_value_is_null(node);
+  if (null || node->kind != DOCUMENT_SCALAR) {
+    char expected[LIST_SIZE];
+    describe(row, expected, sizeof expected);
+    return status_fail(error, STATUS_CONTENT, "expected %s, got %s", expected,
+                       null ? "nothing" : document_value_what(node));
+  }
+  const bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
+  if (!node->plain && row->kind == FIELD_BOOLEAN)
+    return status_fail(error, STATUS_CONTENT, "expected true or false, got a text in quotes; remove the quotes");
+  if (!node->plain && row->kind == FIELD_INTEGER && unitless)
+    return status_fail(error, STATUS_CONTENT, "expected a whole number, got a text in quotes; remove the quotes");
+  return field_parse(row, own_spelling(row, node->text), value, error);
+}
+
 bool document_value(document_node *node, const struct field *row, struct field_value *value) {
   struct error error;
   if (node->faulty)
     return false;
-  bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
-  if (node->kind != DOCUMENT_SCALAR || document_value_is_null(node)) {
-    char expected[LIST_SIZE];
-    describe(row, expected, sizeof expected);
-    status_fail(&error, STATUS_CONTENT, "expected %s, got %s", expected,
-                document_value_is_null(node) ? "nothing" : document_value_what(node));
-  } else if (!node->plain && (row->kind == FIELD_BOOLEAN || (row->kind == FIELD_INTEGER && unitless))) {
-    status_fail(&error, STATUS_CONTENT, "expected %s, got a text in quotes; remove the quotes",
-                row->kind == FIELD_BOOLEAN ? "true or false" : "a whole number");
-  } else {
-    static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
-    const char *text = node->text;
-    if (row->kind == FIELD_BOOLEAN && any_of(text, yes))
-      text = "true";
-    if (row->kind == FIELD_BOOLEAN && any_of(text, no))
-      text = "false";
-    if (field_parse(row, text, value, &error) == STATUS_OK)
-      return true;
-  }
+  if (read_value(node, row, value, &error) == STATUS_OK)
+    return true;
   report(node, row, error.message);
   return false;
 }

@@ -1,3 +1,4 @@
+/* Names, values, conditions and bytes of field tables. */
 #include "schemas/field.h"
 
 #include <inttypes.h>
@@ -93,8 +94,8 @@ size_t field_choice_count(const struct field *row) {
   return count;
 }
 
-static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
-  memset(to, 0, FIELD_TEXT_SIZE); /* whole: structs are compared and hashed by some */
+void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
+  memset(to, 0, FIELD_TEXT_SIZE); /* all of it: some callers compare or hash whole structs */
   if (from)
     memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
 }
@@ -117,24 +118,33 @@ void field_get(const struct field *row, const void *object, struct field_value *
     memcpy(&index, from, sizeof index);
     value->number = index;
     if (index >= 0 && (size_t)index < field_choice_count(row))
-      copy_text(value->text, row->choices[index]);
+      field_copy_text(value->text, row->choices[index]);
     break;
   }
-  case FIELD_TEXT: copy_text(value->text, from); break;
+  case FIELD_TEXT: field_copy_text(value->text, from); break;
   }
+}
+
+void field_default(const struct field *row, struct field_value *value) {
+  *value = (struct field_value){.kind = row->kind};
+  if (row->flags & FIELD_REQUIRED) {
+    value->number = row->kind == FIELD_REAL ? (double)NAN : 0;
+    return;
+  }
+  value->number = row->number;
+  if (row->kind == FIELD_INTEGER)
+    value->integer = (int64_t)row->number;
+  if (row->kind == FIELD_TEXT)
+    field_copy_text(value->text, row->text);
+  if (row->kind == FIELD_CHOICE)
+    field_copy_text(value->text, row->choices[(size_t)row->number]);
 }
 
 void field_defaults(const struct field_table *table, void *object) {
   for (size_t i = 0; i < table->count; i++) {
-    const struct field *row = &table->rows[i];
-    struct field_value value = {.kind = row->kind, .number = row->number};
-    if (row->flags & FIELD_REQUIRED)
-      value.number = row->kind == FIELD_REAL ? (double)NAN : 0;
-    else if (row->kind == FIELD_INTEGER)
-      value.integer = (int64_t)row->number;
-    else if (row->kind == FIELD_TEXT)
-      copy_text(value.text, row->text);
-    field_set_unchecked(row, object, &value);
+    struct field_value value;
+    field_default(&table->rows[i], &value);
+    field_set_unchecked(&table->rows[i], object, &value);
   }
 }
 
@@ -195,19 +205,39 @@ void field_describe_inactive(const struct field_table *table, const struct field
   *text = 0;
   if (!link || !other)
     return;
-  char wanted[200], came[FIELD_TEXT_SIZE];
-  size_t used = 0;
-  for (const char *at = strchr(link->when, '=') + 1; *at && used + 5 < sizeof wanted; at++) {
-    if (*at == '|')
-      used += (size_t)sprintf(wanted + used, " or ");
-    else
-      wanted[used++] = *at;
-  }
-  wanted[used] = 0;
+  char *wanted = NULL, came[FIELD_TEXT_SIZE];
+  size_t length = 0;
+  FILE *words = open_memstream(&wanted, &length);
+  if (!words)
+    return;
+  field_describe_condition(link, words);
+  fclose(words);
+
   struct field_value value;
   field_get(other, object, &value);
   field_print(other, &value, came, sizeof came);
-  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted, came);
+  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted ? wanted : "", came);
+  free(wanted);
+}
+
+void field_describe_condition(const struct field *row, FILE *out) {
+  const char *equals = strchr(row->when, '=');
+  for (const char *at = equals ? equals + 1 : ""; *at; at++) {
+    if (*at == '|')
+      fputs(" or ", out);
+    else
+      fputc(*at, out);
+  }
+}
+
+void field_describe_choices(const struct field *row, char *text, size_t size) {
+  size_t used = 0;
+  *text = 0;
+  for (size_t i = 0; row->choices[i] && used < size; i++) {
+    const char *between = row->choices[i + 1] ? ", " : " or ";
+    int n = snprintf(text + used, size - used, "%s%s", i ? between : "", row->choices[i]);
+    used += n > 0 ? (size_t)n : 0;
+  }
 }
 
 void field_describe_range(const struct field *row, char *text, size_t size) {
@@ -330,10 +360,7 @@ size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_
     }
     case FIELD_CHOICE: {
       int index = (int)bits;
-      size_t count = 0;
-      while (row->choices[count])
-        count++;
-      if (bits >= count)
+      if (bits >= field_choice_count(row))
         return 0;
       memcpy(to, &index, sizeof index);
       break;

@@ -1,4 +1,4 @@
-/* Field tables: one row per quantity, and nothing else anywhere lists the same names (design: joint 1).
+/* Field tables: one row per quantity, and nothing else lists the same names.
  *
  * A table is a plain `static const struct field rows[]` beside the struct it describes, with offsetof. From it come:
  * YAML reading and its errors, defaults, `clast explain PATH`, JSON Schemas, resolved JSON, the identity of a run,
@@ -26,10 +26,8 @@ enum field_flags {
   FIELD_MAY_BE_OFF = 2,    /* FIELD_REAL only: the keyword `off` is accepted; stored as NaN, see field_is_off() */
   FIELD_ABOVE_MINIMUM = 4, /* minimum itself is out of range */
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
-  FIELD_VOLATILE = 16,     /* results only: times, host...: differs between identical runs; not compared by tests */
-  FIELD_LOG = 32,          /* a positive quantity usually varied over decades (hint for plots and designs) */
-  FIELD_DERIVED = 64,      /* inputs only: where it is not given, it follows from other inputs (engine_kind.complete);
-                            * `number`      only stands in until then, and the doc text says what it follows from */
+  FIELD_DERIVED = 16,      /* inputs only: when not given, it follows from other inputs (engine_kind.complete). `number`
+                            * is a placeholder until then, and the doc text says what it follows from */
 };
 
 struct field {
@@ -70,7 +68,7 @@ struct field_value {
 size_t field_choice_count(const struct field *row);
 bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
 
-/* Exact path, or unique suffix after a dot ("strain" for "beam.threshold.strain"). NULL: *error names the nearest
+/* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"). NULL: *error names the nearest
  * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
 
@@ -91,6 +89,8 @@ bool field_is_active(const struct field_table *table, const struct field *row, c
 void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
                              size_t size);
 
+/* The row's default; a required row has zero or NaN. */
+void field_default(const struct field *row, struct field_value *value);
 void field_get(const struct field *row, const void *object, struct field_value *value);
 /* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row,
  * and a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message
@@ -103,8 +103,14 @@ status field_set_value(const struct field *row, const struct field_value *value,
                        struct error *error);
 /* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked, range is checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
-/* What a number's row asks for: "above 0 m", "at least 1 and at most 12". */
+/* What a number's row accepts: "above 0 m", "at least 1 and at most 12". */
 void field_describe_range(const struct field *row, char *text, size_t size);
+/* What a choice's row accepts: "weak, strong or off". */
+void field_describe_choices(const struct field *row, char *text, size_t size);
+/* The values of the row's condition as words, "disc or ring", into `out`. */
+void field_describe_condition(const struct field *row, FILE *out);
+/* Text as a row stores it: cut to FIELD_TEXT_SIZE - 1 bytes, the rest zero. NULL is empty. */
+void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from);
 
 /* Shortest decimal text that reads back as the same double: "5000", "0.05", "1e30"; "off" for NaN. */
 void field_print_number(double number, char text[32]);

@@ -1,3 +1,4 @@
+/* Rows as text for people: what `clast explain` prints. */
 #include <math.h>
 #include <string.h>
 
@@ -16,55 +17,51 @@ static void explain_choices(const struct field *row, FILE *out) {
   }
 }
 
+/* " in m, above 0 m, or off" */
+static void explain_range(const struct field *row, FILE *out) {
+  char range[160];
+  field_describe_range(row, range, sizeof range);
+  if (row->unit && strcmp(row->unit, "1"))
+    fprintf(out, " in %s", row->unit);
+  if (strncmp(range, "a number", 8) != 0)
+    fprintf(out, ", %s", range);
+  if (row->flags & FIELD_MAY_BE_OFF)
+    fputs(", or off", out);
+}
+
+static void explain_default(const struct field *row, FILE *out) {
+  struct field_value value;
+  char text[FIELD_TEXT_SIZE + 64];
+  if (row->flags & FIELD_REQUIRED) {
+    fputs("; required\n", out);
+    return;
+  }
+  if (row->flags & FIELD_DERIVED) {
+    fputs("; default follows from other inputs\n", out);
+    return;
+  }
+  field_default(row, &value);
+  field_print(row, &value, text, sizeof text);
+  fprintf(out, row->kind == FIELD_TEXT ? "; default \"%s\"\n" : "; default %s\n", text);
+}
+
 static void explain_row(const struct field *row, FILE *out) {
   static const char *const kinds[] = {"real", "integer", "true or false", "choice", "text"};
   fprintf(out, "%s: %s", row->path, kinds[row->kind]);
-  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER) {
-    char range[160];
-    field_describe_range(row, range, sizeof range);
-    bool bare = strncmp(range, "a number", 8) == 0;
-    if (row->unit && strcmp(row->unit, "1"))
-      fprintf(out, " in %s", row->unit);
-    if (!bare)
-      fprintf(out, ", %s", range);
-    if (row->flags & FIELD_MAY_BE_OFF)
-      fputs(", or off", out);
-  }
-  if (row->flags & FIELD_REQUIRED) {
-    fputs("; required\n", out);
-  } else if (row->flags & FIELD_DERIVED) {
-    fputs("; default follows from other inputs\n", out);
-  } else {
-    struct field_value value = {.kind = row->kind, .number = row->number, .integer = 0};
-    if (row->kind == FIELD_INTEGER)
-      value.integer = (int64_t)row->number;
-    if (row->kind == FIELD_TEXT && row->text)
-      memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
-    char text[FIELD_TEXT_SIZE + 64];
-    field_print(row, &value, text, sizeof text);
-    if (row->kind == FIELD_TEXT)
-      fprintf(out, "; default \"%s\"\n", text);
-    else
-      fprintf(out, "; default %s\n", text);
-  }
+  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER)
+    explain_range(row, out);
+  explain_default(row, out);
   if (row->doc && *row->doc)
     text_wrap(row->doc, 0, INDENT, WIDTH, out);
   if (row->kind == FIELD_CHOICE)
     explain_choices(row, out);
   if (row->when) {
-    size_t equals = strcspn(row->when, "=");
-    fprintf(out, "%*sOnly when %.*s is ", INDENT, "", (int)equals, row->when);
-    for (const char *at = row->when + equals + (row->when[equals] == '='); *at; at++) {
-      if (*at == '|')
-        fputs(" or ", out);
-      else
-        fputc(*at, out);
-    }
+    fprintf(out, "%*sOnly when %.*s is ", INDENT, "", (int)strcspn(row->when, "="), row->when);
+    field_describe_condition(row, out);
     fputc('\n', out);
   }
-  if (row->source) {
+  if (row->source)
     fprintf(out, "%*sSource: %s\n", INDENT, "", row->source);
-  }
 }
 
 size_t field_explain(const struct field_table *table, const char *prefix, FILE *out) {

@@ -1,3 +1,4 @@
+/* The canonical text of an object, from which a run's identity is made. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* An object as nested JSON. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +7,7 @@
 #include "schemas/field.h"
 #include "schemas/text.h"
 
-static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
+void field_json_value(const struct field *row, const struct field_value *value, FILE *out) {
   char number[32];
   switch (row->kind) {
   case FIELD_REAL:
@@ -18,10 +19,6 @@ static void write_value(const struct field *row, const struct field_value *value
   case FIELD_CHOICE:
   case FIELD_TEXT: text_json_string(value->text, out); break;
   }
-}
-
-void field_json_value(const struct field *row, const struct field_value *value, FILE *out) {
-  write_value(row, value, out);
 }
 
 /* Rows that share their first word become one object. They need not stand together in the table: every section is
@@ -49,7 +46,7 @@ static void write_level(const struct field_table *table, const void *object, con
     } else {
       struct field_value value;
       field_get(row, object, &value);
-      write_value(row, &value, out);
+      field_json_value(row, &value, out);
     }
   }
 }

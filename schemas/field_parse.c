@@ -1,3 +1,4 @@
+/* A value from the text that a user types. */
 #include "schemas/field.h"
 
 #include <math.h>
@@ -8,53 +9,63 @@
 
 enum { QUOTE = 60 };
 
-static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
-  memset(to, 0, FIELD_TEXT_SIZE);
-  memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
+static status parse_real(const struct field *row, const char *text, struct field_value *came, struct error *error) {
+  const bool may_be_off = row->flags & FIELD_MAY_BE_OFF;
+  if (strcmp(text, "off") == 0) {
+    came->number = (double)NAN;
+    return may_be_off ? STATUS_OK : status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);
+  }
+  struct error inner;
+  status code = unit_read(text, row->unit ? row->unit : "1", &came->number, &inner);
+  if (code)
+    return status_fail(error, code, "%s: %s%s", row->path, inner.message, may_be_off ? " (or off)" : "");
+  return STATUS_OK;
+}
+
+/* Digits alone, or with the row's own unit, keep all 64 bits; all else goes through a double: "1e6", "2 GiB". */
+static status parse_integer(const struct field *row, const char *text, struct field_value *came, struct error *error) {
+  char *end;
+  came->integer = strtoll(text, &end, 10);
+  if (row->unit && *end == ' ' && strcmp(end + 1, row->unit) == 0)
+    end += strlen(end);
+  if (end != text && *end == 0 && came->integer != INT64_MAX && came->integer != INT64_MIN && *text != ' ')
+    return STATUS_OK;
+
+  struct error inner;
+  came->kind = FIELD_REAL;
+  status code = unit_read(text, row->unit ? row->unit : "1", &came->number, &inner);
+  if (code)
+    return status_fail(error, code, "%s: %s", row->path, inner.message);
+  return STATUS_OK;
+}
+
+static status parse_boolean(const struct field *row, const char *text, struct field_value *came, struct error *error) {
+  came->number = strcmp(text, "true") == 0;
+  if (came->number == 0 && strcmp(text, "false") != 0)
+    return status_fail(error, STATUS_CONTENT, "%s: expected true or false, got '%.*s'", row->path, QUOTE, text);
+  return STATUS_OK;
+}
+
+static status parse_text(const struct field *row, const char *text, struct field_value *came, struct error *error) {
+  if (strlen(text) >= FIELD_TEXT_SIZE)
+    return status_fail(error, STATUS_CONTENT, "%s: expected at most %d bytes of text, got %zu", row->path,
+                       FIELD_TEXT_SIZE - 1, strlen(text));
+  field_copy_text(came->text, text);
+  return STATUS_OK;
 }
 
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error) {
   struct field_value came = {.kind = row->kind};
-  struct error inner;
-  char *end;
+  status code = STATUS_OK;
   switch (row->kind) {
-  case FIELD_REAL:
-    if (row->flags & FIELD_MAY_BE_OFF && strcmp(text, "off") == 0) {
-      came.number = (double)NAN;
-      break;
-    }
-    if (strcmp(text, "off") == 0)
-      return status_fail(error, STATUS_CONTENT, "%s: cannot be switched off", row->path);
-    if (unit_read(text, row->unit ? row->unit : "1", &came.number, &inner))
-      return status_fail(error, inner.status, "%s: %s%s", row->path, inner.message,
-                         row->flags & FIELD_MAY_BE_OFF ? " (or off)" : "");
-    break;
-  case FIELD_INTEGER:
-    came.integer = strtoll(text, &end, 10);
-    /* Digits alone, or with the row's own unit, keep all 64 bits; all else goes through a double. */
-    if (row->unit && *end == ' ' && strcmp(end + 1, row->unit) == 0)
-      end += strlen(end);
-    if (end != text && *end == 0 && came.integer != INT64_MAX && came.integer != INT64_MIN && *text != ' ')
-      break;
-    came.kind = FIELD_REAL; /* "1e6", "2 GiB" */
-    if (unit_read(text, row->unit ? row->unit : "1", &came.number, &inner))
-      return status_fail(error, inner.status, "%s: %s", row->path, inner.message);
-    break;
-  case FIELD_BOOLEAN:
-    came.number = strcmp(text, "true") == 0;
-    if (came.number == 0 && strcmp(text, "false") != 0)
-      return status_fail(error, STATUS_CONTENT, "%s: expected true or false, got '%.*s'", row->path, QUOTE, text);
-    break;
+  case FIELD_REAL: code = parse_real(row, text, &came, error); break;
+  case FIELD_INTEGER: code = parse_integer(row, text, &came, error); break;
+  case FIELD_BOOLEAN: code = parse_boolean(row, text, &came, error); break;
+  case FIELD_TEXT: code = parse_text(row, text, &came, error); break;
   case FIELD_CHOICE: /* any text: field_set_value names the choices */
     came.kind = FIELD_TEXT;
-    copy_text(came.text, text);
-    break;
-  case FIELD_TEXT:
-    if (strlen(text) >= FIELD_TEXT_SIZE)
-      return status_fail(error, STATUS_CONTENT, "%s: expected at most %d bytes of text, got %zu", row->path,
-                         FIELD_TEXT_SIZE - 1, strlen(text));
-    copy_text(came.text, text);
+    field_copy_text(came.text, text);
     break;
   }
-  return field_set_value(row, &came, value, error);
+  return code ? code : field_set_value(row, &came, value, error);
 }

@@ -1,9 +1,28 @@
+/* Numbers and values as the shortest text that reads back the same. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "schemas/field.h"
+
+/* 0.00012 */
+static void print_small(char *to, const char *mantissa, size_t count, long exponent) {
+  to += sprintf(to, "0.%.*s", (int)(-exponent - 1), "00000");
+  memcpy(to, mantissa, count);
+  to[count] = 0;
+}
+
+/* 5000, 12.5 */
+static void print_plain(char *to, const char *mantissa, size_t count, long exponent) {
+  const size_t whole = (size_t)exponent + 1;
+  for (size_t k = 0; k < count || k < whole; k++) {
+    if (k == whole)
+      *to++ = '.';
+    *to++ = k < count ? mantissa[k] : '0';
+  }
+  *to = 0;
+}
 
 void field_print_number(double number, char text[32]) {
   if (isnan(number)) {
@@ -14,6 +33,7 @@ void field_print_number(double number, char text[32]) {
     strcpy(text, number > 0 ? "inf" : "-inf");
     return;
   }
+
   /* The fewest digits that read back as the same double, as d.ddde±x. */
   char digits[32];
   for (int precision = 0; precision < 17; precision++) {
@@ -26,27 +46,19 @@ void field_print_number(double number, char text[32]) {
   for (; digits[i] != 'e'; i++)
     if (digits[i] != '.')
       mantissa[count++] = digits[i];
-  long exponent = strtol(digits + i + 1, NULL, 10);
+  const long exponent = strtol(digits + i + 1, NULL, 10);
+
   char *to = text;
   if (digits[0] == '-')
     *to++ = '-';
-  if (exponent >= -5 && exponent < 0) { /* 0.00012 */
-    to += sprintf(to, "0.%.*s", (int)(-exponent - 1), "00000");
-    memcpy(to, mantissa, count);
-    to[count] = 0;
-  } else if (exponent >= 0 && (exponent < 6 || (exponent < 9 && count > 4))) { /* 5000, 12.5; but 5e8 */
-    size_t whole = (size_t)exponent + 1;
-    for (size_t k = 0; k < count || k < whole; k++) {
-      if (k == whole)
-        *to++ = '.';
-      *to++ = k < count ? mantissa[k] : '0';
-    }
-    *to = 0;
-  } else if (count == 1) {
+  if (exponent >= -5 && exponent < 0)
+    print_small(to, mantissa, count, exponent);
+  else if (exponent >= 0 && (exponent < 6 || (exponent < 9 && count > 4))) /* 5000, but 5e8 */
+    print_plain(to, mantissa, count, exponent);
+  else if (count == 1)
     sprintf(to, "%ce%ld", mantissa[0], exponent);
-  } else {
+  else
     sprintf(to, "%c.%.*se%ld", mantissa[0], (int)count - 1, mantissa + 1, exponent);
-  }
 }
 
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
@@ -62,10 +74,10 @@ int field_print(const struct field *row, const struct field_value *value, char *
   case FIELD_INTEGER: return snprintf(buffer, size, "%" PRId64 "%s%s", value->integer, space, unit);
   case FIELD_BOOLEAN: return snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false");
   case FIELD_CHOICE: {
-    size_t index = value->number >= 0 ? (size_t)value->number : 0, count = 0;
-    while (row->choices[count])
-      count++;
-    return snprintf(buffer, size, "%s", value->text[0] ? value->text : index < count ? row->choices[index] : "?");
+    if (value->text[0])
+      return snprintf(buffer, size, "%s", value->text);
+    size_t index = value->number >= 0 ? (size_t)value->number : 0;
+    return snprintf(buffer, size, "%s", index < field_choice_count(row) ? row->choices[index] : "?");
   }
   case FIELD_TEXT: return snprintf(buffer, size, "%s", value->text);
   }

@@ -1,14 +1,10 @@
+/* A value into a row: brought to the row's kind, checked against its range and stored. */
 #include "schemas/field.h"
 
 #include <math.h>
 #include <string.h>
 
 enum { QUOTE = 60 };
-
-static void copy_text(char to[FIELD_TEXT_SIZE], const char *from) {
-  memset(to, 0, FIELD_TEXT_SIZE);
-  memcpy(to, from, strnlen(from, FIELD_TEXT_SIZE - 1));
-}
 
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value) {
   void *to = (char *)object + row->offset;
@@ -25,7 +21,7 @@ void field_set_unchecked(const struct field *row, void *object, const struct fie
     memcpy(to, &index, sizeof index);
     break;
   }
-  case FIELD_TEXT: copy_text(to, value->text); break;
+  case FIELD_TEXT: field_copy_text(to, value->text); break;
   }
 }
 
@@ -43,75 +39,82 @@ static status check_range(const struct field *row, double number, const struct f
                      isfinite(number) ? came : "a number that is not finite");
 }
 
-static status unknown_choice(const struct field *row, const char *text, struct error *error) {
-  char list[600] = "";
-  size_t used = 0;
-  struct text_guess guess = text_guess(text);
-  for (size_t i = 0; row->choices[i]; i++) {
-    int n = snprintf(list + used, sizeof list - used, "%s%s", i ? (row->choices[i + 1] ? ", " : " or ") : "",
-                     row->choices[i]);
-    if (n > 0 && (size_t)n < sizeof list - used)
-      used += (size_t)n;
-    text_guess_offer(&guess, row->choices[i]);
+static status set_real(const struct field *row, const struct field_value *value, struct field_value *out,
+                       struct error *error) {
+  out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer; /* -0 becomes 0 */
+  if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF) {
+    out->number = (double)NAN; /* one bit pattern */
+    return STATUS_OK;
   }
-  return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'%s%s%s", row->path, list, QUOTE, text,
-                     guess.nearest ? "; did you mean '" : "", guess.nearest ? guess.nearest : "",
-                     guess.nearest ? "'?" : "");
+  return check_range(row, out->number, out, error);
 }
 
-/* Bring a value to the row's own kind, in range. */
+static status set_integer(const struct field *row, const struct field_value *value, struct field_value *out,
+                          struct error *error) {
+  const double largest_exact = 9007199254740992.0; /* 2^53 */
+  out->integer = value->integer;
+  if (value->kind == FIELD_REAL) {
+    if (!(fabs(value->number) <= largest_exact) || value->number != floor(value->number)) {
+      char came[32];
+      field_print_number(value->number, came);
+      return status_fail(error, STATUS_CONTENT, "%s: expected a whole number, got %s", row->path, came);
+    }
+    out->integer = (int64_t)value->number;
+  }
+  return check_range(row, (double)out->integer, out, error);
+}
+
+static status unknown_choice(const struct field *row, const char *text, struct error *error) {
+  char list[600];
+  struct text_guess guess = text_guess(text);
+  for (size_t i = 0; row->choices[i]; i++)
+    text_guess_offer(&guess, row->choices[i]);
+
+  field_describe_choices(row, list, sizeof list);
+  if (!guess.nearest)
+    return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'", row->path, list, QUOTE, text);
+  return status_fail(error, STATUS_CONTENT, "%s: expected %s, got '%.*s'; did you mean '%s'?", row->path, list, QUOTE,
+                     text, guess.nearest);
+}
+
+/* By name; by index when the name is empty. */
+static status set_choice(const struct field *row, const struct field_value *value, struct field_value *out,
+                         struct error *error) {
+  size_t index = 0;
+  if (value->kind == FIELD_CHOICE && !value->text[0]) {
+    if (!(value->number >= 0 && value->number < (double)field_choice_count(row)))
+      return status_fail(error, STATUS_CONTENT, "%s: there is no choice number %g", row->path, value->number);
+    index = (size_t)value->number;
+  } else {
+    while (row->choices[index] && strcmp(row->choices[index], value->text) != 0)
+      index++;
+    if (!row->choices[index])
+      return unknown_choice(row, value->text, error);
+  }
+  out->number = (double)index;
+  field_copy_text(out->text, row->choices[index]);
+  return STATUS_OK;
+}
+
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error) {
+  const bool is_number = value->kind == FIELD_REAL || value->kind == FIELD_INTEGER;
+  const bool is_text = value->kind == FIELD_TEXT || value->kind == FIELD_CHOICE;
   memset(out, 0, sizeof *out);
   out->kind = row->kind;
-  switch (row->kind) {
-  case FIELD_REAL:
-    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER)
-      break;
-    out->number = value->kind == FIELD_REAL ? value->number + 0.0 : (double)value->integer; /* -0 becomes 0 */
-    if (isnan(out->number) && row->flags & FIELD_MAY_BE_OFF)
-      return out->number = (double)NAN, STATUS_OK; /* one bit pattern */
-    return check_range(row, out->number, out, error);
-  case FIELD_INTEGER:
-    if (value->kind != FIELD_REAL && value->kind != FIELD_INTEGER)
-      break;
-    if (value->kind == FIELD_REAL) {
-      if (!(fabs(value->number) <= 9007199254740992.0) || value->number != floor(value->number)) {
-        char came[32];
-        field_print_number(value->number, came);
-        return status_fail(error, STATUS_CONTENT, "%s: expected a whole number, got %s", row->path, came);
-      }
-      out->integer = (int64_t)value->number;
-    } else {
-      out->integer = value->integer;
-    }
-    return check_range(row, (double)out->integer, out, error);
-  case FIELD_BOOLEAN:
-    if (value->kind != FIELD_BOOLEAN)
-      break;
+
+  if (row->kind == FIELD_REAL && is_number)
+    return set_real(row, value, out, error);
+  if (row->kind == FIELD_INTEGER && is_number)
+    return set_integer(row, value, out, error);
+  if (row->kind == FIELD_CHOICE && is_text)
+    return set_choice(row, value, out, error);
+  if (row->kind == FIELD_BOOLEAN && value->kind == FIELD_BOOLEAN) {
     out->number = value->number != 0;
     return STATUS_OK;
-  case FIELD_CHOICE:
-    if (value->kind != FIELD_CHOICE && value->kind != FIELD_TEXT)
-      break;
-    if (value->kind == FIELD_CHOICE && !value->text[0]) {
-      if (!(value->number >= 0 && value->number < (double)field_choice_count(row)))
-        return status_fail(error, STATUS_CONTENT, "%s: there is no choice number %g", row->path, value->number);
-      out->number = floor(value->number);
-      copy_text(out->text, row->choices[(size_t)value->number]);
-      return STATUS_OK;
-    }
-    for (size_t i = 0; row->choices[i]; i++)
-      if (strcmp(row->choices[i], value->text) == 0) {
-        out->number = (double)i;
-        copy_text(out->text, value->text);
-        return STATUS_OK;
-      }
-    return unknown_choice(row, value->text, error);
-  case FIELD_TEXT:
-    if (value->kind != FIELD_TEXT && value->kind != FIELD_CHOICE)
-      break;
-    copy_text(out->text, value->text);
+  }
+  if (row->kind == FIELD_TEXT && is_text) {
+    field_copy_text(out->text, value->text);
     return STATUS_OK;
   }
   static const char *const kinds[] = {"a number", "a whole number", "true or false", "a choice", "text"};
@@ -121,7 +124,8 @@ status field_set_value(const struct field *row, const struct field_value *value,
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error) {
   struct field_value settled;
   status code = field_set_value(row, value, &settled, error);
-  if (!code)
-    field_set_unchecked(row, object, &settled);
-  return code;
+  if (code)
+    return code;
+  field_set_unchecked(row, object, &settled);
+  return STATUS_OK;
 }

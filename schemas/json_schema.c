@@ -1,3 +1,4 @@
+/* JSON Schema of a field table: properties, then conditions as if/then clauses. */
 #include "schemas/json_schema.h"
 
 #include <math.h>
@@ -90,12 +91,7 @@ static void description(const struct field *row, FILE *out) {
   }
   if (row->when) {
     fprintf(words, " Only when %.*s is ", (int)strcspn(row->when, "="), row->when);
-    for (const char *at = strchr(row->when, '='); at && *++at;) {
-      if (*at == '|')
-        fputs(" or ", words);
-      else
-        fputc(*at, words);
-    }
+    field_describe_condition(row, words);
     fputc('.', words);
   }
   if (row->source)
@@ -106,15 +102,10 @@ static void description(const struct field *row, FILE *out) {
 }
 
 static void default_value(const struct field *row, FILE *out) {
-  struct field_value value = {.kind = row->kind, .number = row->number};
   if (row->flags & (FIELD_REQUIRED | FIELD_DERIVED))
     return;
-  if (row->kind == FIELD_INTEGER)
-    value.integer = (int64_t)row->number;
-  if (row->kind == FIELD_TEXT && row->text)
-    memcpy(value.text, row->text, strnlen(row->text, FIELD_TEXT_SIZE - 1));
-  if (row->kind == FIELD_CHOICE)
-    snprintf(value.text, sizeof value.text, "%s", row->choices[(size_t)row->number]);
+  struct field_value value;
+  field_default(row, &value);
   fputs(", \"default\": ", out);
   field_json_value(row, &value, out);
 }

@@ -1,3 +1,4 @@
+/* Names of statuses, and filling errors. */
 #include "schemas/status.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* Small tools for text: UTF-8, JSON strings, paragraphs, guesses of names. */
 #include "schemas/text.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* Units of measure: tables, a recursive descent over their grammar, and numbers with units. */
 #include "schemas/unit.h"
 
 #include <ctype.h>
@@ -115,25 +116,36 @@ struct parser {
 
 static const struct unit one = {.factor = 1, .times = 1, .per = 1};
 
-/* The nearest known unit to a name that is none, into `out`; false when nothing is near. */
+/* Case does not count, but for one letter: "m" and "M" differ. */
+static bool same_but_case(const char *name, size_t length, const char *known) {
+  return strlen(known) == length && strncasecmp(known, name, length) == 0 && (length > 1 || known[0] == name[0]);
+}
+
+/* The known unit nearest to an unknown name, into `out`; false when none is near. Not text_guess: units are so short
+ * that only one edit is a guess, and a wrong case is nearer than that ("KM", "gpa"). */
 static bool nearest(const char *name, size_t length, char out[16]) {
   for (size_t i = 0; i < sizeof habits / sizeof habits[0]; i++)
-    if (strlen(habits[i][0]) == length && strncasecmp(habits[i][0], name, length) == 0 &&
-        (length > 1 || habits[i][0][0] == name[0]))
-      return strcpy(out, habits[i][1]), true;
-  size_t best = SIZE_MAX;
+    if (same_but_case(name, length, habits[i][0])) {
+      strcpy(out, habits[i][1]);
+      return true;
+    }
+
   static const char *const usual[] = {"", "c", "m", "u", "n", "k", "M", "G"};
+  size_t best = length > 2 ? 3 : 2; /* twice the distance */
+  bool found = false;
   for (size_t b = 1; b < BASES; b++)
     for (size_t p = 0; p < (bases[b].prefixes ? 8u : 1u); p++) {
       char candidate[16];
       snprintf(candidate, sizeof candidate, "%s%s", usual[p], bases[b].name);
-      size_t d = 2 * text_distance(name, length, candidate);
-      if (strlen(candidate) == length && strncasecmp(candidate, name, length) == 0)
-        d = 1; /* "KM", "gpa" */
-      if (d < best && d <= (length > 2 ? 2u : 1u))
-        best = d, strcpy(out, candidate);
+      const bool same = strlen(candidate) == length && strncasecmp(candidate, name, length) == 0;
+      const size_t distance = same ? 1 : 2 * text_distance(name, length, candidate);
+      if (distance >= best)
+        continue;
+      best = distance;
+      strcpy(out, candidate);
+      found = true;
     }
-  return best != SIZE_MAX;
+  return found;
 }
 
 static status unknown(struct parser *p, const char *name, size_t length) {
@@ -160,16 +172,20 @@ static void from_base(const struct base *base, int ten, struct unit *unit) {
 
 static bool known(const char *name, size_t length, struct unit *unit) {
   for (size_t b = 0; b < BASES; b++)
-    if (strlen(bases[b].name) == length && memcmp(bases[b].name, name, length) == 0)
-      return from_base(&bases[b], 0, unit), true;
+    if (strlen(bases[b].name) == length && memcmp(bases[b].name, name, length) == 0) {
+      from_base(&bases[b], 0, unit);
+      return true;
+    }
   for (size_t p = 0; p < PREFIXES; p++) {
     size_t cut = strlen(prefixes[p].name);
     if (length <= cut || memcmp(prefixes[p].name, name, cut) != 0)
       continue;
     for (size_t b = 0; b < BASES; b++)
       if (bases[b].prefixes && strlen(bases[b].name) == length - cut &&
-          memcmp(bases[b].name, name + cut, length - cut) == 0)
-        return from_base(&bases[b], prefixes[p].ten, unit), true;
+          memcmp(bases[b].name, name + cut, length - cut) == 0) {
+        from_base(&bases[b], prefixes[p].ten, unit);
+        return true;
+      }
   }
   return false;
 }
@@ -182,8 +198,12 @@ static status multiply(struct parser *p, struct unit *unit, const struct unit *f
   for (size_t i = 0; i < 6; i++)
     if (abs(sums[i]) > 60)
       return status_fail(p->error, STATUS_CONTENT, "the powers in unit '%.*s' are too large", QUOTE, p->whole);
-  unit->kg = (signed char)sums[0], unit->m = (signed char)sums[1], unit->s = (signed char)sums[2];
-  unit->K = (signed char)sums[3], unit->rad = (signed char)sums[4], unit->byte = (signed char)sums[5];
+  unit->kg = (signed char)sums[0];
+  unit->m = (signed char)sums[1];
+  unit->s = (signed char)sums[2];
+  unit->K = (signed char)sums[3];
+  unit->rad = (signed char)sums[4];
+  unit->byte = (signed char)sums[5];
   unit->ten += power * factor->ten;
   for (int i = 0; i < abs(power); i++) {
     unit->times *= power > 0 ? factor->times : factor->per;
@@ -304,39 +324,46 @@ static const char *quantity(const struct unit *unit) {
 static status wrong_dimension(const struct unit *want, const char *want_text, const struct unit *got,
                               const char *got_text, struct error *error) {
   const char *want_name = quantity(want), *got_name = quantity(got);
-  bool plain = want_name && strcmp(want_text, "1") == 0;
-  return status_fail(error, STATUS_CONTENT, "expected %s%s%s, got %s (%.*s)", want_name ? want_name : "a quantity",
-                     plain       ? ""
-                     : want_name ? " such as "
-                                 : " in ",
-                     plain ? "" : want_text, got_name ? got_name : "a quantity", QUOTE, got_text);
+  if (!got_name)
+    got_name = "a quantity";
+  if (want_name && strcmp(want_text, "1") == 0)
+    return status_fail(error, STATUS_CONTENT, "expected %s, got %s (%.*s)", want_name, got_name, QUOTE, got_text);
+  return status_fail(error, STATUS_CONTENT, "expected %s %s %s, got %s (%.*s)", want_name ? want_name : "a quantity",
+                     want_name ? "such as" : "in", want_text, got_name, QUOTE, got_text);
 }
 
-/* Length of a decimal number at `text`: [+-] digits [. digits] [e [+-] digits]; 0 when there is none. */
-static size_t scan(const char *text, size_t *mantissa, long *exponent, bool *zero) {
+/* A decimal number as text: [+-] digits [. digits] [e [+-] digits]. */
+struct decimal {
+  size_t length, mantissa; /* of the whole, 0 when there is none; of what precedes the exponent */
+  long exponent;
+  bool zero;
+};
+
+static struct decimal scan(const char *text) {
+  struct decimal number = {.zero = true};
   size_t i = text[0] == '+' || text[0] == '-', digits = 0;
-  *zero = true;
-  for (; isdigit((unsigned char)text[i]); i++, digits++)
-    *zero = *zero && text[i] == '0';
-  if (text[i] == '.')
-    for (i++; isdigit((unsigned char)text[i]); i++, digits++)
-      *zero = *zero && text[i] == '0';
-  if (!digits)
-    return 0;
-  *mantissa = i;
-  *exponent = 0;
-  if (text[i] == 'e' || text[i] == 'E') {
-    size_t j = i + 1 + (text[i + 1] == '+' || text[i + 1] == '-');
-    if (isdigit((unsigned char)text[j])) {
-      for (; isdigit((unsigned char)text[j]); j++)
-        if (*exponent < 100000)
-          *exponent = 10 * *exponent + (text[j] - '0');
-      if (text[i + 1] == '-')
-        *exponent = -*exponent;
-      i = j;
-    }
+  for (bool point = false; isdigit((unsigned char)text[i]) || (text[i] == '.' && !point); i++) {
+    point = point || text[i] == '.';
+    digits += text[i] != '.';
+    number.zero = number.zero && (text[i] == '0' || text[i] == '.');
   }
-  return i;
+  if (!digits)
+    return number;
+  number.length = number.mantissa = i;
+  if (text[i] != 'e' && text[i] != 'E')
+    return number;
+
+  const bool negative = text[i + 1] == '-';
+  size_t j = i + 1 + (negative || text[i + 1] == '+');
+  if (!isdigit((unsigned char)text[j]))
+    return number;
+  for (; isdigit((unsigned char)text[j]); j++)
+    if (number.exponent < 100000)
+      number.exponent = 10 * number.exponent + (text[j] - '0');
+  if (negative)
+    number.exponent = -number.exponent;
+  number.length = j;
+  return number;
 }
 
 static bool is_word(const char *text, const char *word) {
@@ -347,29 +374,19 @@ static bool is_word(const char *text, const char *word) {
 }
 
 static status no_number(const char *text, const char *expected, struct error *error) {
+  const bool unitless = strcmp(expected, "1") == 0;
   if (*text == 0)
-    return status_fail(error, STATUS_CONTENT, "expected a number%s%s, got nothing", strcmp(expected, "1") ? " in " : "",
-                       strcmp(expected, "1") ? expected : "");
+    return status_fail(error, STATUS_CONTENT, "expected a number%s%s, got nothing", unitless ? "" : " in ",
+                       unitless ? "" : expected);
   const char *what = is_word(text, "nan") || is_word(text, "inf") ? "a finite number" : "a number";
-  if (strcmp(expected, "1") == 0)
+  if (unitless)
     return status_fail(error, STATUS_CONTENT, "expected %s, got '%.*s'", what, QUOTE, text);
   return status_fail(error, STATUS_CONTENT, "expected %s in %s, such as '5 %s', got '%.*s'", what, expected, expected,
                      QUOTE, text);
 }
 
-status unit_read(const char *text, const char *expected_unit, double *si, struct error *error) {
-  struct unit want, got;
-  status code = unit_parse(expected_unit, &want, error);
-  if (code)
-    return code;
-  while (*text == ' ')
-    text++;
-  size_t mantissa = 0;
-  long exponent = 0;
-  bool zero;
-  size_t length = scan(text, &mantissa, &exponent, &zero);
-  if (length == 0)
-    return no_number(text, expected_unit, error);
+/* What comes right behind a number and looks like a part of it. */
+static status check_end(const char *text, size_t length, struct error *error) {
   const char *rest = text + length;
   if (length == 1 && text[0] == '0' && (*rest == 'x' || *rest == 'X' || *rest == 'o'))
     return status_fail(error, STATUS_CONTENT, "expected a decimal number, got '%.*s'", QUOTE, text);
@@ -379,29 +396,52 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
   if (*rest == '_')
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number; write digits without separators",
                        QUOTE, rest);
-  bool spaced = *rest == ' ';
+  return STATUS_OK;
+}
+
+/* The unit behind a number, of the dimension of `want`; nothing there means `want` itself. */
+static status read_unit(const char *rest, const struct unit *want, const char *want_text, struct unit *got,
+                        struct error *error) {
+  const bool spaced = *rest == ' ';
   while (*rest == ' ')
     rest++;
-  bool per = spaced && rest[0] == '1' && rest[1] == '/'; /* "5 1/s" */
-  if (*rest == 0) {
-    got = want;
-  } else if ((isdigit((unsigned char)*rest) && !per) || *rest == '.' || *rest == '+' || *rest == '-') {
+  *got = *want;
+  if (*rest == 0)
+    return STATUS_OK;
+  const bool per = spaced && rest[0] == '1' && rest[1] == '/'; /* "5 1/s" */
+  if ((isdigit((unsigned char)*rest) && !per) || *rest == '.' || *rest == '+' || *rest == '-')
     return status_fail(error, STATUS_CONTENT, "unexpected '%.*s' after the number", QUOTE, rest);
-  } else {
-    code = unit_parse(rest, &got, error);
-    if (code)
-      return code;
-    if (!unit_same_dimension(&want, &got))
-      return wrong_dimension(&want, expected_unit, &got, rest, error);
-  }
-  char shifted[512];
-  if (mantissa > sizeof shifted - 32)
+  status code = unit_parse(rest, got, error);
+  if (code)
+    return code;
+  return unit_same_dimension(want, got) ? STATUS_OK : wrong_dimension(want, want_text, got, rest, error);
+}
+
+status unit_read(const char *text, const char *expected_unit, double *si, struct error *error) {
+  struct unit want, got;
+  status code = unit_parse(expected_unit, &want, error);
+  if (code)
+    return code;
+  while (*text == ' ')
+    text++;
+
+  const struct decimal number = scan(text);
+  if (number.length == 0)
+    return no_number(text, expected_unit, error);
+  code = check_end(text, number.length, error);
+  if (!code)
+    code = read_unit(text + number.length, &want, expected_unit, &got, error);
+  if (code)
+    return code;
+
+  char shifted[512]; /* the powers of ten of number and unit together: one rounding */
+  if (number.mantissa > sizeof shifted - 32)
     return status_fail(error, STATUS_CONTENT, "a number of more than 480 digits is refused");
-  snprintf(shifted, sizeof shifted, "%.*se%ld", (int)mantissa, text, exponent + got.ten);
-  double value = strtod(shifted, NULL) * got.times / got.per;
+  snprintf(shifted, sizeof shifted, "%.*se%ld", (int)number.mantissa, text, number.exponent + got.ten);
+  const double value = strtod(shifted, NULL) * got.times / got.per;
   if (!isfinite(value))
     return status_fail(error, STATUS_CONTENT, "%.*s is too large for a double", QUOTE, text);
-  if (value == 0 && !zero)
+  if (value == 0 && !number.zero)
     return status_fail(error, STATUS_CONTENT, "%.*s is too small for a double", QUOTE, text);
   *si = value;
   return STATUS_OK;

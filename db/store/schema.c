@@ -93,8 +93,7 @@ static status write_docs(sqlite3 *db, const struct schema_table *table, struct e
       return status_fail(error, STATUS_MEMORY, "documenting columns: memory ran out");
     write_meaning(row, text);
     fclose(text);
-    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning,
-                          (row->flags & FIELD_VOLATILE) == 0);
+    result = sql_executef(db, "documenting columns", error, insert, table->name, name, row->unit, meaning, 1);
     free(meaning);
   }
   return result;

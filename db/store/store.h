@@ -128,7 +128,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
 status store_export(struct store *store, const char *path, struct error *error);
 
 /* What a determinism test compares: every run by identity with all its deterministic values (%a), masses and spectrum;
- * no volatile field, no time, host or session, no surplus run. Same text whatever the number of workers. */
+ * no time, host or session, no surplus run. Same text whatever the number of workers. */
 status store_dump(struct store *store, FILE *out, struct error *error);
 
 #endif

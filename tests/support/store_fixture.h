@@ -22,7 +22,6 @@ struct fixture_inputs {
 struct fixture_result {
   int64_t broken;
   double hardest;
-  double clock;
 };
 
 static const char *const fixture_laws[] = {"plain", "deep", NULL};
@@ -92,14 +91,6 @@ static const struct field fixture_result_rows[] = {
      .minimum = -HUGE_VAL,
      .maximum = HUGE_VAL,
      .doc = "Hardest hit."},
-    {.path = "clock",
-     .kind = FIELD_REAL,
-     .unit = "s",
-     .offset = offsetof(struct fixture_result, clock),
-     .minimum = 0,
-     .maximum = HUGE_VAL,
-     .flags = FIELD_VOLATILE,
-     .doc = "A time on the wall."},
 };
 static const struct field_table fixture_results_table = FIELD_TABLE(fixture_result_rows, struct fixture_result,
                                                                     "fake result", "A result for tests.");
@@ -170,9 +161,7 @@ static inline void fixture_fill(struct fixture_run *f, const struct scene *scene
     f->outcome.mean_fragment_mass_rest = square / total / 2;
     f->outcome.dust_fraction = f->fragments[fragments - 1].mass / total;
   }
-  f->result = (struct fixture_result){.broken = 3 * replicate,
-                                      .hardest = 0.5 * (double)replicate,
-                                      .clock = 1e-3 * (double)getpid()};
+  f->result = (struct fixture_result){.broken = 3 * replicate, .hardest = 0.5 * (double)replicate};
   f->estimates[0] = (struct estimate){.window = ESTIMATES_FROM_2, .fit.beta = 1.5 + 0.01 * (double)replicate};
   f->estimates[1] = (struct estimate){.window = ESTIMATES_FROM_5, .fit.beta = NAN};
   f->run = (struct store_run){.point_id = point_id,

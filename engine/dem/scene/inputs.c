@@ -36,17 +36,15 @@ static const struct field rows[] = {
                           "two equal discs run into each other",
            .doc = "The protocol: what is done to the body.", .source = "K99 section 3"),
 
-    REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .flags = FIELD_LOG, .when = DISCS, .doc = "Diameter of the disc.",
-         .source = "K99 table 1"),
+    REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .when = DISCS, .doc = "Diameter of the disc.", .source = "K99 table 1"),
     COUNT(body.columns, 40, 1, 10000, .when = BLOCKS, .doc = "Grains along the block's width (x)."),
     COUNT(body.rows, 20, 2, 10000, .when = BLOCKS,
           .doc = "Grains along the block's height (y): the direction of the load or of the shot."),
 
-    REAL(grain.density, "kg/m^3", 5000, 1e-3, 1e6, .flags = FIELD_LOG, .doc = "Mass density of the grains.",
-         .source = "K99 table 1"),
-    REAL(grain.young_modulus, "Pa", 1e9, 1, 1e15, .flags = FIELD_LOG,
-         .doc = "Y: modulus of the repulsion of overlapping grains.", .source = "K99 eq. 2 and table 1"),
-    REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5, .flags = FIELD_LOG,
+    REAL(grain.density, "kg/m^3", 5000, 1e-3, 1e6, .doc = "Mass density of the grains.", .source = "K99 table 1"),
+    REAL(grain.young_modulus, "Pa", 1e9, 1, 1e15, .doc = "Y: modulus of the repulsion of overlapping grains.",
+         .source = "K99 eq. 2 and table 1"),
+    REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5,
          .doc =
              "Grid constant of the random lattice: the mean size of a grain. The default gives about 1100 grains in a "
              "disc of 0.4 m.",
@@ -56,17 +54,16 @@ static const struct field rows[] = {
                 "a. 0 is a square lattice, 1 uses the whole grid square.",
          .source = "K99 section 2.1; the paper gives no value for its runs"),
 
-    REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15, .flags = FIELD_LOG,
+    REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15,
          .doc = "E: modulus of the beams that join neighbouring grains; the shear modulus is E/2.",
          .source = "K99 eqs. 7-9 and table 1"),
 
     SWITCH(threshold.breaking, 1, .doc = "Beams may break. Off: a purely elastic body."),
-    REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .flags = FIELD_LOG, .when = "threshold.breaking=true",
+    REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .when = "threshold.breaking=true",
          .doc = "t_epsilon: strain at which an unbent beam breaks.", .source = "K99 eq. 13"),
-    REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .flags = FIELD_LOG, .when = "threshold.breaking=true",
+    REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .when = "threshold.breaking=true",
          .doc = "t_Theta: end rotation at which a hardly stretched beam breaks.", .source = "K99 eq. 13"),
-    REAL(threshold.modulus, "1", NAN, 0.1, 1e6, .flags = FIELD_MAY_BE_OFF | FIELD_LOG,
-         .when = "threshold.breaking=true",
+    REAL(threshold.modulus, "1", NAN, 0.1, 1e6, .flags = FIELD_MAY_BE_OFF, .when = "threshold.breaking=true",
          .doc = "Weibull modulus of thresholds drawn for each beam, with the two thresholds above as the law's scales. "
                 "off: all beams have the same thresholds.",
          .source = "off is K99 section 2.3; the law is an option beyond the paper"),
@@ -92,7 +89,7 @@ static const struct field rows[] = {
                "Damping and friction act between grains that a beam joins, too. They decide the outcome more than any "
                "threshold does."),
 
-    REAL(charge.energy, "J/m", 5e4, 1e-12, 1e18, .flags = FIELD_LOG, .when = "kind=disc-explosion",
+    REAL(charge.energy, "J/m", 5e4, 1e-12, 1e18, .when = "kind=disc-explosion",
          .doc =
              "E_o: kinetic energy given to the neighbours of the central grain, per metre of thickness. Each starts "
              "perpendicular to the common side with a speed proportional to side over mass; the central grain is the "
@@ -107,7 +104,7 @@ static const struct field rows[] = {
 
     CHOICE(loading.direction, directions, .when = "kind=uniaxial",
            .choice_docs = "the sides move apart\nthe sides move towards each other", .doc = "Sense of the load."),
-    REAL(loading.rate, "1/s", 0.5, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM | FIELD_LOG, .when = LOADED,
+    REAL(loading.rate, "1/s", 0.5, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = LOADED,
          .doc = "Strain rate once the sides move at constant speed (each side moves at half of rate times height).",
          .source = "K99 section 3.1; the paper gives no value"),
     REAL(loading.ramp, "s", 5e-3, 0, 1e3, .when = LOADED,
@@ -132,7 +129,7 @@ static const struct field rows[] = {
          .source = "K99 section 3.3.1 (300 steps of 1 us)"),
     REAL(stop.end_time, "s", 1e-2, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = FREE, .doc = "Hard end of the run."),
 
-    REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3, .flags = FIELD_LOG,
+    REAL(fidelity.time_step, "s", 1e-6, 1e-15, 1e3,
          .doc = "Time step; refused where it is above the stability limit 2/omega_max of the body.",
          .source = "K99 table 1"),
     CHOICE(fidelity.integrator, integrators,

@@ -68,21 +68,20 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
 #define PROJECTILE_MATERIAL(...) MATERIAL_ROW(projectile, "kind=impact", __VA_ARGS__)
 
 #define BODY_SIZES(B, shape_)                                                                                          \
-  REAL(B.radius, "m", shape_, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=sphere|cylinder",                      \
+  REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                          \
        .doc = "Radius of the sphere or cylinder."),                                                                    \
       REAL(B.inner_radius, "m", 0, 0, 1e9, .when = #B ".shape=cylinder",                                               \
            .doc = "Radius of a hole along the cylinder's axis: a ring. 0: a full cylinder."),                          \
-      REAL(B.length, "m", 0.04, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=cylinder",                           \
+      REAL(B.length, "m", 0.04, 1e-9, 1e9, .when = #B ".shape=cylinder",                                               \
            .doc =                                                                                                      \
                "Length of the cylinder along its axis: z for a target, the flight for a projectile. In a collision, "  \
                "where the slab repeats along z, the least length: whole periods of the lattice are made of it."),      \
-      REAL(B.width, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                  \
-           .doc = "Side of the box along x."),                                                                         \
-      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                  \
+      REAL(B.width, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box", .doc = "Side of the box along x."),                  \
+      REAL(B.depth, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box",                                                      \
            .doc = "Side of the box along y. Of a plate (kind: piston), which repeats along y and z, the least one: "   \
                   "whole periods "                                                                                     \
                   "of the lattice are made of it."),                                                                   \
-      REAL(B.height, "m", 0.2, 1e-9, 1e9, .flags = FIELD_LOG, .when = #B ".shape=box",                                 \
+      REAL(B.height, "m", 0.2, 1e-9, 1e9, .when = #B ".shape=box",                                                     \
            .doc = "Side of the box along z. A projectile comes down on the upper side. Of a plate (kind: piston) the " \
                   "least one.")
 
@@ -139,10 +138,8 @@ static const struct field rows[] = {
                .choice_docs =
                    "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
                .doc = "What decides the projectile's size."),
-    REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .flags = FIELD_LOG, .when = "impact.projectile=mass",
-         .doc = "Mass of the projectile."),
-    REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .flags = FIELD_LOG,
-         .when = "impact.projectile=specific-energy",
+    REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .doc = "Mass of the projectile."),
+    REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
          .doc = "Q: kinetic energy of the projectile over the target's mass; its mass follows from that and from the "
                 "speed."),
     REAL(impact.speed, "m/s", 3200, 0, 1e6, .when = "kind=impact",
@@ -162,7 +159,7 @@ static const struct field rows[] = {
     SPH_MATERIAL_ROWS(PROJECTILE_MATERIAL) MATERIAL_PORES(projectile, "kind=impact")
         SPH_POROSITY_ROWS(PROJECTILE_MATERIAL)
 
-            REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_LOG | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+            REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
                  .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
                  .source = "BA95 section 5.1"),
     REAL(stretch.grip, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
@@ -218,8 +215,7 @@ static const struct field rows[] = {
             "m_j/rho_j instead of m_j/rho_i in the velocity gradient, for bodies of very different density that touch.",
         .source = "BA95 eq. 18 for off"),
 
-    REAL(fragments.static_strength, "Pa", NAN, 0, 1e15,
-         .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_LOG,
+    REAL(fragments.static_strength, "Pa", NAN, 0, 1e15, .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
          .doc = "At the end particles under more tension than this count as broken. Unless given: Young's modulus "
                 "times the mean "
                 "strength of the weakest flaw of the whole target. off: no such pass.",
@@ -264,15 +260,15 @@ static const struct field rows[] = {
     REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
          .doc = "See stop.quiet_time: a share of the body's volume."),
 
-    COUNT(fidelity.particles, 10000, 1, 2e9, .flags = FIELD_LOG, .when = "kind=impact|stretch|vibration|collision",
+    COUNT(fidelity.particles, 10000, 1, 2e9, .when = "kind=impact|stretch|vibration|collision",
           .doc = "Particles of the target (of a collision: of each body), within what its lattice allows."),
-    COUNT(fidelity.points, 400, 1, 1e6, .flags = FIELD_LOG, .when = "kind=piston",
+    COUNT(fidelity.points, 400, 1, 1e6, .when = "kind=piston",
           .doc = "Width of the plate over the particle spacing. Sideways it is as thick as its lattice needs."),
     REAL(fidelity.projectile_spacing, "1", 0.5, 1e-3, 1e3, .when = "kind=impact",
          .doc = "Particle spacing of the projectile over the target's where it hits."),
     SWITCH(fidelity.graded, 0, .when = "kind=impact", .doc = "Particles are finer near the point of impact."),
-    REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED | FIELD_LOG,
-         .when = "fidelity.graded=true", .doc = "Spacing there; half of the uniform one unless given."),
+    REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
+         .doc = "Spacing there; half of the uniform one unless given."),
     REAL(fidelity.fine_radius, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
          .doc = "Distance up to which it holds; four fine spacings unless given."),
     REAL(fidelity.smoothing, "1", SPH_BODIES_H, 0.7, 3,
