@@ -1,7 +1,6 @@
 /* The C reader's side of schema_corpus.sh, and on its own a test that the corpus is judged as its folders say.
  *
  *     test_schema_corpus                              every document of corpus/<kind>/{good,bad,reader}
- *     test_schema_corpus schema scene-dem|scene-sph|campaign    the schema that schemas/ holds a copy of
  *     test_schema_corpus judge scene-dem|scene-sph|campaign FILE...   lines "good FILE" or "bad FILE"
  *     test_schema_corpus generated scene-dem|scene-sph   documents made from the engine's table, one row after another,
  * with the reader's verdict: "good" or "bad", text, "%%" */
@@ -11,7 +10,6 @@
 #include <string.h>
 
 #include "campaign/campaign.h"
-#include "campaign/campaign_schema.h"
 #include "engine/scene.h"
 
 /* The engine behind "scene-<engine>"; NULL for "campaign". */
@@ -151,13 +149,6 @@ static void generate(const struct engine_kind *engine) {
 
 int main(int count, char **arguments) {
   const struct engine_kind *engine = count > 2 ? engine_of(arguments[2]) : NULL;
-  if (count > 2 && strcmp(arguments[1], "schema") == 0) {
-    if (engine)
-      scene_schema(engine, stdout);
-    else
-      campaign_schema_write(stdout);
-    return 0;
-  }
   if (count > 3 && strcmp(arguments[1], "judge") == 0) {
     for (int i = 3; i < count; i++)
       printf("%s %s\n", judge(engine != NULL, arguments[i], false) ? "good" : "bad", arguments[i]);
