@@ -19,7 +19,7 @@ static const struct field rows[] = {
     TEXT("name", name, .flags = FIELD_REQUIRED, .doc = "Name of the campaign, as the store lists it."),
     TEXT("scene", scene_reference, .flags = FIELD_REQUIRED,
          .doc = "What is run: a built-in scene (`clast scenes`) or a file, relative to this document's folder."),
-    TEXT("quantity", quantity, .text = "largest_fraction",
+    TEXT("quantity", quantity, .text = OUTCOME_DEFAULT,
          .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: "
                 "extremes}`. Any "
                 "number that a run reports (`clast explain results`)."),

@@ -35,6 +35,7 @@ struct outcome {
 };
 
 extern const struct field_table outcome_table;
+#define OUTCOME_DEFAULT "largest_fraction" /* the quantity that commands and campaigns take when none is named */
 
 /* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments);

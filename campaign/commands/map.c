@@ -5,6 +5,7 @@
 #include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/quantity.h"
+#include "engine/outcome.h"
 
 enum { WIDTH = 900, MOST_GROUPS = 10000 };
 
@@ -84,7 +85,7 @@ static const struct option_row rows[] = {
     {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
      "Varied input along the bottom: a path or its unique ending."},
     {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input along the side."},
-    {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
+    {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
      "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
      "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };

@@ -7,6 +7,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/quantity.h"
 #include "db/ask/columns.h"
+#include "engine/outcome.h"
 
 enum { WIDTH = 900, MOST_LINES = 8, MOST_MEANS = 1000, RESAMPLES = 1000, LABEL = 600 };
 
@@ -176,7 +177,7 @@ static const struct option_row rows[] = {
      "Varied input along the bottom: a path or its unique ending."},
     {"by", 'b', OPTION_TEXT, "AXIS", offsetof(struct options, by), 0, 0, NULL,
      "Another varied input: a line for each of its values, at most 8."},
-    {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, "largest_fraction",
+    {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
      "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
      "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };

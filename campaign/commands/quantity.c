@@ -7,6 +7,7 @@
 #include "analysis/statistics/estimates.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
+#include "engine/outcome.h"
 
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, N = 2, MEAN = 5, HALF_WIDTH = 8, COLUMNS = 9 };
@@ -81,7 +82,7 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
   snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
            choice->axis[1] ? choice->axis[1] : "");
   const struct query_sink groups = {&reading, take_columns, take_group};
-  code = ask_group(store, by, quantity->exponent ? "largest_fraction" : choice->name, &groups, error);
+  code = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, &groups, error);
   if (code)
     return code;
 

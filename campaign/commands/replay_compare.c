@@ -68,8 +68,6 @@ static void compare_value(struct comparison *comparison, const struct field *row
 static void compare_table(struct comparison *comparison, const struct field_table *table, const void *object,
                           size_t count, const struct query_value *values) {
   for (size_t i = 0; i < table->count; i++) {
-    if (table->rows[i].flags & FIELD_VOLATILE)
-      continue;
     char name[sizeof *comparison->names];
     field_column_name(table->rows[i].path, name, sizeof name);
     size_t column = 0;

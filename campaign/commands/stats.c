@@ -4,6 +4,7 @@
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
+#include "engine/outcome.h"
 
 struct options {
   const char *by, *quantity;
@@ -53,7 +54,7 @@ static const struct option_row rows_of_options[] = {
      "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs "
      "are "
      "pooled."},
-    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, "largest_fraction",
+    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
      "Results to average, comma-separated; main: the five main ones, a wide table. `clast explain` lists all."},
     TABLE_OPTIONS(struct options, table),
 };

@@ -1,88 +1,166 @@
 #!/usr/bin/env bash
-# The house rules that a machine can check (CONTRIBUTING.md): who includes whom, what a file may export, who may use
-# which library, that nothing below main() prints or exits, and that no path of a machine is written down.
+# The house rules that a machine can check (CONTRIBUTING.md): who includes whom, who may use which library, that nothing
+# below main() prints or exits, what a file may export, that no path of a machine is written down, the format and the
+# head of every file. house.py checks quotations in documents, names and words.
 set -euo pipefail
 build=$1 source=$2
 cd "$source"
-failures=0
-fail() { echo "house: $*"; failures=$((failures + 1)); }
-checked=0
-
-# 1. Includes go left only: schemas <- engine <- analysis <- db <- campaign.
 order=(schemas engine analysis db campaign)
-declare -A rank
-for i in "${!order[@]}"; do rank[${order[$i]}]=$i; done
-while IFS=: read -r file line text; do
-  from=${file%%/*}
-  to=$(sed -E 's/^#[[:space:]]*include[[:space:]]*"([^"]+)".*/\1/' <<<"$text")
-  case "$to" in
-    */*) ;;
-    *) continue ;; # generated headers of the build folder
-  esac
-  to=${to%%/*}
-  checked=$((checked + 1))
-  [ -n "${rank[$to]:-}" ] || { fail "$file:$line: include from the root, folder first: $text"; continue; }
-  [ "${rank[$to]}" -le "${rank[$from]}" ] || fail "$file:$line: $from may not include $to"
-done < <(grep -rnE '^#[[:space:]]*include[[:space:]]*"' --include='*.[ch]' "${order[@]}")
+failures=0
+checked=0
+fail() { echo "house: $*"; failures=$((failures + 1)); }
 
-# 2. Outside libraries stay where they belong.
-only() { # header pattern, allowed folders (regex)
+# Lines of C files of the five folders that match an extended regular expression, as FILE:LINE:TEXT.
+lines_of_code() { grep -rnE "$1" --include='*.[ch]' "${order[@]}" || true; }
+
+# Includes go left only: schemas <- engine <- analysis <- db <- campaign.
+check_includes() {
+  local -A rank
+  local i file line text from to
+  for i in "${!order[@]}"; do rank[${order[$i]}]=$i; done
+  while IFS=: read -r file line text; do
+    from=${file%%/*}
+    to=${text#*\"}
+    to=${to%%\"*}
+    case "$to" in
+      */*) to=${to%%/*} ;;
+      *) continue ;; # a header that the build generates
+    esac
+    checked=$((checked + 1))
+    if [ -z "${rank[$to]:-}" ]; then
+      fail "$file:$line: include from the root, folder first: $text"
+    elif [ "${rank[$to]}" -gt "${rank[$from]}" ]; then
+      fail "$file:$line: $from may not include $to"
+    fi
+  done < <(lines_of_code '^#[[:space:]]*include[[:space:]]*"')
+}
+
+# only HEADERS FOLDERS: both regular expressions.
+only() {
+  local file line text
   while IFS=: read -r file line text; do
     [[ $file =~ ^($2)/ ]] || fail "$file:$line: only $2 may use this library: $text"
-  done < <(grep -rnE "^#[[:space:]]*include[[:space:]]*<($1)" --include='*.[ch]' "${order[@]}")
+  done < <(lines_of_code "^#[[:space:]]*include[[:space:]]*<($1)")
 }
-only 'libfyaml' schemas
-only 'hdf5' 'engine|analysis/pictures'
-only 'Random123' engine
-only 'sqlite3' db
-only 'plfit|cairo' analysis
-only 'gsl' 'analysis|campaign/design'
-only 'mpi\.h' campaign/farm
-only 'libqhull' tests
 
-# 3. Nothing below the commands prints to the terminal or ends the process.
-while IFS=: read -r file line text; do
-  case "$file" in campaign/*) continue ;; esac
-  fail "$file:$line: libraries return a status; they do not print or exit: $text"
-done < <(grep -rnE '(^|[^_a-z])(printf|puts|perror|exit|abort|_exit)[[:space:]]*\(' --include='*.c' "${order[@]}" | grep -vE ':[[:space:]]*(\*|/\*|//)')
+# Outside libraries stay where they belong.
+check_libraries() {
+  only 'libfyaml' schemas
+  only 'hdf5' 'engine|analysis/pictures'
+  only 'Random123' engine
+  only 'sqlite3' db
+  only 'plfit|cairo' analysis
+  only 'gsl' 'analysis|campaign/design'
+  only 'mpi\.h' campaign/farm
+  only 'libqhull' tests
+}
 
-# 3b. SQL text stays in db; the one example is in the help of `clast query`, whose user writes SQL.
-while IFS=: read -r file line text; do
-  [ "$file" = campaign/commands/query.c ] || fail "$file:$line: SQL belongs into db/ask: $text"
-done < <(grep -rniE '"[^"]*(select |insert into|update [a-z_]+ set|delete from|create (table|view|index))' --include='*.[ch]' \
-  schemas engine analysis campaign | grep -vE ':[[:space:]]*(\*|/\*|//)' || true)
+# Nothing below the commands prints to the terminal or ends the process.
+check_printing() {
+  local file line text
+  while IFS=: read -r file line text; do
+    case "$file" in campaign/* | *.h) continue ;; esac
+    fail "$file:$line: libraries return a status; they do not print or exit: $text"
+  done < <(lines_of_code '(^|[^_a-z])(printf|puts|perror|exit|abort|_exit)[[:space:]]*\(' |
+    grep -vE ':[[:space:]]*(\*|/\*|//)')
+}
 
-# 4. A file's name is the prefix of what it exports.
-archives=0
-for folder in "${order[@]}"; do
-  archive=$build/$folder/libclast_$folder.a
-  [ -f "$archive" ] || { fail "no $archive: build first"; continue; }
-  archives=$((archives + 1))
-  while read -r object symbol; do
-    stem=${object%.c.o}
-    mapfile -t files < <(find "$folder" -name "$stem.c") # two engines may have a file of one name: either's prefix will do
-    [ "${#files[@]}" -gt 0 ] || continue                 # generated sources
-    checked=$((checked + 1)) fits=no
-    for file in "${files[@]}"; do
-      case "$symbol" in "$stem" | "$stem"_*) fits=yes ;; esac
-      rooms=${file%/*}
-      while [ "$rooms" != "${rooms%/*}" ]; do # every folder below the top one, e.g. pairs and sph of engine/sph/pairs/chunks.c
-        room=${rooms##*/} rooms=${rooms%/*}
-        case "$symbol" in
-          "${room}_$stem" | "${room}_$stem"_*) fits=yes ;;
-          "$room"_*) if [ "$room" = "$stem" ] || [[ $symbol == "${room}_${stem}"* ]]; then fits=yes; fi ;;
-        esac
+# fits SYMBOL FILE: the file's name, or a folder's below the top one and the file's, is the prefix of the symbol. In
+# engine/sph/pairs/chunks.c: chunks_..., pairs_chunks_..., sph_chunks_...
+fits() {
+  local symbol=$1 stem=${2##*/} rooms=${2%/*} room
+  stem=${stem%.c}
+  case "$symbol" in "$stem" | "$stem"_*) return 0 ;; esac
+  while [ "$rooms" != "${rooms%/*}" ]; do
+    room=${rooms##*/}
+    rooms=${rooms%/*}
+    case "$symbol" in
+      "${room}_$stem"*) return 0 ;;
+      "$room"_*) [ "$room" != "$stem" ] || return 0 ;;
+    esac
+  done
+  return 1
+}
+
+# OBJECT SYMBOL of everything that an archive exports.
+exports() {
+  nm -A --defined-only --extern-only "$1" 2>/dev/null |
+    sed -nE 's/^[^:]*:([^:]+):[0-9a-f]* [TDRBGSC] ([A-Za-z_][A-Za-z0-9_]*)$/\1 \2/p' |
+    grep -vE ' (__asan|__odr|_GLOBAL|__ubsan|__start|__stop)' || true
+}
+
+# A file's name is the prefix of what it exports. Two engines may have a file of one name: either's prefix will do.
+check_exports() {
+  local folder archive object symbol file files fitting
+  for folder in "${order[@]}"; do
+    archive=$build/$folder/libclast_$folder.a
+    [ -f "$archive" ] || { fail "no $archive: build first"; continue; }
+    while read -r object symbol; do
+      mapfile -t files < <(find "$folder" -name "${object%.c.o}.c")
+      [ "${#files[@]}" -gt 0 ] || continue # a source that the build generates
+      checked=$((checked + 1))
+      fitting=no
+      for file in "${files[@]}"; do
+        if fits "$symbol" "$file"; then fitting=yes; fi
       done
-    done
-    [ $fits = yes ] || fail "$file exports $symbol: expected ${stem}_... or FOLDER_${stem}_..."
-  done < <(nm -A --defined-only --extern-only "$archive" 2>/dev/null |
-    sed -nE 's/^[^:]*:([^:]+):[0-9a-f]* [TDRBGSC] ([A-Za-z_][A-Za-z0-9_]*)$/\1 \2/p' | grep -vE ' (__asan|__odr|_GLOBAL|__ubsan|__start|__stop)' || true)
-done
+      [ $fitting = yes ] || fail "$file exports $symbol: expected ${object%.c.o}_... or FOLDER_${object%.c.o}_..."
+    done < <(exports "$archive")
+  done
+}
 
-# 5. Nothing names a machine's folders.
-while IFS= read -r hit; do fail "path of a machine: $hit"; done < <(grep -rnIE '(^|[^A-Za-z])/(work|home|root)/' --include='*' \
-  "${order[@]}" tests README.md CONTRIBUTING.md CMakeLists.txt CMakePresets.json setup.sh .ci 2>/dev/null | grep -v 'tests/unit/house.sh' || true)
+# Nothing names a machine's folders.
+check_machine_paths() {
+  local hit
+  while IFS= read -r hit; do
+    fail "path of a machine: $hit"
+  done < <(grep -rnIE '(^|[^A-Za-z])/(work|home|root)/' "${order[@]}" tests ./*.md CMakeLists.txt CMakePresets.json \
+    setup.sh .ci 2>/dev/null | grep -v '^tests/unit/house.sh:' || true)
+}
 
-[ "$archives" -eq 5 ] && [ "$checked" -gt 20 ] || fail "looked at too little ($archives archives, $checked things)"
-echo "house: $checked includes and exports checked, $failures broken"
-[ "$failures" -eq 0 ]
+# Every C file is as clang-format leaves it.
+check_format() {
+  command -v clang-format >/dev/null || { fail "clang-format is missing: ./setup.sh packages installs it"; return; }
+  local hit
+  while IFS= read -r hit; do
+    fail "not formatted (clang-format -i FILE): $hit"
+  done < <(find "${order[@]}" tests -name '*.[ch]' -print0 |
+    xargs -0 -P 4 -n 40 clang-format --dry-run --ferror-limit=1 2>&1 | sed -nE 's/^(.*): (warning|error):.*/\1/p')
+}
+
+# Every C file begins with a comment that says what it is for.
+check_heads() {
+  local file first
+  while IFS= read -r file; do
+    checked=$((checked + 1))
+    IFS= read -r first <"$file" || true
+    case "$first" in
+      '/* '*' '*) ;;
+      *) echo "house: not yet an error: $file does not begin with a comment that says what it is for" ;;
+    esac
+  done < <(find "${order[@]}" tests -name '*.[ch]')
+}
+
+# SQL text stays in db. The one example is in the help of `clast query`, whose user writes SQL.
+check_sql() {
+  local file line text
+  while IFS=: read -r file line text; do
+    case "$file" in db/* | campaign/commands/query.c) continue ;; esac
+    fail "$file:$line: SQL belongs into db/ask: $text"
+  done < <(grep -rniE '"[^"]*(select |insert into|update [a-z_]+ set|delete from|create (table|view|index))' \
+    --include='*.[ch]' "${order[@]}" | grep -vE ':[[:space:]]*(\*|/\*|//)' || true)
+}
+
+check_includes
+check_libraries
+check_printing
+check_exports
+check_machine_paths
+check_format
+check_heads
+check_sql
+
+[ "$checked" -gt 1000 ] || fail "looked at too little ($checked things)"
+echo "house: $checked includes, exports and files checked, $failures broken"
+words=0
+/usr/bin/python3 tests/unit/house.py "$build/clast" "$build" "$source" || words=1
+[ "$failures" -eq 0 ] && [ $words -eq 0 ]
