@@ -179,7 +179,7 @@ static document_node *alias(struct builder *b, struct fy_token *token, size_t st
   const int shown = length < 60 ? (int)length : 60;
   where(b, path);
   if (inside)
-    document_report_at(b->document, start, end, path, "alias '*%.*s' stands inside what it refers to", shown, name);
+    document_report_at(b->document, start, end, path, "alias '*%.*s' is inside what it refers to", shown, name);
   else
     document_report_at(b->document, start, end, path, "alias '*%.*s' has no anchor '&%.*s' before it", shown,
                        name ? name : "", shown, name ? name : "");
@@ -264,7 +264,7 @@ static void close_collection(struct builder *b, size_t end) {
   document_node *node = b->open[--b->depth];
   char first = b->document->text[node->start];
   if (end > node->start && (first == '{' || first == '['))
-    node->end = end; /* others: their first character will do */
+    node->end = end; /* of others the first character is marked */
   if (node->kind == DOCUMENT_MAPPING && node->count > 1)
     report_duplicates(b, node);
   attach(b, node);

@@ -38,7 +38,7 @@ struct document_error {
 
 struct document {
   char *name, *text;
-  size_t size, node_count, error_count; /* error_count may exceed what is kept */
+  size_t size, node_count, error_count; /* more errors may be counted than kept */
   document_node *root, *nodes;
   struct document_error errors[DOCUMENT_MOST_ERRORS];
   char *report;
@@ -47,12 +47,12 @@ struct document {
 /* Bytes that must never reach libfyaml or a terminal: NUL, invalid UTF-8, control characters, tabs as indentation.
  * False: an error was reported. */
 bool document_guard(struct document *document);
-/* Well-formed UTF-8 without surrogates, overlong forms and control characters but tab and line ends. Returns the offset
- * of the first offence, or size. */
+/* The offset of the first byte that is not well-formed UTF-8 or begins a control character other than tab and line
+ * ends; size when there is none. */
 size_t document_guard_text(const char *text, size_t size);
 
-/* Turns the guarded text into the tree, `root` at its top. STATUS_CONTENT when no tree could be made of it (errors were
- * reported); errors that leave a tree (duplicate keys, tags, lost aliases) are reported and STATUS_OK. */
+/* Turns the guarded text into the tree. STATUS_CONTENT when no tree could be made; the errors are reported. Errors that
+ * leave a tree (duplicate keys, tags, lost aliases) are reported, too, but the status is STATUS_OK. */
 status document_build(struct document *document);
 
 /* An error about bytes [start, end) of the text. */
@@ -63,7 +63,7 @@ char *document_report_text(struct document *document);                       /* 
 
 /* Whole path of a node in its document, such as "vary.grain.density[2]"; empty at the root. */
 const char *document_value_path(const document_node *node, char *path, size_t size);
-/* "a list", "nothing", "the text 'x'": what a node is, for messages. */
+/* "a list", "nothing", "keys and values": what a node is, for messages. */
 const char *document_value_what(const document_node *node);
 bool document_value_is_null(const document_node *node); /* a plain scalar that the core schema calls null */
 

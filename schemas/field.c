@@ -14,7 +14,7 @@ bool field_is_off(double value) {
 
 /* ---- names ---- */
 
-/* `suffix` is a whole number of trailing words of `path`. */
+/* True when `suffix` is the last word of `path`, or its last words. */
 static bool ends_with(const char *path, const char *suffix) {
   size_t path_length = strlen(path), length = strlen(suffix);
   if (length == 0 || length > path_length || strcmp(path + path_length - length, suffix) != 0)
@@ -170,8 +170,8 @@ static bool value_is(const struct field *row, const void *object, const char *te
   return strlen(shown) == length && memcmp(shown, text, length) == 0;
 }
 
-/* The first condition on the way up that is not met, or NULL: the row is active. A chain is as long as the table at
- * most, so that a circular one ends (inactive). */
+/* The first row, from this one up through the rows that control it, whose condition is not met; NULL when the row is
+ * active. A circular chain ends after as many links as the table has rows: inactive. */
 static const struct field *unmet(const struct field_table *table, const struct field *row, const void *object,
                                  const struct field **other) {
   for (size_t links = 0; row->when; links++) {
@@ -267,7 +267,7 @@ static uint64_t mix(uint64_t hash, const char *text) { /* FNV-1a, http://www.ist
   return (hash ^ 0xff) * 1099511628211u; /* 0xff: never a byte of our names, so "ab","c" differs from "a","bc" */
 }
 
-/* Names, kinds and choices: what decides how bytes are read. Ranges and texts may change freely. */
+/* A hash of names, kinds and choices, which decide how bytes are read. Ranges and texts may change freely. */
 static uint64_t table_hash(const struct field_table *table) {
   static const char *const kinds[] = {"real", "integer", "boolean", "choice", "text"};
   uint64_t hash = 14695981039346656037u;

@@ -92,16 +92,16 @@ void field_describe_inactive(const struct field_table *table, const struct field
 /* The row's default; a required row has zero or NaN. */
 void field_default(const struct field *row, struct field_value *value);
 void field_get(const struct field *row, const void *object, struct field_value *value);
-/* Checks kind and range, then stores (-0 becomes 0). An INTEGER value suits a REAL row, a whole REAL an INTEGER row,
- * and a choice may come by name in `text` (kind TEXT too) or, with empty text, by index. STATUS_CONTENT with a message
- * that names path, range and what came. */
+/* Checks kind and range, then stores (-0 becomes 0). A REAL row accepts INTEGER values, an INTEGER row whole REAL
+ * values. A choice comes by name in `text` (kind TEXT, too) or, with empty text, by index. STATUS_CONTENT with a
+ * message that names the path, the range and the value. */
 status field_set(const struct field *row, void *object, const struct field_value *value, struct error *error);
 /* Stores a value that is known to suit the row. */
 void field_set_unchecked(const struct field *row, void *object, const struct field_value *value);
-/* What field_set does, without storing: *out is `value` brought to the row's own kind, in range. */
+/* The same without storing: *out is `value` in the row's own kind. */
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error);
-/* From text as a user types it: "5 km/s", "off", "true", a choice. Unit is dimension-checked, range is checked. */
+/* From text as a user types it: "5 km/s", "off", "true", a choice. Dimension and range are checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
 /* What a number's row accepts: "above 0 m", "at least 1 and at most 12". */
 void field_describe_range(const struct field *row, char *text, size_t size);

@@ -12,7 +12,10 @@ void field_json_value(const struct field *row, const struct field_value *value, 
   switch (row->kind) {
   case FIELD_REAL:
     field_print_number(value->number, number);
-    fputs(isnan(value->number) ? "\"off\"" : isinf(value->number) ? "null" : number, out); /* JSON has no infinity */
+    if (isnan(value->number))
+      fputs("\"off\"", out);
+    else
+      fputs(isinf(value->number) ? "null" : number, out); /* JSON has no infinity */
     break;
   case FIELD_INTEGER: fprintf(out, "%" PRId64, value->integer); break;
   case FIELD_BOOLEAN: fputs(value->number != 0 ? "true" : "false", out); break;

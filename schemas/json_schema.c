@@ -7,8 +7,8 @@
 
 #include "schemas/text.h"
 
-/* A decimal number, and perhaps a unit behind it. Which units suit, and what the number is in SI, a schema cannot know:
- * the reader judges that. The last part keeps `$` from matching before a line end. */
+/* A decimal number, perhaps with a unit behind it. A schema cannot judge the unit or the value in SI: the reader does.
+ * The last part keeps `$` from matching before a line end. */
 #define NUMBER_AND_UNIT                                                                                                \
   "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?( *| *[^-+0-9. ,_\\\\n][^,_\\\\n]*| "                     \
   "+1/[^,_\\\\n]+)$(?!\\\\n)"
@@ -62,9 +62,18 @@ static void type(const struct field *row, FILE *out) {
     }
     fputc(']', out);
     break;
-  case FIELD_TEXT: /* a plain 12 or true is text as it stands */
+  case FIELD_TEXT: /* a plain 12 or true is text, too */
     fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d", FIELD_TEXT_SIZE - 1);
     break;
+  }
+}
+
+static void describe_choices(const struct field *row, FILE *out) {
+  const char *doc = row->choice_docs;
+  for (size_t i = 0; doc && row->choices[i]; i++) {
+    const size_t length = strcspn(doc, "\n");
+    fprintf(out, " `%s`: %.*s.", row->choices[i], (int)length, doc);
+    doc += length + (doc[length] == '\n');
   }
 }
 
@@ -75,20 +84,16 @@ static void description(const struct field *row, FILE *out) {
   FILE *words = open_memstream(&text, &size);
   if (!words)
     return;
+
+  const bool is_number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
   if (row->doc)
     fputs(row->doc, words);
-  if (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER) {
-    if (row->unit && strcmp(row->unit, "1"))
-      fprintf(words, " In %s, unless another unit is written.", row->unit);
-    if (row->flags & FIELD_MAY_BE_OFF)
-      fputs(" Or `off`.", words);
-  }
-  const char *doc = row->kind == FIELD_CHOICE ? row->choice_docs : NULL;
-  for (size_t i = 0; doc && row->choices[i]; i++) {
-    size_t length = strcspn(doc, "\n");
-    fprintf(words, " `%s`: %.*s.", row->choices[i], (int)length, doc);
-    doc += length + (doc[length] == '\n');
-  }
+  if (is_number && row->unit && strcmp(row->unit, "1"))
+    fprintf(words, " In %s, unless another unit is written.", row->unit);
+  if (is_number && row->flags & FIELD_MAY_BE_OFF)
+    fputs(" Or `off`.", words);
+  if (row->kind == FIELD_CHOICE)
+    describe_choices(row, words);
   if (row->when) {
     fprintf(words, " Only when %.*s is ", (int)strcspn(row->when, "="), row->when);
     field_describe_condition(row, words);
@@ -96,6 +101,7 @@ static void description(const struct field *row, FILE *out) {
   }
   if (row->source)
     fprintf(words, " Source: %s.", row->source);
+
   if (fclose(words) == 0)
     text_json_string(*text == ' ' ? text + 1 : text, out);
   free(text);
@@ -114,7 +120,7 @@ static bool same_start(const char *a, const char *b, size_t length) {
   return strncmp(a, b, length) == 0;
 }
 
-/* The words of one level that lead to a row that must be given whatever else is. */
+/* The words of one level that lead to a required row without a condition. */
 static int required(const struct field_table *table, const char *prefix, size_t length, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
@@ -146,45 +152,58 @@ static bool requires(const struct field_table *table, const char *prefix, size_t
   return false;
 }
 
+static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out);
+
+/* The section whose path is the first `whole` bytes of `path`, a dot at their end. */
+static void write_section(const struct field_table *table, const char *path, size_t whole, int indent, FILE *out) {
+  fputs("\"type\": \"object\", \"additionalProperties\": false,", out);
+  margin(indent, out);
+  if (requires(table, path, whole)) {
+    fputs("\"required\": [", out);
+    required(table, path, whole, out);
+    fputs("],", out);
+    margin(indent, out);
+  }
+  fputs("\"properties\": {", out);
+  properties(table, path, whole, indent + 1, out);
+  margin(indent, out);
+  fputs("}}", out);
+}
+
+static void write_row(const struct field *row, int indent, FILE *out) {
+  type(row, out);
+  default_value(row, out);
+  fputc(',', out);
+  margin(indent, out);
+  fputs("\"description\": ", out);
+  description(row, out);
+  fputc('}', out);
+}
+
+/* Every section is written once, at its first row. */
 static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out) {
   bool first = true;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     if (!same_start(row->path, prefix, length))
       continue;
-    size_t word = strcspn(row->path + length, "."), whole = length + word + 1;
-    bool section = row->path[length + word] == '.', seen = false;
+    const size_t word = strcspn(row->path + length, "."), whole = length + word + 1;
+    const bool section = row->path[length + word] == '.';
+    bool seen = false;
     for (size_t j = 0; section && j < i && !seen; j++)
       seen = same_start(table->rows[j].path, row->path, whole);
     if (seen)
       continue;
+
     if (!first)
       fputc(',', out);
     first = false;
     margin(indent, out);
     fprintf(out, "\"%.*s\": {", (int)word, row->path + length);
-    if (section) {
-      fputs("\"type\": \"object\", \"additionalProperties\": false,", out);
-      margin(indent + 1, out);
-      if (requires(table, row->path, whole)) {
-        fputs("\"required\": [", out);
-        required(table, row->path, whole, out);
-        fputs("],", out);
-        margin(indent + 1, out);
-      }
-      fputs("\"properties\": {", out);
-      properties(table, row->path, whole, indent + 2, out);
-      margin(indent + 1, out);
-      fputs("}}", out);
-    } else {
-      type(row, out);
-      default_value(row, out);
-      fputc(',', out);
-      margin(indent + 1, out);
-      fputs("\"description\": ", out);
-      description(row, out);
-      fputc('}', out);
-    }
+    if (section)
+      write_section(table, row->path, whole, indent + 1, out);
+    else
+      write_row(row, indent + 1, out);
   }
 }
 
@@ -202,7 +221,7 @@ static const struct field *controller(const struct field_table *table, const cha
   return NULL;
 }
 
-/* Whether the row rests on the condition, itself or through what its own condition rests on. */
+/* True when the row has this condition, or its controlling row rests on it. */
 static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
   for (size_t links = 0; row && row->when && links <= table->count; links++) {
     if (strcmp(row->when, when) == 0)
@@ -247,14 +266,14 @@ static void values(const struct field *row, const char *list, bool excluded, FIL
   fputs(excluded ? "]}}" : "]}", out);
 }
 
-/* The condition holds when nothing is written. */
+/* True when the condition holds in an empty document. */
 static bool holds_by_default(const struct field_table *table, const struct field *row, const char *when) {
   void *object = calloc(1, table->size);
   if (!object)
     return false;
   field_defaults(table, object);
   struct field probe = {.path = "", .when = when};
-  /* Only this link counts here: an ancestor's condition has its own clause. */
+  /* Only this link counts: the controlling row's own condition has its own clause. */
   struct field alone = *row;
   alone.when = NULL;
   const struct field_table small = {.rows = &alone, .count = 1, .size = table->size};
@@ -263,7 +282,34 @@ static bool holds_by_default(const struct field_table *table, const struct field
   return holds;
 }
 
-/* if/then clauses for `when` conditions, as an allOf array's items (comma-separated); returns how many. */
+/* "The condition holds, or none of the rows that rest on it is given": an if/then clause, or if/else when the condition
+ * holds by default, so that a document without the controlling key is judged by its default. */
+static void write_condition(const struct field_table *table, const struct field *control, const char *when, int indent,
+                            FILE *out) {
+  const bool holds = holds_by_default(table, control, when);
+  margin(indent, out);
+  fputs("{\"if\": ", out);
+  int opened = descend(control->path, true, out);
+  values(control, strchr(when, '=') + 1, holds, out);
+  close_braces(opened, out);
+  fprintf(out, ", \"%s\": {\"allOf\": [", holds ? "then" : "else");
+
+  bool first = true;
+  for (size_t k = 0; k < table->count; k++) {
+    if (!rests_on(table, &table->rows[k], when))
+      continue;
+    if (!first)
+      fputc(',', out);
+    first = false;
+    margin(indent + 1, out);
+    opened = descend(table->rows[k].path, false, out);
+    fputs("false", out);
+    close_braces(opened, out);
+  }
+  fputs("]}}", out);
+}
+
+/* One clause per condition, as an allOf array's items; returns how many. */
 static int conditions(const struct field_table *table, int indent, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
@@ -274,28 +320,9 @@ static int conditions(const struct field_table *table, int indent, FILE *out) {
       seen = table->rows[j].when && strcmp(table->rows[j].when, when) == 0;
     if (!control || seen)
       continue;
-    bool holds = holds_by_default(table, control, when);
     if (count++)
       fputc(',', out);
-    margin(indent, out);
-    fputs("{\"if\": ", out);
-    int opened = descend(control->path, true, out);
-    values(control, strchr(when, '=') + 1, holds, out);
-    close_braces(opened, out);
-    fprintf(out, ", \"%s\": {\"allOf\": [", holds ? "then" : "else");
-    bool first = true;
-    for (size_t k = 0; k < table->count; k++) {
-      if (!rests_on(table, &table->rows[k], when))
-        continue;
-      if (!first)
-        fputc(',', out);
-      first = false;
-      margin(indent + 1, out);
-      opened = descend(table->rows[k].path, false, out);
-      fputs("false", out);
-      close_braces(opened, out);
-    }
-    fputs("]}}", out);
+    write_condition(table, control, when, indent, out);
   }
   return count;
 }

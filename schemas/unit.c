@@ -58,7 +58,7 @@ static const struct prefix {
 };
 enum { PREFIXES = sizeof prefixes / sizeof prefixes[0] };
 
-/* What people write, and what it is called here. */
+/* Spellings that people use, and the unit meant. */
 static const char *const habits[][2] = {
     {"kph", "km/h"},    {"kmh", "km/h"},    {"kmph", "km/h"},    {"mph", "km/h"},    {"sec", "s"},
     {"secs", "s"},      {"second", "s"},    {"seconds", "s"},    {"msec", "ms"},     {"usec", "us"},
@@ -261,36 +261,43 @@ static status factor(struct parser *p, struct unit *unit) {
   if (length == 0 && *name == 0)
     return status_fail(p->error, STATUS_CONTENT, "unit '%.*s' ends too early", QUOTE, p->whole);
   if (length == 0)
-    return status_fail(p->error, STATUS_CONTENT, "unexpected '%.*s' where a unit such as m/s should stand", QUOTE,
-                       name);
+    return status_fail(p->error, STATUS_CONTENT, "unexpected '%.*s'; expected a unit such as m/s", QUOTE, name);
   return known(name, length, unit) ? STATUS_OK : unknown(p, name, length);
+}
+
+static void skip_spaces(struct parser *p) {
+  while (*p->at == ' ')
+    p->at++;
+}
+
+/* A name or parenthesis with its power, multiplied or divided into *unit. */
+static status term(struct parser *p, struct unit *unit, bool divide) {
+  struct unit next;
+  int exponent = 1;
+  status code = factor(p, &next);
+  if (!code)
+    code = power(p, &exponent);
+  return code ? code : multiply(p, unit, &next, divide ? -exponent : exponent);
 }
 
 static status product(struct parser *p, struct unit *unit) {
   *unit = one;
   bool divided = false, divide = false;
   for (;;) {
-    struct unit next;
-    int exponent;
-    while (*p->at == ' ')
-      p->at++;
-    status code = factor(p, &next);
-    if (!code)
-      code = power(p, &exponent);
-    if (!code)
-      code = multiply(p, unit, &next, divide ? -exponent : exponent);
+    skip_spaces(p);
+    status code = term(p, unit, divide);
     if (code)
       return code;
-    while (*p->at == ' ')
-      p->at++;
+    skip_spaces(p);
     if (*p->at == 0 || *p->at == ')')
       return STATUS_OK;
+
     divide = *p->at == '/';
     if (divide || *p->at == '*' || *p->at == '.')
       p->at++;
     if (divided && !divide)
       return status_fail(p->error, STATUS_CONTENT,
-                         "unit '%.*s' is ambiguous: put what stands below the '/' in parentheses, such as J/(kg K)",
+                         "unit '%.*s' is ambiguous: put the factors below the '/' in parentheses, such as J/(kg K)",
                          QUOTE, p->whole);
     divided = divided || divide;
   }

@@ -269,7 +269,7 @@ static void each_error_says_this(void **state) {
       {"name: *nowhere\n", "a.yaml:1:7: error: name: alias '*nowhere' has no anchor '&nowhere' before it\n"
                            "  name: *nowhere\n"
                            "        ^~~~~~~~"},
-      {"note: &a [1, *a]\n", "a.yaml:1:14: error: note[1]: alias '*a' stands inside what it refers to\n"
+      {"note: &a [1, *a]\n", "a.yaml:1:14: error: note[1]: alias '*a' is inside what it refers to\n"
                              "  note: &a [1, *a]\n"
                              "               ^~"},
       {"name: !!str x\n", "a.yaml:1:13: error: name: a tag; write the value without '!'\n"
