@@ -8,20 +8,21 @@
 #SBATCH --open-mode=append
 # One campaign over the tasks of a job: `sbatch slurm.sh campaign.yaml`.
 #
-# Five minutes before the time limit Slurm sends SIGUSR1 to the ranks: no new runs, the running ones finish (two minutes
-# at most), all is committed, and clast ends with 75, "stopped, the same command resumes". The job then queues itself
-# again, and the next one goes on from the store. Not tried on a real cluster yet. Sites differ in whether srun passes 75
-# on after a signal; a rank killed by one shows as 128 + its number, which is taken as "go on" too. `clast status` tells.
+# Five minutes before the time limit Slurm sends SIGUSR1 to the ranks. clast then starts no new runs, waits for the
+# running ones (two minutes at most), commits all results and ends with 75: "stopped, the same command resumes". The job
+# queues itself again, and the next one goes on from the store. `clast status` shows how far it is.
+# This script has not been tried on a real cluster yet. Sites differ in whether srun passes 75 on after a signal. A rank
+# that a signal killed shows as 128 + its number; the script requeues then, too.
 campaign=${1:?usage: sbatch slurm.sh campaign.yaml}
 export OMP_NUM_THREADS=1 # one process per core; the farm is the parallelism
 
 srun --mpi=pmix --cpu-bind=cores clast run "$campaign"
 status=$?
 
-# 64-66: the command line or the files are wrong, 0: done, 1: done with failed runs: nothing that a requeue would mend.
+# A requeue does not help with 0 (done), 1 (done, with failed runs) and 64 to 66 (wrong command line or files).
 if [ "$status" -eq 75 ] || [ "$status" -gt 128 ]; then
   restarts=${SLURM_RESTART_COUNT:-0}
-  if [ "$restarts" -lt 20 ]; then # an end, should every start be killed at once
+  if [ "$restarts" -lt 20 ]; then # a bound, in case every start is killed at once
     scontrol requeue "$SLURM_JOB_ID"
   fi
 fi
