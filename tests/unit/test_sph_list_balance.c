@@ -10,7 +10,7 @@
 
 #include <cmocka.h>
 
-#include "engine/sph/pairs/list_balance.h"
+#include "engine/sph/pairs/neighbours.h"
 #include "tests/support/noise.h"
 
 enum { SIDE = 11, MOST = SIDE * SIDE * SIDE };

@@ -1,6 +1,11 @@
-/* Lists of neighbours by chunks of particles that stand together in space: each has places ("slots") for its own
- * particles and, behind them, for the foreign ones that they meet, so that what a chunk needs of them all fits into a
- * core's cache. */
+/* Neighbour lists by chunks of particles that are together in space. A chunk has slots, places of records, for its own
+ * particles and behind them for its halo: the particles of later chunks in its lists. So all that a chunk needs while
+ * it is summed fits into the cache of a core.
+ *
+ *   slots   | own particles (SPH_CHUNK of them) | halo, ascending particle numbers |
+ *   lists   | list 0 | list 1 | ...               slots, padded to whole batches (neighbours.h, list_balance.c)
+ *
+ * The halo of a chunk consists of stretches, each of them a part of one later chunk. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_CHUNKS_H
 #define CLAST_ENGINE_SPH_PAIRS_CHUNKS_H
 
@@ -13,39 +18,41 @@
 
 enum { SPH_CHUNK = 4096 };
 
-/* A stretch of a chunk's `other`: those that belong to another chunk. */
-struct sph_chunk_share {
+/* Halo particles first .. first + count - 1 of chunk `chunk`, all of which belong to one other chunk. */
+struct sph_chunk_stretch {
   uint32_t chunk, first, count;
 };
 
 struct sph_chunk {
-  size_t first, own, others;        /* others: how many foreign ones, */
-  uint32_t *other;                  /* their numbers: ascending, all above the chunk's own */
-  struct sph_neighbour_lists lists; /* of slots; whole batches (exchange.h) */
-  size_t others_before;             /* others of all chunks before it */
-  size_t shares; /* which particles of this chunk are others of which chunks, in the order of chunks: how many, */
-  const struct sph_chunk_share *share;
-  size_t other_capacity;
-  atomic_bool summed, taken; /* in this pass of the pair loop */
+  size_t first, own;                /* first particle, number of particles */
+  size_t halo, halo_before;         /* size of the halo; of those of all chunks before */
+  uint32_t *halo_particle;          /* their numbers: ascending, all above the chunk's own */
+  size_t halo_capacity;             /* of halo_particle */
+  struct sph_neighbour_lists lists; /* entries are slots */
+  /* The stretches of other chunks' halos that are this chunk's own particles, in the order of those chunks. */
+  const struct sph_chunk_stretch *stretch;
+  size_t stretches;
+  atomic_bool summed, delivered; /* in this pass of the pair loop */
 };
 
 struct sph_chunks {
-  size_t count, share, most_slots,
-      others; /* most_slots: own and others of one chunk; others: of all; 0 both before the first listing */
+  size_t count, per_list; /* chunks; particles that share a list */
+  size_t most_slots;      /* own and halo of one chunk; 0 before the first lists are made */
+  size_t halos;           /* halo particles of all chunks */
   struct sph_chunk *chunk;
   struct sph_neighbours *neighbours;
-  uint32_t *start;                /* of all lists */
-  struct sph_chunk_share *shares; /* of all chunks */
-  size_t share_capacity;
+  uint32_t *start;                   /* `start` and `count` of all chunks' lists */
+  struct sph_chunk_stretch *stretch; /* of all chunks */
+  size_t stretch_capacity;
 };
 
-/* For n particles; `share`: as for sph_neighbours_create. STATUS_MEMORY: then nothing is left to free. */
-status sph_chunks_create(size_t n, size_t share, const struct sph_pair_kernels *kernels, struct sph_chunks *out,
+/* For n particles; `per_list` as for sph_neighbours_create. STATUS_MEMORY: nothing is left to free. */
+status sph_chunks_create(size_t n, size_t per_list, const struct sph_pair_kernels *kernels, struct sph_chunks *out,
                          struct error *error);
 void sph_chunks_clear(struct sph_chunks *chunks);
 size_t sph_chunks_bytes(const struct sph_chunks *chunks);
 
-/* New lists, as sph_neighbours_find says. */
+/* Makes new lists. Arguments and errors as for sph_neighbours_find. */
 status sph_chunks_list(struct sph_chunks *chunks, size_t n, const double *x, const double *y, const double *z,
                        const double *reach, const double periodic[3], int threads, struct error *error);
 

@@ -1,115 +1,139 @@
-#include "engine/sph/pairs/list_balance.h"
-
+/* Balances lists of neighbours so that most of them fill whole batches.
+ *
+ * A list is summed in batches of as many neighbours as a vector register has lanes, and a partly filled last batch
+ * wastes lanes: one in six where two particles share a list (batches of 16), one in nine where none do (8). But a pair
+ * may stand in the list of either partner. So each list passes the neighbours beyond its last full batch of
+ * SPH_LIST_ALIGN to the lists of those neighbours, if they come later in the chunk:
+ * A list of 18, for example, keeps 16 and becomes an entry in the lists of two of its neighbours.
+ *
+ * Lists shared by two particles become shorter as well: if a list holds both particles of a later list, each as a
+ * neighbour of the same one particle p, then p as a single entry of the later list stands for both pairs. */
 #include <stdlib.h>
 #include <string.h>
 
-enum { BATCH = SPH_LIST_ALIGN, MOST = PAIR_GROUP_FLOAT, BOTH = 3 };
-_Static_assert(PAIR_GROUP_DOUBLE == 1 && MOST == 2, "of a list's two particles an entry's tags say which of them");
+#include "engine/sph/pairs/neighbours.h"
 
-/* What lists have been handed so far: who, to which list, linked by list. */
-struct handed {
-  uint32_t *who, *to, *next, *first; /* first: by list; 0 is the end */
+enum { BATCH = SPH_LIST_ALIGN, MOST = PAIR_GROUP_FLOAT, BOTH = 3 };
+_Static_assert(PAIR_GROUP_DOUBLE == 1 && MOST == 2, "the tags of an entry name the two particles of a list");
+
+/* Entries passed to later lists so far: particle who[e] goes to list to[e]. Those of one list are linked: first[list],
+ * then next[e]; 0 ends the chain. */
+struct passed {
+  uint32_t *who, *to, *next, *first;
   uint32_t count;
 };
 
-/* All this is without branches where they would be guessed wrong half the time: when `given`, `who` goes into a list.
- * Returns how many are handed over by then. */
-static inline uint32_t hand_over(const struct handed *h, uint32_t count, size_t list, size_t who, bool given) {
-  h->who[count + 1] = (uint32_t)who;
-  h->to[count + 1] = (uint32_t)list;
-  return count + given;
+/* The loops that pass entries have no branches that a processor would guess wrong half the time: an entry is always
+ * written, but counted only if it is `chosen`. Returns the new count. */
+static inline uint32_t pass(const struct passed *p, uint32_t count, size_t list, size_t who, bool chosen) {
+  p->who[count + 1] = (uint32_t)who;
+  p->to[count + 1] = (uint32_t)list;
+  return count + chosen;
 }
 
 static inline bool share_list(uint32_t a, uint32_t b) {
   return (a & SPH_NUMBER) / MOST == (b & SPH_NUMBER) / MOST;
 }
 
-/* Lists shared by two: both particles of a later list that are neighbours of one of `low`, low + 1 alone: there that
- * one stands for both of them. Returns how many others there are, in order, at `to`. */
-static size_t shorten(const uint32_t *from, uint32_t *to, size_t count, size_t own, size_t low, struct handed *h) {
+/* For lists shared by two: passes both particles of a later list if each is a neighbour of the same one of `low` and
+ * low + 1. Writes the entries that stay to `to`, in order, and returns their number. */
+static size_t pass_doubles(const uint32_t *from, uint32_t *to, size_t count, size_t own, size_t low, struct passed *p) {
   size_t kept = 0;
-  uint32_t handed = h->count;
+  uint32_t passed = p->count;
   for (uint32_t k = 0, before = UINT32_MAX, its; k < count; k++, before = its) {
     its = from[k];
-    const uint32_t number = its & SPH_NUMBER,
-                   next = k + 1 < count ? from[k + 1] : UINT32_MAX; /* shares a list with nobody */
+    const uint32_t number = its & SPH_NUMBER;
+    const uint32_t next = k + 1 < count ? from[k + 1] : UINT32_MAX; /* shares a list with nobody */
     const bool first = share_list(its, next), last = share_list(its, before);
     const uint32_t whose = (its | (first ? next : 0) | (last ? before : 0)) >> SPH_TAGS;
     const bool go = (first | last) & (number >= low + MOST) & (number < own) & (whose != BOTH);
-    handed = hand_over(h, handed, number / MOST, low + whose / 2, go & first);
+    passed = pass(p, passed, number / MOST, low + whose / 2, go & first);
     to[kept] = its;
     kept += !go;
   }
-  h->count = handed;
+  p->count = passed;
   return kept;
 }
 
-/* `excess` of the neighbours, or fewer, go to later lists; with all that stand in one list with them, for a pair of
- * lists is on one side as a whole. Returns how many others there are, in order, at `to`, which may be `from`. */
-static inline size_t shed(const size_t share, const uint32_t *from, uint32_t *to, size_t count, size_t own, size_t low,
-                          size_t excess, struct handed *h) {
+/* Passes up to `excess` neighbours to later lists. Particles that share a list are passed together. Writes the entries
+ * that stay to `to`, which may be `from`, in order, and returns their number. */
+static inline size_t pass_excess(const size_t per_list, const uint32_t *from, uint32_t *to, size_t count, size_t own,
+                                 size_t low, size_t excess, struct passed *p) {
   size_t kept = 0, k = 0;
-  uint32_t handed = h->count;
-  for (size_t size; k < count && excess && (from[k] & SPH_NUMBER) < own;
-       k += size) { /* foreign ones stand at the end */
+  uint32_t passed = p->count;
+  for (size_t size; k < count && excess && (from[k] & SPH_NUMBER) < own; k += size) { /* the halo is at the end */
     const uint32_t its = from[k], number = its & SPH_NUMBER;
-    size = share == 2 && k + 1 < count && share_list(its, from[k + 1]) ? 2 : 1;
-    const uint32_t other = from[k + size - 1], whose = share == 1 ? 1 : (its | other) >> SPH_TAGS;
-    const bool go = number >= low + share && size <= excess;
-    for (uint32_t m = 0; m < share; m++)
-      handed = hand_over(h, handed, number / share, low + m, go & whose >> m & 1);
-    to[kept] = its, to[kept + size - 1] = other;
+    size = per_list == 2 && k + 1 < count && share_list(its, from[k + 1]) ? 2 : 1;
+    const uint32_t other = from[k + size - 1], whose = per_list == 1 ? 1 : (its | other) >> SPH_TAGS;
+    const bool go = number >= low + per_list && size <= excess;
+    for (uint32_t m = 0; m < per_list; m++)
+      passed = pass(p, passed, number / per_list, low + m, go & whose >> m & 1);
+    to[kept] = its;
+    to[kept + size - 1] = other;
     kept += go ? 0 : size;
     excess -= go ? size : 0;
   }
-  h->count = handed;
+  p->count = passed;
   memmove(to + kept, from + k, (count - k) * sizeof *to);
   return kept + count - k;
 }
 
-bool sph_list_balance(size_t own, size_t share, struct sph_neighbour_lists *lists) {
-  const size_t count = (own + share - 1) / share,
-               most = share * (lists->start[count] + 1) + 1; /* that are handed over */
-  const size_t room = share * lists->start[count] + (count + 1) * BATCH;
-  uint32_t *fresh = aligned_alloc(64, (room * sizeof *fresh + 63) / 64 * 64), used = 0;
-  struct handed h = {.who = malloc(3 * most * sizeof *h.who), .first = calloc(count + 1, sizeof *h.first)};
-  const bool enough = fresh && h.who && h.first;
-  h.to = h.who + (enough ? most : 0), h.next = h.to + (enough ? most : 0);
-  for (size_t list = 0; enough && list < count; list++) {
-    uint32_t *to = fresh + used, more = 0;
-    for (uint32_t k = h.first[list]; k; k = h.next[k])
-      to[more++] = h.who[k];
-    const uint32_t *from = lists->j + lists->start[list];
-    const size_t count_before = lists->count[list];
-    uint32_t *j = to + more, before = h.count;
-    size_t rest;
-    if (share == 1) {
-      rest = more + shed(1, from, j, count_before, own, list, (more + count_before) % BATCH, &h);
-    } else {
-      rest = shorten(from, j, count_before, own, list * share, &h);
-      rest = more + shed(2, j, j, rest, own, list * share, (more + rest) % BATCH, &h);
-    }
-    while (before++ < h.count) {
-      h.next[before] = h.first[h.to[before]];
-      h.first[h.to[before]] = before;
-    }
-    for (size_t k = more; share > 1 && k < rest; k++)
+/* Makes the new list at `to`: the particles that earlier lists passed to it, then what stays of its own entries.
+ * Returns its length. */
+static size_t balance_list(const struct sph_neighbour_lists *lists, size_t list, size_t own, size_t per_list,
+                           uint32_t *to, struct passed *p) {
+  const uint32_t *from = lists->j + lists->start[list];
+  const size_t count = lists->count[list], low = list * per_list;
+  size_t more = 0, kept;
+  uint32_t before = p->count;
+  for (uint32_t k = p->first[list]; k; k = p->next[k])
+    to[more++] = p->who[k];
+
+  if (per_list == 1) {
+    kept = pass_excess(1, from, to + more, count, own, low, (more + count) % BATCH, p);
+  } else {
+    kept = pass_doubles(from, to + more, count, own, low, p);
+    kept = pass_excess(2, to + more, to + more, kept, own, low, (more + kept) % BATCH, p);
+    for (size_t k = more; k < more + kept; k++)
       to[k] &= SPH_NUMBER;
+  }
+
+  while (before++ < p->count) { /* link the entries just passed */
+    p->next[before] = p->first[p->to[before]];
+    p->first[p->to[before]] = before;
+  }
+  return more + kept;
+}
+
+bool sph_list_balance(size_t own, size_t per_list, struct sph_neighbour_lists *lists) {
+  const size_t count = (own + per_list - 1) / per_list;
+  const size_t most = per_list * (lists->start[count] + 1) + 1; /* entries that may be passed */
+  const size_t capacity = per_list * lists->start[count] + (count + 1) * BATCH;
+  uint32_t *fresh = aligned_alloc(64, (capacity * sizeof *fresh + 63) / 64 * 64), used = 0;
+  struct passed p = {.who = malloc(3 * most * sizeof *p.who), .first = calloc(count + 1, sizeof *p.first)};
+  const bool enough = fresh && p.who && p.first;
+  if (!enough)
+    goto cleanup;
+  p.to = p.who + most;
+  p.next = p.to + most;
+
+  for (size_t list = 0; list < count; list++) {
+    const size_t length = balance_list(lists, list, own, per_list, fresh + used, &p);
     lists->start[list] = used;
-    lists->count[list] = (uint32_t)rest;
-    used += (uint32_t)rest;
+    lists->count[list] = (uint32_t)length;
+    used += (uint32_t)length;
     for (; used % BATCH; used++)
-      fresh[used] = (uint32_t)(list * share);
+      fresh[used] = (uint32_t)(list * per_list);
   }
-  if (enough) {
-    lists->start[count] = used;
-    free(lists->j);
-    lists->j = fresh;
-    lists->capacity = room;
-    fresh = NULL;
-  }
+  lists->start[count] = used;
+  free(lists->j);
+  lists->j = fresh;
+  lists->capacity = capacity;
+  fresh = NULL;
+
+cleanup:
   free(fresh);
-  free(h.first);
-  free(h.who);
+  free(p.first);
+  free(p.who);
   return enough;
 }

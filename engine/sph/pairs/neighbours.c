@@ -1,23 +1,31 @@
+/* The tree of boxes, and the search in it (neighbours.h).
+ *
+ *   level 2    [........]                     nodes of eight boxes side by side
+ *   level 1    [........][........] ...       each box of a level holds one node of the level below
+ *   level 0    [........][........] ...       leaf boxes of up to LEAF particles; a node belongs to one chunk
+ *
+ * The top level has at most TOP nodes. A search starts with all of them; the kernels test eight boxes at a time. */
 #include "engine/sph/pairs/neighbours.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { GROUP = 16 /* a multiple of any share */, EIGHT = 8, LEVELS = 12, TOP = 8, LINE = 64 };
-static const double widest = 4; /* of a group, in reaches: a fragment far off stands alone and does not widen a box */
+enum { LEAF = 16 /* a multiple of any per_list */, BOXES = 8, LEVELS = 12, TOP = 8, LINE = 64 };
+/* Largest side of a leaf box, in reaches: a fragment far away gets a leaf of its own and widens no box. */
+static const double widest = 4;
+static const struct sph_near_box no_box = {{NAN, NAN, NAN}, {0}, 0};
 
-/* Level 0: groups of particles, in eights that belong to one chunk. Level l + 1: eights of level l. */
 struct sph_neighbours {
   const struct sph_pair_kernels *kernels;
-  size_t chunk, chunks, share;
-  size_t levels, eights[LEVELS]; /* how many there are of each */
-  size_t first_eight[LEVELS];    /* where they stand in `box` */
+  size_t chunk, chunks, per_list;
+  size_t levels, nodes[LEVELS]; /* number of nodes on each level */
+  size_t level_first[LEVELS];   /* the first node of a level in `box` */
   struct sph_near_boxes *box;
-  size_t *chunk_at;      /* by chunk: its first eight of groups */
-  uint32_t *group_first; /* by group, those that are not there included */
-  uint8_t *group_size;
-  size_t box_capacity, group_capacity, size_capacity;
+  size_t *chunk_node;   /* by chunk: its first node on level 0 */
+  uint32_t *leaf_first; /* by leaf, empty ones included: first particle and number of particles */
+  uint8_t *leaf_size;
+  size_t box_capacity, leaf_capacity, size_capacity;
   struct sph_near_particles particles;
   double period[3];
 };
@@ -37,33 +45,34 @@ static bool grow(void **array, size_t *capacity, size_t wanted, size_t keep, siz
   return true;
 }
 
-struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t share,
+struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t per_list,
                                              const struct sph_pair_kernels *kernels) {
   struct sph_neighbours *s = calloc(1, sizeof *s);
   if (!s)
     return NULL;
   s->kernels = kernels;
   s->chunk = chunk;
-  s->share = share;
-  s->chunk_at = calloc(n / chunk + 2, sizeof *s->chunk_at);
-  if (s->chunk_at)
-    return s;
-  free(s);
-  return NULL;
+  s->per_list = per_list;
+  s->chunk_node = calloc(n / chunk + 2, sizeof *s->chunk_node);
+  if (!s->chunk_node) {
+    free(s);
+    return NULL;
+  }
+  return s;
 }
 
 void sph_neighbours_free(struct sph_neighbours *s) {
   if (!s)
     return;
   free(s->box);
-  free(s->chunk_at);
-  free(s->group_first);
-  free(s->group_size);
+  free(s->chunk_node);
+  free(s->leaf_first);
+  free(s->leaf_size);
   free(s);
 }
 
 size_t sph_neighbours_bytes(const struct sph_neighbours *s) {
-  return sizeof *s + s->box_capacity * sizeof *s->box + s->group_capacity * sizeof *s->group_first + s->size_capacity;
+  return sizeof *s + s->box_capacity * sizeof *s->box + s->leaf_capacity * sizeof *s->leaf_first + s->size_capacity;
 }
 
 struct bounds {
@@ -71,6 +80,7 @@ struct bounds {
 };
 static const struct bounds nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
 
+/* Bounds that also hold particle i. */
 static struct bounds widen(struct bounds b, const struct sph_near_particles *p, size_t i) {
   b.reach = p->reach[i] > b.reach ? p->reach[i] : b.reach;
   for (int d = 0; d < 3; d++) {
@@ -86,14 +96,15 @@ static bool is_wide(const struct bounds *b) {
   return b->high[0] - b->low[0] > most || b->high[1] - b->low[1] > most || b->high[2] - b->low[2] > most;
 }
 
-/* The end of the group that begins at `first`. Those that share a list stay together, but when they are far apart. */
-static size_t take_group(const struct sph_neighbours *s, size_t first, size_t last, struct bounds *out) {
-  struct bounds whole = nothing, all = nothing; /* of full shares, of all so far */
-  const size_t full = first - first % s->share + GROUP;
+/* The end of the leaf that begins at `first`, and its bounds. Particles that share a list stay in one leaf unless they
+ * are far apart. */
+static size_t take_leaf(const struct sph_neighbours *s, size_t first, size_t last, struct bounds *out) {
+  struct bounds whole = nothing, all = nothing; /* of complete lists' particles; of all so far */
+  const size_t full = first - first % s->per_list + LEAF;
   size_t end = first;
   for (; end < last && end < full; end++) {
     const struct bounds more = widen(all, &s->particles, end);
-    const size_t cut = end - end % s->share;
+    const size_t cut = end - end % s->per_list;
     if (end == cut)
       whole = all;
     if (end > first && is_wide(&more)) {
@@ -106,8 +117,7 @@ static size_t take_group(const struct sph_neighbours *s, size_t first, size_t la
   return end;
 }
 
-/* Everything within bounds, rounding allowed for. Nothing at all: NaN, which is near nothing; what is beyond all
- * measure is near everything. */
+/* The box round some bounds, enlarged by rounding errors. A box beyond all measure is near everything. */
 static struct sph_near_box make_box(const struct bounds *b) {
   struct sph_near_box box = {.reach = b->reach * (1 + 1e-12)};
   for (int d = 0; d < 3; d++) {
@@ -121,51 +131,54 @@ static struct sph_near_box make_box(const struct bounds *b) {
 }
 
 static void put(struct sph_near_boxes *to, size_t lane, const struct sph_near_box *box) {
-  for (int d = 0; d < 3; d++)
-    to->middle[d][lane] = box->middle[d], to->half[d][lane] = box->half[d];
+  for (int d = 0; d < 3; d++) {
+    to->middle[d][lane] = box->middle[d];
+    to->half[d][lane] = box->half[d];
+  }
   to->reach[lane] = box->reach;
 }
 static struct sph_near_box get(const struct sph_near_boxes *from, size_t lane) {
   struct sph_near_box box = {.reach = from->reach[lane]};
-  for (int d = 0; d < 3; d++)
-    box.middle[d] = from->middle[d][lane], box.half[d] = from->half[d][lane];
+  for (int d = 0; d < 3; d++) {
+    box.middle[d] = from->middle[d][lane];
+    box.half[d] = from->half[d][lane];
+  }
   return box;
 }
 
-static size_t count_groups(const struct sph_neighbours *s, size_t first, size_t last) {
+static size_t count_leaves(const struct sph_neighbours *s, size_t first, size_t last) {
   struct bounds b;
   size_t count = 0;
   for (; first < last; count++)
-    first = take_group(s, first, last, &b);
+    first = take_leaf(s, first, last, &b);
   return count;
 }
 
-static void make_groups(struct sph_neighbours *s, size_t chunk, size_t last) {
-  const struct sph_near_box none = {{NAN, NAN, NAN}, {0}, 0};
+static void make_leaves(struct sph_neighbours *s, size_t chunk, size_t last) {
   size_t first = chunk * s->chunk;
-  for (size_t g = EIGHT * s->chunk_at[chunk]; g < EIGHT * s->chunk_at[chunk + 1]; g++) {
+  for (size_t g = BOXES * s->chunk_node[chunk]; g < BOXES * s->chunk_node[chunk + 1]; g++) {
     struct bounds b;
-    struct sph_near_box box = none;
-    s->group_first[g] = (uint32_t)first;
-    s->group_size[g] = 0;
+    struct sph_near_box box = no_box;
+    s->leaf_first[g] = (uint32_t)first;
+    s->leaf_size[g] = 0;
     if (first < last) {
-      const size_t end = take_group(s, first, last, &b);
-      s->group_size[g] = (uint8_t)(end - first);
+      const size_t end = take_leaf(s, first, last, &b);
+      s->leaf_size[g] = (uint8_t)(end - first);
       first = end;
       box = make_box(&b);
       for (int d = 0; d < 3; d++)
         if (!(b.low[d] <= b.high[d]))
-          box = none;
+          box = no_box;
     }
-    put(&s->box[g / EIGHT], g % EIGHT, &box);
+    put(&s->box[g / BOXES], g % BOXES, &box);
   }
 }
 
-/* One box round eight. */
-static struct sph_near_box surround(const struct sph_near_boxes *eight) {
+/* One box round the eight of a node. */
+static struct sph_near_box surround(const struct sph_near_boxes *node) {
   struct bounds b = nothing;
-  for (size_t lane = 0; lane < EIGHT; lane++) {
-    const struct sph_near_box one = get(eight, lane);
+  for (size_t lane = 0; lane < BOXES; lane++) {
+    const struct sph_near_box one = get(node, lane);
     if (isnan(one.middle[0]))
       continue;
     if (isinf(one.reach))
@@ -176,15 +189,14 @@ static struct sph_near_box surround(const struct sph_near_boxes *eight) {
       b.high[d] = fmax(b.high[d], one.middle[d] + one.half[d]);
     }
   }
-  return b.low[0] <= b.high[0] ? make_box(&b) : (struct sph_near_box){{NAN, NAN, NAN}, {0}, 0};
+  return b.low[0] <= b.high[0] ? make_box(&b) : no_box;
 }
 
 static void make_level(struct sph_neighbours *s, size_t level) {
-  const struct sph_near_box none = {{NAN, NAN, NAN}, {0}, 0};
-  const size_t below = s->eights[level - 1];
-  for (size_t k = 0; k < EIGHT * s->eights[level]; k++) {
-    const struct sph_near_box box = k < below ? surround(&s->box[s->first_eight[level - 1] + k]) : none;
-    put(&s->box[s->first_eight[level] + k / EIGHT], k % EIGHT, &box);
+  const size_t below = s->nodes[level - 1];
+  for (size_t k = 0; k < BOXES * s->nodes[level]; k++) {
+    const struct sph_near_box box = k < below ? surround(&s->box[s->level_first[level - 1] + k]) : no_box;
+    put(&s->box[s->level_first[level] + k / BOXES], k % BOXES, &box);
   }
 }
 
@@ -220,75 +232,75 @@ status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, 
 #endif
   for (size_t k = 0; k < s->chunks; k++) {
     const size_t last = (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n;
-    s->chunk_at[k + 1] = (count_groups(s, k * s->chunk, last) + EIGHT - 1) / EIGHT;
+    s->chunk_node[k + 1] = (count_leaves(s, k * s->chunk, last) + BOXES - 1) / BOXES;
   }
   for (size_t k = 0; k < s->chunks; k++)
-    s->chunk_at[k + 1] += s->chunk_at[k];
+    s->chunk_node[k + 1] += s->chunk_node[k];
   size_t boxes = 0;
   s->levels = 0;
-  for (size_t count = s->chunk_at[s->chunks]; s->levels == 0 || s->eights[s->levels - 1] > TOP;
-       count = (count + EIGHT - 1) / EIGHT) {
-    s->eights[s->levels] = count;
-    s->first_eight[s->levels++] = boxes;
+  for (size_t count = s->chunk_node[s->chunks]; s->levels == 0 || s->nodes[s->levels - 1] > TOP;
+       count = (count + BOXES - 1) / BOXES) {
+    s->nodes[s->levels] = count;
+    s->level_first[s->levels++] = boxes;
     boxes += count;
   }
-  const size_t groups = EIGHT * s->eights[0];
+  const size_t leaves = BOXES * s->nodes[0];
   if (!grow((void **)&s->box, &s->box_capacity, boxes, 0, sizeof *s->box) ||
-      !grow((void **)&s->group_first, &s->group_capacity, groups, 0, sizeof *s->group_first) ||
-      !grow((void **)&s->group_size, &s->size_capacity, groups, 0, sizeof *s->group_size))
+      !grow((void **)&s->leaf_first, &s->leaf_capacity, leaves, 0, sizeof *s->leaf_first) ||
+      !grow((void **)&s->leaf_size, &s->size_capacity, leaves, 0, sizeof *s->leaf_size))
     return status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
-  s->particles.first = s->group_first;
-  s->particles.size = s->group_size;
+  s->particles.first = s->leaf_first;
+  s->particles.size = s->leaf_size;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
 #endif
   for (size_t k = 0; k < s->chunks; k++)
-    make_groups(s, k, (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n);
+    make_leaves(s, k, (k + 1) * s->chunk < n ? (k + 1) * s->chunk : n);
   for (size_t level = 1; level < s->levels; level++)
     make_level(s, level);
   return STATUS_OK;
 }
 
-/* What a search has found so far. */
+/* Working memory of a search. */
 struct search {
-  uint32_t *eight[2], *group; /* numbers of boxes */
-  size_t eight_capacity[2], group_capacity;
+  uint32_t *node[2], *leaf; /* nodes of two levels, leaves */
+  size_t node_capacity[2], leaf_capacity;
   double *real;     /* x y z reach of candidates, `row` each */
-  uint32_t *number; /* of candidates: from the chunk's first one on */
-  uint32_t *joint;  /* a list that began in the group before */
-  size_t real_capacity, number_capacity, joint_capacity;
+  uint32_t *number; /* of candidates, counted from the first of the chunk */
+  uint32_t *joined; /* a list whose particles are in two leaves */
+  size_t real_capacity, number_capacity, joined_capacity;
 };
 
-/* The eights of groups that may hold neighbours of the groups of `eight`, that one first. */
-static bool find_eights(const struct sph_neighbours *s, size_t eight, struct search *w, const uint32_t **found,
-                        size_t *count) {
-  const struct sph_near_box own = surround(&s->box[eight]);
-  size_t used = s->eights[s->levels - 1], from = 0;
-  if (!grow((void **)&w->eight[0], &w->eight_capacity[0], used, 0, sizeof **w->eight))
+/* Finds the nodes of level 0, from `node` on, that may hold neighbours of its leaves. */
+static bool find_nodes(const struct sph_neighbours *s, size_t node, struct search *w, const uint32_t **found,
+                       size_t *count) {
+  const struct sph_near_box own = surround(&s->box[node]);
+  size_t used = s->nodes[s->levels - 1], from = 0;
+  if (!grow((void **)&w->node[0], &w->node_capacity[0], used, 0, sizeof **w->node))
     return false;
   for (size_t k = 0; k < used; k++)
-    w->eight[0][k] = (uint32_t)k;
+    w->node[0][k] = (uint32_t)k;
   for (size_t level = s->levels; level-- > 1; from = 1 - from) {
-    const uint32_t lowest = (uint32_t)(eight >> 3 * (level - 1));
-    if (!grow((void **)&w->eight[1 - from], &w->eight_capacity[1 - from], EIGHT * used, 0, sizeof **w->eight))
+    const uint32_t lowest = (uint32_t)(node >> 3 * (level - 1));
+    if (!grow((void **)&w->node[1 - from], &w->node_capacity[1 - from], BOXES * used, 0, sizeof **w->node))
       return false;
-    used = s->kernels->near_boxes(s->box + s->first_eight[level], w->eight[from], used, &own, s->period, lowest,
-                                  w->eight[1 - from]);
+    used = s->kernels->near_boxes(s->box + s->level_first[level], w->node[from], used, &own, s->period, lowest,
+                                  w->node[1 - from]);
   }
-  *found = w->eight[from];
+  *found = w->node[from];
   *count = used;
   return true;
 }
 
-/* Those of the group itself, then all that may be neighbours of one of them. */
-static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t group, const uint32_t *eights,
+/* Finds the candidates of a leaf: its own particles, then all later ones that may be neighbours of one of them. */
+static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t leaf, const uint32_t *nodes,
                             size_t count, struct search *w, double *at[4], size_t *candidates) {
-  const struct sph_near_box own = get(&s->box[group / EIGHT], group % EIGHT);
-  const size_t first = s->group_first[group], size = s->group_size[group];
-  if (!grow((void **)&w->group, &w->group_capacity, EIGHT * count, 0, sizeof *w->group))
+  const struct sph_near_box own = get(&s->box[leaf / BOXES], leaf % BOXES);
+  const size_t first = s->leaf_first[leaf], size = s->leaf_size[leaf];
+  if (!grow((void **)&w->leaf, &w->leaf_capacity, BOXES * count, 0, sizeof *w->leaf))
     return false;
-  const size_t groups = s->kernels->near_boxes(s->box, eights, count, &own, s->period, (uint32_t)group + 1, w->group);
-  const size_t row = (groups + 1) * (GROUP + 1) + EIGHT;
+  const size_t leaves = s->kernels->near_boxes(s->box, nodes, count, &own, s->period, (uint32_t)leaf + 1, w->leaf);
+  const size_t row = (leaves + 1) * (LEAF + 1) + BOXES;
   if (!grow((void **)&w->real, &w->real_capacity, 4 * row, 0, sizeof *w->real) ||
       !grow((void **)&w->number, &w->number_capacity, row, 0, sizeof *w->number))
     return false;
@@ -301,53 +313,52 @@ static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t
   for (size_t k = 0; k < size; k++)
     w->number[k] = (uint32_t)(first + k);
   *candidates = size +
-                s->kernels->near_particles(&s->particles, w->group, groups, &own, s->period, rest, w->number + size);
+                s->kernels->near_particles(&s->particles, w->leaf, leaves, &own, s->period, rest, w->number + size);
   for (size_t k = 0; k < *candidates; k++)
     w->number[k] -= (uint32_t)(chunk * s->chunk);
   for (int d = 0; d < 4; d++)
-    memset(at[d] + *candidates, 0, EIGHT * sizeof *w->real);
-  memset(w->number + *candidates, 0, EIGHT * sizeof *w->number);
+    memset(at[d] + *candidates, 0, BOXES * sizeof *w->real);
+  memset(w->number + *candidates, 0, BOXES * sizeof *w->number);
   return true;
 }
 
-/* Joins two ascending lists, the second of which stands at `more`, in the place of the first; with the tags of both. */
+/* Merges the ascending list `more` into the ascending `list`; an entry of both has the tags of both. */
 static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t *more, size_t more_count,
-                 size_t *joined) {
-  if (!grow((void **)&w->joint, &w->joint_capacity, count + more_count, 0, sizeof *w->joint))
+                 size_t *out_count) {
+  if (!grow((void **)&w->joined, &w->joined_capacity, count + more_count, 0, sizeof *w->joined))
     return false;
   size_t used = 0;
   for (size_t a = 0, b = 0; a < count || b < more_count; used++) {
     const uint32_t left = a < count ? list[a] & SPH_NUMBER : UINT32_MAX,
                    right = b < more_count ? more[b] & SPH_NUMBER : UINT32_MAX;
-    w->joint[used] = (left <= right ? list[a] : 0) | (right <= left ? more[b] : 0);
+    w->joined[used] = (left <= right ? list[a] : 0) | (right <= left ? more[b] : 0);
     a += left <= right;
     b += right <= left;
   }
   if (used)
-    memcpy(list, w->joint, used * sizeof *list);
-  *joined = used;
+    memcpy(list, w->joined, used * sizeof *list);
+  *out_count = used;
   return true;
 }
 
-/* The lists of a group, of which the first may have begun in the group before. */
-static bool list_group(const struct sph_neighbours *s, size_t group, size_t first, double *const at[4],
-                       size_t candidates, struct search *w, struct sph_neighbour_lists *lists, size_t *used) {
-  const size_t size = s->group_size[group], base = s->group_first[group] - first,
-               room = candidates + 2 * SPH_LIST_ALIGN;
-  const size_t needed = *used + (size + 1) * room;
+/* Appends the lists of a leaf. The first of them may have begun in the leaf before. */
+static bool list_leaf(const struct sph_neighbours *s, size_t leaf, size_t first, double *const at[4], size_t candidates,
+                      struct search *w, struct sph_neighbour_lists *lists, size_t *used) {
+  const size_t size = s->leaf_size[leaf], base = s->leaf_first[leaf] - first;
+  const size_t needed = *used + (size + 1) * (candidates + 2 * SPH_LIST_ALIGN);
   if (needed > lists->capacity && !grow((void **)&lists->j, &lists->capacity, 2 * needed, *used, sizeof *lists->j))
     return false;
-  double own[GROUP][4];
+  double own[LEAF][4];
   for (size_t k = 0; k < size; k++)
     for (int d = 0; d < 4; d++)
       own[k][d] = at[d][k];
   for (size_t k = 0, next = 0; k < size; k = next) {
-    const size_t list = (base + k) / s->share, before = (base + k) % s->share;
-    next = k + s->share - before < size ? k + s->share - before : size;
+    const size_t list = (base + k) / s->per_list, before = (base + k) % s->per_list;
+    next = k + s->per_list - before < size ? k + s->per_list - before : size;
     double *const others[4] = {at[0] + k + 1, at[1] + k + 1, at[2] + k + 1, at[3] + k + 1};
     size_t begin = *used,
            count = s->kernels->near_pairs(candidates - k - 1, others, w->number + k + 1, (const double(*)[4])own + k,
-                                          next - k, s->period, s->share > 1 ? 1U << (SPH_TAGS + before) : 0,
+                                          next - k, s->period, s->per_list > 1 ? 1U << (SPH_TAGS + before) : 0,
                                           lists->j + *used, &lists->pairs);
     if (before) {
       begin = lists->start[list];
@@ -356,7 +367,7 @@ static bool list_group(const struct sph_neighbours *s, size_t group, size_t firs
     }
     size_t end = begin + count;
     for (; end % SPH_LIST_ALIGN; end++)
-      lists->j[end] = (uint32_t)(list * s->share);
+      lists->j[end] = (uint32_t)(list * s->per_list);
     lists->start[list] = (uint32_t)begin;
     lists->count[list] = (uint32_t)count;
     lists->start[list + 1] = (uint32_t)end;
@@ -372,21 +383,21 @@ bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sp
   bool enough = grow((void **)&lists->j, &lists->capacity, 1, 0, sizeof *lists->j);
   lists->start[0] = 0;
   lists->pairs = 0;
-  for (size_t eight = s->chunk_at[chunk]; enough && eight < s->chunk_at[chunk + 1]; eight++) {
-    const uint32_t *eights;
+  for (size_t node = s->chunk_node[chunk]; enough && node < s->chunk_node[chunk + 1]; node++) {
+    const uint32_t *nodes;
     size_t count, candidates;
-    enough = find_eights(s, eight, &w, &eights, &count);
-    for (size_t lane = 0; enough && lane < EIGHT && s->group_size[EIGHT * eight + lane]; lane++) {
+    enough = find_nodes(s, node, &w, &nodes, &count);
+    for (size_t lane = 0; enough && lane < BOXES && s->leaf_size[BOXES * node + lane]; lane++) {
       double *at[4];
-      enough = find_candidates(s, chunk, EIGHT * eight + lane, eights, count, &w, at, &candidates) &&
-               list_group(s, EIGHT * eight + lane, first, at, candidates, &w, lists, &used);
+      enough = find_candidates(s, chunk, BOXES * node + lane, nodes, count, &w, at, &candidates) &&
+               list_leaf(s, BOXES * node + lane, first, at, candidates, &w, lists, &used);
     }
   }
-  free(w.eight[0]);
-  free(w.eight[1]);
-  free(w.group);
+  free(w.node[0]);
+  free(w.node[1]);
+  free(w.leaf);
   free(w.real);
   free(w.number);
-  free(w.joint);
+  free(w.joined);
   return enough;
 }

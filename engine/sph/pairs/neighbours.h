@@ -1,7 +1,9 @@
-/* Pairs of particles within reach of each other. Particles of consecutive numbers stand near each other (order.h): up
- * to 16 of them share a box, eight boxes a larger one, and so on to the top; whoever looks for neighbours goes down
- * that tree. Memory depends on n alone, never on the extent; particles of any reach stand side by side; nothing is
- * sorted. A poor order of the particles costs time, never a pair. */
+/* Lists of neighbours: pairs of particles within reach of each other.
+ *
+ * Particles with consecutive numbers are near each other in space (hilbert.h). Up to 16 of them share a leaf box, eight
+ * boxes a larger one, and so on up to the top; a search goes down this tree. Memory depends on the number of particles
+ * alone, not on their extent; particles of very different reach may be mixed; nothing is sorted. A poor order of the
+ * particles costs time, never a pair. */
 #ifndef CLAST_ENGINE_SPH_PAIRS_NEIGHBOURS_H
 #define CLAST_ENGINE_SPH_PAIRS_NEIGHBOURS_H
 
@@ -14,39 +16,45 @@
 
 enum { SPH_LIST_ALIGN = 16 };
 
-struct sph_neighbours; /* opaque: the boxes */
+struct sph_neighbours; /* opaque: the tree of boxes */
 
-/* Where several particles share a list, at most four, bit SPH_TAGS + k of an entry says that it is a neighbour of the
- * k-th of them; the bits below are its number. */
+/* An entry of a list: the bits below SPH_TAGS are a particle's number. Where up to four particles share the list, bit
+ * SPH_TAGS + k is set if that particle is a neighbour of the k-th of them. */
 enum { SPH_TAGS = 28, SPH_NUMBER = (1 << SPH_TAGS) - 1 };
 
-/* Of a chunk whose first particle is `first`. List g is that of the `share` particles from first + share g on: whoever
- * comes after the first of them and is a neighbour of one of them (or one of them), ascending, counted from `first`. It
- * stands at j[start[g]]
- * .. j[start[g] + count[g] - 1]; start[g] is a multiple of SPH_LIST_ALIGN, and what lies between lists is their first
- * particle. */
+/* The neighbour lists of one chunk. List g serves `per_list` consecutive particles, starting at per_list * g; particles
+ * are counted from the first of the chunk. The list holds, in ascending order, every particle after the first of these
+ * that is a neighbour of any of them (so it may hold the others of them). Lists are padded to multiples of
+ * SPH_LIST_ALIGN entries with the list's first particle:
+ *
+ *   j:  | a b c d e P P P | f g h ...         P: padding
+ *       ^ start[0]        ^ start[1]          count[0] = 5 */
 struct sph_neighbour_lists {
-  uint32_t *start, *count; /* the caller's: one for each list, one more of start */
-  uint32_t *j;             /* grown as needed (aligned to 64 bytes) from what it is; the caller frees it */
-  size_t capacity;
-  size_t pairs; /* how many there are, whoever shares a list */
+  uint32_t *start, *count; /* the caller's: one element per list; `start` has one more, the end */
+  uint32_t *j;             /* entries, aligned to 64 bytes; grown as needed, freed by the caller */
+  size_t capacity;         /* of j */
+  size_t pairs;            /* number of pairs, whether or not particles share a list */
 };
 
-/* For n particles at most, looked up in chunks of `chunk` consecutive ones (a multiple of `share`). NULL without
- * memory. */
-struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t share,
+/* For at most n particles in chunks of `chunk` consecutive ones (a multiple of `per_list`). NULL without memory. */
+struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t per_list,
                                              const struct sph_pair_kernels *kernels);
 void sph_neighbours_free(struct sph_neighbours *neighbours); /* NULL is fine */
 size_t sph_neighbours_bytes(const struct sph_neighbours *neighbours);
 
-/* Boxes for pairs with r < reach_i + reach_j; nearest image along axes whose `periodic` length is not NaN. The arrays
- * are kept until the next call, and may be read up to 7 beyond their end. Bits depend on `threads` nowhere.
- * STATUS_MEMORY, STATUS_CONTENT (a periodic box that is too thin for its particles). */
+/* Builds the boxes for pairs with r < reach_i + reach_j; along axes whose `periodic` length is not NaN the nearest
+ * image counts. The arrays must stay until the next call and be readable up to 7 elements beyond their end. Bits do not
+ * depend on `threads`. STATUS_MEMORY; STATUS_CONTENT when a periodic box is too thin for its particles. */
 status sph_neighbours_find(struct sph_neighbours *neighbours, size_t n, const double *x, const double *y,
                            const double *z, const double *reach, const double periodic[3], int threads,
                            struct error *error);
 
-/* The lists of one chunk; for several at the same time. False without memory. */
+/* The lists of one chunk; several threads may call it at the same time. False without memory. */
 bool sph_neighbours_list(const struct sph_neighbours *neighbours, size_t chunk, struct sph_neighbour_lists *lists);
+
+/* Balances the lists of a chunk of `own` particles, shared by `per_list` (one or two): list_balance.c. Afterwards a
+ * list may begin with particles before its first one; every pair is still in one list, and entries are numbers without
+ * tags. lists->j is replaced. False without memory. */
+bool sph_list_balance(size_t own, size_t per_list, struct sph_neighbour_lists *lists);
 
 #endif

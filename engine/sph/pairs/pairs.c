@@ -196,7 +196,7 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
                                       p->options.threads, error);
   if (code)
     return code;
-  if (!grow(&p->foreign, &p->foreign_capacity, p->lists.others, p->out_columns * p->records->bytes) ||
+  if (!grow(&p->foreign, &p->foreign_capacity, p->lists.halos, p->out_columns * p->records->bytes) ||
       !grow(&p->out, &p->out_capacity, p->depth * p->lists.most_slots, p->out_columns * p->records->bytes) ||
       !grow(&p->in, &p->in_capacity, threads_of(p) * p->lists.most_slots, p->in_columns * p->records->bytes))
     return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", p->n);
@@ -284,7 +284,7 @@ static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const st
                         const struct sph_pair_constants *constants, void *in, void *out) {
   const struct sph_record_kernels *records = p->records;
   const struct sph_pair_chunk view = {.own = c->own,
-                                      .slots = c->own + c->others,
+                                      .slots = c->own + c->halo,
                                       .start = c->lists.start,
                                       .count = c->lists.count,
                                       .neighbour = c->lists.j};
@@ -293,11 +293,12 @@ static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const st
   const size_t size = p->out_columns * records->bytes;
   memset(out, 0, view.slots * size);
   records->pack(source, c->first, NULL, c->own, p->in_columns, in);
-  records->pack(source, 0, c->other, c->others, p->in_columns, (char *)in + c->own * p->in_columns * records->bytes);
+  records->pack(source, 0, c->halo_particle, c->halo, p->in_columns,
+                (char *)in + c->own * p->in_columns * records->bytes);
   const double within = records->sum[corrected][p->artificial](&view, constants, in, out);
   restore_tiny(mode);
-  if (c->others)
-    memcpy((char *)p->foreign + c->others_before * size, (const char *)out + c->own * size, c->others * size);
+  if (c->halo)
+    memcpy((char *)p->foreign + c->halo_before * size, (const char *)out + c->own * size, c->halo * size);
   return within;
 }
 
@@ -317,12 +318,12 @@ INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
   const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW,
                size = p->out_columns * p->records->bytes;
   char *own = sums_of_chunk(p, k);
-  for (size_t q = 0; q < c->shares; q++) {
-    const struct sph_chunk_share share = c->share[q];
-    const struct sph_chunk *b = &p->lists.chunk[share.chunk];
-    for (size_t m = share.first; m < share.first + share.count; m++) {
-      char *to = own + (b->other[m] - c->first) * size;
-      const char *from = (const char *)p->foreign + (b->others_before + m) * size;
+  for (size_t q = 0; q < c->stretches; q++) {
+    const struct sph_chunk_stretch stretch = c->stretch[q];
+    const struct sph_chunk *b = &p->lists.chunk[stretch.chunk];
+    for (size_t m = stretch.first; m < stretch.first + stretch.count; m++) {
+      char *to = own + (b->halo_particle[m] - c->first) * size;
+      const char *from = (const char *)p->foreign + (b->halo_before + m) * size;
       const double signal = fmax(at(whole, to, SUM_SIGNAL), at(whole, from, SUM_SIGNAL));
       if (whole) {
         for (size_t column = 0; column < columns; column++)
@@ -431,7 +432,7 @@ static void sum_in_turn(struct pass *w, size_t k, size_t thread) {
   struct sph_pairs *p = w->pairs;
   struct sph_chunk *c = &p->lists.chunk[k];
   if (k >= p->depth)
-    wait_for(&p->lists.chunk[k - p->depth].taken);
+    wait_for(&p->lists.chunk[k - p->depth].delivered);
   void *in = (char *)p->in + thread * p->lists.most_slots * p->in_columns * p->records->bytes;
   atomic_fetch_add(&w->within, (size_t)sum_chunk(p, c, &w->source, &w->constants, in, sums_of_chunk(p, k)));
   atomic_store_explicit(&c->summed, true, memory_order_release);
@@ -442,7 +443,7 @@ static void hand_over_in_turn(struct pass *w, size_t k, size_t thread) {
   for (size_t before = 0; before <= k; before++)
     wait_for(&p->lists.chunk[before].summed);
   hand_over(w, k, p->room + thread * ROOM);
-  atomic_store_explicit(&p->lists.chunk[k].taken, true, memory_order_release);
+  atomic_store_explicit(&p->lists.chunk[k].delivered, true, memory_order_release);
 }
 
 /* Turns are taken in order: chunk 0, 1, ... is summed, and handed over some chunks later. */
@@ -483,7 +484,7 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
   for (size_t k = 0; k < p->lists.count; k++) {
     struct sph_chunk *c = &p->lists.chunk[k];
     atomic_init(&c->summed, false);
-    atomic_init(&c->taken, false);
+    atomic_init(&c->delivered, false);
     if (p->artificial)
       p->kernels->oppose(o->artificial_stress, f->stress, f->stress_factor, f->pressure_term, c->first,
                          c->first + c->own, p->opposed);
