@@ -3,6 +3,7 @@
 usage: house.py PROGRAM BUILD SOURCE
 """
 import csv
+import functools
 import glob
 import io
 import json
@@ -14,6 +15,7 @@ import sys
 program, build, source = sys.argv[1:4]
 os.chdir(source)
 FOLDERS = ("schemas", "engine", "analysis", "db", "campaign")
+FILE_ENDINGS = (".c", ".h", ".yaml", ".db", ".png", ".svg", ".h5", ".hdf", ".hdf5", ".json")
 checked = 0
 failures = 0
 
@@ -23,6 +25,13 @@ def fail(text, pending=False):
     global failures
     failures += not pending
     print("house:", "not yet an error: " * pending + text)
+
+
+def check(good, text, pending=False):
+    global checked
+    checked += 1
+    if not good:
+        fail(text, pending)
 
 
 def read(path):
@@ -36,95 +45,116 @@ def files(*endings, folders=FOLDERS):
     for folder in folders:
         if folder != ".":
             found += glob.glob(f"{folder}/**/*", recursive=True)
-    return sorted(name for name in found if name.endswith(endings))
+    return sorted(name for name in found if name.endswith(endings) and os.path.isfile(name))
 
 
 def line_of(text, offset):
     return text.count("\n", 0, offset) + 1
 
 
-# ---- documents: what they quote exists ----
-
-def command_exists(word):
-    known = command_exists.known
-    if word not in known:
-        known[word] = subprocess.run([program, "help", word], capture_output=True).returncode == 0
-    return known[word]
+# ---- what the program, the build and the tree know ----
 
 
-command_exists.known = {}
+@functools.cache
+def help_of(command):
+    """What `clast help COMMAND` prints; None when there is no such command."""
+    result = subprocess.run([program, "help", command], capture_output=True, text=True)
+    return result.stdout if result.returncode == 0 else None
 
 
+@functools.cache
+def known_paths():
+    """Paths of inputs and results, the names of results as columns, and the sections that hold paths."""
+    table = subprocess.run([program, "explain", "--csv"], capture_output=True, text=True, check=True).stdout
+    rows = list(csv.DictReader(io.StringIO(table)))
+    paths = {row["path"] for row in rows}
+    results = {row["path"].replace(".", "_") for row in rows if row["of"].endswith(("results", "outcome"))}
+    results = {name for name in results if "_" in name}
+    sections = {path[: match.start()] for path in paths for match in re.finditer(r"\.", path)}
+    check(len(paths) > 200 and len(results) > 50, f"only {len(paths)} paths and {len(results)} results found")
+    return paths, results, sections
+
+
+def unknown_paths(text):
+    """Tokens that begin like a path of an input or result, but are none; names of files are left out."""
+    paths, _, sections = known_paths()
+    for token in re.findall(r"(?<![\w./-])[a-z]\w*(?:\.[a-zA-Z0-9]\w*)+", text):
+        if token.split(".")[0] in sections and token not in paths | sections and not token.endswith(FILE_ENDINGS):
+            yield token
+
+
+@functools.cache
 def build_targets():
     text = subprocess.run(["cmake", "--build", build, "--target", "help"], capture_output=True, text=True).stdout
     return set(re.findall(r"^(?:\.\.\. )?([\w.-]+)(?::.*)?$", text, re.M))
 
 
+@functools.cache
 def presets():
     document = json.loads(read("CMakePresets.json"))
-    return {p["name"] for kind in ("configurePresets", "buildPresets", "testPresets") for p in document[kind]}
+    return {preset["name"] for kind in ("configure", "build", "test") for preset in document[f"{kind}Presets"]}
 
 
-def is_path(token):
+@functools.cache
+def file_names():
+    return {os.path.basename(name) for name in files("", folders=FOLDERS + ("tests", "."))}
+
+
+# ---- documents: what they quote exists ----
+
+
+def check_commands(place, quotation):
+    """clast WORD --option, up to the end of the line, a pipe or a comment."""
+    for word, rest in re.findall(r"(?<![\w./-])(?:\./)?(?:build/\w+/)?clast ([a-z][a-z-]*)\b(?![.:])([^\n|;&#]*)", quotation):
+        check(help_of(word) is not None, f"{place}: there is no command `clast {word}`")
+        for option in re.findall(r"(?<!\S)--[a-z-]+", rest):
+            known = re.search(re.escape(option) + r"(?![\w-])", help_of(word) or option)
+            check(known, f"{place}: clast {word} has no option {option}")
+
+
+def check_build(place, quotation):
+    for target in re.findall(r"--target[ =]([\w.-]+)", quotation):
+        check(target in build_targets() or target.endswith("..."), f"{place}: there is no build target {target}")
+    for preset in re.findall(r"--preset[ =]([\w.-]+)", quotation):
+        check(preset in presets(), f"{place}: there is no preset {preset}")
+
+
+def names_a_file(token):
     """A path of the repository or the name of one of its files; not a user's file, and not a pattern to fill in."""
-    if re.search(r"[<>${}|=:\"'(),…]|\.\.\.|^[-/~.]|^build/|[A-Z]{4}", token) and not os.path.exists(token):
+    if re.search(r"[<>${}|=:\"'(),…]|\.\.\.|^[-/~.*]|^build/|[A-Z]{4}", token) and not os.path.exists(token):
         return False
-    first = token.split("/")[0]
     if "/" in token:
-        return first in FOLDERS + ("tests",)
-    return token.endswith((".c", ".h", ".md", ".sh", ".py")) and not token.startswith("*")
+        return token.split("/")[0] in FOLDERS + ("tests",)
+    return token.endswith((".c", ".h", ".md", ".sh", ".py"))
 
 
-def path_exists(token, names):
-    token = token.rstrip("/")
-    if "/" in token or "*" in token:
-        return bool(glob.glob(token))
-    return token in names
+def check_files(place, here, quotation):
+    for token in (word.rstrip(".,;/") for word in quotation.split()):
+        if names_a_file(token):
+            exists = token in file_names() or glob.glob(token) or glob.glob(os.path.join(here, token))
+            check(exists, f"{place}: there is no {token}")
 
 
 def check_documents():
-    global checked
-    names = {os.path.basename(name) for name in files("", folders=FOLDERS + ("tests", "."))}
-    targets, preset_names = build_targets(), presets()
     for document in files(".md", folders=FOLDERS + ("tests", ".")):
         text = read(document)
         here = os.path.dirname(document)
-        quotations = [(m.start(), m.group(1)) for m in re.finditer(r"```[^\n]*\n(.*?)```", text, re.S)]
-        inline = re.sub(r"```.*?```", lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S)
-        quotations += [(m.start(), m.group(1)) for m in re.finditer(r"`([^`\n]+)`", inline)]
-        for offset, quotation in quotations:
-            place = f"{document}:{line_of(text, offset)}"
-            for word in re.findall(r"(?<![\w./-])(?:\./)?(?:build/\w+/)?clast ([a-z][a-z-]*)\b(?![.:])", quotation):
-                checked += 1
-                if not command_exists(word):
-                    fail(f"{place}: there is no command `clast {word}`")
-            for target in re.findall(r"--target[ =]([\w.-]+)", quotation):
-                checked += 1
-                if target not in targets and not target.endswith("..."):
-                    fail(f"{place}: there is no build target {target}")
-            for preset in re.findall(r"--preset[ =]([\w.-]+)", quotation):
-                checked += 1
-                if preset not in preset_names:
-                    fail(f"{place}: there is no preset {preset}")
-            for token in re.findall(r"\S+", quotation):
-                token = token.rstrip(".,;")
-                if not is_path(token):
-                    continue
-                checked += 1
-                if not path_exists(token, names) and not (here and path_exists(f"{here}/{token}", names)):
-                    fail(f"{place}: there is no {token}")
-        for match in re.finditer(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", inline):
-            target = match.group(1)
-            if re.match(r"[a-z]+:", target):
-                continue
-            checked += 1
-            if not os.path.exists(os.path.join(here, target)):
-                fail(f"{document}:{line_of(text, match.start())}: the link's target {target} does not exist")
+        outside = re.sub(r"```.*?```", lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S)
+        blocks = list(re.finditer(r"```[^\n]*\n(.*?)```", text, re.S)) + list(re.finditer(r"`([^`\n]+)`", outside))
+        for match in blocks:
+            place = f"{document}:{line_of(text, match.start())}"
+            check_commands(place, match.group(1))
+            check_build(place, match.group(1))
+            check_files(place, here, match.group(1))
+            for token in unknown_paths(match.group(1)):
+                fail(f'{place}: no input or result is called "{token}"')
+        for match in re.finditer(r"\]\((?![a-z]+:)([^)#\s]+)(?:#[^)]*)?\)", outside):
+            place = f"{document}:{line_of(text, match.start())}"
+            check(os.path.exists(os.path.join(here, match.group(1))), f"{place}: the link's target {match.group(1)} does not exist")
 
 
-# ---- names of inputs and results ----
+# ---- names of inputs and results in the code ----
 
-ENDINGS = (".c", ".h", ".yaml", ".db", ".png", ".svg", ".h5", ".hdf", ".hdf5", ".json")  # of file names in examples
 
 def literals(path):
     """(line, string literal) of a C file, comments and includes left out."""
@@ -136,26 +166,17 @@ def literals(path):
 
 
 def check_names():
-    """A path in any text exists; outside of the engines no text but an example names a result: rows name it."""
-    global checked
-    table = subprocess.run([program, "explain", "--csv"], capture_output=True, text=True, check=True).stdout
-    rows = list(csv.DictReader(io.StringIO(table)))
-    paths = {row["path"] for row in rows}
-    sections = {path[:end] for path in paths for end in (m.start() for m in re.finditer(r"\.", path))}
-    results = {row["path"].replace(".", "_") for row in rows if row["of"].endswith(("results", "outcome"))}
-    results = {name for name in results if "_" in name}
-    if len(paths) < 200 or len(results) < 50:
-        fail(f"only {len(paths)} paths and {len(results)} results found")
+    """A path in any text exists. Outside of the engines no text but an example names a result: its row does."""
+    _, results, _ = known_paths()
     for path in files(".c", ".h"):
-        has_rows = "FIELD_TABLE(" in read(path) or path.endswith("_rows.h")
+        may_name = path.startswith("engine/") or "FIELD_TABLE(" in read(path)
         for number, text in literals(path):
-            for token in re.findall(r"(?<![\w./-])[a-z]\w*(?:\.[a-zA-Z0-9]\w*)*", text):
-                checked += 1
-                known = token in paths or token in sections
-                if "." in token and token.split(".")[0] in sections and not known and not token.endswith(ENDINGS):
-                    fail(f'{path}:{number}: no input or result is called "{token}"')
-                if token in results and not (has_rows or path.startswith("engine/") or "clast " in text):
-                    fail(f'{path}:{number}: "{token}" is named outside of its row: take the name from the table', path.startswith("db/"))
+            unknown = list(unknown_paths(text))
+            check(not unknown, f"{path}:{number}: no input or result is called {', '.join(unknown)}")
+            named = set(re.findall(r"\w+", text)) & results
+            check(may_name or not named or "clast " in text,
+                  f"{path}:{number}: {', '.join(sorted(named))}: named outside of its row; take the name from the table",
+                  path.startswith("db/"))
 
 
 # ---- words ----
@@ -165,11 +186,9 @@ HOUSE_WORDS = ("mourn", "mourned", "bury", "buried", "dearest", "veneer", "so mu
 
 
 def check_words():
-    global checked
     pattern = re.compile(r"\b(" + "|".join(word.replace(" ", r"\s+") for word in HOUSE_WORDS) + r")\b", re.I)
     for path in files(".c", ".h", ".md", ".sh", ".yaml", ".txt", folders=FOLDERS + ("tests", ".")):
         text = read(path)
-        checked += 1
         for match in pattern.finditer(text):
             fail(f'{path}:{line_of(text, match.start())}: house word "{match.group()}": say it plainly', True)
 
@@ -177,7 +196,6 @@ def check_words():
 check_documents()
 check_names()
 check_words()
-if checked < 1000:
-    fail(f"looked at too little ({checked} things)")
-print(f"house: {checked} quotations, names and words checked, {failures} broken")
+check(checked > 1000, f"looked at too little ({checked} things)")
+print(f"house: {checked} quotations and names checked, {failures} broken")
 sys.exit(failures != 0)
