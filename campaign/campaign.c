@@ -96,7 +96,7 @@ const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct
                                                              "How points are made from the varied inputs.");
 
 bool campaign_usable(const struct outcome *outcome) {
-  return outcome->state == OUTCOME_COMPLETED || outcome->state == OUTCOME_END_TIME;
+  return outcome_is_usable(outcome->state);
 }
 
 const struct field *campaign_quantity(const struct engine_kind *kind, const char *path, bool *of_outcome,

@@ -339,7 +339,7 @@ static status finish_run(struct driver *driver, const struct flight *flight, con
     double value = campaign_value(driver->row, driver->row_of_outcome, &result.outcome, result.result);
     point_finish_replicate(point, flight->replicate, POINT_DONE, value);
     cost_learn(&driver->cost, &point->cost, report->wall_s);
-    driver_window_count(driver, value);
+    sample_add(&driver->moments, value);
     driver->summary.runs_done++;
     driver->summary.runs_failed += !usable;
     driver->summary.runs_censored += result.outcome.state == OUTCOME_END_TIME;
@@ -406,6 +406,7 @@ static void show(struct driver *driver, int running, bool last) {
     return;
   double now = clock_s(), elapsed = now - driver->begin;
   uint64_t unmet = design_points(driver->design) - driver->expanded;
+  struct sample_summary mean = sample_summarise_moments(&driver->moments, 0.95);
   struct progress_state state = {
       .done = driver->summary.runs_done + driver->summary.runs_reused - driver->summary.runs_surplus,
       .failed = driver->summary.runs_failed,
@@ -418,10 +419,8 @@ static void show(struct driver *driver, int running, bool last) {
                               : DRIVER_NOTHING,
       .seconds_left = last ? DRIVER_NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
-      .mean = driver->counted > 0 ? driver->mean : DRIVER_NOTHING,
-      .half_width = driver->counted > 1
-                        ? 1.96 * sqrt(driver->squares / (double)(driver->counted - 1) / (double)driver->counted)
-                        : DRIVER_NOTHING,
+      .mean = mean.mean,
+      .half_width = mean.half_width,
   };
   progress_update(driver->options.progress, &state, now, last);
 }

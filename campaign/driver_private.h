@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "analysis/statistics/sample.h"
 #include "campaign/design/design.h"
 #include "campaign/driver.h"
 #include "campaign/point.h"
@@ -43,8 +44,7 @@ struct driver {
   size_t seen_size, seen_count;
   uint8_t *task; /* bytes of the last task given out */
   struct cost_model cost;
-  double mean, squares; /* running moments of the main quantity (Welford) */
-  int64_t counted;
+  struct sample_moments moments;    /* of the main quantity */
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
   int64_t started_done;             /* runs finished now, for the rate */
   double begin, last_left, seconds_left;
@@ -62,6 +62,5 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
 /* Judges the point's prefixes; moves the store's; marks the fields it wants once it is decided. */
 status driver_window_judge(struct driver *driver, struct point *point, struct error *error);
 void driver_window_drop(struct driver *driver, struct point *point); /* frees it */
-void driver_window_count(struct driver *driver, double value);       /* into the running mean; NaN is left out */
 
 #endif

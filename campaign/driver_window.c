@@ -29,14 +29,6 @@ static bool remember(struct driver *driver, int64_t id) {
   return fresh;
 }
 
-void driver_window_count(struct driver *driver, double value) {
-  if (isnan(value))
-    return;
-  double from = value - driver->mean;
-  driver->mean += from / (double)++driver->counted;
-  driver->squares += from * (value - driver->mean);
-}
-
 struct resuming {
   struct driver *driver;
   struct point *point;
@@ -60,7 +52,7 @@ static void take_stored(void *context, const struct store_point_run *run) {
     resuming->out_of_memory = true;
     return;
   }
-  bool usable = run->state == OUTCOME_COMPLETED || run->state == OUTCOME_END_TIME;
+  bool usable = outcome_is_usable(run->state);
   point_finish_replicate(point, r, POINT_DONE, usable ? run->value : DRIVER_NOTHING);
   point->replicates[r].surplus = run->surplus;
   point->replicates[r].fields = run->fields_path != NULL || run->state == OUTCOME_INVALID;
@@ -69,7 +61,7 @@ static void take_stored(void *context, const struct store_point_run *run) {
   driver->summary.runs_surplus += run->surplus;
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += run->state == OUTCOME_END_TIME;
-  driver_window_count(driver, usable ? run->value : DRIVER_NOTHING);
+  sample_add(&driver->moments, usable ? run->value : DRIVER_NOTHING);
 }
 
 /* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out

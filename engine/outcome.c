@@ -27,14 +27,16 @@ static const struct field rows[] = {
          .doc = "Drift of the closed energy ledger over the energy put in."),
     REAL(momentum_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
          .doc = "Change of total momentum not explained by outer forces, over the sum of the members' momenta."),
-    COUNT(fragment_count, .doc = "Fragments of any size, single grains (dust) included."),
+    COUNT(fragment_count, .main_rank = 3, .doc = "Fragments of any size, single grains (dust) included."),
     COUNT(single_count, .doc = "Fragments of one grain or particle: below the model's resolution."),
-    ROW(dust_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .doc = "Mass share of single grains."),
-    ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1,
+    ROW(dust_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 4,
+        .doc = "Mass share of single grains."),
+    ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 1,
         .doc = "Mass of the largest fragment over the total mass, M_1/M."),
-    ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1,
+    ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 2,
         .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
-    REAL(mean_fragment_mass, "kg", 0, .doc = "Second moment over first of all fragment masses (not M_2/M_1)."),
+    REAL(mean_fragment_mass, "kg", 0, .main_rank = 5,
+         .doc = "Second moment over first of all fragment masses (not M_2/M_1)."),
     REAL(mean_fragment_mass_rest, "kg", 0, .doc = "The same without the largest fragment."),
     REAL(kinetic_energy_share, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
          .doc = "Translation energy of the fragments over the energy put in."),
@@ -42,6 +44,30 @@ static const struct field rows[] = {
 
 const struct field_table outcome_table = FIELD_TABLE(rows, struct outcome, "outcome",
                                                      "What every engine reports of a finished run.");
+
+const struct field *outcome_main(size_t index) {
+  for (size_t i = 0; i < outcome_table.count; i++)
+    if (rows[i].main_rank == (int)index + 1)
+      return &rows[i];
+  return NULL;
+}
+
+bool outcome_is_usable(int state) {
+  return state == OUTCOME_COMPLETED || state == OUTCOME_END_TIME;
+}
+
+bool outcome_counts(const struct outcome *outcome) {
+  if (!outcome_is_usable(outcome->state))
+    return false;
+  const struct field *row;
+  for (size_t i = 0; (row = outcome_main(i)); i++) {
+    struct field_value value;
+    field_get(row, outcome, &value);
+    if (row->kind == FIELD_REAL && isnan(value.number))
+      return false;
+  }
+  return true;
+}
 
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments) {
   double mass = 0, square = 0, dust = 0;

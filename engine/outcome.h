@@ -37,6 +37,16 @@ struct outcome {
 extern const struct field_table outcome_table;
 #define OUTCOME_DEFAULT "largest_fraction" /* the quantity that commands and campaigns take when none is named */
 
+/* The index-th main result by field.main_rank, NULL past the last one. The store's views, index and checks follow from
+ * these rows. */
+const struct field *outcome_main(size_t index);
+
+/* Did a run of this state give results: completed, or ended at its time? */
+bool outcome_is_usable(int state);
+/* Does a run count in statistics? Its state is usable and every main result is a number. (A surplus run does not count
+ * whatever its results.) */
+bool outcome_counts(const struct outcome *outcome);
+
 /* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
 void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments);
 

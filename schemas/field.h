@@ -45,6 +45,7 @@ struct field {
                        * active only then; given otherwise, it is refused */
   const char *doc;    /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
+  int main_rank;      /* results only: place among the main results, from 1; 0: not a main result */
 };
 
 struct field_table {

@@ -1,48 +1,67 @@
-/* The pooled spectrum itself: densities with errors from the scatter between runs. */
+/* The pooled spectrum: densities with errors from the scatter between runs. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "analysis/statistics/pooled.h"
 
-status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,
-                       size_t *count, struct error *error) {
-  *bins = NULL;
-  *count = 0;
-  int low = INT32_MAX, high = SPECTRUM_NO_BIN;
+double pooled_count_error(size_t runs, double count, double squares) {
+  if (runs < 2)
+    return NAN;
+  double n = (double)runs;
+  return sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
+}
+
+/* Lowest and highest bin that holds a fragment; SPECTRUM_NO_BIN and lower when there is none. */
+static size_t span_of(const struct pooled_runs *runs, int *low) {
   size_t fragments = runs->count ? runs->first[runs->count] : 0;
+  int high = SPECTRUM_NO_BIN;
+  *low = INT32_MAX;
   for (size_t i = 0; i < fragments; i++) {
     int bin = spectrum_bin(runs->masses[i]);
     if (bin == SPECTRUM_NO_BIN)
       continue;
-    if (bin < low)
-      low = bin;
+    if (bin < *low)
+      *low = bin;
     if (bin > high)
       high = bin;
   }
-  size_t span = low <= high ? (size_t)(high - low) + 1 : 0;
+  return *low <= high ? (size_t)(high - *low) + 1 : 0;
+}
+
+/* Adds run r to the counts of the bins from `low` on and to the sums of their squares; `own` is scratch. */
+static void add_run(const struct pooled_runs *runs, size_t r, bool with_largest, int low, size_t span, int64_t *own,
+                    struct pooled_bin *bins, double *squares) {
+  for (size_t j = 0; j < span; j++)
+    own[j] = 0;
+  for (size_t i = runs->first[r] + (with_largest ? 0 : 1); i < runs->first[r + 1]; i++) {
+    int bin = spectrum_bin(runs->masses[i]);
+    if (bin != SPECTRUM_NO_BIN)
+      own[bin - low]++;
+  }
+  for (size_t j = 0; j < span; j++) {
+    bins[j].count += own[j];
+    squares[j] += (double)own[j] * (double)own[j];
+  }
+}
+
+status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,
+                       size_t *count, struct error *error) {
+  *bins = NULL;
+  *count = 0;
+  int low;
+  size_t span = span_of(runs, &low);
   struct pooled_bin *found = calloc(span + 1, sizeof *found);
-  int64_t *mine = calloc(span + 1, sizeof *mine);
+  int64_t *own = calloc(span + 1, sizeof *own);
   double *squares = calloc(span + 1, sizeof *squares); /* of counts: exact integers far below 2^53 */
-  if (!found || !mine || !squares) {
+  status code = STATUS_OK;
+  if (!found || !own || !squares) {
     free(found);
-    free(mine);
-    free(squares);
-    return status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span);
+    code = status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span);
+    goto cleanup;
   }
-  for (size_t r = 0; r < runs->count; r++) {
-    for (size_t j = 0; j < span; j++)
-      mine[j] = 0;
-    for (size_t i = runs->first[r] + (with_largest ? 0 : 1); i < runs->first[r + 1]; i++) {
-      int bin = spectrum_bin(runs->masses[i]);
-      if (bin != SPECTRUM_NO_BIN)
-        mine[bin - low]++;
-    }
-    for (size_t j = 0; j < span; j++) {
-      found[j].count += mine[j];
-      squares[j] += (double)mine[j] * (double)mine[j];
-    }
-  }
-  double n = (double)runs->count;
+
+  for (size_t r = 0; r < runs->count; r++)
+    add_run(runs, r, with_largest, low, span, own, found, squares);
   for (size_t j = 0; j < span; j++) {
     if (!found[j].count)
       continue;
@@ -50,15 +69,13 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
     bin.lower = spectrum_edge(bin.bin);
     bin.upper = spectrum_edge(bin.bin + 1);
     double width = (bin.upper - bin.lower) / unit_mass, total = (double)bin.count;
-    bin.density = total / (n * width);
-    /* variance of the mean count: (sum c^2 - (sum c)^2/n) / (n (n-1)) */
-    bin.standard_error = NAN;
-    if (runs->count > 1)
-      bin.standard_error = sqrt(fmax(squares[j] - total * total / n, 0) / (n * (n - 1))) / width;
+    bin.density = total / ((double)runs->count * width);
+    bin.standard_error = pooled_count_error(runs->count, total, squares[j]) / width;
     found[(*count)++] = bin;
   }
   *bins = found;
-  free(mine);
+cleanup:
+  free(own);
   free(squares);
-  return STATUS_OK;
+  return code;
 }

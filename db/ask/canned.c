@@ -1,25 +1,16 @@
-/* Canned queries: also the examples from which people learn the tables. Plain SQL without our own functions, so that
- * each can be pasted into any tool. */
+/* Canned queries. People also learn the tables from them: they are plain SQL without functions of our own, so that each
+ * can be pasted into any tool. */
 #include <string.h>
 
 #include "db/ask/query.h"
+#include "db/store/views.h"
+#include "engine/outcome.h"
 
-static const struct query_canned queries[] = {
+static struct query_canned queries[] = {
     {"points", "Statistics of every point: n, failed, censored, mean, scatter and interval of the main results.",
      "SELECT * FROM points", ""},
     {"point-stats",
-     "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.",
-     "SELECT point_id, results_version, n, k + s / n AS mean, sqrt(max(0, (q - s * s / n) / (n - 1))) AS sd,\n"
-     "  sqrt(max(0, (q - s * s / n) / (n - 1) / n)) AS se\n"
-     "FROM (SELECT t.point_id, t.results_version, count(*) AS n, k.largest_fraction AS k,\n"
-     "    total(r.largest_fraction - k.largest_fraction) AS s,\n"
-     "    total((r.largest_fraction - k.largest_fraction) * (r.largest_fraction - k.largest_fraction)) AS q\n"
-     "  FROM point_total t\n"
-     "  JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE f.point_id = t.point_id AND f.results_version =\n"
-     "    t.results_version AND f.counts = 1 ORDER BY f.replicate, f.seed LIMIT 1)\n"
-     "  CROSS JOIN run r ON r.point_id = t.point_id AND r.results_version = t.results_version AND r.counts = 1\n"
-     "  GROUP BY t.point_id, t.results_version)",
-     ""},
+     "Mean, standard deviation and standard error of the largest fragment's mass share M_1/M, per point.", NULL, ""},
     {"runs", "Every run of a point, with its inputs and results (:point).",
      "SELECT * FROM runs WHERE point_id = :point ORDER BY replicate, seed", "point"},
     {"spectrum",
@@ -43,26 +34,20 @@ static const struct query_canned queries[] = {
      "  avg(standard_error) AS standard_error_mean\n"
      "FROM estimates WHERE counts = 1 GROUP BY point_id, results_version, ordinal ORDER BY point_id, ordinal",
      ""},
-    {"scatter", "How much the seed matters: relative scatter of the main results per point.",
-     "SELECT point_id, n, largest_fraction_sd / largest_fraction_mean AS largest_fraction_scatter,\n"
-     "  fragment_count_sd / fragment_count_mean AS fragment_count_scatter,\n"
-     "  mean_fragment_mass_sd / mean_fragment_mass_mean AS mean_fragment_mass_scatter\n"
-     "FROM points WHERE n > 1 ORDER BY point_id",
-     ""},
+    {"scatter", "How much the seed matters: relative scatter of the main results per point.", NULL, ""},
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
      "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
      "AND "
      "surplus = 0\nUNION ALL\n"
      "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', iif(exit_code, ' (exit ' "
-     "|| "
-     "exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
+     "|| exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
      ""},
     {"censored", "Runs that ended at their time: fragments may still have been breaking.",
      "SELECT point_id, run_id, replicate, seed, time, largest_fraction FROM run WHERE state = 'end-time' ORDER BY "
      "point_id, "
      "replicate",
      ""},
-    {"slowest", "The twenty dearest runs.",
+    {"slowest", "The twenty runs that took longest.",
      "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM run ORDER BY "
      "wall_time DESC LIMIT 20",
      ""},
@@ -85,19 +70,61 @@ static const struct query_canned queries[] = {
      "SELECT session_id, started_at, host, key, value FROM session, json_each(facts) ORDER BY session_id, id", ""},
 };
 
+static void write_point_stats(FILE *out) {
+  const char *const first = outcome_main(0)->path;
+  views_write_statistics(1, &first, out);
+  fputs("SELECT point_id, results_version, n, m0 AS mean, d0 AS sd, d0 / sqrt(n) AS se FROM scatter", out);
+}
+
+static void write_scatter(FILE *out) {
+  const char *names[VIEWS_MAIN_MAXIMUM];
+  size_t count = views_main_results(names);
+  fputs("SELECT point_id, n", out);
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, ",\n  %1$s_sd / %1$s_mean AS %1$s_scatter", names[i]);
+  fputs("\nFROM points WHERE n > 1 ORDER BY point_id", out);
+}
+
+/* The queries whose text follows from the main results; it is written when it is first needed. */
+static const struct {
+  const char *name;
+  void (*write)(FILE *out);
+} written[] = {{"point-stats", write_point_stats}, {"scatter", write_scatter}};
+enum { WRITTEN = sizeof written / sizeof written[0], TEXT_SIZE = 4096 };
+
+static const char *text_of(const char *name) {
+  static char texts[WRITTEN][TEXT_SIZE];
+  for (size_t i = 0; i < WRITTEN; i++) {
+    if (strcmp(written[i].name, name) != 0)
+      continue;
+    FILE *out = texts[i][0] ? NULL : fmemopen(texts[i], TEXT_SIZE, "w");
+    if (out) {
+      written[i].write(out);
+      fclose(out);
+    }
+    return texts[i];
+  }
+  return "";
+}
+
 size_t ask_canned_count(void) {
   return sizeof queries / sizeof queries[0];
 }
 
 const struct query_canned *ask_canned_at(size_t index) {
-  return index < ask_canned_count() ? &queries[index] : NULL;
+  if (index >= ask_canned_count())
+    return NULL;
+  struct query_canned *query = &queries[index];
+  if (!query->sql)
+    query->sql = text_of(query->name);
+  return query;
 }
 
 const struct query_canned *ask_canned_find(const char *name, struct error *error) {
   char known[512] = "";
   for (size_t i = 0; i < ask_canned_count(); i++) {
     if (strcmp(queries[i].name, name) == 0)
-      return &queries[i];
+      return ask_canned_at(i);
     size_t used = strlen(known);
     snprintf(known + used, sizeof known - used, "%s%s", i ? ", " : "", queries[i].name);
   }

@@ -105,7 +105,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
             i, q, i, q, i, i, q, i, i);
     char degrees[32];
     snprintf(degrees, sizeof degrees, "(n%zu - 1)", i);
-    views_student(out, degrees);
+    views_write_student(degrees, out);
     fprintf(out, ") AS \"%s_hw95\"", q);
   }
   /* Ordered rows, so that the sums have the same bits whoever finished first. */
@@ -147,10 +147,14 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
                 "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
                 "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)",
                 &results, error);
-  for (int i = 0; result == STATUS_OK && !quantities && views_quantities[i]; i++)
-    snprintf(results.name[results.count++], NAME, "%s", views_quantities[i]);
   if (result != STATUS_OK)
     return result;
+  if (!quantities) {
+    const char *names[VIEWS_MAIN_MAXIMUM];
+    results.count = views_main_results(names);
+    for (size_t i = 0; i < results.count; i++)
+      snprintf(results.name[i], NAME, "%s", names[i]);
+  }
   char *sql = group_sql(&axes, &results);
   if (!sql)
     return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");

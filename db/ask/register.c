@@ -1,33 +1,32 @@
-/* Aggregates for people at the command line: SQLite has no median and no standard deviation. */
+/* SQL functions on our own connection: SQLite has no median, no standard deviation and none of our statistics. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/pooled.h"
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/spectrum.h"
 #include "db/ask/query.h"
 #include "db/store/internal.h"
 
-struct deviation { /* Welford 1962 */
-  int64_t n;
-  double mean, squares;
-};
-
 static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
-  struct deviation *d = sqlite3_aggregate_context(context, sizeof *d);
-  if (!d || sqlite3_value_type(values[0]) == SQLITE_NULL)
-    return;
-  double x = sqlite3_value_double(values[0]), from_old = x - d->mean;
-  d->n++;
-  d->mean += from_old / (double)d->n;
-  d->squares += from_old * (x - d->mean);
+  struct sample_moments *moments = sqlite3_aggregate_context(context, sizeof *moments);
+  if (moments && sqlite3_value_type(values[0]) != SQLITE_NULL)
+    sample_add(moments, sqlite3_value_double(values[0]));
 }
 
 static void stdev_final(sqlite3_context *context) {
-  struct deviation *d = sqlite3_aggregate_context(context, 0);
-  if (d && d->n > 1)
-    sqlite3_result_double(context, sqrt(d->squares / (double)(d->n - 1)));
+  const struct sample_moments *moments = sqlite3_aggregate_context(context, 0);
+  if (moments && moments->n > 1)
+    sqlite3_result_double(context, sample_summarise_moments(moments, 0.95).standard_deviation);
+}
+
+/* pooled_error(runs, count, squares): pooled_count_error(). SQLite makes NULL of its NaN. */
+static void pooled_error(sqlite3_context *context, int count, sqlite3_value **values) {
+  (void)count;
+  sqlite3_result_double(context, pooled_count_error((size_t)sqlite3_value_int64(values[0]),
+                                                    sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
 }
 
 struct sample {
@@ -98,7 +97,7 @@ static void hist_sum_final(sqlite3_context *context) {
   size_t size = 0;
   bool first = true;
   if (h && h->wrong) {
-    sqlite3_result_error(context, "hist_sum() wants fragment_mass.masses: blobs of float64", -1);
+    sqlite3_result_error(context, "hist_sum() takes fragment_mass.masses: blobs of float64", -1);
     return;
   }
   FILE *out = open_memstream(&text, &size);
@@ -128,6 +127,8 @@ status ask_register_functions(struct store *store, struct error *error) {
     code = sqlite3_create_function(store->db, "median", 1, flags, NULL, NULL, median_step, median_final);
   if (code == SQLITE_OK)
     code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
+  if (code == SQLITE_OK)
+    code = sqlite3_create_function(store->db, "pooled_error", 3, flags, NULL, pooled_error, NULL, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "registering functions", error);
   store->functions = true;

@@ -14,13 +14,15 @@ static const char
             "   FROM chosen JOIN spectrum USING (run_id) GROUP BY point_id, bin)"
             " SELECT point_id, lower, upper, n AS runs, s1 AS fragments,"
             "   s1 / (n * (upper - lower)) AS density,"
-            "   CASE WHEN n > 1 THEN sqrt(max(0.0, (1.0 * s2 - 1.0 * s1 * s1 / n) / (n - 1) / n)) / (upper - lower) END"
-            "     AS density_error,"
+            "   pooled_error(n, s1, s2) / (upper - lower) AS density_error,"
             "   pooled.mass / total.mass AS mass_share"
             " FROM pooled JOIN total USING (point_id) JOIN bin USING (bin) ORDER BY point_id, bin";
 
 status ask_spectrum(struct store *store, int64_t point_id, const char *where, const struct query_sink *sink,
                     struct error *error) {
+  status code = ask_register_functions(store, error);
+  if (code)
+    return code;
   char *sql = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&sql, &size);
@@ -36,7 +38,7 @@ status ask_spectrum(struct store *store, int64_t point_id, const char *where, co
   if (!sql)
     return status_fail(error, STATUS_MEMORY, "out of memory");
 
-  status code = query_run(store, sql, 0, NULL, 0, sink, error);
+  code = query_run(store, sql, 0, NULL, 0, sink, error);
   free(sql);
   return code;
 }

@@ -52,12 +52,9 @@ status store_begin(struct store *store, struct error *error);
  * back, and the store refuses from then on. Returns `result`, or what the commit gave. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
-/* Is the run part of the statistics? The same as the CHECK of run.counts. */
+/* Is the run part of the statistics? schema_write_counts() writes the same condition in SQL. */
 static inline bool store_run_counts(const struct store_run *run) {
-  const struct outcome *o = run->outcome;
-  return !run->surplus && (o->state == OUTCOME_COMPLETED || o->state == OUTCOME_END_TIME) &&
-         !isnan(o->largest_fraction) && !isnan(o->second_fraction) && !isnan(o->dust_fraction) &&
-         !isnan(o->mean_fragment_mass);
+  return !run->surplus && outcome_counts(run->outcome);
 }
 
 /* Masses, spectrum and running sums of a run whose row is there. Within the open batch. */

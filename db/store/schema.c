@@ -33,9 +33,46 @@ static void write_meaning(const struct field *row, FILE *out) {
     fprintf(out, "%s%s", i ? ", " : " One of: ", row->choices[i]);
 }
 
+void schema_write_counts(const char *not_surplus, FILE *out) {
+  const struct field *state = field_find(&outcome_table, "state", NULL), *row;
+  const char *before = "";
+  fprintf(out, "%s AND state IN (", not_surplus);
+  for (int i = 0; state->choices[i]; i++) {
+    if (!outcome_is_usable(i))
+      continue;
+    fprintf(out, "%s'%s'", before, state->choices[i]);
+    before = ", ";
+  }
+  fputs(")", out);
+  for (size_t i = 0; (row = outcome_main(i)); i++)
+    fprintf(out, " AND %s IS NOT NULL", row->path);
+}
+
 static void write_column(const char *name, const char *declaration, bool last, const char *unit, FILE *out) {
   fprintf(out, "  %s %s%s -- %s%s%s", name, declaration, last ? "" : ",", unit ? "[" : "", unit ? unit : "",
           unit ? "] " : "");
+}
+
+static void write_declaration(const struct schema_column *column, char *text, size_t size) {
+  FILE *out = fmemopen(text, size, "w");
+  text[0] = '\0';
+  if (!out)
+    return;
+  fputs(column->declaration, out);
+  if (strcmp(column->name, "counts") == 0) { /* of table run */
+    fprintf(out, " CHECK (%s = (", column->name);
+    schema_write_counts("surplus = 0", out);
+    fputs("))", out);
+  }
+  fclose(out);
+}
+
+static void write_index(const struct schema_index *index, FILE *out) {
+  const struct field *row;
+  fprintf(out, "CREATE INDEX %s ON %s (%s", index->name, index->table, index->columns);
+  for (size_t i = 0; index->with_main_results && (row = outcome_main(i)); i++)
+    fprintf(out, ", %s", row->path);
+  fputs(");\n", out);
 }
 
 static void write_table(const struct schema_table *table, FILE *out) {
@@ -43,8 +80,9 @@ static void write_table(const struct schema_table *table, FILE *out) {
   fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
   for (size_t i = 0; i < table->count; i++) {
     const struct schema_column *column = &table->columns[i];
-    write_column(column->name, column->declaration, i + 1 == table->count && fields == 0 && !table->tail, column->unit,
-                 out);
+    char declaration[1024];
+    write_declaration(column, declaration, sizeof declaration);
+    write_column(column->name, declaration, i + 1 == table->count && fields == 0 && !table->tail, column->unit, out);
     fprintf(out, "%s\n", column->meaning);
   }
   for (size_t i = 0; i < fields; i++) {
@@ -107,8 +145,8 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
     return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
   write_table(table, text);
   for (size_t i = 0; i < schema_tables_indexes_count; i++)
-    if (strcmp(schema_tables_indexes[i][0], table->name) == 0)
-      fprintf(text, "%s\n", schema_tables_indexes[i][1]);
+    if (strcmp(schema_tables_indexes[i].table, table->name) == 0)
+      write_index(&schema_tables_indexes[i], text);
   fclose(text);
   status result = sql ? sql_execute(db, sql, "creating tables", error)
                       : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");

@@ -31,6 +31,15 @@ struct schema_table {
 
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
 
+struct schema_index {
+  const char *table, *name, *columns;
+  bool with_main_results; /* columns of the main results after the others */
+};
+
+/* The condition that a row of table run is part of the statistics, as SQL: not surplus, a usable state, every main
+ * result a number. `not_surplus`: "surplus = 0", or another expression for it. The same as store_run_counts(). */
+void schema_write_counts(const char *not_surplus, FILE *out);
+
 /* Create what the database lacks of this table: the table, or columns that its field table has gained (NULL in old
  * rows), and their docs. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);

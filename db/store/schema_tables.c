@@ -69,13 +69,8 @@ static const struct schema_column run[] = {
     {"rank", "INTEGER NOT NULL", NULL, "MPI rank that computed it"},
     {"finished_at", "REAL NOT NULL", "s", "when it was stored, seconds since 1970-01-01 UTC"},
     {"fields_path", "TEXT", NULL, "HDF5 file with its fields, relative to the store's folder; NULL when none was kept"},
-    {"counts",
-     "INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT "
-     "NULL "
-     "AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND "
-     "mean_fragment_mass IS "
-     "NOT NULL))",
-     NULL, "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
+    {"counts", "INTEGER NOT NULL", NULL,
+     "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
 };
 
 static const struct schema_column fragment_mass[] = {
@@ -198,10 +193,9 @@ const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0
 
 /* run_statistics covers the means and scatters of the view `points`, in an order that does not depend on which run came
  * first, so that sums have the same bits whatever the number of workers. */
-const char *const schema_tables_indexes[][2] = {
-    {"run", "CREATE INDEX run_statistics ON run (point_id, results_version, counts, replicate, seed, state, "
-            "largest_fraction, second_fraction, fragment_count, dust_fraction, mean_fragment_mass);"},
-    {"attempt", "CREATE INDEX attempt_identity ON attempt (identity);"},
-    {"attempt", "CREATE INDEX attempt_point ON attempt (point_id);"},
+const struct schema_index schema_tables_indexes[] = {
+    {"run", "run_statistics", "point_id, results_version, counts, replicate, seed, state", true},
+    {"attempt", "attempt_identity", "identity", false},
+    {"attempt", "attempt_point", "point_id", false},
 };
 const size_t schema_tables_indexes_count = sizeof schema_tables_indexes / sizeof schema_tables_indexes[0];

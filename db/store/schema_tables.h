@@ -6,7 +6,7 @@
 
 extern const struct schema_table schema_tables[];
 extern const size_t schema_tables_count;
-extern const char *const schema_tables_indexes[][2]; /* table, CREATE INDEX statement */
+extern const struct schema_index schema_tables_indexes[];
 extern const size_t schema_tables_indexes_count;
 
 #endif

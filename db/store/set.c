@@ -95,22 +95,34 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
   return store_end(store, result, 1, error);
 }
 
+/* UPDATE that makes replicates from `prefix` on surplus. malloc'd; NULL when out of memory. */
+static char *prefix_sql(int64_t point_id, int64_t prefix) {
+  char *sql = NULL, inside[64];
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return NULL;
+  snprintf(inside, sizeof inside, "replicate < %lld", (long long)prefix);
+  fprintf(out, "UPDATE run SET surplus = replicate >= %lld, counts = ", (long long)prefix);
+  schema_write_counts(inside, out);
+  fprintf(out, " WHERE point_id = %lld AND surplus <> (replicate >= %lld)", (long long)point_id, (long long)prefix);
+  fclose(out);
+  return sql;
+}
+
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {
   static const char doing[] = "moving a stopping prefix";
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  result = sums_write(&store->sums, store->db, error);
+  char *sql = prefix_sql(point_id, prefix);
+  result = sql ? sums_write(&store->sums, store->db, error)
+               : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   if (result == STATUS_OK)
-    result =
-        sql_executef(store->db, doing, error,
-                     "UPDATE run SET surplus = replicate >= %lld, counts = replicate < %lld AND state IN "
-                     "('completed', 'end-time') AND largest_fraction + second_fraction + fragment_count + "
-                     "dust_fraction + mean_fragment_mass IS NOT NULL WHERE point_id = %lld AND surplus <> (replicate "
-                     ">= %lld)",
-                     (long long)prefix, (long long)prefix, (long long)point_id, (long long)prefix);
+    result = sql_execute(store->db, sql, doing, error);
   if (result == STATUS_OK && sqlite3_changes64(store->db) > 0)
     result = sums_rebuild(store->db, point_id, error);
+  free(sql);
   return store_end(store, result, 1, error);
 }
 

@@ -3,11 +3,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const views_quantities[] = {"largest_fraction", "second_fraction",    "fragment_count",
-                                        "dust_fraction",    "mean_fragment_mass", NULL};
+#include "engine/outcome.h"
+
+size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]) {
+  size_t count = 0;
+  for (const struct field *row; count < VIEWS_MAIN_MAXIMUM && (row = outcome_main(count)); count++)
+    names[count] = row->path;
+  return count;
+}
 
 /* Exact for few degrees of freedom, then Cornish & Fisher's expansion (Abramowitz & Stegun 26.7.5), within 5e-6. */
-void views_student(FILE *out, const char *degrees) {
+void views_write_student(const char *degrees, FILE *out) {
   static const char *const exact[] = {"12.706204736174", "4.302652729749", "3.182446305284", "2.776445105198",
                                       "2.570581835636",  "2.446911851145", "2.364624251593", "2.306004135204",
                                       "2.262157162798",  "2.228138851986"};
@@ -73,46 +79,53 @@ static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
   return result;
 }
 
-/* Mean and scatter in one pass over the index run_statistics: deviations from the value of the point's first run (k),
- * so that nothing cancels, summed in the order of replicates, so that the bits do not depend on who finished first. No
- * quantity of a run that counts is NULL (a CHECK of table run). */
-static status write_points(sqlite3 *db, FILE *out, struct error *error) {
-  fprintf(out, "CREATE VIEW points AS -- statistics of every point, one row per results_version\n"
-               "WITH first AS (\n  SELECT ");
-  for (int i = 0; views_quantities[i]; i++)
-    fprintf(out, "k.%s AS k%d, ", views_quantities[i], i);
+/* One pass over the index run_statistics. Deviations are from the value of the point's first run (kN), so that nothing
+ * cancels; they are summed in the order of replicates, so that the bits do not depend on which run finished first. No
+ * main result of a run that counts is NULL (a CHECK of table run). */
+void views_write_statistics(size_t count, const char *const *names, FILE *out) {
+  fprintf(out, "WITH first AS (\n  SELECT ");
+  for (size_t i = 0; i < count; i++)
+    fprintf(out, "k.%s AS k%zu, ", names[i], i);
   fprintf(
       out,
       "t.point_id, t.results_version\n  FROM point_total t JOIN run k ON k.run_id = (SELECT f.run_id FROM run f WHERE "
       "f.point_id =\n    t.point_id AND f.results_version = t.results_version AND f.counts = 1 ORDER BY f.replicate, "
       "f.seed LIMIT 1)\n"
       "), moment AS (\n  SELECT f.point_id, f.results_version, count(*) AS n");
-  for (int i = 0; views_quantities[i]; i++) {
-    const char *name = views_quantities[i];
-    fprintf(out, ",\n    k%d, total(r.%s - k%d) AS s%d, total((r.%s - k%d) * (r.%s - k%d)) AS q%d", i, name, i, i, name,
-            i, name, i, i);
-  }
+  for (size_t i = 0; i < count; i++)
+    fprintf(out,
+            ",\n    k%2$zu, total(r.%1$s - k%2$zu) AS s%2$zu, total((r.%1$s - k%2$zu) * (r.%1$s - k%2$zu)) AS q%2$zu",
+            names[i], i);
   fprintf(out,
           "\n  FROM first f CROSS JOIN run r ON r.point_id = f.point_id AND r.results_version = f.results_version AND\n"
           "    r.counts = 1\n  GROUP BY f.point_id, f.results_version\n"
           "), scatter AS (\n  SELECT point_id, results_version, n,\n    ");
-  views_student(out, "(n - 1)");
+  views_write_student("(n - 1)", out);
   fprintf(out, " AS t");
-  for (int i = 0; views_quantities[i]; i++)
-    fprintf(out, ",\n    k%d + s%d / n AS m%d, sqrt(max(0, (q%d - s%d * s%d / n) / (n - 1))) AS d%d", i, i, i, i, i, i,
+  for (size_t i = 0; i < count; i++)
+    fprintf(out,
+            ",\n    k%1$zu + s%1$zu / n AS m%1$zu, sqrt(max(0, (q%1$zu - s%1$zu * s%1$zu / n) / (n - 1))) AS d%1$zu",
             i);
-  fprintf(out, "\n  FROM moment\n)\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n");
+  fprintf(out, "\n  FROM moment\n)\n");
+}
+
+static status write_points(sqlite3 *db, FILE *out, struct error *error) {
+  const char *names[VIEWS_MAIN_MAXIMUM];
+  size_t count = views_main_results(names);
+  fprintf(out, "CREATE VIEW points AS -- statistics of every point, one row per results_version\n");
+  views_write_statistics(count, names, out);
+  fprintf(out, "SELECT p.point_id, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
   fprintf(
       out,
       "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
       "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
       "failed_attempts");
-  for (int i = 0; views_quantities[i]; i++) {
-    const char *name = views_quantities[i];
-    fprintf(out, ",\n  m%d AS %s_mean, d%d AS %s_sd, d%d / sqrt(n) AS %s_se, s.t * d%d / sqrt(n) AS %s_hw95", i, name,
-            i, name, i, name, i, name);
-  }
+  for (size_t i = 0; i < count; i++)
+    fprintf(
+        out,
+        ",\n  m%2$zu AS %1$s_mean, d%2$zu AS %1$s_sd, d%2$zu / sqrt(n) AS %1$s_se, s.t * d%2$zu / sqrt(n) AS %1$s_hw95",
+        names[i], i);
   fprintf(out, "\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
                "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;\n");
   return result;

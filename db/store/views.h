@@ -14,10 +14,18 @@ status views_regenerate(sqlite3 *db, struct error *error);
  */
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error);
 
-/* Results whose mean and scatter the view `points` shows: columns of table run. NULL-terminated. */
-extern const char *const views_quantities[];
+/* The main results (engine/outcome.h), by rank: the columns of table run whose statistics the view `points` shows.
+ * Returns how many. */
+enum { VIEWS_MAIN_MAXIMUM = 16 };
+size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]);
 
-/* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom. */
-void views_student(FILE *out, const char *degrees);
+/* SQL that begins a query on the statistics of columns of table run, for every point and results_version: the table
+ * expression `scatter` with point_id, results_version, n, the quantile t of views_write_student() and, for the N-th
+ * name from 0, its mean mN and standard deviation dN. In C this is sample_summarise(); a test compares the two. */
+void views_write_statistics(size_t count, const char *const *names, FILE *out);
+
+/* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()
+ * for tools without our functions, within 5e-6. */
+void views_write_student(const char *degrees, FILE *out);
 
 #endif

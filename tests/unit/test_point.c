@@ -45,6 +45,62 @@ static struct store *fill(char path[64], int64_t *point) {
   return store;
 }
 
+static double number(struct store *store, const char *format, ...) {
+  char sql[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(sql, sizeof sql, format, arguments);
+  va_end(arguments);
+  double value = 0;
+  OK(query_number(store, sql, 0, NULL, &value, &error));
+  return value;
+}
+
+/* The same statistics three times: in C from the masses, in the views' plain SQL, and in the question of spectra. */
+static void views_and_c_agree(void **state) {
+  (void)state;
+  char path[64];
+  int64_t id;
+  struct store *store = fill(path, &id);
+  struct point_data point;
+  OK(point_read(store, id, 0, &point, &error));
+
+  double largest[RUNS];
+  for (size_t r = 0; r < point.runs.count; r++) {
+    double total = 0;
+    for (size_t i = point.runs.first[r]; i < point.runs.first[r + 1]; i++)
+      total += point.runs.masses[i];
+    largest[r] = point.runs.masses[point.runs.first[r]] / total;
+  }
+  const struct sample_summary s = sample_summarise(point.runs.count, largest, 0.95);
+  assert_near(number(store, "SELECT n FROM points"), (double)s.n, 0);
+  assert_near(number(store, "SELECT largest_fraction_mean FROM points"), s.mean, 1e-14);
+  assert_near(number(store, "SELECT largest_fraction_sd FROM points"), s.standard_deviation, 1e-14);
+  assert_near(number(store, "SELECT largest_fraction_se FROM points"), s.standard_error, 1e-14);
+  assert_near(number(store, "SELECT largest_fraction_hw95 FROM points"), s.half_width, 1e-11);
+
+  struct pooled_bin *bins;
+  size_t count;
+  OK(pooled_spectrum(&point.runs, true, 1, &bins, &count, &error));
+  OK(ask_register_functions(store, &error));
+  assert_near(number(store, "SELECT count(*) FROM spectra"), (double)count, 0);
+  for (size_t i = 0; i < count; i++) {
+    double width = bins[i].upper - bins[i].lower, n = (double)point.runs.count;
+    double mean = number(store, "SELECT count_mean FROM spectra WHERE bin = %d", bins[i].bin);
+    double scatter = number(store, "SELECT count_sd FROM spectra WHERE bin = %d", bins[i].bin);
+    double error_of_mean = number(store,
+                                  "SELECT pooled_error(runs, count, count_squared) FROM (SELECT %zu AS runs, "
+                                  "count, count_squared FROM point_spectrum WHERE bin = %d)",
+                                  point.runs.count, bins[i].bin);
+    assert_near(mean / width, bins[i].density, 1e-13 * bins[i].density);
+    assert_near(scatter / sqrt(n) / width, bins[i].standard_error, 1e-13 * bins[i].density);
+    assert_near(error_of_mean / width, bins[i].standard_error, 1e-13 * bins[i].density);
+  }
+  free(bins);
+  point_release(&point);
+  OK(store_close(store, &error));
+}
+
 static void runs_that_count_in_order(void **state) {
   (void)state;
   char path[64];
@@ -125,6 +181,6 @@ static void runs_that_count_in_order(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
