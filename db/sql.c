@@ -3,14 +3,14 @@
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const char *remedy(int code) {
   switch (code & 0xff) {
   case SQLITE_FULL:
     return "The disk is full (or a quota or file size limit is reached). What was committed is safe; free some space "
-           "and "
-           "give the same command again.";
+           "and give the same command again.";
   case SQLITE_READONLY:
     return "The file or its folder cannot be written. Give yourself write permission, or copy the store elsewhere.";
   case SQLITE_PERM:
@@ -23,11 +23,10 @@ static const char *remedy(int code) {
            "same command again.";
   case SQLITE_IOERR:
     return "Reading or writing failed (disk full, quota, file size limit, or a disk or network file system in "
-           "trouble). "
-           "What was committed is safe; mend that and give the same command again.";
+           "trouble). What was committed is safe; mend that and give the same command again.";
   case SQLITE_CORRUPT:
     return "The file is damaged. Restore a copy, or save what can be saved with `sqlite3 FILE .recover`.";
-  case SQLITE_NOTADB: return "It is no SQLite database.";
+  case SQLITE_NOTADB: return "It is not an SQLite database.";
   case SQLITE_NOMEM: return "Memory ran out.";
   default: return "This is a bug in clast, or another program has changed the store's tables.";
   }
@@ -142,6 +141,88 @@ void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row,
     break;
   }
   case FIELD_TEXT: sqlite3_bind_text(statement, index, place, -1, SQLITE_STATIC); break;
+  }
+}
+
+void sql_bind_text(sqlite3_stmt *statement, int index, const char *text) {
+  if (text)
+    sqlite3_bind_text(statement, index, text, -1, SQLITE_STATIC);
+  else
+    sqlite3_bind_null(statement, index);
+}
+
+static void bind_column(sqlite3_stmt *statement, int index, const struct sql_column *column, const void *object) {
+  const char *place = (const char *)object + column->offset;
+  switch (column->kind) {
+  case SQL_COLUMN_INTEGER: sqlite3_bind_int64(statement, index, *(const int64_t *)(const void *)place); break;
+  case SQL_COLUMN_KEY: {
+    int64_t key = *(const int64_t *)(const void *)place;
+    if (key)
+      sqlite3_bind_int64(statement, index, key);
+    else
+      sqlite3_bind_null(statement, index);
+    break;
+  }
+  case SQL_COLUMN_INT: sqlite3_bind_int(statement, index, *(const int *)(const void *)place); break;
+  case SQL_COLUMN_BOOLEAN: sqlite3_bind_int(statement, index, *(const bool *)place); break;
+  case SQL_COLUMN_REAL: sqlite3_bind_double(statement, index, *(const double *)(const void *)place); break;
+  case SQL_COLUMN_TEXT: sql_bind_text(statement, index, *(const char *const *)(const void *)place); break;
+  case SQL_COLUMN_IDENTITY: sqlite3_bind_blob(statement, index, place, 16, SQLITE_STATIC); break;
+  }
+}
+
+static char *insert_sql(const struct sql_insert *insert, const char *table) {
+  char *sql = NULL;
+  size_t size = 0, fields = insert->fields ? insert->fields->count : 0, columns = insert->column_count + fields;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return NULL;
+  fprintf(out, "INSERT INTO %s (", table);
+  for (size_t i = 0; i < insert->column_count; i++)
+    fprintf(out, "%s%s", i ? ", " : "", insert->columns[i].name);
+  for (size_t i = 0; i < fields; i++) {
+    char name[FIELD_TEXT_SIZE];
+    field_column_name(insert->fields->rows[i].path, name, sizeof name);
+    fprintf(out, ", \"%s\"", name);
+  }
+  fputs(") VALUES ", out);
+  for (size_t row = 0; row < insert->rows; row++) {
+    fputs(row ? "), (?" : "(?", out);
+    for (size_t i = 1; i < columns; i++)
+      fputs(", ?", out);
+  }
+  fputs(")", out);
+  fclose(out);
+  return sql;
+}
+
+status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,
+                          const struct sql_column *columns, const struct field_table *fields, size_t rows,
+                          const char *doing, struct error *error) {
+  if (insert->statement && insert->rows == rows)
+    return STATUS_OK;
+  sqlite3_finalize(insert->statement);
+  *insert = (struct sql_insert){NULL, columns, column_count, fields, rows};
+  char *sql = insert_sql(insert, table);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+  status result = sql_prepare(db, sql, &insert->statement, doing, error);
+  free(sql);
+  return result;
+}
+
+void sql_insert_bind(const struct sql_insert *insert, size_t index, const void *object, const void *described) {
+  const struct field_table *fields = insert->fields;
+  size_t columns = insert->column_count + (fields ? fields->count : 0);
+  int place = 1 + (int)(index * columns);
+  for (size_t i = 0; i < insert->column_count; i++)
+    bind_column(insert->statement, place++, &insert->columns[i], object);
+  for (size_t i = 0; fields && i < fields->count; i++, place++) {
+    const struct field *row = &fields->rows[i];
+    if (row->when && !field_is_active(fields, row, described))
+      sqlite3_bind_null(insert->statement, place);
+    else
+      sql_bind_field(insert->statement, place, row, described, false);
   }
 }
 

@@ -9,25 +9,60 @@
 #include "schemas/field.h"
 #include "schemas/status.h"
 
-/* What the connection's last error means to a person. `doing`: "adding a run". Returns the status that fits the code.
- */
+/* Says what the connection's last error means and how to mend it. `doing`: "adding a run". Returns the status that fits
+ * the code. */
 status sql_fail(sqlite3 *db, int code, const char *doing, struct error *error);
 
-/* Any number of statements. */
+/* Runs any number of statements. */
 status sql_execute(sqlite3 *db, const char *sql, const char *doing, struct error *error);
-/* The same, made by printf. Names and literals in it are ours: use %w and %Q of sqlite3_mprintf for others'. */
+/* The same, with the text made by sqlite3_mprintf: write names and literals that come from outside with %w and %Q. */
 status sql_executef(sqlite3 *db, const char *doing, struct error *error, const char *format, ...);
 status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char *doing, struct error *error);
 /* The same unless *out is there already: for statements that live as long as the store. */
 status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
-/* Step a statement that gives no rows, and reset it. */
+/* Steps a statement that gives no rows, and resets it. */
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
 /* First column of the first row as an integer; `otherwise` when there is no row or it is NULL. */
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
 
-/* Bind the value that `row` describes in *object: NaN as NULL (NaN as 'off' with off_as_text), choices
- * by name. Texts are bound by reference: *object must live until the statement has run. */
+/* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
+ * Texts are bound by reference: *object must live until the statement has run. */
 void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text);
+/* A text bound by reference; NULL binds NULL. */
+void sql_bind_text(sqlite3_stmt *statement, int index, const char *text);
+
+/* A column that no field table describes, and its place in a struct. */
+enum sql_column_kind {
+  SQL_COLUMN_INTEGER,  /* int64_t or uint64_t */
+  SQL_COLUMN_KEY,      /* int64_t; 0 is NULL */
+  SQL_COLUMN_INT,      /* int */
+  SQL_COLUMN_BOOLEAN,  /* bool */
+  SQL_COLUMN_REAL,     /* double */
+  SQL_COLUMN_TEXT,     /* const char *; NULL is NULL */
+  SQL_COLUMN_IDENTITY, /* uint8_t[16] */
+};
+struct sql_column {
+  const char *name;
+  enum sql_column_kind kind;
+  size_t offset;
+};
+
+/* An INSERT of these columns, followed by those of a field table (NULL: none). All zero: not prepared yet. */
+struct sql_insert {
+  sqlite3_stmt *statement;
+  const struct sql_column *columns;
+  size_t column_count;
+  const struct field_table *fields;
+  size_t rows; /* inserted at once */
+};
+/* Prepares it, unless it is prepared for that many rows already. */
+status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,
+                          const struct sql_column *columns, const struct field_table *fields, size_t rows,
+                          const char *doing, struct error *error);
+/* Binds the index-th row (from 0): the columns from *object, the fields from *described. Both must live until the
+ * statement has run. */
+void sql_insert_bind(const struct sql_insert *insert, size_t index, const void *object, const void *described);
+
 /* STRICT type of a row's column. */
 const char *sql_type(const struct field *row);
 

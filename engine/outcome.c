@@ -59,11 +59,9 @@ bool outcome_is_usable(int state) {
 bool outcome_counts(const struct outcome *outcome) {
   if (!outcome_is_usable(outcome->state))
     return false;
-  const struct field *row;
-  for (size_t i = 0; (row = outcome_main(i)); i++) {
-    struct field_value value;
-    field_get(row, outcome, &value);
-    if (row->kind == FIELD_REAL && isnan(value.number))
+  for (size_t i = 0; i < outcome_table.count; i++) {
+    const double *value = (const void *)((const char *)outcome + rows[i].offset);
+    if (rows[i].main_rank && rows[i].kind == FIELD_REAL && isnan(*value))
       return false;
   }
   return true;

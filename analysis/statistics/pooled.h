@@ -26,7 +26,7 @@ struct pooled_bin {
 };
 /* Standard error of the mean count per run in a bin, from the scatter between runs. count, squares: sum over the runs
  * of their counts and of the squares. NaN for fewer than two runs. */
-double pooled_count_error(size_t runs, double count, double squares);
+double pooled_spectrum_count_error(size_t runs, double count, double squares);
 
 /* Non-empty bins, ascending, malloc'd into *bins. unit_mass: 1 for F(m) in 1/kg, the total mass for F(m/M). */
 status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,

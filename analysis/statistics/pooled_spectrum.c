@@ -4,7 +4,7 @@
 
 #include "analysis/statistics/pooled.h"
 
-double pooled_count_error(size_t runs, double count, double squares) {
+double pooled_spectrum_count_error(size_t runs, double count, double squares) {
   if (runs < 2)
     return NAN;
   double n = (double)runs;
@@ -70,7 +70,7 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
     bin.upper = spectrum_edge(bin.bin + 1);
     double width = (bin.upper - bin.lower) / unit_mass, total = (double)bin.count;
     bin.density = total / ((double)runs->count * width);
-    bin.standard_error = pooled_count_error(runs->count, total, squares[j]) / width;
+    bin.standard_error = pooled_spectrum_count_error(runs->count, total, squares[j]) / width;
     found[(*count)++] = bin;
   }
   *bins = found;

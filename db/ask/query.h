@@ -44,7 +44,7 @@ status query_number(struct store *store, const char *sql, size_t parameter_count
 
 /* Functions on this connection only: the aggregates stdev(x), median(x) and hist_sum(masses), which pools mass blobs
  * into the store's bins as a JSON array of [bin, count, mass], and pooled_error(runs, count, squares), which is
- * pooled_count_error(). The views of a store use none of them, so that any tool can read the views. */
+ * pooled_spectrum_count_error(). The views of a store use none of them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);
 
 /* n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, pooled over

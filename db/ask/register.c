@@ -22,10 +22,11 @@ static void stdev_final(sqlite3_context *context) {
     sqlite3_result_double(context, sample_summarise_moments(moments, 0.95).standard_deviation);
 }
 
-/* pooled_error(runs, count, squares): pooled_count_error(). SQLite makes NULL of its NaN. */
+/* pooled_error(runs, count, squares): pooled_spectrum_count_error(). SQLite makes NULL of its NaN. */
 static void pooled_error(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
-  sqlite3_result_double(context, pooled_count_error((size_t)sqlite3_value_int64(values[0]),
+  sqlite3_result_double(context,
+                        pooled_spectrum_count_error((size_t)sqlite3_value_int64(values[0]),
                                                     sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
 }
 

@@ -1,5 +1,4 @@
-/* Adding rows: campaigns, points, runs, attempts. Nothing is made into text or JSON per run, and every statement is
- * prepared once. */
+/* Adding rows: campaigns, points, runs, attempts. Every statement is prepared once, and a run needs no text or JSON. */
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -16,51 +15,6 @@ static double wall_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void bind_text(sqlite3_stmt *statement, int index, const char *text) {
-  if (text)
-    sqlite3_bind_text(statement, index, text, -1, SQLITE_STATIC);
-  else
-    sqlite3_bind_null(statement, index);
-}
-
-/* INSERT of `fixed` columns followed by a field table's columns. */
-static status prepare_insert(struct store *store, sqlite3_stmt **statement, const char *table, const char *fixed,
-                             const struct field_table *fields, const char *doing, struct error *error) {
-  if (*statement)
-    return STATUS_OK;
-  char *sql = NULL;
-  size_t size = 0, columns = 1;
-  FILE *out = open_memstream(&sql, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  for (const char *c = fixed; *c; c++)
-    columns += *c == ',';
-  fprintf(out, "INSERT INTO %s (%s", table, fixed);
-  for (size_t i = 0; fields && i < fields->count; i++, columns++) {
-    char name[SCHEMA_NAME_SIZE];
-    field_column_name(fields->rows[i].path, name, sizeof name);
-    fprintf(out, ", \"%s\"", name);
-  }
-  for (size_t i = 0; i < columns; i++)
-    fputs(i ? ", ?" : ") VALUES (?", out);
-  fputs(")", out);
-  fclose(out);
-  status result = sql ? sql_prepare(store->db, sql, statement, doing, error)
-                      : status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  free(sql);
-  return result;
-}
-
-static void bind_fields(sqlite3_stmt *statement, int index, const struct field_table *fields, const void *object) {
-  for (size_t i = 0; i < fields->count; i++, index++) {
-    const struct field *row = &fields->rows[i];
-    if (row->when && !field_is_active(fields, row, object))
-      sqlite3_bind_null(statement, index);
-    else
-      sql_bind_field(statement, index, row, object, false);
-  }
-}
-
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error) {
   sqlite3_stmt *statement = NULL;
@@ -70,8 +24,8 @@ status store_add_campaign(struct store *store, const char *name, const char *doc
   result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &statement,
                        "adding a campaign", error);
   if (result == STATUS_OK) {
-    bind_text(statement, 1, name);
-    bind_text(statement, 2, document_text);
+    sql_bind_text(statement, 1, name);
+    sql_bind_text(statement, 2, document_text);
     *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
     sqlite3_finalize(statement);
     statement = NULL;
@@ -82,9 +36,9 @@ status store_add_campaign(struct store *store, const char *name, const char *doc
                          "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
                          &statement, "adding a campaign", error);
     if (result == STATUS_OK) {
-      bind_text(statement, 1, name);
-      bind_text(statement, 2, document_text);
-      bind_text(statement, 3, plan_json);
+      sql_bind_text(statement, 1, name);
+      sql_bind_text(statement, 2, document_text);
+      sql_bind_text(statement, 3, plan_json);
       result = sql_run(statement, "adding a campaign", error);
       *campaign_id = sqlite3_last_insert_rowid(store->db);
     }
@@ -112,7 +66,7 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
     if (!field_is_active(inputs, row, scene->inputs))
       continue;
     sqlite3_bind_int64(store->point_input, 1, point_id);
-    bind_text(store->point_input, 2, row->path);
+    sql_bind_text(store->point_input, 2, row->path);
     sql_bind_field(store->point_input, 3, row, scene->inputs, true);
     result = sql_run(store->point_input, adding_point, error);
   }
@@ -143,9 +97,9 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
   if (!(json = scene_json(scene)))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
   sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
-  bind_text(store->point, 2, scene->kind->name);
-  bind_text(store->point, 3, scene->name);
-  bind_text(store->point, 4, json);
+  sql_bind_text(store->point, 2, scene->kind->name);
+  sql_bind_text(store->point, 3, scene->name);
+  sql_bind_text(store->point, 4, json);
   result = sql_run(store->point, adding_point, error);
   *point_id = sqlite3_last_insert_rowid(store->db);
   free(json);
@@ -162,7 +116,7 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
   const struct field *row = field_find(scene->kind->inputs, path, error);
   if (!row)
     return STATUS_CONTENT;
-  bind_text(store->axis_find, 1, row->path);
+  sql_bind_text(store->axis_find, 1, row->path);
   bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
   sqlite3_reset(store->axis_find);
   if (known)
@@ -176,6 +130,8 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
   *grown = true;
   return result;
 }
+
+static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
 
 /* The engine's statement, its result table made when this store has met no such engine yet. */
 static status find_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
@@ -196,7 +152,8 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
   if (result == STATUS_OK)
     result = sql_integer(store->db, "PRAGMA schema_version", 0, &after, error);
   if (result == STATUS_OK)
-    result = prepare_insert(store, &entry->insert, table.name, "run_id", kind->results, adding_run, error);
+    result = sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
+                                error);
   if (result != STATUS_OK)
     return result;
   *grown = *grown || before != after;
@@ -233,38 +190,52 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
   return store_end(store, result, 1, error);
 }
 
+/* A run as table run has it, but for its outcome. */
+struct run_row {
+  struct store_run run;
+  int results_version;
+  bool counts;
+  double finished_at;
+};
+#define RUN(name_, kind_, member_)                                                                                     \
+  { name_, SQL_COLUMN_##kind_, offsetof(struct run_row, member_) }
+static const struct sql_column run_columns[] = {
+    RUN("point_id", INTEGER, run.point_id),
+    RUN("session_id", KEY, run.session_id),
+    RUN("identity", IDENTITY, run.identity),
+    RUN("replicate", INTEGER, run.replicate),
+    RUN("seed", INTEGER, run.seed),
+    RUN("results_version", INT, results_version),
+    RUN("surplus", BOOLEAN, run.surplus),
+    RUN("counts", BOOLEAN, counts),
+    RUN("attempt", INT, run.attempt),
+    RUN("wall_time", REAL, run.wall_s),
+    RUN("cpu_time", REAL, run.cpu_s),
+    RUN("peak_memory", INTEGER, run.peak_memory),
+    RUN("host", TEXT, run.host),
+    RUN("rank", INT, run.rank),
+    RUN("finished_at", REAL, finished_at),
+    RUN("fields_path", TEXT, run.fields_path),
+};
+
 static status add_row(struct store *store, const struct store_run *run, int64_t *run_id, struct error *error) {
-  status result =
-      prepare_insert(store, &store->run, "run",
-                     "point_id, session_id, identity, replicate, seed, results_version, surplus, counts, attempt, "
-                     "wall_time, cpu_time, peak_memory, host, rank, finished_at, fields_path",
-                     &outcome_table, adding_run, error);
+  status result = sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0],
+                                     run_columns, &outcome_table, 1, adding_run, error);
   if (result != STATUS_OK)
     return result;
-  sqlite3_stmt *statement = store->run;
-  sqlite3_bind_int64(statement, 1, run->point_id);
-  if (run->session_id > 0)
-    sqlite3_bind_int64(statement, 2, run->session_id);
-  else
-    sqlite3_bind_null(statement, 2);
-  sqlite3_bind_blob(statement, 3, run->identity, 16, SQLITE_STATIC);
-  sqlite3_bind_int64(statement, 4, run->replicate);
-  sqlite3_bind_int64(statement, 5, (int64_t)run->seed);
-  sqlite3_bind_int(statement, 6, run->kind->results_version);
-  sqlite3_bind_int(statement, 7, run->surplus);
-  sqlite3_bind_int(statement, 8, store_run_counts(run));
-  sqlite3_bind_int(statement, 9, run->attempt);
-  sqlite3_bind_double(statement, 10, run->wall_s);
-  sqlite3_bind_double(statement, 11, run->cpu_s);
-  sqlite3_bind_int64(statement, 12, run->peak_memory);
-  bind_text(statement, 13, run->host);
-  sqlite3_bind_int(statement, 14, run->rank);
-  sqlite3_bind_double(statement, 15, wall_clock());
-  bind_text(statement, 16, run->fields_path);
-  bind_fields(statement, 17, &outcome_table, run->outcome);
-  result = sql_run(statement, adding_run, error);
+  const struct run_row row = {.run = *run,
+                              .results_version = run->kind->results_version,
+                              .counts = store_run_counts(run),
+                              .finished_at = wall_clock()};
+  sql_insert_bind(&store->run, 0, &row, run->outcome);
+  result = sql_run(store->run.statement, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);
   return result;
+}
+
+static status add_result(const struct store_kind *kind, int64_t run_id, const void *result, struct error *error) {
+  sql_insert_bind(&kind->insert, 0, &run_id, result);
+  return sql_run(kind->insert.statement, adding_run, error);
 }
 
 status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
@@ -273,7 +244,7 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
   bool grown = false;
   int64_t run_id = 0;
   struct store_kind *kind = NULL;
-  struct identities_entry *entry = NULL;
+  struct identities_state *entry = NULL;
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
@@ -282,11 +253,8 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
     result = views_regenerate(store->db, error);
   if (result == STATUS_OK)
     result = add_row(store, run, &run_id, error);
-  if (result == STATUS_OK && run->result) {
-    sqlite3_bind_int64(kind->insert, 1, run_id);
-    bind_fields(kind->insert, 2, run->kind->results, run->result);
-    result = sql_run(kind->insert, adding_run, error);
-  }
+  if (result == STATUS_OK && run->result)
+    result = add_result(kind, run_id, run->result, error);
   if (result == STATUS_OK)
     result = store_fragments_add(store, run_id, run, error);
   if (result == STATUS_OK && run->estimate_count)
@@ -300,43 +268,57 @@ status store_add_run(struct store *store, const struct store_run *run, struct er
   return store_end(store, result, 1, error);
 }
 
-status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
+struct attempt_row {
+  struct store_attempt attempt;
+  double failed_at;
+};
+#define ATTEMPT(name_, kind_, member_)                                                                                 \
+  { name_, SQL_COLUMN_##kind_, offsetof(struct attempt_row, member_) }
+static const struct sql_column attempt_columns[] = {
+    ATTEMPT("identity", IDENTITY, attempt.identity),
+    ATTEMPT("point_id", INTEGER, attempt.point_id),
+    ATTEMPT("replicate", INTEGER, attempt.replicate),
+    ATTEMPT("seed", INTEGER, attempt.seed),
+    ATTEMPT("session_id", KEY, attempt.session_id),
+    ATTEMPT("number", INT, attempt.attempt),
+    ATTEMPT("reason", TEXT, attempt.reason),
+    ATTEMPT("exit_code", INT, attempt.exit_code),
+    ATTEMPT("signal", INT, attempt.signal),
+    ATTEMPT("wall_time", REAL, attempt.wall_s),
+    ATTEMPT("peak_memory", INTEGER, attempt.peak_memory),
+    ATTEMPT("limited_to", REAL, attempt.limit),
+    ATTEMPT("message", TEXT, attempt.message),
+    ATTEMPT("host", TEXT, attempt.host),
+    ATTEMPT("rank", INT, attempt.rank),
+    ATTEMPT("failed_at", REAL, failed_at),
+};
+
+static status add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
   static const char doing[] = "adding an attempt";
+  status result = sql_insert_prepare(store->db, &store->attempt, "attempt",
+                                     sizeof attempt_columns / sizeof attempt_columns[0], attempt_columns, NULL, 1,
+                                     doing, error);
+  if (result != STATUS_OK)
+    return result;
+  struct identities_state *state = identities_add(&store->identities, attempt->identity);
+  if (!state)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
+
+  struct attempt_row row = {.attempt = *attempt, .failed_at = wall_clock()};
+  if (!attempt->reason)
+    row.attempt.reason = "exit";
+  if (!attempt->message)
+    row.attempt.message = "";
+  sql_insert_bind(&store->attempt, 0, &row, NULL);
+  result = sql_run(store->attempt.statement, doing, error);
+  if (result == STATUS_OK)
+    state->attempts++;
+  return result;
+}
+
+status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  result =
-      prepare_insert(store, &store->attempt, "attempt",
-                     "identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, wall_time, "
-                     "peak_memory, limited_to, message, host, rank, failed_at",
-                     NULL, doing, error);
-  struct identities_entry *entry = NULL;
-  if (result == STATUS_OK && !(entry = identities_add(&store->identities, attempt->identity)))
-    result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  if (result == STATUS_OK) {
-    sqlite3_stmt *statement = store->attempt;
-    sqlite3_bind_blob(statement, 1, attempt->identity, 16, SQLITE_STATIC);
-    sqlite3_bind_int64(statement, 2, attempt->point_id);
-    sqlite3_bind_int64(statement, 3, attempt->replicate);
-    sqlite3_bind_int64(statement, 4, (int64_t)attempt->seed);
-    if (attempt->session_id > 0)
-      sqlite3_bind_int64(statement, 5, attempt->session_id);
-    else
-      sqlite3_bind_null(statement, 5);
-    sqlite3_bind_int(statement, 6, attempt->attempt);
-    bind_text(statement, 7, attempt->reason ? attempt->reason : "exit");
-    sqlite3_bind_int(statement, 8, attempt->exit_code);
-    sqlite3_bind_int(statement, 9, attempt->signal);
-    sqlite3_bind_double(statement, 10, attempt->wall_s);
-    sqlite3_bind_int64(statement, 11, attempt->peak_memory);
-    sqlite3_bind_double(statement, 12, attempt->limit);
-    bind_text(statement, 13, attempt->message ? attempt->message : "");
-    bind_text(statement, 14, attempt->host);
-    sqlite3_bind_int(statement, 15, attempt->rank);
-    sqlite3_bind_double(statement, 16, wall_clock());
-    result = sql_run(statement, doing, error);
-    if (result == STATUS_OK)
-      entry->attempts++;
-  }
-  return store_end(store, result, 1, error);
+  return store_end(store, add_attempt(store, attempt, error), 1, error);
 }

@@ -1,53 +1,58 @@
-/* Open addressing with linear probing, at most three quarters full. An identity is a hash already: its first word is
- * the place to start. */
 #include "db/store/identities.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static size_t place(const struct identities_entry *slots, size_t capacity, const uint8_t identity[16]) {
-  uint64_t word;
-  memcpy(&word, identity, sizeof word);
-  size_t at = (size_t)word & (capacity - 1);
-  while (slots[at].used && memcmp(slots[at].identity, identity, 16) != 0)
-    at = (at + 1) & (capacity - 1);
-  return at;
+/* An identity is a hash already, so that multiplying its words is enough. */
+#define HASH_FUNCTION(key, size, hash) ((hash) = hash_of(key))
+#define HASH_NONFATAL_OOM              1
+#define uthash_nonfatal_oom(entry)     ((entry)->identity_is_added = false)
+#include <uthash.h>
+
+static unsigned hash_of(const void *identity) {
+  uint64_t words[2];
+  memcpy(words, identity, sizeof words);
+  return (unsigned)((words[0] ^ words[1]) * 0x9e3779b97f4a7c15u >> 32);
 }
 
-static bool grow(struct identities *set) {
-  size_t capacity = set->capacity ? 2 * set->capacity : 1024;
-  struct identities_entry *slots = calloc(capacity, sizeof *slots);
-  if (!slots)
-    return false;
-  for (size_t i = 0; i < set->capacity; i++)
-    if (set->slots[i].used)
-      slots[place(slots, capacity, set->slots[i].identity)] = set->slots[i];
-  free(set->slots);
-  set->slots = slots;
-  set->capacity = capacity;
-  return true;
-}
+struct identities_entry {
+  UT_hash_handle hh;
+  uint8_t identity[16];
+  struct identities_state state;
+  bool identity_is_added;
+};
 
-struct identities_entry *identities_add(struct identities *set, const uint8_t identity[16]) {
-  if (4 * (set->count + 1) > 3 * set->capacity && !grow(set))
-    return NULL;
-  struct identities_entry *entry = &set->slots[place(set->slots, set->capacity, identity)];
-  if (!entry->used) {
-    memcpy(entry->identity, identity, 16);
-    entry->used = true;
-    set->count++;
-  }
+static struct identities_entry *find(const struct identities *set, const uint8_t identity[16]) {
+  struct identities_entry *entry;
+  HASH_FIND(hh, set->table, identity, 16, entry);
   return entry;
 }
 
-struct identities_entry *identities_find(const struct identities *set, const uint8_t identity[16]) {
-  if (set->capacity == 0)
+struct identities_state *identities_find(const struct identities *set, const uint8_t identity[16]) {
+  struct identities_entry *entry = find(set, identity);
+  return entry ? &entry->state : NULL;
+}
+
+struct identities_state *identities_add(struct identities *set, const uint8_t identity[16]) {
+  struct identities_entry *entry = find(set, identity);
+  if (entry)
+    return &entry->state;
+  entry = calloc(1, sizeof *entry);
+  if (!entry)
     return NULL;
-  struct identities_entry *entry = &set->slots[place(set->slots, set->capacity, identity)];
-  return entry->used ? entry : NULL;
+  memcpy(entry->identity, identity, 16);
+  entry->identity_is_added = true;
+  HASH_ADD(hh, set->table, identity, 16, entry);
+  if (entry->identity_is_added)
+    return &entry->state;
+  free(entry);
+  return NULL;
 }
 
 void identities_clear(struct identities *set) {
-  free(set->slots);
-  *set = (struct identities){0};
+  struct identities_entry *entry, *next;
+  HASH_ITER(hh, set->table, entry, next) {
+    HASH_DEL(set->table, entry);
+    free(entry);
+  }
 }

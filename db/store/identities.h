@@ -1,4 +1,5 @@
-/* The identities a store holds, in memory: resume asks for every run of a campaign, and adding a run asks once more. */
+/* The identities that a store holds, in memory: resume asks for every run of a campaign, and adding a run asks again.
+ */
 #ifndef CLAST_DB_STORE_IDENTITIES_H
 #define CLAST_DB_STORE_IDENTITIES_H
 
@@ -6,21 +7,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct identities_entry {
-  uint8_t identity[16];
+struct identities_entry;
+
+struct identities { /* all zero: empty */
+  struct identities_entry *table;
+};
+
+/* What the store has of an identity. */
+struct identities_state {
   uint32_t attempts; /* failed ones */
-  bool used, stored;
+  bool stored;
 };
 
-struct identities { /* all zero = empty */
-  struct identities_entry *slots;
-  size_t capacity, count; /* capacity: 0 or a power of two */
-};
-
-/* The entry of an identity, added when absent. NULL when memory ran out. Valid until the next call. */
-struct identities_entry *identities_add(struct identities *set, const uint8_t identity[16]);
+/* The state of an identity, added when absent. NULL when memory ran out. Valid until identities_clear(). */
+struct identities_state *identities_add(struct identities *set, const uint8_t identity[16]);
 /* NULL when absent. */
-struct identities_entry *identities_find(const struct identities *set, const uint8_t identity[16]);
+struct identities_state *identities_find(const struct identities *set, const uint8_t identity[16]);
 void identities_clear(struct identities *set);
 
 #endif

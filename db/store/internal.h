@@ -12,9 +12,9 @@
 enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 #define STORE_BATCH_SECONDS 1.0
 
-struct store_kind { /* statement that fills result_<engine> */
+struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
-  sqlite3_stmt *insert;
+  struct sql_insert insert;
 };
 
 struct store {
@@ -34,9 +34,9 @@ struct store {
   uint8_t batch_identities[STORE_BATCH_ROWS][16];
   size_t batch_identity_count;
 
-  sqlite3_stmt *run, *masses, *spectrum, *spectrum_together, *attempt, *estimate;
+  struct sql_insert run, attempt, estimate;
+  sqlite3_stmt *masses, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
-  size_t estimate_rows; /* that the statement `estimate` inserts at once */
   struct store_kind kinds[STORE_KINDS];
   size_t kind_count;
 

@@ -5,16 +5,10 @@
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 
-static int state_of(const char *name) {
-  static const char *const path = "state";
-  for (size_t i = 0; i < outcome_table.count; i++) {
-    const struct field *row = &outcome_table.rows[i];
-    if (strcmp(row->path, path) != 0)
-      continue;
-    for (int k = 0; row->choices[k]; k++)
-      if (strcmp(row->choices[k], name) == 0)
-        return k;
-  }
+static int state_of(const struct field *states, const char *name) {
+  for (int k = 0; states->choices[k]; k++)
+    if (strcmp(states->choices[k], name) == 0)
+      return k;
   return OUTCOME_INVALID;
 }
 
@@ -39,13 +33,14 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
     return result;
   sqlite3_bind_int64(statement, 1, point_id);
   sqlite3_bind_int(statement, 2, kind->results_version);
+  const struct field *states = field_find(&outcome_table, "state", NULL);
   int code;
   while ((code = sqlite3_step(statement)) == SQLITE_ROW) {
     struct store_point_run run = {
         .replicate = sqlite3_column_int64(statement, 0),
         .seed = (uint64_t)sqlite3_column_int64(statement, 9),
         .surplus = sqlite3_column_int(statement, 2) != 0,
-        .state = state_of((const char *)sqlite3_column_text(statement, 3)),
+        .state = state_of(states, (const char *)sqlite3_column_text(statement, 3)),
         .value = sqlite3_column_type(statement, 4) == SQLITE_NULL ? (double)NAN : sqlite3_column_double(statement, 4),
         .wall_s = sqlite3_column_double(statement, 5),
         .cpu_s = sqlite3_column_double(statement, 6),

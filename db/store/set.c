@@ -6,73 +6,41 @@
 
 static const char writing[] = "writing estimates";
 
-/* INSERT of `key` columns and the estimate's own, `rows` rows at once. */
-static status prepare(struct store *store, sqlite3_stmt **statement, const char *table, const char *key, size_t rows,
-                      struct error *error) {
-  if (*statement)
-    return STATUS_OK;
-  char *sql = NULL;
-  size_t size = 0, columns = estimates_table.count + 1;
-  FILE *out = open_memstream(&sql, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
-  for (const char *c = key; *c; c++)
-    columns += *c == ',';
-  fprintf(out, "INSERT INTO %s (%s", table, key);
-  for (size_t i = 0; i < estimates_table.count; i++) {
-    char name[SCHEMA_NAME_SIZE];
-    field_column_name(estimates_table.rows[i].path, name, sizeof name);
-    fprintf(out, ", \"%s\"", name);
-  }
-  fputs(") VALUES ", out);
-  for (size_t row = 0; row < rows; row++)
-    for (size_t i = 0; i < columns; i++)
-      fputs(i ? ", ?" : row ? "), (?" : "(?", out);
-  fputs(")", out);
-  fclose(out);
-  status result = sql ? sql_prepare(store->db, sql, statement, writing, error)
-                      : status_fail(error, STATUS_MEMORY, "%s: memory ran out", writing);
-  free(sql);
-  return result;
-}
-
-static void bind_estimate(sqlite3_stmt *statement, int index, const struct estimate *estimate) {
-  for (size_t k = 0; k < estimates_table.count; k++)
-    sql_bind_field(statement, index + (int)k, &estimates_table.rows[k], estimate, false);
-}
+/* What an estimate belongs to. A run's estimates have no results_version of their own. */
+struct estimate_key {
+  int64_t owner, ordinal;
+  int results_version;
+};
+#define KEY(name_, kind_, member_)                                                                                     \
+  { name_, SQL_COLUMN_##kind_, offsetof(struct estimate_key, member_) }
+static const struct sql_column of_run[] = {KEY("run_id", INTEGER, owner), KEY("ordinal", INTEGER, ordinal)};
+static const struct sql_column of_point[] = {KEY("point_id", INTEGER, owner),
+                                             KEY("results_version", INT, results_version),
+                                             KEY("ordinal", INTEGER, ordinal)};
 
 /* All rows of a run go in with one statement: every run has the same number of them. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error) {
-  if (store->estimate && store->estimate_rows != count) {
-    sqlite3_finalize(store->estimate);
-    store->estimate = NULL;
-  }
-  status result = prepare(store, &store->estimate, "estimate", "run_id, ordinal", count, error);
+  status result = sql_insert_prepare(store->db, &store->estimate, "estimate", 2, of_run, &estimates_table, count,
+                                     writing, error);
   if (result != STATUS_OK)
     return result;
-  store->estimate_rows = count;
-  for (size_t i = 0; i < count; i++) {
-    int index = 1 + (int)(i * (2 + estimates_table.count));
-    sqlite3_bind_int64(store->estimate, index, run_id);
-    sqlite3_bind_int64(store->estimate, index + 1, (int64_t)i);
-    bind_estimate(store->estimate, index + 2, &rows[i]);
-  }
-  return sql_run(store->estimate, writing, error);
+  for (size_t i = 0; i < count; i++)
+    sql_insert_bind(&store->estimate, i, &(struct estimate_key){.owner = run_id, .ordinal = (int64_t)i}, &rows[i]);
+  return sql_run(store->estimate.statement, writing, error);
 }
 
 static status add_point_estimates(struct store *store, int64_t point_id, int results_version, size_t count,
                                   const struct estimate *rows, struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  status result = prepare(store, &statement, "point_estimate", "point_id, results_version, ordinal", 1, error);
+  struct sql_insert insert = {0};
+  status result = sql_insert_prepare(store->db, &insert, "point_estimate", 3, of_point, &estimates_table, 1, writing,
+                                     error);
   for (size_t i = 0; result == STATUS_OK && i < count; i++) {
-    sqlite3_bind_int64(statement, 1, point_id);
-    sqlite3_bind_int(statement, 2, results_version);
-    sqlite3_bind_int64(statement, 3, (int64_t)i);
-    bind_estimate(statement, 4, &rows[i]);
-    result = sql_run(statement, writing, error);
+    const struct estimate_key key = {point_id, (int64_t)i, results_version};
+    sql_insert_bind(&insert, 0, &key, &rows[i]);
+    result = sql_run(insert.statement, writing, error);
   }
-  sqlite3_finalize(statement);
+  sqlite3_finalize(insert.statement);
   return result;
 }
 

@@ -26,16 +26,15 @@ static struct store *allocate(const char *path) {
 }
 
 static void release(struct store *store) {
-  sqlite3_stmt *const statements[] = {store->run,           store->masses,
-                                      store->spectrum,      store->spectrum_together,
-                                      store->attempt,       store->estimate,
-                                      store->point_find,    store->point,
-                                      store->axis_find,     store->point_input,
-                                      store->campaign_point};
+  sqlite3_stmt *const statements[] = {
+      store->run.statement, store->attempt.statement, store->estimate.statement, store->masses,
+      store->spectrum,      store->spectrum_together, store->point_find,         store->point,
+      store->point_input,   store->campaign_point,    store->axis_find,
+  };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
   for (size_t i = 0; i < store->kind_count; i++)
-    sqlite3_finalize(store->kinds[i].insert);
+    sqlite3_finalize(store->kinds[i].insert.statement);
   sums_clear(&store->sums);
   identities_clear(&store->identities);
   sqlite3_close(store->db);
@@ -80,7 +79,7 @@ static status load_identities(struct store *store, struct error *error) {
                               &statement, "reading what is there", error);
   int code = SQLITE_DONE;
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-    struct identities_entry *entry = sqlite3_column_bytes(statement, 0) == 16
+    struct identities_state *entry = sqlite3_column_bytes(statement, 0) == 16
                                          ? identities_add(&store->identities, sqlite3_column_blob(statement, 0))
                                          : NULL;
     if (!entry)
@@ -213,7 +212,7 @@ status store_close(struct store *store, struct error *error) {
 static void take_back(struct store *store) {
   sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL); /* an error may have done it already */
   for (size_t i = 0; i < store->batch_identity_count; i++) {
-    struct identities_entry *entry = identities_find(&store->identities, store->batch_identities[i]);
+    struct identities_state *entry = identities_find(&store->identities, store->batch_identities[i]);
     if (entry)
       entry->stored = false;
   }
@@ -307,14 +306,14 @@ status store_end_session(struct store *store, int64_t session_id, const char *ou
 bool store_has_run(struct store *store, const uint8_t identity[16]) {
   if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
     return false;
-  const struct identities_entry *entry = identities_find(&store->identities, identity);
+  const struct identities_state *entry = identities_find(&store->identities, identity);
   return entry && entry->stored;
 }
 
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit) {
   if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
     return 0;
-  const struct identities_entry *entry = identities_find(&store->identities, identity);
+  const struct identities_state *entry = identities_find(&store->identities, identity);
   if (!entry || entry->attempts == 0)
     return 0; /* nearly always: no query */
   sqlite3_stmt *statement = NULL;

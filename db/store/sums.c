@@ -1,57 +1,74 @@
 #include "db/store/sums.h"
 
 #include <stdlib.h>
-#include <string.h>
 
-static uint64_t mix(int64_t point_id, int results_version, int bin) { /* finaliser of splitmix64 */
-  uint64_t x = (uint64_t)point_id * 0x9e3779b97f4a7c15u + ((uint64_t)(uint32_t)results_version << 32 | (uint32_t)bin);
-  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-  return x ^ x >> 31;
+/* A key is three small numbers: multiplying is enough, and cheaper than the library's own hash. A batch has thousands
+ * of rows, so the table starts large. */
+#define HASH_FUNCTION(key, size, hash) ((hash) = hash_of(key))
+#define HASH_INITIAL_NUM_BUCKETS       4096U
+#define HASH_INITIAL_NUM_BUCKETS_LOG2  12U
+#define HASH_NONFATAL_OOM              1
+#define uthash_nonfatal_oom(entry)     ((entry)->is_added = false)
+#include <uthash.h>
+
+static unsigned hash_of(const struct sums_key *key) {
+  uint64_t x = (uint64_t)key->point_id * 0x9e3779b97f4a7c15u + (uint64_t)key->results_version;
+  return (unsigned)(x >> 32) * 31u + (unsigned)key->bin;
 }
 
-static size_t place(const struct sums_row *slots, size_t capacity, int64_t point_id, int results_version, int bin) {
-  size_t at = (size_t)mix(point_id, results_version, bin) & (capacity - 1);
-  while (slots[at].used &&
-         !(slots[at].point_id == point_id && slots[at].results_version == results_version && slots[at].bin == bin))
-    at = (at + 1) & (capacity - 1);
-  return at;
-}
+struct sums_entry {
+  UT_hash_handle hh;
+  struct sums_row row;
+  bool is_added;
+  bool touched; /* in this batch */
+};
 
-static bool grow(struct sums *sums) {
-  size_t capacity = sums->capacity ? 2 * sums->capacity : 4096;
-  struct sums_row *slots = calloc(capacity, sizeof *slots);
-  if (!slots)
-    return false;
-  for (size_t i = 0; i < sums->capacity; i++) {
-    const struct sums_row *row = &sums->slots[i];
-    if (row->used)
-      slots[place(slots, capacity, row->point_id, row->results_version, row->bin)] = *row;
+enum { BLOCK = 1024 };
+struct sums_block { /* entries are handed out in order, and all come back at once */
+  struct sums_block *next;
+  struct sums_entry entries[BLOCK];
+};
+
+/* A zeroed entry of the first block; NULL when memory ran out. */
+static struct sums_entry *new_entry(struct sums *sums) {
+  if (!sums->blocks || sums->used == BLOCK) {
+    struct sums_block *block = malloc(sizeof *block);
+    if (!block)
+      return NULL;
+    block->next = sums->blocks;
+    sums->blocks = block;
+    sums->used = 0;
   }
-  free(sums->slots);
-  sums->slots = slots;
-  sums->capacity = capacity;
-  return true;
+  struct sums_entry *entry = &sums->blocks->entries[sums->used++];
+  *entry = (struct sums_entry){.is_added = true};
+  return entry;
 }
 
 struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin) {
-  if (2 * (sums->count + 1) > sums->capacity && !grow(sums))
-    return NULL;
-  struct sums_row *row = &sums->slots[place(sums->slots, sums->capacity, point_id, results_version, bin)];
-  if (!row->used) {
-    *row = (struct sums_row){.point_id = point_id, .results_version = results_version, .bin = bin, .used = true};
-    sums->count++;
+  const struct sums_key key = {point_id, results_version, bin};
+  struct sums_entry *entry;
+  HASH_FIND(hh, sums->table, &key, sizeof key, entry);
+  if (!entry) {
+    entry = new_entry(sums);
+    if (!entry)
+      return NULL;
+    entry->row.key = key;
+    HASH_ADD(hh, sums->table, row.key, sizeof key, entry);
+    if (!entry->is_added)
+      return NULL;
+    sums->sorted = false;
   }
-  return row;
+  entry->touched = true;
+  return &entry->row;
 }
 
-static int by_key(const void *a, const void *b) {
-  const struct sums_row *x = a, *y = b;
+static int by_key(const struct sums_entry *a, const struct sums_entry *b) {
+  const struct sums_key *x = &a->row.key, *y = &b->row.key;
   if (x->point_id != y->point_id)
     return x->point_id < y->point_id ? -1 : 1;
   if (x->results_version != y->results_version)
     return x->results_version < y->results_version ? -1 : 1;
-  return x->bin < y->bin ? -1 : x->bin > y->bin;
+  return (x->bin > y->bin) - (x->bin < y->bin);
 }
 
 static status prepare(struct sums *sums, sqlite3 *db, struct error *error) {
@@ -79,10 +96,10 @@ static status prepare(struct sums *sums, sqlite3 *db, struct error *error) {
 }
 
 static sqlite3_stmt *bind(struct sums *sums, const struct sums_row *row) {
-  bool total = row->bin == SPECTRUM_NO_BIN;
+  bool total = row->key.bin == SPECTRUM_NO_BIN;
   sqlite3_stmt *statement = total ? sums->total : sums->bin;
-  sqlite3_bind_int64(statement, 1, row->point_id);
-  sqlite3_bind_int(statement, 2, row->results_version);
+  sqlite3_bind_int64(statement, 1, row->key.point_id);
+  sqlite3_bind_int(statement, 2, row->key.results_version);
   if (total) {
     sqlite3_bind_int64(statement, 3, row->runs);
     sqlite3_bind_int64(statement, 4, row->censored);
@@ -91,7 +108,7 @@ static sqlite3_stmt *bind(struct sums *sums, const struct sums_row *row) {
     sqlite3_bind_int64(statement, 7, row->count);
     sqlite3_bind_double(statement, 8, row->mass);
   } else {
-    sqlite3_bind_int(statement, 3, row->bin);
+    sqlite3_bind_int(statement, 3, row->key.bin);
     sqlite3_bind_int64(statement, 4, row->runs);
     sqlite3_bind_int64(statement, 5, row->count);
     sqlite3_bind_int64(statement, 6, row->count_squared);
@@ -100,38 +117,53 @@ static sqlite3_stmt *bind(struct sums *sums, const struct sums_row *row) {
   return statement;
 }
 
+static status write_row(struct sums *sums, const struct sums_row *row, struct error *error) {
+  status result = sql_run(bind(sums, row), "keeping running sums", error);
+  if (result != STATUS_OK || row->key.bin != SPECTRUM_NO_BIN)
+    return result;
+  sqlite3_bind_int64(sums->stale, 1, row->key.point_id);
+  sqlite3_bind_int(sums->stale, 2, row->key.results_version);
+  return sql_run(sums->stale, "keeping pooled estimates", error);
+}
+
+/* Points come again and again, so the rows stay in the table with zeros, in order, until there are too many of them. */
+enum { ROWS_KEPT = 65536 };
+
 status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
-  if (sums->count == 0)
+  if (!sums->table)
     return STATUS_OK;
   status result = prepare(sums, db, error);
-  for (size_t i = 0, used = 0; i < sums->capacity; i++) /* the table is not searched again before it is emptied */
-    if (sums->slots[i].used)
-      sums->slots[used++] = sums->slots[i];
-  qsort(sums->slots, sums->count, sizeof *sums->slots, by_key);
-  for (size_t i = 0; result == STATUS_OK && i < sums->count; i++) {
-    const struct sums_row *row = &sums->slots[i];
-    result = sql_run(bind(sums, row), "keeping running sums", error);
-    if (result == STATUS_OK && row->bin == SPECTRUM_NO_BIN) {
-      sqlite3_bind_int64(sums->stale, 1, row->point_id);
-      sqlite3_bind_int(sums->stale, 2, row->results_version);
-      result = sql_run(sums->stale, "keeping pooled estimates", error);
-    }
+  if (!sums->sorted)
+    HASH_SRT(hh, sums->table, by_key);
+  sums->sorted = true;
+  for (struct sums_entry *entry = sums->table; result == STATUS_OK && entry; entry = entry->hh.next) {
+    if (!entry->touched)
+      continue;
+    result = write_row(sums, &entry->row, error);
+    entry->row = (struct sums_row){.key = entry->row.key};
+    entry->touched = false;
   }
-  sums_forget(sums);
+  if (result != STATUS_OK || HASH_COUNT(sums->table) > ROWS_KEPT)
+    sums_forget(sums);
   return result;
 }
 
 void sums_forget(struct sums *sums) {
-  if (sums->slots)
-    memset(sums->slots, 0, sums->capacity * sizeof *sums->slots);
-  sums->count = 0;
+  HASH_CLEAR(hh, sums->table);
+  while (sums->blocks && sums->blocks->next) { /* one block stays for the next batch */
+    struct sums_block *block = sums->blocks;
+    sums->blocks = block->next;
+    free(block);
+  }
+  sums->used = 0;
 }
 
 void sums_clear(struct sums *sums) {
+  sums_forget(sums);
+  free(sums->blocks);
   sqlite3_finalize(sums->total);
   sqlite3_finalize(sums->bin);
   sqlite3_finalize(sums->stale);
-  free(sums->slots);
   *sums = (struct sums){0};
 }
 

@@ -7,25 +7,30 @@
 #include "analysis/statistics/spectrum.h"
 #include "db/sql.h"
 
-struct sums_row {
+struct sums_key { /* no padding: the hash table compares its bytes */
   int64_t point_id;
   int results_version, bin; /* SPECTRUM_NO_BIN: the point's totals */
-  bool used;
+};
+
+struct sums_row {
+  struct sums_key key;
   int64_t runs, count, count_squared; /* totals: count = fragments */
   int64_t censored, failed, surplus;  /* totals only */
   double mass;
 };
 
-struct sums { /* all zero = empty */
-  struct sums_row *slots;
-  size_t capacity, count;
+struct sums { /* all zero: empty */
+  struct sums_entry *table;
+  struct sums_block *blocks; /* that hold the entries, the one in use first */
+  size_t used;               /* entries of the first block */
+  bool sorted;
   sqlite3_stmt *total, *bin; /* upserts, prepared at first use */
   sqlite3_stmt *stale;       /* deletes the pooled estimates of a point that grew */
 };
 
-/* The row to add to, zeros when new. NULL when memory ran out. Valid until the next call. */
+/* The row to add to, zeros when new. NULL when memory ran out. Valid until the sums are written or forgotten. */
 struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_version, int bin);
-/* Write everything gathered, in ascending order of its key, and forget it. */
+/* Writes everything gathered, in ascending order of its key, and sets it to zero. */
 status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
 void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
 void sums_clear(struct sums *sums);  /* everything, statements too */
