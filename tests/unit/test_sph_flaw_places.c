@@ -11,7 +11,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "engine/random.h"
-#include "engine/sph/body/flaw_places.h"
+#include "engine/sph/body/flaws.h"
 #include "engine/sph/body/kd_tree.h"
 
 static struct sph_body sphere(double particles) {
@@ -32,7 +32,7 @@ static struct sph_flaws *flaws_of(const struct sph_body *body, const struct sph_
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .draw = draw, .seed = seed};
   struct sph_flaws *flaws = NULL;
   struct error error = {0};
-  if (sph_flaw_places_make(&law, &body->shape, p, range, middle, &flaws, &error))
+  if (sph_flaws_place(&law, &body->shape, p, range, middle, &flaws, &error))
     fail_msg("%s", error.message);
   return flaws;
 }
@@ -100,7 +100,7 @@ static void owners_are_nearest(void **state) {
       double q[3];
       assert_true(fabs(rank - (double)(j + 1)) < 1e-6 && j < flaws->count && !seen[j]);
       seen[j] = 1;
-      sph_flaw_places_point(5, 0, j, &body.shape, q);
+      sph_flaws_point(5, 0, j, &body.shape, q);
       assert_int_equal(brute(p->n, p->x, p->y, p->z, q, SIZE_MAX), i);
     }
   }
@@ -139,7 +139,7 @@ static void a_seed_means_the_same_flaws(void **state) {
         const uint64_t flaw = (uint64_t)(at - sorted);
         const size_t j = owner[flaw];
         double place[3];
-        sph_flaw_places_point(9, 0, flaw, &coarse.shape, place);
+        sph_flaws_point(9, 0, flaw, &coarse.shape, place);
         assert_int_equal(brute(p->n, p->x, p->y, p->z, place, SIZE_MAX), i);
         const double apart = hypot(hypot(p->x[i] - q->x[j], p->y[i] - q->y[j]), p->z[i] - q->z[j]);
         assert_true(apart <
@@ -228,7 +228,7 @@ static void ends_have_none(void **state) {
       assert_true(n > 0);
       for (size_t f = with->first[i]; f < with->first[i + 1]; f++) { /* and its place is in the middle */
         double place[3];
-        sph_flaw_places_point(1, 0, (uint64_t)llround(exp(8.5 * with->log_strain[f] + log_kv)) - 1, &rod.shape, place);
+        sph_flaws_point(1, 0, (uint64_t)llround(exp(8.5 * with->log_strain[f] + log_kv)) - 1, &rod.shape, place);
         assert_true(fabs(place[2]) <= 0.012);
       }
       /* far from the border: the same flaws, up to where the shorter draw ended */
@@ -242,7 +242,7 @@ static void ends_have_none(void **state) {
   const struct sph_middle nothing = {.axis = {0, 0, 1}, .half = -1};
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .seed = 1};
   struct error error = {0};
-  assert_int_equal(sph_flaw_places_make(&law, &rod.shape, p, range, &nothing, &with, &error), STATUS_CONTENT);
+  assert_int_equal(sph_flaws_place(&law, &rod.shape, p, range, &nothing, &with, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "shall have no flaws"));
   assert_null(with);
   sph_particles_free(p);
@@ -269,7 +269,7 @@ static void graded_particles_have_their_weakest(void **state) {
     for (int draw = 0; draw < 2; draw++) {
       const struct sph_flaw_law law = {.weibull = {3, 1.39e18}, .draw = draw, .seed = seed};
       struct sph_flaws *flaws = NULL;
-      assert_int_equal(sph_flaw_places_make(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
+      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
       const double n = (double)p->n, common = ceil(n * (log(n) + 0.5772156649015329));
       assert_true((double)flaws->count >= common && (double)flaws->count < common + n);
       waited += (int)((double)flaws->count - common);
@@ -302,7 +302,7 @@ static void extremes_of_the_law(void **state) {
     for (int j = 0; j < 4; j++)
       for (int draw = 0; draw < 2; draw++) {
         const struct sph_flaw_law law = {.weibull = {ms[i], ks[j]}, .draw = draw, .seed = 2};
-        assert_int_equal(sph_flaw_places_make(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
+        assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, NULL), STATUS_OK);
         for (size_t f = 0; f < flaws->count; f++)
           assert_true(isfinite(flaws->log_strain[f]));
         sph_flaws_free(flaws);
@@ -311,12 +311,12 @@ static void extremes_of_the_law(void **state) {
   for (int k = 0; k < 4; k++)
     for (int which = 0; which < 2; which++) {
       const struct sph_flaw_law law = {.weibull = {which ? 9 : bad[k], which ? bad[k] : 1e30}, .seed = 2};
-      assert_int_equal(sph_flaw_places_make(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
+      assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
       assert_null(flaws);
     }
   range.n = 0;
   const struct sph_flaw_law law = {.weibull = {9, 1e30}};
-  assert_int_equal(sph_flaw_places_make(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
+  assert_int_equal(sph_flaws_place(&law, &body.shape, p, range, NULL, &flaws, &error), STATUS_CONTENT);
   sph_particles_free(p);
   const struct sph_body one = sphere(1);
   p = make(&one, 0, &range);

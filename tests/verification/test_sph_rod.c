@@ -13,7 +13,7 @@
  *
  * CLAST_FULL=1: other options and resolutions, 50 000 particles in 2 and three seeds; else 12 000 there. */
 #include "analysis/statistics/sample.h"
-#include "engine/sph/body/flaw_places.h"
+#include "engine/sph/body/flaws.h"
 #include "tests/support/grady_kipp.h"
 #include "tests/support/sph_solid.h"
 
@@ -196,7 +196,7 @@ static struct pulled pull(double particles, double rate, uint64_t seed) {
   const struct sph_middle middle = {.axis = {0, 0, 1}, .half = length / 2 - 5e-3};
   const struct sph_flaw_law law = {.weibull = m->weibull, .draw = SPH_FLAWS_RANKED, .seed = seed};
   struct sph_flaws *flaws = NULL;
-  if (sph_flaw_places_make(&law, &c.body[0].shape, p, c.range[0], &middle, &flaws, &error))
+  if (sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], &middle, &flaws, &error))
     fail_msg("%s", error.message);
   c.physics[0].flaws = flaws;
   sph_bodies_stretch(p, c.range[0], centre, axis, rate, solid_poisson(m));

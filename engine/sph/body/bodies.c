@@ -15,7 +15,7 @@ static double unit(const double a[3], double out[3]) {
   return length;
 }
 
-static const char *name(size_t body, char text[32]) { /* as scenes call them: particles.h */
+static const char *name(size_t body, char text[32]) { /* as scenes call them */
   if (body < 2)
     return body ? "the projectile" : "the target";
   const char digits[3] = {(char)('0' + body / 100 % 10), (char)('0' + body / 10 % 10), (char)('0' + body % 10)};
@@ -44,7 +44,7 @@ static status check(const struct sph_body *bodies, size_t count, struct error *e
     for (size_t a = 0; a < b; a++) {
       const double gap = sph_shape_gap(&bodies[a].shape, &bodies[b].shape);
       const double size = cbrt(fmin(sph_shape_volume(&bodies[a].shape), sph_shape_volume(&bodies[b].shape)));
-      if (gap < -1e-9 * size) /* bodies that touch are no overlap, however they are rounded */
+      if (gap < -1e-9 * size) /* bodies may touch; allow for rounding */
         return status_fail(error, STATUS_CONTENT, "%s and %s overlap by %.4g m: move one of them, or give a gap.",
                            name(a, text[0]), name(b, text[1]), -gap);
     }
@@ -108,9 +108,9 @@ status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projecti
     return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");
   if (!(gap >= 0 && isfinite(gap)))
     return status_fail(error, STATUS_CONTENT, "the gap before the impact is %g m: give 0 or more.", gap);
-  if (!(angle >= 0 && angle < 1.5707963267948966))
+  if (!(angle >= 0 && angle < M_PI_2))
     return status_fail(error, STATUS_CONTENT, "the impact comes %g degrees from the normal: give 0 to below 90.",
-                       angle * 57.29577951308232);
+                       angle * 180 / M_PI);
   sph_shape_surface(target, outwards, point, normal);
   const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
   for (int k = 0; k < 3; k++)

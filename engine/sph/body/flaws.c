@@ -4,123 +4,141 @@
 #include <stdlib.h>
 
 #include "engine/random.h"
+#include "engine/sph/body/kd_tree.h"
 
 struct placed {
   size_t particle;
   double log_strain;
 };
 
-struct pile {
-  struct placed *item;
+/* Flaws in the order of drawing. */
+struct drawn {
+  const struct sph_flaw_law *law;
+  size_t n; /* particles */
+  struct placed *flaw;
   size_t count, capacity;
+  unsigned char *has; /* by particle: a flaw, or none allowed */
+  size_t without;     /* number of particles without one */
+  double log_kv;
+  double gamma; /* cumulative unit exponentials */
 };
 
-static int push(struct pile *pile, struct placed item) {
-  if (pile->count == pile->capacity) {
-    size_t capacity = pile->capacity ? 2 * pile->capacity : 1024;
-    struct placed *grown = realloc(pile->item, capacity * sizeof *grown);
+static bool push(struct drawn *d, size_t particle, double rank) {
+  if (d->count == d->capacity) {
+    const size_t capacity = d->capacity ? 2 * d->capacity : 1024;
+    struct placed *grown = realloc(d->flaw, capacity * sizeof *grown);
     if (!grown)
-      return 0;
-    pile->item = grown;
-    pile->capacity = capacity;
+      return false;
+    d->flaw = grown;
+    d->capacity = capacity;
   }
-  pile->item[pile->count++] = item;
-  return 1;
+  d->flaw[d->count++] = (struct placed){particle, (log(rank) - d->log_kv) / d->law->weibull.m};
+  return true;
 }
 
-/* Counting sort by particle keeps the order of drawing, which is ascending strain. */
-static struct sph_flaws *gather(const struct pile *pile, size_t n) {
+/* Counting sort by particle. It keeps the order of drawing, which is that of ascending strain. */
+static struct sph_flaws *sort_by_particle(const struct drawn *d) {
   struct sph_flaws *flaws = calloc(1, sizeof *flaws);
   if (!flaws)
     return NULL;
-  flaws->particles = n;
-  flaws->count = pile->count;
-  flaws->first = calloc(n + 2, sizeof *flaws->first);
-  flaws->log_strain = malloc((pile->count ? pile->count : 1) * sizeof *flaws->log_strain);
+  flaws->particles = d->n;
+  flaws->count = d->count;
+  flaws->first = calloc(d->n + 2, sizeof *flaws->first);
+  flaws->log_strain = malloc((d->count ? d->count : 1) * sizeof *flaws->log_strain);
   if (!flaws->first || !flaws->log_strain) {
     sph_flaws_free(flaws);
     return NULL;
   }
   size_t *next = flaws->first + 1;
-  for (size_t f = 0; f < pile->count; f++)
-    next[pile->item[f].particle + 1]++;
-  for (size_t i = 1; i <= n; i++)
+  for (size_t f = 0; f < d->count; f++)
+    next[d->flaw[f].particle + 1]++;
+  for (size_t i = 1; i <= d->n; i++)
     next[i] += next[i - 1];
-  for (size_t f = 0; f < pile->count; f++)
-    flaws->log_strain[next[pile->item[f].particle]++] = pile->item[f].log_strain;
+  for (size_t f = 0; f < d->count; f++)
+    flaws->log_strain[next[d->flaw[f].particle]++] = d->flaw[f].log_strain;
   return flaws;
+}
+
+/* Draws flaws in the order of their strength. */
+static status draw(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
+  const struct sph_flaw_law *law = d->law;
+  for (uint64_t f = 0; law->number ? f < law->number : d->without && f < most; f++) {
+    double rank = (double)(f + 1);
+    if (law->draw == SPH_FLAWS_POISSON) {
+      d->gamma -= log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, f));
+      rank = d->gamma;
+    }
+    const size_t i = owner ? owner(context, f)
+                           : (size_t)(random_draw(law->seed, RANDOM_FLAW_PLACE, law->body, f) * (double)d->n);
+    if (i == SPH_FLAWS_NOBODY)
+      continue;
+    if (!push(d, i, rank))
+      return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d->count);
+    d->without -= !d->has[i];
+    d->has[i] = 1;
+  }
+  return STATUS_OK;
+}
+
+/* Gives each particle without a flaw the first one that it would get if drawing went on. */
+static status draw_rest(struct drawn *d, struct error *error) {
+  const struct sph_flaw_law *law = d->law;
+  const double last = law->draw == SPH_FLAWS_POISSON ? d->gamma : (double)law->number;
+  for (size_t i = 0; i < d->n; i++) {
+    if (d->has[i])
+      continue;
+    const double wait = -log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, ~(uint64_t)i));
+    if (!push(d, i, last + wait * (law->share ? 1 / law->share[i] : (double)d->n)))
+      return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d->count);
+  }
+  return STATUS_OK;
+}
+
+static status draw_all(struct drawn *d, sph_flaws_owner owner, void *context, uint64_t most, struct error *error) {
+  const struct sph_flaw_law *law = d->law;
+  const size_t n = d->n;
+  if (!(law->weibull.m > 0 && law->weibull.k > 0 && law->volume > 0) ||
+      !isfinite(law->weibull.m + law->weibull.k + law->volume))
+    return status_fail(error, STATUS_CONTENT,
+                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", law->weibull.m,
+                       law->weibull.k, law->volume);
+  d->log_kv = log(law->weibull.k) + log(law->volume);
+  for (size_t i = 0; law->exempt && i < n; i++) {
+    d->has[i] = law->exempt[i] != 0;
+    d->without -= d->has[i];
+  }
+  if (n && !d->without)
+    return status_fail(error, STATUS_CONTENT, "all %zu particles of a body lie where it shall have no flaws.", n);
+
+  if (!most)
+    most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
+  const status code = draw(d, owner, context, most, error);
+  if (code)
+    return code;
+  if (law->number)
+    return draw_rest(d, error);
+  if (d->without)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%zu of %zu particles got no flaw within %llu flaws: their sizes differ too much for one flaw each", d->without,
+        n, (unsigned long long)most);
+  return STATUS_OK;
 }
 
 status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
                       struct sph_flaws **out, struct error *error) {
   *out = NULL;
-  struct pile pile = {0};
-  unsigned char *has = calloc(n ? n : 1, 1);
-  status code = STATUS_OK;
-  if (!has) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
-    goto cleanup;
+  struct drawn d = {.law = law, .n = n, .without = n, .has = calloc(n ? n : 1, 1)};
+  if (!d.has)
+    return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
+  status code = draw_all(&d, owner, context, most, error);
+  if (!code) {
+    *out = sort_by_particle(&d);
+    if (!*out)
+      code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
   }
-  if (!(law->weibull.m > 0 && law->weibull.k > 0 && law->volume > 0) ||
-      !isfinite(law->weibull.m + law->weibull.k + law->volume)) {
-    code = status_fail(error, STATUS_CONTENT,
-                       "flaws need a positive m, k and volume, not m %g, k %g m^-3, volume %g m^3.", law->weibull.m,
-                       law->weibull.k, law->volume);
-    goto cleanup;
-  }
-  const double log_kv = log(law->weibull.k) + log(law->volume);
-  double gamma = 0; /* cumulative unit exponentials */
-  size_t without = n;
-  if (law->exempt)
-    for (size_t i = 0; i < n; i++)
-      without -= has[i] = law->exempt[i] != 0;
-  if (n && !without) {
-    code = status_fail(error, STATUS_CONTENT, "all %zu particles of a body lie where it shall have no flaws.", n);
-    goto cleanup;
-  }
-  if (!most)
-    most = 64 * (uint64_t)((double)n * (1 + log((double)n + 1)));
-  for (uint64_t f = 0; law->number ? f < law->number : without && f < most; f++) {
-    double rank = (double)(f + 1);
-    if (law->draw == SPH_FLAWS_POISSON) {
-      gamma -= log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, f));
-      rank = gamma;
-    }
-    size_t i = owner ? owner(context, f)
-                     : (size_t)(random_draw(law->seed, RANDOM_FLAW_PLACE, law->body, f) * (double)n);
-    if (i == SPH_FLAWS_NOBODY)
-      continue;
-    if (!push(&pile, (struct placed){i, (log(rank) - log_kv) / law->weibull.m})) {
-      code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", pile.count);
-      goto cleanup;
-    }
-    without -= !has[i];
-    has[i] = 1;
-  }
-  if (law->number)
-    for (size_t i = 0; i < n && !code; i++) {
-      if (has[i])
-        continue;
-      const double wait = -log1p(-random_draw(law->seed, RANDOM_FLAW_STRENGTH, law->body, ~(uint64_t)i));
-      const double last = law->draw == SPH_FLAWS_POISSON ? gamma : (double)law->number;
-      const double rank = last + wait * (law->share ? 1 / law->share[i] : (double)n);
-      if (!push(&pile, (struct placed){i, (log(rank) - log_kv) / law->weibull.m}))
-        code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", pile.count);
-    }
-  else if (without) {
-    code =
-        status_fail(error, STATUS_CONTENT,
-                    "%zu of %zu particles got no flaw within %llu flaws: their sizes differ too much for one flaw each",
-                    without, n, (unsigned long long)most);
-  }
-  if (code)
-    goto cleanup;
-  *out = gather(&pile, n);
-  if (!*out)
-    code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", pile.count);
-cleanup:
-  free(pile.item);
-  free(has);
+  free(d.flaw);
+  free(d.has);
   return code;
 }
 
@@ -130,4 +148,91 @@ void sph_flaws_free(struct sph_flaws *flaws) {
   free(flaws->first);
   free(flaws->log_strain);
   free(flaws);
+}
+
+/* ---- flaws as points in a shape ---- */
+
+struct places {
+  const struct sph_shape *shape;
+  const struct sph_middle *middle;
+  const struct sph_kd_tree *nearest;
+  const unsigned char *exempt;
+  uint64_t seed, body;
+};
+
+void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]) {
+  uint64_t bits[4];
+  random_bits(seed, RANDOM_FLAW_PLACE, body, flaw, bits);
+  sph_shape_place(shape, (double[3]){random_uniform(bits[0]), random_uniform(bits[1]), random_uniform(bits[2])}, point);
+}
+
+static size_t nearest_particle(void *context, uint64_t flaw) {
+  const struct places *places = context;
+  double point[3];
+  sph_flaws_point(places->seed, places->body, flaw, places->shape, point);
+  if (places->middle && sph_bodies_beyond(places->middle, point))
+    return SPH_FLAWS_NOBODY;
+  const size_t i = sph_kd_tree_find(places->nearest, point);
+  return places->exempt && places->exempt[i] ? SPH_FLAWS_NOBODY : i;
+}
+
+/* Which particles are in the ends of the body. NULL without memory. */
+static unsigned char *find_ends(const struct sph_particles *p, struct sph_range range,
+                                const struct sph_middle *middle) {
+  unsigned char *exempt = malloc(range.n);
+  for (size_t i = 0; exempt && i < range.n; i++) {
+    const size_t k = range.first + i;
+    exempt[i] = sph_bodies_beyond(middle, (double[3]){p->x[k], p->y[k], p->z[k]});
+  }
+  return exempt;
+}
+
+static bool is_graded(const struct sph_particles *p, struct sph_range range) {
+  for (size_t i = 1; i < range.n; i++)
+    if (p->mass[range.first + i] != p->mass[range.first])
+      return true;
+  return false;
+}
+
+status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape, const struct sph_particles *p,
+                       struct sph_range range, const struct sph_middle *middle, struct sph_flaws **out,
+                       struct error *error) {
+  *out = NULL;
+  const size_t n = range.n, first = range.first;
+  unsigned char *exempt = NULL;
+  double *share = NULL;
+  struct sph_kd_tree *nearest = NULL;
+  struct sph_flaw_law full = *law;
+  status code = sph_shape_check(shape, error);
+  if (code)
+    return code;
+  if (!n)
+    return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
+  full.volume = sph_shape_volume(shape) / (p->distention ? p->distention[first] : 1);
+
+  const bool graded = is_graded(p, range);
+  exempt = middle ? find_ends(p, range, middle) : NULL;
+  share = graded ? malloc(n * sizeof *share) : NULL;
+  if ((middle && !exempt) || (graded && !share)) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
+    goto cleanup;
+  }
+  if (graded) {
+    for (size_t i = 0; i < n; i++)
+      share[i] = p->mass[first + i] / range.mass;
+    full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
+  }
+  full.exempt = exempt;
+  full.share = share;
+
+  code = sph_kd_tree_create(n, p->x + first, p->y + first, p->z + first, &nearest, error);
+  if (code)
+    goto cleanup;
+  struct places places = {shape, middle, nearest, exempt, law->seed, law->body};
+  code = sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error);
+cleanup:
+  sph_kd_tree_free(nearest);
+  free(exempt);
+  free(share);
+  return code;
 }

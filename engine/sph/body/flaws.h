@@ -1,16 +1,21 @@
 /* Explicit Weibull flaws. Benz & Asphaug 1995 eqs. 11 and 20 [BA95].
  *
  * Flaw j = 1, 2, ... of a body of (solid) volume V has the activation strain
- *   ranked:  eps_j = (j / kV)^(1/m)             as printed: a seed only moves the flaws about
- *   poisson: eps_j = (Gamma_j / kV)^(1/m)       Gamma_j cumulative unit exponentials: the strengths are a draw, too
- * and goes to the particle that owns a random point, until every particle has one (about N ln N flaws). Thresholds are
- * kept as logarithms, ln eps_j = (ln j - ln k - ln V)/m, which no m, k that a user can type overflows. */
+ *   ranked:  eps_j = (j / kV)^(1/m)             as printed: a seed only changes the places of the flaws
+ *   poisson: eps_j = (Gamma_j / kV)^(1/m)       Gamma_j cumulative unit exponentials: the strengths are drawn, too
+ * and belongs to the particle that owns a random point. Drawing ends when every particle has a flaw (after about n ln n
+ * flaws). Thresholds are kept as logarithms, ln eps_j = (ln j - ln k - ln V)/m, which do not overflow for any m and k
+ * that a user can type.
+ *
+ * Flaws are points in the body's true shape (sph_flaws_place), so that one seed means the same physical flaws at every
+ * resolution. */
 #ifndef CLAST_ENGINE_SPH_BODY_FLAWS_H
 #define CLAST_ENGINE_SPH_BODY_FLAWS_H
 
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/sph/body/bodies.h"
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
 
@@ -21,10 +26,10 @@ struct sph_flaw_law {
   double volume; /* m^3, of solid matter */
   int draw;      /* enum sph_flaw_draw */
   uint64_t seed;
-  uint64_t body; /* bodies of one seed have flaws of their own */
-  /* For bodies whose particles differ much in size; 0: draw until every particle has a flaw. Else so many are drawn,
-   * and a particle i that got none is given the first it would get later: at rank last + E / share[i], E a unit
-   * exponential. */
+  uint64_t body; /* bodies of one seed have different flaws */
+  /* 0: draw until every particle has a flaw. Else, for bodies whose particles differ much in size, the number of flaws
+   * that are drawn. A particle i that got none is then given the first one that it would get if drawing went on: at
+   * rank last + E / share[i], E a unit exponential. */
   uint64_t number;
   const double *share;         /* with `number`: part of the volume of each particle; NULL: 1/n */
   const unsigned char *exempt; /* particles that have no flaws (owner() must not name them); NULL: none */
@@ -37,16 +42,31 @@ struct sph_flaws {
   double *log_strain;
 };
 
-/* Which particle owns the place of flaw `flaw` (0, 1, ...), below n; SPH_FLAWS_NOBODY when the place is outside. Places
- * are drawn from (seed, RANDOM_FLAW_PLACE, body, flaw), so that a seed means the same flaws at every resolution. */
+/* Which of n particles owns the place of flaw `flaw` (0, 1, ...); SPH_FLAWS_NOBODY when the place is outside. Places
+ * are drawn from (seed, RANDOM_FLAW_PLACE, body, flaw). */
 typedef size_t (*sph_flaws_owner)(void *context, uint64_t flaw);
 #define SPH_FLAWS_NOBODY ((size_t)-1)
 
-/* Draws until each of n particles has a flaw (owner(), or NULL: a random particle), or `most` flaws are out (0: 64 n ln
- * n). STATUS_MEMORY; STATUS_CONTENT when some particle got none within the limit, when none may have one, or when m, k,
- * or the volume is no positive number. */
+/* Draws until each of n particles has a flaw (owner NULL: of a random particle), or until there are `most` flaws (0: 64
+ * n ln n). STATUS_MEMORY; STATUS_CONTENT when a particle got none within the limit, when none may have one, or when m,
+ * k or the volume is not a positive number. */
 status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner owner, void *context, uint64_t most,
                       struct sph_flaws **out, struct error *error);
 void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
+
+/* The flaws of a body. Their points are uniform in the shape; each flaw belongs to the nearest particle (of two, to
+ * that with the lower id). law->volume is not used: V is the shape's volume over the particles' distention. With
+ * `middle` (NULL: whole body), flaws in the ends are dropped and particles there have none.
+ *
+ * For bodies of equal particles drawing goes on until each has a flaw. For graded ones n (ln n + 0.5772) flaws are
+ * drawn, as many as equal particles need on average; law->number says what a particle without a flaw gets. So the
+ * weakest flaw of every particle follows the law exactly. STATUS_MEMORY; STATUS_CONTENT when m, k or the volume is not
+ * a positive number, or all particles are in the ends. */
+status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape,
+                       const struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,
+                       struct sph_flaws **out, struct error *error);
+
+/* The place of flaw `flaw` = 0, 1, ... */
+void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]);
 
 #endif

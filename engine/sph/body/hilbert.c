@@ -10,11 +10,11 @@ struct key {
 
 enum { BITS = 62 }; /* of a coordinate: cells of a millimetre across 1e15 m */
 
-/* From coordinates to Hilbert's index, whose bits are those of axis 0, 1, 2 in turn (Skilling 2004, AIP Conf. Proc.
+/* Turns coordinates into Hilbert's index: its bits are the bits of axis 0, 1, 2 in turn (Skilling 2004, AIP Conf. Proc.
  * 707, 381). */
 static void follow_curve(uint64_t axis[3]) {
   for (uint64_t bit = (uint64_t)1 << (BITS - 1); bit > 1; bit >>= 1)
-    for (int d = 0; d < 3; d++) { /* of each cell: turned over, or its axes exchanged */
+    for (int d = 0; d < 3; d++) { /* a cell is inverted, or its axes are exchanged */
       const uint64_t below = bit - 1, turn = -(uint64_t)((axis[d] & bit) != 0);
       const uint64_t exchange = (axis[0] ^ axis[d]) & below & ~turn;
       axis[0] ^= (below & turn) ^ exchange;
@@ -41,8 +41,10 @@ static int compare(const void *left, const void *right) {
   uint64_t highest = 0;
   for (int d = 0; d < 3; d++) {
     uint64_t difference = a->axis[d] ^ b->axis[d];
-    if (lower_bit(highest, difference))
-      highest = difference, axis = d;
+    if (lower_bit(highest, difference)) {
+      highest = difference;
+      axis = d;
+    }
   }
   if (a->axis[axis] != b->axis[axis])
     return a->axis[axis] < b->axis[axis] ? -1 : 1;
@@ -58,8 +60,10 @@ status sph_hilbert_find(size_t n, const double *x, const double *y, const double
   double lowest[3], extent = 0;
   for (int d = 0; d < 3; d++) {
     double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < n; i++)
-      low = fmin(low, place[d][i]), high = fmax(high, place[d][i]);
+    for (size_t i = 0; i < n; i++) {
+      low = fmin(low, place[d][i]);
+      high = fmax(high, place[d][i]);
+    }
     lowest[d] = low;
     extent = fmax(extent, high - low);
   }
@@ -68,7 +72,7 @@ status sph_hilbert_find(size_t n, const double *x, const double *y, const double
     keys[i].id = (uint32_t)i;
     for (int d = 0; d < 3; d++) {
       double t = (place[d][i] - lowest[d]) * scale;
-      keys[i].axis[d] = t > 0 ? (uint64_t)t : 0; /* what is not finite stands first; the step ends on it elsewhere */
+      keys[i].axis[d] = t > 0 ? (uint64_t)t : 0; /* numbers that are not finite come first; the step fails elsewhere */
     }
     follow_curve(keys[i].axis);
   }

@@ -1,5 +1,5 @@
-/* An order of particles along Hilbert's curve, so that neighbours are near in memory, and that any stretch of it has a
- * small surface. Deterministic: ties by id. */
+/* Sorts particles along Hilbert's curve: particles that are near in space get near in memory, and any stretch of the
+ * order has a small surface. Deterministic: ties are sorted by id. */
 #ifndef CLAST_ENGINE_SPH_BODY_HILBERT_H
 #define CLAST_ENGINE_SPH_BODY_HILBERT_H
 
@@ -8,7 +8,7 @@
 
 #include "schemas/status.h"
 
-/* order[k] = index of the particle that stands at place k. Far-flung particles cost nothing: no grid is allocated.
+/* order[k] is the index of the particle at place k. Particles far away cost nothing, as there is no grid.
  * STATUS_MEMORY. */
 status sph_hilbert_find(size_t n, const double *x, const double *y, const double *z, uint32_t *order,
                         struct error *error);

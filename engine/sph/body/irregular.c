@@ -7,10 +7,10 @@
 #include "engine/sph/body/hilbert.h"
 #include "engine/sph/body/kd_tree.h"
 #include "engine/sph/body/particles.h"
-#include "engine/sph/body/relax.h"
 
-static const uint64_t places = (uint64_t)1 << 32; /* draws of this file start here: lattice.c's are below */
+static const uint64_t places = (uint64_t)1 << 32; /* number of this file's first draw; those of lattice.c are below */
 
+/* Fills *points, and finds the mean distance of nearest neighbours. */
 static status store(const struct sph_shape *shape, const struct sph_grading *grading, size_t n, double (*at)[3],
                     struct sph_points *points, struct error *error) {
   points->n = n;
@@ -49,8 +49,8 @@ static status store(const struct sph_shape *shape, const struct sph_grading *gra
   return STATUS_OK;
 }
 
-/* Uniform points start as the hexagonal lattice, each thrown by up to 0.7 spacings per direction: nothing is left of
- * the order, but the density is uniform over long distances, where pushing apart is slow. */
+/* Uniform points start as the hexagonal lattice, each moved by up to 0.7 spacings per direction. This leaves nothing of
+ * the order, but the density is uniform over long distances, where pushing points apart is slow. */
 static status fill_uniform(const struct sph_lattice *lattice, const struct sph_shape *shape, double wanted,
                            struct sph_points *points, struct error *error) {
   struct sph_lattice regular = *lattice;
@@ -82,17 +82,18 @@ cleanup:
   return code;
 }
 
-/* ---- grading: how many particles lie within r of the point ---- */
+/* ---- graded points: the number of particles within r of the point ---- */
 
 enum { SHELLS = 1024, RAYS = 512 };
 
 struct shells {
   double r[SHELLS + 1];      /* m, edges */
-  double open[SHELLS];       /* share of the middle of each shell that lies in the body */
+  double open[SHELLS];       /* part of each shell, at its middle, that is in the body */
   double number[SHELLS + 1]; /* of whole shells, cumulative */
 };
 
-static void ray(double u, double turn, double d[3]) { /* u, turn: of [0, 1) */
+/* A direction d, uniform over the sphere for uniform u and turn of [0, 1). */
+static void ray(double u, double turn, double d[3]) {
   const double z = 2 * u - 1, across = sqrt(fmax(0, 1 - z * z));
   d[0] = across * cos(2 * M_PI * turn);
   d[1] = across * sin(2 * M_PI * turn);
@@ -122,7 +123,8 @@ static void cut_shells(const struct sph_grading *g, const struct sph_shape *shap
   }
 }
 
-static double count(const struct sph_grading *g, struct shells *shells) { /* particles in the body, by the grading */
+/* The number of particles in the body by the grading. */
+static double count(const struct sph_grading *g, struct shells *shells) {
   double n = 0;
   shells->number[0] = 0;
   for (int k = 0; k < SHELLS; k++) {
@@ -135,8 +137,9 @@ static double count(const struct sph_grading *g, struct shells *shells) { /* par
   return n;
 }
 
-static const double steepest = 0.12; /* neighbours' spacings then differ by less than 1.15 */
+static const double steepest = 0.12; /* growth at which spacings of neighbours differ by a factor of less than 1.15 */
 
+/* Decides the growth, if it is not given, and the number of particles. */
 static status decide(const struct sph_lattice *lattice, struct sph_grading *g, struct shells *shells, double *n,
                      struct error *error) {
   if (isnan(g->growth)) {
@@ -169,57 +172,45 @@ static status decide(const struct sph_lattice *lattice, struct sph_grading *g, s
   return STATUS_OK;
 }
 
-/* Neighbours in space become neighbours in memory: the sequence leaps about. */
+/* Sorts the points of the sequence, which jumps about, so that neighbours in space are neighbours in memory. */
 static status sort(size_t n, double (*at)[3], struct error *error) {
   double *column = malloc(3 * n * sizeof *column);
   uint32_t *order = malloc(n * sizeof *order);
   status code = STATUS_OK;
-  if (!column || !order)
+  if (!column || !order) {
     code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-  for (size_t i = 0; i < n && !code; i++)
+    goto cleanup;
+  }
+  for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < 3; k++)
       column[k * n + i] = at[i][k];
-  if (!code)
-    code = sph_hilbert_find(n, column, column + n, column + 2 * n, order, error);
-  for (size_t i = 0; i < n && !code; i++)
+  code = sph_hilbert_find(n, column, column + n, column + 2 * n, order, error);
+  if (code)
+    goto cleanup;
+  for (size_t i = 0; i < n; i++)
     for (size_t k = 0; k < 3; k++)
       at[i][k] = column[k * n + order[i]];
+cleanup:
   free(column);
   free(order);
   return code;
 }
 
-/* Points start as a low-discrepancy sequence (Weyl's, with powers of the plastic number's cousin in 3D) over (number
- * within r, direction), kept where the body is. */
-static status fill_graded(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
-                          struct error *error) {
+/* Throws n points: a low-discrepancy sequence (Weyl's, with powers of the 3D analogue of the plastic number) over the
+ * number within r and the direction, of which the points inside the body are kept. Returns how many were found. */
+static size_t throw_points(const struct sph_lattice *lattice, const struct sph_shape *shape,
+                           const struct shells *shells, size_t n, double (*at)[3]) {
   static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
-  struct sph_lattice graded = *lattice;
-  struct sph_grading *g = &graded.grading;
-  struct shells *shells = malloc(sizeof *shells);
-  double(*at)[3] = NULL, number = 0;
-  status code = STATUS_OK;
-  if (!shells)
-    return status_fail(error, STATUS_MEMORY, "no memory for a graded body");
-  cut_shells(g, shape, shells);
-  code = decide(lattice, g, shells, &number, error);
-  if (code)
-    goto cleanup;
-  const size_t n = (size_t)number;
-  at = malloc(n * sizeof *at);
-  if (!at) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-    goto cleanup;
-  }
+  const double whole = shells->number[SHELLS];
+  const uint64_t tries = (uint64_t)(4 * whole) + 1000000;
   uint64_t bits[4];
   random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, places, bits);
-  const uint64_t tries = (uint64_t)(4 * shells->number[SHELLS]) + 1000000;
   size_t i = 0;
   for (uint64_t trial = 0; i < n && trial < tries; trial++) {
     double u[3], d[3];
     for (int k = 0; k < 3; k++)
       u[k] = fmod(random_uniform(bits[k]) + (double)trial * weyl[k], 1);
-    const double rank = u[0] * shells->number[SHELLS];
+    const double rank = u[0] * whole;
     int low = 0, high = SHELLS;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
@@ -230,19 +221,42 @@ static status fill_graded(const struct sph_lattice *lattice, const struct sph_sh
     const double r = cbrt(a * a * a + part * (b * b * b - a * a * a));
     ray(u[1], u[2], d);
     for (int k = 0; k < 3; k++)
-      at[i][k] = g->point[k] + r * d[k];
+      at[i][k] = lattice->grading.point[k] + r * d[k];
     i += sph_shape_inside(shape, at[i]);
   }
-  if (i < n) {
+  return i;
+}
+
+static status fill_graded(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                          struct error *error) {
+  struct sph_lattice graded = *lattice;
+  struct sph_grading *g = &graded.grading;
+  struct shells *shells = malloc(sizeof *shells);
+  double(*at)[3] = NULL, number = 0;
+  if (!shells)
+    return status_fail(error, STATUS_MEMORY, "no memory for a graded body");
+  cut_shells(g, shape, shells);
+  status code = decide(lattice, g, shells, &number, error);
+  if (code)
+    goto cleanup;
+  const size_t n = (size_t)number;
+  at = malloc(n * sizeof *at);
+  if (!at) {
+    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
+    goto cleanup;
+  }
+  if (throw_points(lattice, shape, shells, n, at) < n) {
     code = status_fail(error, STATUS_CONTENT,
                        "a body is too thin, or too far from its point of impact, for graded particles.");
     goto cleanup;
   }
   code = sort(n, at, error);
-  if (!code)
-    code = sph_relax_spread(&graded, shape, g->fine, n, at, error);
-  if (!code)
-    code = store(shape, g, n, at, points, error);
+  if (code)
+    goto cleanup;
+  code = sph_relax_spread(&graded, shape, g->fine, n, at, error);
+  if (code)
+    goto cleanup;
+  code = store(shape, g, n, at, points, error);
 cleanup:
   free(shells);
   free(at);

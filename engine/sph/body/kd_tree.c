@@ -6,14 +6,15 @@
 
 enum { LEAF = 8, DEEPEST = 64 };
 
-/* Node k covers a run of points, halved between children 2k + 1 and 2k + 2 by a plane through its widest direction. */
+/* Node k covers consecutive points. A plane across its widest direction halves them between the nodes 2k + 1 and 2k
+ * + 2. */
 struct node {
   double plane;
   int direction;
 };
 
 struct sph_kd_tree {
-  size_t n, inner; /* nodes that are halved: 0 .. inner - 1 */
+  size_t n, inner; /* nodes with children: 0 .. inner - 1 */
   struct node *node;
   double (*at)[3];
   uint32_t *id; /* of at[k] */
@@ -31,7 +32,7 @@ static void swap(struct sph_kd_tree *t, size_t a, size_t b) {
   t->id[b] = id;
 }
 
-/* Quickselect: afterwards what stands before `middle` is at most, what follows at least, its coordinate. */
+/* Quickselect: afterwards no coordinate before `middle` is larger, and none after it smaller, than that at `middle`. */
 static void halve(struct sph_kd_tree *t, size_t low, size_t high, size_t middle, int direction) {
   while (high - low > 1) {
     const double a = t->at[low][direction], b = t->at[low + (high - low) / 2][direction],
@@ -117,14 +118,14 @@ void sph_kd_tree_free(struct sph_kd_tree *t) {
   free(t);
 }
 
-/* A part of the tree still to be looked at: squared distance of its box from the point, and per direction. */
+/* A part of the tree that is still to be searched: the squared distance of its box from the point, and per direction.
+ */
 struct part {
   size_t k, low, high;
   double squares, away[3];
 };
 
-/* Goes down to a leaf on the point's side, keeping what of the other halves is within `reach` (squared) on the stack.
- */
+/* Goes down to the leaf on the point's side. The other halves that are within `reach` (squared) go to the stack. */
 static inline struct part descend(const struct sph_kd_tree *t, const double p[3], struct part part, double reach,
                                   struct part *stack, int *depth) {
   while (part.k < t->inner) {
@@ -159,7 +160,7 @@ static inline void best_of(const struct sph_kd_tree *t, const double p[3], size_
   }
 }
 
-static const double rounding = 1 + 1e-12; /* of the running sum of squares: it must not hide a tie */
+static const double rounding = 1 + 1e-12; /* error of the running sum of squares, which must not hide a tie */
 
 size_t sph_kd_tree_other(const struct sph_kd_tree *t, const double p[3], size_t self) {
   struct part stack[DEEPEST];
@@ -167,7 +168,7 @@ size_t sph_kd_tree_other(const struct sph_kd_tree *t, const double p[3], size_t 
   double best = HUGE_VAL;
   size_t id = SIZE_MAX;
   const struct part all = {.high = t->n};
-  /* First down to the point's own leaf: its best is near, so that the search proper keeps few other halves. */
+  /* The best point of the own leaf is near, so that the search proper keeps few other halves. */
   struct part part = descend(t, p, all, -1, stack, &depth);
   best_of(t, p, part.low, part.high, self, &best, &id);
   for (part = descend(t, p, all, best * rounding, stack, &depth); depth;) {

@@ -1,4 +1,4 @@
-/* Which of n points is nearest? A k-d tree: memory in proportion to n, however unevenly the points stand. */
+/* Finds the nearest of n points, by a k-d tree. Memory is proportional to n, however uneven the points are. */
 #ifndef CLAST_ENGINE_SPH_BODY_KD_TREE_H
 #define CLAST_ENGINE_SPH_BODY_KD_TREE_H
 
@@ -16,10 +16,10 @@ void sph_kd_tree_free(struct sph_kd_tree *nearest); /* NULL is fine */
 
 /* The nearest point's index; of two at the same distance the lower one. */
 size_t sph_kd_tree_find(const struct sph_kd_tree *nearest, const double point[3]);
-/* The nearest point but `self`; SIZE_MAX when there is no other. */
+/* The nearest point except `self`; SIZE_MAX when there is no other. */
 size_t sph_kd_tree_other(const struct sph_kd_tree *nearest, const double point[3], size_t self);
-/* Indices of the points within `radius`, at most `room` of them stored; returns how many there are. Not sorted, but
- * always in the same order. */
+/* Finds the points within `radius`. Writes at most `room` indices, returns the number of points. They are not sorted,
+ * but their order is always the same. */
 size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[3], double radius, uint32_t *out,
                           size_t room);
 

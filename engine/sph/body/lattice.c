@@ -7,11 +7,11 @@
 #include "engine/sph/body/irregular.h"
 #include "engine/sph/body/particles.h"
 
-/* A right-angled cell with points at `basis` (fractions of its sides). Sides in spacings: the hexagonal lattice's
- * neighbours are 2^(1/6) spacings apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
+/* A right-angled cell with particles at `basis` (fractions of its sides). Lengths are in spacings: the hexagonal
+ * lattice's neighbours are 2^(1/6) apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
 struct cell {
-  double side[3];   /* of a row's point, of a row, of a layer: in spacings */
-  int rows, layers; /* how many make a period: in y, in z */
+  double side[3];   /* distance of particles in a row, of rows, of layers */
+  int rows, layers; /* in a period along y, along z */
   int count;
   double basis[4][3];
 };
@@ -80,8 +80,8 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
       widest = fmax(widest, ideal[k] / count[k]);
       narrowest = fmin(narrowest, ideal[k] / count[k]);
     }
-    /* Up to 1 % off the number costs as much as a lattice 2 % wider one way than another; beyond, each 0.2 % as much.
-     */
+    /* A number that is 1 % off costs as much as a lattice that is 2 % wider in one direction than in another. Beyond
+     * 1 %, each further 0.2 % costs as much. */
     const double miss = fabs(log(n / wanted)), off = miss <= 0.01 ? miss / 0.01 : 1 + (miss - 0.01) / 0.002;
     const double uneven = log(widest / narrowest) / 0.02;
     const double cost = off * off + uneven * uneven;
@@ -131,11 +131,11 @@ static status fill_box(const struct sph_lattice *lattice, const struct cell *cel
 struct cut {
   const struct cell *cell;
   const struct sph_shape *shape;
-  double frame[3][3]; /* columns: the lattice's axes */
-  double side[3];     /* m, of the cell with all its points */
+  double frame[3][3]; /* its columns are the lattice's axes */
+  double side[3];     /* m, of the cell */
   double reach[3];    /* m, of the shape along the lattice's axes */
-  bool layered;       /* layers fitted to a cylinder's length: the frame is the cylinder's */
-  bool local;         /* inside is decided in the lattice's frame */
+  bool layered;       /* layers are fitted to a cylinder's length; the frame is the cylinder's */
+  bool local;         /* `inside` works in the lattice's frame */
 };
 
 static bool inside(const struct cut *c, const double p[3], double world[3]) {
@@ -156,14 +156,15 @@ struct box { /* of cells */
   int64_t low[3], high[3];
 };
 
-/* Counts, and with `points` stores (relative to the centre, in the lattice's frame), what lies inside: boxes of cells
- * that the shape does not reach are left out, so that thin shapes of any direction cost what they hold. */
+/* Counts the particles of a box of cells that are inside the shape and, with `points`, stores them relative to the
+ * centre, in the lattice's frame. Boxes that the shape does not reach are left out, so that the cost of thin shapes of
+ * any direction is proportional to their particles. Returns `n` plus the number. */
 static size_t cut_box(const struct cut *c, const double offset[3], const struct box *box, struct sph_points *points,
                       size_t n) {
   enum { SMALL = 8 };
   double middle[3], world[3], half = 0, p[3];
   int longest = 0;
-  for (int k = 0; k < 3; k++) { /* points are up to one cell beyond their cell's corner */
+  for (int k = 0; k < 3; k++) { /* particles are up to one cell beyond their cell's corner */
     const double wide = 0.5 * (double)(box->high[k] - box->low[k] + 1) * c->side[k];
     middle[k] = ((double)box->low[k] + offset[k]) * c->side[k] + wide;
     half += wide * wide;
@@ -213,7 +214,8 @@ static size_t cut(const struct cut *c, const double offset[3], struct sph_points
   return cut_box(c, offset, &all, points, 0);
 }
 
-/* Three uniforms: from the seed, or (not turned) first the middle of a point, then an even cover of the cell. */
+/* The offset of a trial, in cells. A turned lattice draws it from the seed; else the first trial centres a particle and
+ * the next ones cover the cell evenly. */
 static void offsets(const struct sph_lattice *lattice, uint64_t trial, double out[3]) {
   static const double weyl[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   uint64_t bits[4];
@@ -222,11 +224,11 @@ static void offsets(const struct sph_lattice *lattice, uint64_t trial, double ou
     out[k] = lattice->turned ? random_uniform(bits[k]) : fmod((double)trial * weyl[k], 1);
 }
 
-static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uniform over rotations: Shoemake 1992 */
+static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uniform over rotations [Shoemake 1992] */
   uint64_t bits[4];
   random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, 0, bits);
-  const double u = random_uniform(bits[0]), a = 6.283185307179586 * random_uniform(bits[1]),
-               b = 6.283185307179586 * random_uniform(bits[2]);
+  const double u = random_uniform(bits[0]);
+  const double a = 2 * M_PI * random_uniform(bits[1]), b = 2 * M_PI * random_uniform(bits[2]);
   const double x = sqrt(1 - u) * sin(a), y = sqrt(1 - u) * cos(a), z = sqrt(u) * sin(b), w = sqrt(u) * cos(b);
   const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
                                {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
@@ -236,15 +238,15 @@ static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uni
       frame[i][j] = matrix[i][j];
 }
 
-static void stack_layers(struct cut *c, double spacing, double layers) { /* along a cylinder, whole layers */
+static void stack_layers(struct cut *c, double spacing, double layers) { /* whole layers along a cylinder */
   const double taller = c->shape->length / layers / (spacing * c->cell->side[2]);
   c->side[0] = spacing * period(c->cell, 0) / sqrt(taller);
   c->side[1] = spacing * period(c->cell, 1) / sqrt(taller);
   c->side[2] = spacing * period(c->cell, 2) * taller;
 }
 
-/* Does the body, one spacing wider all round, have forty times its volume? Then the lattice mostly misses it, and
- * looking for better offsets would take long. Layers have no ends to miss. */
+/* Does the body become forty times larger when it gets one spacing wider on all sides? Then the lattice mostly misses
+ * it, and a search for better offsets would take long. Layers cannot miss the ends. */
 static bool thin(const struct cut *c) {
   const struct sph_shape *s = c->shape;
   const double each = c->side[0] * c->side[1] * c->side[2] / c->cell->count, layer = c->side[2] / c->cell->layers;
@@ -261,8 +263,8 @@ static bool thin(const struct cut *c) {
   return !(wider < 40 * sph_shape_volume(s));
 }
 
-/* The number cut out changes with the offset by a few per mille where there are thousands, by more where there are few:
- * look until it fits. Returns the number, 0 when the lattice misses the shape. */
+/* Searches the offset that gives the wanted number of particles: it changes with the offset by a few per mille where
+ * there are thousands, by more where there are few. Returns the number, 0 when the lattice misses the shape. */
 static size_t search(const struct sph_lattice *lattice, const struct cut *c, double wanted, double best[3]) {
   const uint64_t trials = wanted < 2000 ? 1000 : 100;
   double off = HUGE_VAL;
@@ -285,8 +287,8 @@ static size_t search(const struct sph_lattice *lattice, const struct cut *c, dou
   return n;
 }
 
-/* Scale to exactly V/n per particle (layers stay), put the centre of mass where the shape has it, turn into the world.
- */
+/* Scales to exactly V/n per particle (layers stay), moves the centre of mass to that of the shape, and turns the
+ * lattice into the frame of the scene. */
 static void settle(const struct cut *c, double wanted, struct sph_points *points) {
   const size_t n = points->n;
   const double ratio = wanted / (double)n, across = c->layered ? sqrt(ratio) : cbrt(ratio),
@@ -306,6 +308,35 @@ static void settle(const struct cut *c, double wanted, struct sph_points *points
   }
 }
 
+/* As search(), for the number of layers nearest to the ideal one, or for the next one if that fits the wanted number of
+ * particles better. */
+static size_t search_layers(const struct sph_lattice *lattice, struct cut *c, double spacing, double wanted,
+                            double best[3], double *layers) {
+  const double length = c->shape->length;
+  const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? c->cell->layers : 1;
+  const double ideal = length / (spacing * c->cell->side[2]) / step, nearest = fmax(1, round(ideal));
+  const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
+  *layers = nearest * step;
+  stack_layers(c, spacing, *layers);
+  if (thin(c))
+    return 0;
+  size_t n = search(lattice, c, wanted, best);
+  if (fabs((double)n - wanted) <= 0.01 * wanted)
+    return n;
+
+  double second[3];
+  stack_layers(c, spacing, other * step);
+  const size_t m = search(lattice, c, wanted, second);
+  if (fabs((double)m - wanted) < fabs((double)n - wanted)) {
+    n = m;
+    *layers = other * step;
+    for (int k = 0; k < 3; k++)
+      best[k] = second[k];
+  }
+  stack_layers(c, spacing, *layers);
+  return n;
+}
+
 static status fill_cut(const struct sph_lattice *lattice, const struct cell *cell, const struct sph_shape *shape,
                        double wanted, struct sph_points *points, struct error *error) {
   struct cut c = {.cell = cell, .shape = shape};
@@ -320,37 +351,17 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
     c.side[k] = spacing * period(cell, k);
     c.reach[k] = sph_shape_reach(shape, axis);
   }
+
   double offset[3] = {0}, layers = 0;
   size_t n = 0;
-  if (c.layered) { /* the number of layers nearest to the ideal one, or the next if that fits the number better */
-    const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? cell->layers : 1;
-    const double ideal = shape->length / (spacing * cell->side[2]) / step, nearest = fmax(1, round(ideal));
-    const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
-    layers = nearest * step;
-    stack_layers(&c, spacing, layers);
-    if (thin(&c))
-      return too_thin(wanted, spacing, error);
+  if (c.layered)
+    n = search_layers(lattice, &c, spacing, wanted, offset, &layers);
+  else if (!thin(&c))
     n = search(lattice, &c, wanted, offset);
-    if (fabs((double)n - wanted) > 0.01 * wanted) {
-      double second[3];
-      stack_layers(&c, spacing, other * step);
-      const size_t m = search(lattice, &c, wanted, second);
-      if (fabs((double)m - wanted) < fabs((double)n - wanted)) {
-        n = m;
-        layers = other * step;
-        for (int k = 0; k < 3; k++)
-          offset[k] = second[k];
-      }
-      stack_layers(&c, spacing, layers);
-    }
-  } else {
-    if (thin(&c))
-      return too_thin(wanted, spacing, error);
-    n = search(lattice, &c, wanted, offset);
-  }
   if (!n || (double)n < 0.5 * wanted || (double)n > 2 * wanted + 2)
     return too_thin(wanted, spacing, error);
-  status code = allocate(points, n, error);
+
+  const status code = allocate(points, n, error);
   if (code)
     return code;
   cut(&c, offset, points);
@@ -361,16 +372,22 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
   return STATUS_OK;
 }
 
-/* ---- what is asked for ---- */
+/* ---- any lattice ---- */
+
+/* What cannot repeat in any direction; NULL: it can. */
+static const char *not_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape) {
+  if (lattice->grading.fine > 0)
+    return "a graded body";
+  if (lattice->turned)
+    return "a turned lattice";
+  return shape->kind == SPH_SHAPE_SPHERE ? "a sphere" : NULL;
+}
 
 static status check_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape, int k,
                              struct error *error) {
   const double unit[3] = {k == 0, k == 1, k == 2}, half = sph_shape_reach(shape, unit), *axis = shape->axis;
   const char name = "xyz"[k];
-  const char *what = lattice->grading.fine > 0         ? "a graded body"
-                     : lattice->turned                 ? "a turned lattice"
-                     : shape->kind == SPH_SHAPE_SPHERE ? "a sphere"
-                                                       : NULL;
+  const char *what = not_periodic(lattice, shape);
   if (what)
     return status_fail(error, STATUS_CONTENT, "%s cannot repeat along %c: use a box, or a cylinder along it.", what,
                        name);
@@ -383,7 +400,7 @@ static status check_periodic(const struct sph_lattice *lattice, const struct sph
   return STATUS_OK;
 }
 
-/* The number of particles, when no grading decides it. */
+/* The number of particles of a body without grading. */
 static status decide(const struct sph_lattice *lattice, double volume, double *wanted, struct error *error) {
   const double s = lattice->spacing, bytes = lattice->kind == SPH_LATTICE_IRREGULAR ? 640 : 160;
   *wanted = lattice->particles;
@@ -408,27 +425,41 @@ static status decide(const struct sph_lattice *lattice, double volume, double *w
   return STATUS_OK;
 }
 
-status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
-                        struct error *error) {
-  *points = (struct sph_points){0};
+static status fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                   struct error *error) {
   const bool graded = lattice->grading.fine > 0;
   double wanted = 0;
   status code = sph_shape_check(shape, error);
-  if (!code && !graded)
-    code = decide(lattice, sph_shape_volume(shape), &wanted, error);
-  for (int k = 0; k < 3 && !code; k++)
-    if (lattice->periodic[k])
-      code = check_periodic(lattice, shape, k, error);
   if (code)
     return code;
-  if (lattice->kind == SPH_LATTICE_IRREGULAR || graded) {
-    code = sph_irregular_fill(lattice, shape, wanted, points, error);
-  } else {
-    const struct cell *cell = &cells[lattice->kind];
-    code = shape->kind == SPH_SHAPE_BOX && !lattice->turned ? fill_box(lattice, cell, shape, wanted, points, error)
-                                                            : fill_cut(lattice, cell, shape, wanted, points, error);
-    points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
+  if (!graded) {
+    code = decide(lattice, sph_shape_volume(shape), &wanted, error);
+    if (code)
+      return code;
   }
+  for (int k = 0; k < 3; k++) {
+    if (!lattice->periodic[k])
+      continue;
+    code = check_periodic(lattice, shape, k, error);
+    if (code)
+      return code;
+  }
+  if (lattice->kind == SPH_LATTICE_IRREGULAR || graded)
+    return sph_irregular_fill(lattice, shape, wanted, points, error);
+
+  const struct cell *cell = &cells[lattice->kind];
+  if (shape->kind == SPH_SHAPE_BOX && !lattice->turned)
+    code = fill_box(lattice, cell, shape, wanted, points, error);
+  else
+    code = fill_cut(lattice, cell, shape, wanted, points, error);
+  points->nearest = points->spacing * (lattice->kind == SPH_LATTICE_HEXAGONAL ? hexagonal : 1);
+  return code;
+}
+
+status sph_lattice_fill(const struct sph_lattice *lattice, const struct sph_shape *shape, struct sph_points *points,
+                        struct error *error) {
+  *points = (struct sph_points){0};
+  const status code = fill(lattice, shape, points, error);
   if (code)
     sph_lattice_empty(points);
   return code;

@@ -1,5 +1,6 @@
 #include "engine/sph/body/particles.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -13,46 +14,76 @@ size_t sph_particles_memory(void) {
   return most;
 }
 
-static double *column(size_t n) {
-  return calloc(n ? n : 1, sizeof(double));
+/* The columns of doubles, and which flag of enum sph_particle_arrays asks for each (0: always there). */
+static const struct {
+  size_t offset;
+  int array;
+} columns[] = {
+#define COLUMN(member, array)                                                                                          \
+  { offsetof(struct sph_particles, member), array }
+    COLUMN(x, 0),
+    COLUMN(y, 0),
+    COLUMN(z, 0),
+    COLUMN(vx, 0),
+    COLUMN(vy, 0),
+    COLUMN(vz, 0),
+    COLUMN(mass, 0),
+    COLUMN(density, 0),
+    COLUMN(energy, 0),
+    COLUMN(h, 0),
+    COLUMN(pressure, 0),
+    COLUMN(stress[0], SPH_WITH_STRESS),
+    COLUMN(stress[1], SPH_WITH_STRESS),
+    COLUMN(stress[2], SPH_WITH_STRESS),
+    COLUMN(stress[3], SPH_WITH_STRESS),
+    COLUMN(stress[4], SPH_WITH_STRESS),
+    COLUMN(stress[5], SPH_WITH_STRESS),
+    COLUMN(damage_cbrt, SPH_WITH_DAMAGE),
+    COLUMN(damping, SPH_WITH_DAMPING),
+    COLUMN(distention, SPH_WITH_DISTENTION),
+    COLUMN(rest_distention, SPH_WITH_DISTENTION),
+#undef COLUMN
+};
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static double **column_of(struct sph_particles *p, size_t k) {
+  return (double **)(void *)((char *)p + columns[k].offset);
+}
+
+static bool allocate(struct sph_particles *p, int arrays) {
+  const size_t n = p->n ? p->n : 1;
+  for (size_t k = 0; k < COLUMNS; k++) {
+    if (columns[k].array && !(arrays & columns[k].array))
+      continue;
+    *column_of(p, k) = calloc(n, sizeof(double));
+    if (!*column_of(p, k))
+      return false;
+  }
+  p->body = calloc(n, 1);
+  p->held = arrays & SPH_WITH_HELD ? calloc(n, 1) : NULL;
+  return p->body && (p->held || !(arrays & SPH_WITH_HELD));
 }
 
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error) {
   *out = NULL;
-  const int doubles = 12 + (arrays & SPH_WITH_STRESS ? 6 : 0) + (arrays & SPH_WITH_DAMAGE ? 1 : 0) +
-                      (arrays & SPH_WITH_DAMPING ? 1 : 0) + (arrays & SPH_WITH_DISTENTION ? 2 : 0);
-  const size_t bytes = (size_t)(8 * doubles + 1 + (arrays & SPH_WITH_HELD ? 1 : 0));
+  size_t bytes = sizeof(double) + 1 + (arrays & SPH_WITH_HELD ? 1 : 0); /* a double to sort by, body, held */
+  for (size_t k = 0; k < COLUMNS; k++)
+    bytes += !columns[k].array || (arrays & columns[k].array) ? sizeof(double) : 0;
   if (n > sph_particles_memory() / bytes)
     return status_fail(error, STATUS_MEMORY, "%zu particles need %.3g GB; this machine, or the limit set, has %.3g GB.",
                        n, (double)n * (double)bytes / 1e9, (double)sph_particles_memory() / 1e9);
+
   struct sph_particles *p = calloc(1, sizeof *p);
-  if (!p)
-    return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", n);
-  p->n = n;
-  double **const always[] = {&p->x,    &p->y,       &p->z,      &p->vx, &p->vy,      &p->vz,
-                             &p->mass, &p->density, &p->energy, &p->h,  &p->pressure};
-  int complete = 1;
-  for (size_t k = 0; k < sizeof always / sizeof *always; k++)
-    complete &= (*always[k] = column(n)) != NULL;
-  complete &= (p->body = calloc(n ? n : 1, 1)) != NULL;
-  if (arrays & SPH_WITH_STRESS)
-    for (int k = 0; k < 6; k++)
-      complete &= (p->stress[k] = column(n)) != NULL;
-  if (arrays & SPH_WITH_DAMAGE)
-    complete &= (p->damage_cbrt = column(n)) != NULL;
-  if (arrays & SPH_WITH_HELD)
-    complete &= (p->held = calloc(n ? n : 1, 1)) != NULL;
-  if (arrays & SPH_WITH_DAMPING)
-    complete &= (p->damping = column(n)) != NULL;
-  if (arrays & SPH_WITH_DISTENTION)
-    complete &= (p->distention = column(n)) != NULL && (p->rest_distention = column(n)) != NULL;
-  if (!complete) {
+  if (p)
+    p->n = n;
+  if (!p || !allocate(p, arrays)) {
     sph_particles_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", n);
   }
-  if (p->distention)
-    for (size_t i = 0; i < n; i++)
-      p->distention[i] = p->rest_distention[i] = 1;
+  for (size_t i = 0; p->distention && i < n; i++) {
+    p->distention[i] = 1;
+    p->rest_distention[i] = 1;
+  }
   *out = p;
   return STATUS_OK;
 }
@@ -60,15 +91,8 @@ status sph_particles_make(size_t n, int arrays, struct sph_particles **out, stru
 void sph_particles_free(struct sph_particles *p) {
   if (!p)
     return;
-  double *const all[] = {p->x,         p->y,          p->z,
-                         p->vx,        p->vy,         p->vz,
-                         p->mass,      p->density,    p->energy,
-                         p->h,         p->pressure,   p->stress[0],
-                         p->stress[1], p->stress[2],  p->stress[3],
-                         p->stress[4], p->stress[5],  p->damage_cbrt,
-                         p->damping,   p->distention, p->rest_distention};
-  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-    free(all[k]);
+  for (size_t k = 0; k < COLUMNS; k++)
+    free(*column_of(p, k));
   free(p->body);
   free(p->held);
   free(p);

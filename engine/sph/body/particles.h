@@ -1,5 +1,5 @@
-/* Particles as they are set up and read back: plain arrays in the order of their ids, bodies one after the other.
- * (Inside the moving system they are sorted in space.) Arrays that a scene does not need are NULL: off means absent. */
+/* Particles as they are set up and read back: plain arrays in the order of their ids, bodies one after the other. (The
+ * moving system sorts them in space.) Arrays that a scene does not need are NULL. */
 #ifndef CLAST_ENGINE_SPH_BODY_PARTICLES_H
 #define CLAST_ENGINE_SPH_BODY_PARTICLES_H
 
@@ -11,7 +11,7 @@
 enum sph_freedom { /* bits of `held` */
                    SPH_HELD_X = 1,
                    SPH_HELD_Y = 2,
-                   SPH_HELD_Z = 4, /* moves at its present velocity, whatever pulls (grips, pistons) */
+                   SPH_HELD_Z = 4, /* keeps its velocity whatever the forces are (grips, pistons) */
 };
 
 enum sph_particle_arrays { /* which of the optional arrays exist */
@@ -33,13 +33,12 @@ struct sph_particles {
   double *pressure;     /* Pa, undamaged, bulk; filled when read back */
   uint8_t *body;        /* 0 target, 1 projectile, ...: index into the bodies given to sph_system_create; ascending */
   /* optional */
-  double *stress[6];   /* Pa, deviatoric xx xy xz yy yz zz, undamaged, bulk */
-  double *damage_cbrt; /* D^(1/3), tension and compaction together */
-  uint8_t *held;       /* enum sph_freedom bits */
-  double *damping;     /* 1/s: dv/dt = -damping v, for far sides that let waves out */
-  double *distention;  /* alpha = rho_s/rho >= 1 */
-  double *
-      rest_distention; /* what it would be at P = 0: pores that are closed for good (palpha.h); filled when read back */
+  double *stress[6];       /* Pa, deviatoric xx xy xz yy yz zz, undamaged, bulk */
+  double *damage_cbrt;     /* D^(1/3), tension and compaction together */
+  uint8_t *held;           /* enum sph_freedom bits */
+  double *damping;         /* 1/s: dv/dt = -damping v, for far sides that waves leave by */
+  double *distention;      /* alpha = rho_s/rho >= 1 */
+  double *rest_distention; /* alpha after unloading to P = 0 (palpha.h); filled when read back */
 };
 
 /* D of particle i; 0 without damage. */
@@ -48,12 +47,13 @@ static inline double sph_particles_damage(const struct sph_particles *p, size_t 
   return cbrt * cbrt * cbrt;
 }
 
-/* Allocates all arrays that the flags (enum sph_particle_arrays) ask for, zeroed (distention: 1). STATUS_MEMORY. */
+/* Allocates the arrays for n particles; `arrays` are the flags of enum sph_particle_arrays. All are zero, but
+ * distentions are 1. STATUS_MEMORY. */
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
 void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
 
-/* Most bytes that this process may ever have: the machine's memory, or its limit of address space. What needs more is
- * refused before anything is allocated, with the number. */
+/* The number of bytes that this process may have at most: the machine's memory or its limit of address space. What
+ * needs more is refused, with the number, before anything is allocated. */
 size_t sph_particles_memory(void);
 
 #endif

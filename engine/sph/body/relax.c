@@ -1,4 +1,5 @@
-#include "engine/sph/body/relax.h"
+/* Pushes irregular points apart (irregular.h). */
+#include "engine/sph/body/irregular.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -6,12 +7,12 @@
 
 #include "engine/sph/body/kd_tree.h"
 
-/* Found by trial: 24 rounds with steps falling from 5 to 1 give the scatter of 200 small ones; steps of 8 boil. Graded
- * points start more unevenly. */
+/* Found by trial: 24 rounds with steps that fall from 5 to 1 scatter as little as 200 small ones; with steps of 8
+ * points do not settle. Graded points start less evenly. */
 enum { ROUNDS = 24, ROUNDS_GRADED = 40, ROUNDS_PER_LIST = 4 };
 static const double first_step = 5, last_step = 1, longest_move = 0.3; /* of s */
 static const double reach = 2, skin = 0.4;                             /* of s */
-static const double margin = 0.1; /* of s: no point closer to a surface; lattices leave half a spacing */
+static const double margin = 0.1; /* of s: least distance from a surface; that of lattices is half a spacing */
 
 struct work {
   const struct sph_lattice *lattice;
@@ -34,7 +35,7 @@ static double wanted(const struct work *w, const double p[3]) {
   return w->lattice->grading.fine > 0 ? sph_relax_spacing(&w->lattice->grading, p) : w->spacing;
 }
 
-/* The neighbours of p, seen from one image of the periodic box, appended to the list. */
+/* Appends the neighbours of p, which is one periodic image of a point, to the list. */
 static bool append(struct work *w, const struct sph_kd_tree *tree, const double p[3], double radius, size_t *total) {
   size_t found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->room - *total);
   if (found > w->room - *total) {
@@ -53,7 +54,8 @@ static bool append(struct work *w, const struct sph_kd_tree *tree, const double 
 static bool list_images(struct work *w, const struct sph_kd_tree *tree, size_t i, size_t *total) {
   const double radius = (reach + skin) * w->s[i];
   for (int image = 0; image < 27; image++) {
-    const int shift[3] = {(image + 1) % 3 - 1, (image / 3 + 1) % 3 - 1, (image / 9 + 1) % 3 - 1}; /* first: itself */
+    const int shift[3] = {(image + 1) % 3 - 1, (image / 3 + 1) % 3 - 1,
+                          (image / 9 + 1) % 3 - 1}; /* the first is the point itself */
     double p[3];
     bool near = true;
     for (int k = 0; k < 3; k++) {
@@ -67,30 +69,35 @@ static bool list_images(struct work *w, const struct sph_kd_tree *tree, size_t i
   return true;
 }
 
+/* Lists the neighbours of all points. */
 static status list(struct work *w, struct error *error) {
-  status code = STATUS_OK;
   struct sph_kd_tree *tree = NULL;
   double *column = malloc(3 * w->n * sizeof *column);
   if (!column)
-    code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", w->n);
-  if (!code) {
-    for (size_t i = 0; i < w->n; i++)
-      for (size_t k = 0; k < 3; k++)
-        column[k * w->n + i] = w->at[i][k];
-    code = sph_kd_tree_create(w->n, column, column + w->n, column + 2 * w->n, &tree, error);
-  }
+    return status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", w->n);
+  for (size_t i = 0; i < w->n; i++)
+    for (size_t k = 0; k < 3; k++)
+      column[k * w->n + i] = w->at[i][k];
+  status code = sph_kd_tree_create(w->n, column, column + w->n, column + 2 * w->n, &tree, error);
+  if (code)
+    goto cleanup;
+
   size_t total = 0;
-  for (size_t i = 0; i < w->n && !code; i++) {
+  for (size_t i = 0; i < w->n; i++) {
     w->first[i] = total;
-    if (!list_images(w, tree, i, &total))
+    if (!list_images(w, tree, i, &total)) {
       code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", w->n);
+      goto cleanup;
+    }
   }
   w->first[w->n] = total;
+cleanup:
   sph_kd_tree_free(tree);
   free(column);
   return code;
 }
 
+/* Does the wall end the body? Walls of periodic directions do not. */
 static bool open_wall(const struct work *w, int wall) {
   if (w->shape->kind == SPH_SHAPE_BOX)
     return !(w->length[wall / 2] > 0);
@@ -99,8 +106,25 @@ static bool open_wall(const struct work *w, int wall) {
   return true;
 }
 
+/* Adds the push of the walls on point i. A continuum beyond a plane at the depth d R pushes with
+ * pi R^3 integral over q from d to 1 of (1 - q)(q^2 - d^2). */
+static void push_walls(const struct work *w, size_t i, double f[3]) {
+  const double over = 1 / (reach * w->s[i]);
+  double depth[SPH_SHAPE_WALLS], normal[SPH_SHAPE_WALLS][3];
+  const int walls = sph_shape_walls(w->shape, w->at[i], depth, normal);
+  for (int wall = 0; wall < walls; wall++) {
+    const double d = fmax(0, depth[wall] * over);
+    if (d >= 1 || !open_wall(w, wall))
+      continue;
+    const double strength = M_PI * (1. / 12 + d * d * (-0.5 + d * (2. / 3 - 0.25 * d)));
+    for (int k = 0; k < 3; k++)
+      f[k] -= strength * normal[wall][k];
+  }
+}
+
+/* The push f on point i. */
 static void push(const struct work *w, size_t i, double f[3]) {
-  const double over = 1 / (reach * w->s[i]), each = 1 / (reach * reach * reach * w->s[i]);
+  const double each = 1 / (reach * reach * reach * w->s[i]);
   f[0] = f[1] = f[2] = 0;
   for (size_t k = w->first[i]; k < w->first[i + 1]; k++) {
     const size_t j = w->list[k];
@@ -118,19 +142,10 @@ static void push(const struct work *w, size_t i, double f[3]) {
     for (int d = 0; d < 3; d++)
       f[d] += strength * r[d];
   }
-  /* A continuum beyond a plane at the depth d R: pi R^3 integral over q from d to 1 of (1 - q)(q^2 - d^2). */
-  double depth[SPH_SHAPE_WALLS], normal[SPH_SHAPE_WALLS][3];
-  const int walls = sph_shape_walls(w->shape, w->at[i], depth, normal);
-  for (int wall = 0; wall < walls; wall++) {
-    const double d = fmax(0, depth[wall] * over);
-    if (d >= 1 || !open_wall(w, wall))
-      continue;
-    const double strength = M_PI * (1. / 12 + d * d * (-0.5 + d * (2. / 3 - 0.25 * d)));
-    for (int k = 0; k < 3; k++)
-      f[k] -= strength * normal[wall][k];
-  }
+  push_walls(w, i, f);
 }
 
+/* Keeps a point inside the walls, and in the first period of periodic directions. */
 static void confine(const struct work *w, double p[3], double s) {
   double depth[SPH_SHAPE_WALLS], normal[SPH_SHAPE_WALLS][3];
   const int walls = sph_shape_walls(w->shape, p, depth, normal);
@@ -142,6 +157,7 @@ static void confine(const struct work *w, double p[3], double s) {
       p[k] -= w->length[k] * floor(p[k] / w->length[k]);
 }
 
+/* Moves all points once. */
 static void round_of(struct work *w, double step) {
   for (size_t i = 0; i < w->n; i++) {
     double *f = w->push[i];
@@ -170,19 +186,24 @@ status sph_relax_spread(const struct sph_lattice *lattice, const struct sph_shap
   w.s = malloc(n * sizeof *w.s);
   w.first = malloc((n + 1) * sizeof *w.first);
   w.list = malloc(w.room * sizeof *w.list);
-  if (!w.push || !w.s || !w.first || !w.list)
+  if (!w.push || !w.s || !w.first || !w.list) {
     code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
-  for (size_t i = 0; i < n && !code; i++) {
+    goto cleanup;
+  }
+  for (size_t i = 0; i < n; i++) {
     w.s[i] = wanted(&w, at[i]);
     confine(&w, at[i], w.s[i]);
   }
   const int rounds = lattice->grading.fine > 0 ? ROUNDS_GRADED : ROUNDS;
-  for (int k = 0; k < rounds && !code; k++) {
-    if (k % ROUNDS_PER_LIST == 0)
+  for (int k = 0; k < rounds; k++) {
+    if (k % ROUNDS_PER_LIST == 0) {
       code = list(&w, error);
-    if (!code)
-      round_of(&w, first_step * pow(last_step / first_step, (double)k / (rounds - 1)));
+      if (code)
+        goto cleanup;
+    }
+    round_of(&w, first_step * pow(last_step / first_step, (double)k / (rounds - 1)));
   }
+cleanup:
   free(w.push);
   free(w.s);
   free(w.first);

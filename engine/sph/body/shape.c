@@ -7,7 +7,8 @@ static double dot(const double a[3], const double b[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static double unit(const double a[3], double out[3]) { /* the length of a; scaled first, so that no size overflows */
+/* Returns the length of a. Scales first, so that no size overflows. */
+static double unit(const double a[3], double out[3]) {
   const double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
   if (!(largest > 0) || !isfinite(largest))
     return 0;
@@ -69,7 +70,10 @@ void sph_shape_frame(const struct sph_shape *s, double f[3][3]) {
   if (s->kind != SPH_SHAPE_CYLINDER || !(unit(s->axis, w) > 0))
     return;
   /* u: the coordinate axis least along w, turned normal to it; for the axis z this is the identity */
-  int least = fabs(w[0]) <= fabs(w[1]) && fabs(w[0]) <= fabs(w[2]) ? 0 : fabs(w[1]) <= fabs(w[2]) ? 1 : 2;
+  int least = 0;
+  for (int k = 1; k < 3; k++)
+    if (fabs(w[k]) < fabs(w[least]))
+      least = k;
   for (int k = 0; k < 3; k++)
     u[k] = (k == least) - w[least] * w[k];
   unit(u, u);
@@ -82,8 +86,9 @@ void sph_shape_frame(const struct sph_shape *s, double f[3][3]) {
   }
 }
 
-/* A rectangle [-a, a] x [-b, b] in each plane through the axis is all that boxes and cylinders need: q = how far beyond
- * each slab; outside the distance is that of the corner or face, inside that of the nearest face. */
+/* Boxes, and cylinders in each plane through their axis, are products of intervals. q: distance beyond each interval,
+ * negative inside. Returns the signed distance of the product: outside that of the corner or face, inside that of the
+ * nearest face. `weight`: the components of the normal. */
 static double beyond(const double q[3], int count, double weight[3]) {
   double squares = 0, most = -INFINITY;
   int nearest = 0;
@@ -108,8 +113,11 @@ double sph_shape_distance(const struct sph_shape *s, const double point[3], doub
     p[k] = point[k] - s->centre[k];
   if (s->kind == SPH_SHAPE_SPHERE) {
     const double r = unit(p, normal);
-    if (!(r > 0))
-      normal[0] = normal[1] = 0, normal[2] = 1;
+    if (!(r > 0)) {
+      normal[0] = 0;
+      normal[1] = 0;
+      normal[2] = 1;
+    }
     return r - s->radius;
   }
   if (s->kind == SPH_SHAPE_BOX) {
@@ -143,7 +151,8 @@ double sph_shape_distance(const struct sph_shape *s, const double point[3], doub
 
 int sph_shape_walls(const struct sph_shape *s, const double point[3], double depth[SPH_SHAPE_WALLS],
                     double normal[SPH_SHAPE_WALLS][3]) {
-  double p[3], w[3], across[3], outward[3] = {0}; /* on the axis: far from the barrel, and in no hole */
+  double p[3], w[3], across[3],
+      outward[3] = {0}; /* stays zero on the axis, which is far from the barrel and not in a hole */
   for (int k = 0; k < 3; k++)
     p[k] = point[k] - s->centre[k];
   if (s->kind == SPH_SHAPE_SPHERE) {
@@ -257,8 +266,8 @@ static struct sph_shape hull(const struct sph_shape *s) {
   return h;
 }
 
-/* Depth of overlap: the least push along any direction that parts them. Faces' and edges' directions first, then a
- * search over the sphere about the best. */
+/* The depth of overlap is the least push along any direction that separates two hulls. Tries the directions of faces
+ * and edges and a cover of the sphere, then searches about the best. */
 static double depth(const struct sph_shape *a, const struct sph_shape *b) {
   double try[64][3], fa[3][3], fb[3][3], d[3];
   int count = 0;
@@ -279,7 +288,7 @@ static double depth(const struct sph_shape *a, const struct sph_shape *b) {
   for (int k = 0; k < 3; k++)
     try[count][k] = d[k];
   count++;
-  for (int i = 0; count < 64; i++, count++) { /* and an even cover of half the sphere */
+  for (int i = 0; count < 64; i++, count++) { /* an even cover of half the sphere */
     const double z = (i + 0.5) / 48, across = sqrt(1 - z * z), turn = 2.399963229728653 * i;
     try[count][0] = across * cos(turn);
     try[count][1] = across * sin(turn);
@@ -319,7 +328,7 @@ double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *rin
     return sph_shape_distance(&a, b.centre, NULL) - b.radius;
   if (a.kind == SPH_SHAPE_SPHERE)
     return sph_shape_distance(&b, a.centre, NULL) - a.radius;
-  /* Two convex bodies: going from one to the nearest point of the other and back ends at the nearest pair. */
+  /* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points. */
   double p[3] = {b.centre[0], b.centre[1], b.centre[2]}, normal[3], gap = INFINITY;
   const double size = sph_shape_reach(&a, (double[3]){1, 0, 0}) + sph_shape_reach(&b, (double[3]){1, 0, 0});
   for (int turn = 0; turn < 2000; turn++) {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/body/flaw_places.h"
+#include "engine/sph/body/flaws.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
@@ -177,9 +177,9 @@ static status make_flaws(struct sph_run *run, struct error *error) {
                                .draw = in->fracture.draw,
                                .seed = run->seed,
                                .body = (uint64_t)b};
-    code = sph_flaw_places_make(&law, &run->shape[b], run->start, run->range[b],
-                                in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b],
-                                error);
+    code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
+                           in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b],
+                           error);
     if (!code)
       run->flaw_count += run->flaws[b]->count;
   }
