@@ -8,6 +8,7 @@
 #include "engine/sph/material/materials.h"
 #include "engine/sph/modules/ranges.h"
 #include "engine/sph/step/system.h"
+#include "tests/support/case_parameters.h"
 
 enum { ROUNDS = 3, STEPS = 60, N = 24, SMALL = 6 };
 
@@ -44,10 +45,10 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   struct sph_body_physics bodies[2] =
       {{.material = *material, .strength = true, .flaws = list, .porosity = pores ? &material->porosity : NULL},
        {.material = *material, .strength = true}};
-  struct sph_parameters parameters = sph_parameters_default();
+  struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
   struct error error;
-  if (sph_system_create(p, 2, bodies, &parameters, &s, &error) != STATUS_OK) {
+  if (sph_system_create(p, 2, bodies, &parameters.in, &parameters.domain, &s, &error) != STATUS_OK) {
     fprintf(stderr, "%s\n", error.message);
     exit(1);
   }

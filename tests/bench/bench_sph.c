@@ -110,12 +110,11 @@ static void cloud_free(struct cloud *c) {
   free(c->slack);
 }
 
-static const struct sph_pair_options usual = {.viscosity_alpha = 1.5,
-                                              .viscosity_beta = 3,
+static const struct sph_pair_options usual = {.viscosity = {.alpha = 1.5, .beta = 3},
                                               .strength = true,
                                               .spacing_over_h = 0.9,
                                               .periodic = {NAN, NAN, NAN},
-                                              .threads = 1};
+                                              .fidelity.threads = 1};
 
 /* Best seconds of a pass over a few; *listing likewise of making the lists. */
 static double pass(struct cloud *c, const struct sph_pair_options *options, clockid_t clock, double *listing,
@@ -235,16 +234,16 @@ static void pairs(const char *name, size_t n) {
   printf("sph_reference_ns_per_particle_%s %.1f ns\n", name, 1e9 * plain / real);
   printf("sph_pairs_ratio_to_reference_%s %.3g 1\n", name, plain / spent);
   printf("sph_pairs_difference_%s %.2e 1\n", name, difference(&c));
-  options.precision = SPH_FLOAT;
+  options.fidelity.precision = SPH_FLOAT;
   const double shorter = pass(&c, &options, CLOCK_PROCESS_CPUTIME_ID, &listing, &neighbours, &bytes);
   printf("sph_pairs_ns_per_particle_%s_float %.1f ns\n", name, 1e9 * shorter / real);
   printf("sph_pairs_ratio_float_%s %.3g 1\n", name, spent / shorter);
   printf("sph_pairs_listing_ns_per_particle_%s_float %.1f ns\n", name, 1e9 * listing / real);
   printf("sph_pairs_bytes_per_particle_%s_float %.0f B\n", name, (double)bytes / real);
   printf("sph_pairs_difference_%s_float %.2e 1\n", name, difference(&c));
-  options.precision = SPH_DOUBLE;
+  options.fidelity.precision = SPH_DOUBLE;
   const double wall = pass(&c, &options, CLOCK_MONOTONIC, &listing, &neighbours, &bytes);
-  options.threads = 2;
+  options.fidelity.threads = 2;
   printf("sph_pairs_threads_2_ratio_%s %.3g 1\n", name,
          wall / pass(&c, &options, CLOCK_MONOTONIC, &listing, &neighbours, &bytes));
   cloud_free(&c);

@@ -32,10 +32,10 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
       double closing = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
       double mu = h * fmin(closing, 0) / (square + 0.01 * h * h);
       double viscous = mu *
-                       (2 * o->viscosity_beta * mu - o->viscosity_alpha * (f->sound_speed[i] + f->sound_speed[j])) /
+                       (2 * o->viscosity.beta * mu - o->viscosity.alpha * (f->sound_speed[i] + f->sound_speed[j])) /
                        (f->density[i] + f->density[j]);
       double si = 1, sj = 1; /* of sigma/rho^2 */
-      if (o->volume_weights)
+      if (o->method.volume_weights)
         si = f->density[i] / f->density[j], sj = f->density[j] / f->density[i];
       double along = si * f->pressure_term[i] + sj * f->pressure_term[j] - viscous,
              t[6] = {along, 0, 0, along, 0, along};
@@ -59,8 +59,8 @@ void reference_sph_sum(size_t n, const size_t *start, const uint32_t *count, con
       sums->ax[j] -= mi * force[0], sums->ay[j] -= mi * force[1], sums->az[j] -= mi * force[2];
       sums->heating[i] += mj * heat, sums->heating[j] += mi * heat;
       sums->signal[i] = fmax(sums->signal[i], -mu), sums->signal[j] = fmax(sums->signal[j], -mu);
-      double wi = o->volume_weights ? mj / f->density[j] : mj / f->density[i];
-      double wj = o->volume_weights ? mi / f->density[i] : mi / f->density[j];
+      double wi = o->method.volume_weights ? mj / f->density[j] : mj / f->density[i];
+      double wj = o->method.volume_weights ? mi / f->density[i] : mi / f->density[j];
       for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++) {
           sums->gradient[3 * a + b][i] -= wi * v[a] * w[b];

@@ -17,12 +17,11 @@ struct cloud {
 
 static const char *const classes[] = {"baseline", "v3", "v4"};
 
-static const struct sph_pair_options usual = {.viscosity_alpha = 1.5,
-                                              .viscosity_beta = 3,
+static const struct sph_pair_options usual = {.viscosity = {.alpha = 1.5, .beta = 3},
                                               .strength = true,
                                               .spacing_over_h = 0.9,
                                               .periodic = {NAN, NAN, NAN},
-                                              .threads = 1};
+                                              .fidelity.threads = 1};
 
 /* A jittered cubic lattice of `spacing` with all fields drawn; when `mixed` every 50th particle is up to 10 times
  * larger. */

@@ -13,6 +13,7 @@
 #include <cmocka.h>
 
 #include "engine/sph/step/system.h"
+#include "tests/support/case_parameters.h"
 
 #define CASE_UNUSED __attribute__((unused))
 
@@ -67,10 +68,10 @@ static CASE_UNUSED struct sph_flaws *case_flaws(size_t n, double volume, uint64_
 
 static CASE_UNUSED struct sph_system *case_system(const struct sph_particles *p, size_t bodies,
                                                   const struct sph_body_physics *physics,
-                                                  const struct sph_parameters *parameters) {
+                                                  const struct case_parameters *parameters) {
   struct sph_system *s = NULL;
   struct error error = {0};
-  if (sph_system_create(p, bodies, physics, parameters, &s, &error) != STATUS_OK)
+  if (sph_system_create(p, bodies, physics, &parameters->in, &parameters->domain, &s, &error) != STATUS_OK)
     fail_msg("%s", error.message);
   return s;
 }

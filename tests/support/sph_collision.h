@@ -13,7 +13,7 @@ struct collision {
   struct sph_particles *particles;
   struct sph_flaws *flaws[2];
   struct sph_body_physics physics[2];
-  struct sph_parameters parameters;
+  struct case_parameters parameters;
 };
 
 /* A basalt cube, hit off centre by a small one at 1 km/s; both crack. */
@@ -22,7 +22,7 @@ static inline struct collision collide(double speed) {
       {{SIDE, SIDE, SIDE}, {0, 0, 0}, {0, 0, 0}, spacing},
       {{SMALL, SMALL, SMALL}, {1.3e-3, 2.7e-3, 8.9e-3}, {0, 0, -speed}, spacing},
   };
-  struct collision c = {.parameters = sph_parameters_default()};
+  struct collision c = {.parameters = case_parameters_default()};
   c.particles = case_make(blocks, 2, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   for (int b = 0; b < 2; b++) {
     const size_t n = blocks[b].count[0] * blocks[b].count[1] * blocks[b].count[2];

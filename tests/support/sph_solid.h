@@ -26,6 +26,7 @@
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/tillotson.h"
 #include "engine/sph/step/system.h"
+#include "tests/support/case_parameters.h"
 
 #define UNUSED __attribute__((unused))
 
@@ -35,7 +36,7 @@ struct solid_case {
   size_t bodies;
   struct sph_body body[SOLID_BODIES];
   struct sph_body_physics physics[SOLID_BODIES];
-  struct sph_parameters parameters;
+  struct case_parameters parameters;
   struct sph_range range[SOLID_BODIES];
   struct sph_particles *particles;
   struct sph_system *system;
@@ -105,7 +106,7 @@ enum { SOLID_SLOW = 0 };
 #endif
 
 UNUSED static struct solid_case solid_make(size_t bodies) {
-  struct solid_case c = {.bodies = bodies, .parameters = sph_parameters_default()};
+  struct solid_case c = {.bodies = bodies, .parameters = case_parameters_default()};
   for (size_t b = 0; b < SOLID_BODIES; b++) {
     c.body[b].h_over_spacing = NAN;
     c.body[b].lattice.particles = NAN;
@@ -120,12 +121,13 @@ UNUSED static void solid_build(struct solid_case *c, int arrays) {
     c->body[b].density = c->physics[b].material.density;
   if (sph_bodies_make(c->body, c->bodies, arrays, &c->particles, c->range, &error))
     fail_msg("bodies: %s", error.message);
-  c->parameters.spacing_over_h = c->range[0].nearest / c->range[0].h;
+  c->parameters.domain.spacing_over_h = c->range[0].nearest / c->range[0].h;
 }
 
 UNUSED static void solid_start(struct solid_case *c) {
   struct error error = {0};
-  if (sph_system_create(c->particles, c->bodies, c->physics, &c->parameters, &c->system, &error))
+  if (sph_system_create(c->particles, c->bodies, c->physics, &c->parameters.in, &c->parameters.domain, &c->system,
+                        &error))
     fail_msg("system: %s", error.message);
 }
 
@@ -160,7 +162,7 @@ UNUSED static double solid_energy_error(struct solid_case *c, struct sph_ledger 
  * which no particle meets its own image. The lattice is h-ready and periodic across, along too if `endless`. */
 UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double length, double spacing, bool endless) {
   struct sph_body *b = &c->body[0];
-  double reach = 4 * SPH_BODIES_H * spacing * (1 + c->parameters.skin) * 1.05;
+  double reach = 4 * SPH_BODIES_H * spacing * (1 + c->parameters.in.fidelity.skin) * 1.05;
   b->shape.kind = SPH_SHAPE_BOX;
   b->lattice.kind = kind;
   b->lattice.spacing = spacing;
@@ -168,7 +170,7 @@ UNUSED static void solid_bar(struct solid_case *c, int kind, int along, double l
     b->shape.side[d] = d == along ? length : sph_lattice_period(kind, spacing, d, reach);
     b->shape.centre[d] = b->shape.side[d] / 2;
     b->lattice.periodic[d] = d != along || endless;
-    c->parameters.periodic[d] = b->lattice.periodic[d] ? b->shape.side[d] : (double)NAN;
+    c->parameters.domain.periodic[d] = b->lattice.periodic[d] ? b->shape.side[d] : (double)NAN;
   }
 }
 

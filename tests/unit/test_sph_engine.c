@@ -426,7 +426,7 @@ static void memory_that_runs_out_is_no_result(void **state) {
   struct sph_run *run;
   assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
   assert_int_equal(sph_engine.step(run, 5, &finished, &error), STATUS_OK);
-  run->system->p.h_highest = 1e3;
+  run->system->highest_h = 1e3;
   for (size_t i = 0; i < run->system->n; i++)
     run->system->c.h[i] *= 10; /* nearly all pairs: some 30 MB of lists */
   for (size_t k = 0; k < run->system->block_count; k++)

@@ -191,7 +191,7 @@ static void float_takes_so_many_particles(void **state) {
   struct sph_pair_options options = usual;
   struct sph_pairs *pairs;
   struct error error = {0};
-  options.precision = SPH_FLOAT;
+  options.fidelity.precision = SPH_FLOAT;
   assert_int_equal(sph_pairs_create((size_t)1 << 28, &options, &pairs, &error), STATUS_CONTENT);
   assert_null(pairs);
   assert_non_null(strstr(error.message, "268435455"));

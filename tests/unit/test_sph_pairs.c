@@ -62,7 +62,7 @@ static struct summed *sum(const struct cloud *c, const struct sph_pair_options *
     for (size_t i = 0; i < c->n; i++)
       s->correction[k][i] = k == 0 || k == 3 || k == 5;
   }
-  if (options->gradient_correction)
+  if (options->method.gradient_correction)
     sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums); /* the forces' correction is that of the pass before */
   sph_pairs_sum(pairs, c->n, &f, pair_sums_keep, &sums);
   s->neighbours = sph_pairs_neighbours(pairs);
@@ -95,7 +95,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
     double sigma[6], r[6];
     for (int k = 0; k < 6; k++)
       stress[k][i] = acting(c, k, i), sigma[k] = stress[k][i] + (k == 0 || k == 3 || k == 5 ? c->a[10][i] : 0);
-    reference_sph_opposed(options->artificial_stress, sigma, r);
+    reference_sph_opposed(options->method.artificial_stress, sigma, r);
     for (int k = 0; k < 6; k++)
       artificial[k][i] = r[k];
   }
@@ -104,7 +104,7 @@ static struct summed *reference(const struct cloud *c, const struct sph_pair_opt
   struct sph_pair_fields f = fields_of(c);
   struct sph_pair_sums sums = sums_of(s);
   reference_sph_sum(c->n, lists.start, lists.count, lists.j, options, &f, (const double *const *)stress,
-                    options->artificial_stress > 0 ? (const double *const *)artificial : NULL, &sums);
+                    options->method.artificial_stress > 0 ? (const double *const *)artificial : NULL, &sums);
   reference_sph_lists_free(&lists);
   for (int k = 0; k < 6; k++)
     free(artificial[k]), free(stress[k]);
@@ -122,17 +122,17 @@ static void kernels_equal_plain_c(void **state) {
     struct cloud *c = cloud_make(18, spacing, variant % 4 == 3, (uint64_t)variant + 1);
     struct sph_pair_options options = usual;
     options.strength = variant & 1;
-    options.volume_weights = variant & 2;
+    options.method.volume_weights = variant & 2;
     if (variant & 4 && variant % 4 != 3)
       options.periodic[0] = options.periodic[2] = length;
     if (variant & 8 && options.strength)
-      options.artificial_stress = 0.3;
+      options.method.artificial_stress = 0.3;
     struct summed *exact = reference(c, &options);
     for (int k = 0; k < 3; k++)
       for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
         double worst[4];
         assert_int_equal(setenv("CLAST_CPU", classes[k], 1), 0);
-        options.precision = precision;
+        options.fidelity.precision = precision;
         struct summed *s = sum(c, &options);
         compare(c, s, exact, worst);
         for (int q = 0; q < 4; q++)
@@ -170,10 +170,10 @@ static void work_equals_strain_energy(void **state) {
     assert_int_equal(setenv("CLAST_CPU", classes[variant / 16], 1), 0);
     struct cloud *c = cloud_make(SIDE, 1, true, 2);
     struct sph_pair_options options = usual;
-    options.volume_weights = variant & 1;
-    options.gradient_correction = variant & 2;
-    options.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
-    options.artificial_stress = variant & 8 ? 0.3 : 0; /* its work is in the heating, of either sign */
+    options.method.volume_weights = variant & 1;
+    options.method.gradient_correction = variant & 2;
+    options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
+    options.method.artificial_stress = variant & 8 ? 0.3 : 0; /* its work is in the heating, of either sign */
     struct summed *s = sum(c, &options);
     double work = 0, strain = 0, heat = 0, scale = 0;
     for (size_t i = 0; i < c->n; i++) {
@@ -186,11 +186,11 @@ static void work_equals_strain_energy(void **state) {
       }
       heat += m * s->a[12][i];
       scale += m * fabs(c->a[4][i] * s->a[0][i]);
-      assert_true(s->a[12][i] >= 0 || options.artificial_stress > 0);
+      assert_true(s->a[12][i] >= 0 || options.method.artificial_stress > 0);
     }
     assert_true(heat > 0.01 * scale);
     assert_true(fabs(work + strain + heat) < (variant & 4 ? 1e-6 : 1e-12) * scale);
-    if (options.gradient_correction) { /* the same at the state at hand; in a run B has changed since */
+    if (options.method.gradient_correction) { /* the same at the state at hand; in a run B has changed since */
       double given = 0;
       for (size_t i = 0; i < c->n; i++)
         given += c->a[7][i] * s->power[i];
@@ -212,10 +212,10 @@ static void corrected_gradient_is_linear(void **state) {
       for (int a = 0; a < 3; a++)
         c->a[4 + a][i] = 5 + g[3 * a] * c->a[0][i] + g[3 * a + 1] * c->a[1][i] + g[3 * a + 2] * c->a[2][i];
     struct sph_pair_options options = usual;
-    options.gradient_correction = true;
-    options.volume_weights = variant & 1;
-    options.artificial_stress = variant & 2 ? 0.3 : 0;
-    options.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
+    options.method.gradient_correction = true;
+    options.method.volume_weights = variant & 1;
+    options.method.artificial_stress = variant & 2 ? 0.3 : 0;
+    options.fidelity.precision = variant & 4 ? SPH_FLOAT : SPH_DOUBLE;
     struct summed *s = sum(c, &options);
     for (size_t i = 0; i < c->n; i++)
       for (int k = 0; k < 9; k++)
@@ -239,7 +239,7 @@ static void each_pair_is_summed_once(void **state) {
     }
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
-    options.precision = precision;
+    options.fidelity.precision = precision;
     struct summed *s = sum(c, &options);
     /* float may decide otherwise for a pair within 1e-6 of the edge: a handful of 3e5 */
     assert_true(fabs(s->neighbours * (double)c->n - 2.0 * (double)pairs) <= (precision == SPH_FLOAT ? 20 : 0.01));
@@ -256,7 +256,7 @@ static void angular_momentum_is_conserved(void **state) {
     struct cloud *c = cloud_make(SIDE, 1, !corrected, 10);
     struct sph_pair_options options = usual;
     options.strength = corrected;
-    options.gradient_correction = corrected;
+    options.method.gradient_correction = corrected;
     struct summed *s = sum(c, &options);
     double total[3] = {0}, scale = 0;
     for (size_t i = 0; i < c->n; i++)
@@ -276,7 +276,7 @@ static void angular_momentum_is_conserved(void **state) {
 static void debris_is_not_corrected(void **state) {
   (void)state;
   struct sph_pair_options options = usual;
-  options.gradient_correction = true;
+  options.method.gradient_correction = true;
   for (int layer = 0; layer < 2; layer++) {
     struct cloud *c = cloud_make(8, 1, false, 31);
     c->n = layer ? 64 : 5;
@@ -320,7 +320,7 @@ static void one_stress_over_a_cut(void **state) {
         c->stress[k][i] = sigma[k] - (k == 0 || k == 3 ? mean : 0);
     }
     struct sph_pair_options options = usual;
-    options.gradient_correction = corrected;
+    options.method.gradient_correction = corrected;
     struct summed *s = sum(c, &options);
     double force[3] = {0};
     for (size_t i = 0; i < c->n; i++)
@@ -377,7 +377,7 @@ static void not_finite_does_no_harm(void **state) {
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
     struct summed *s = calloc(1, sizeof *s);
-    options.precision = precision;
+    options.fidelity.precision = precision;
     assert_int_equal(sph_pairs_create(c->n, &options, &pairs, &error), STATUS_OK);
     struct sph_pair_fields f = fields_of(c);
     struct sph_pair_sums sums = sums_of(s);
@@ -413,7 +413,7 @@ static void coincident_particles_do_no_harm(void **state) {
     c->a[k][11] = c->a[k][10];
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct sph_pair_options options = usual;
-    options.precision = precision;
+    options.fidelity.precision = precision;
     struct summed *s = sum(c, &options);
     for (int k = 0; k < SUMS; k++)
       for (size_t i = 0; i < c->n; i++)
@@ -432,7 +432,7 @@ static void float_is_as_good_far_away(void **state) {
     c->a[1][i] += 1e6;
   struct summed *exact = reference(c, &options);
   double worst[4];
-  options.precision = SPH_FLOAT;
+  options.fidelity.precision = SPH_FLOAT;
   struct summed *s = sum(c, &options);
   compare(c, s, exact, worst);
   for (int q = 0; q < 4; q++)
@@ -452,7 +452,7 @@ static void float_holds_sizes_far_apart(void **state) {
     c->slack[tiny] /= ratio;
     struct summed *exact = reference(c, &options);
     double worst[4];
-    options.precision = SPH_FLOAT;
+    options.fidelity.precision = SPH_FLOAT;
     struct summed *s = sum(c, &options);
     compare(c, s, exact, worst);
     for (int q = 0; q < 4; q++)
@@ -467,12 +467,12 @@ static void bits_do_not_depend_on_threads(void **state) {
   struct cloud *c = cloud_make(LARGE, 1, true, 8);
   for (int variant = 0; variant < 3; variant++) {
     struct sph_pair_options options = usual;
-    options.precision = variant == 1 ? SPH_FLOAT : SPH_DOUBLE;
-    options.gradient_correction = variant == 2;
-    options.artificial_stress = variant ? 0.3 : 0;
+    options.fidelity.precision = variant == 1 ? SPH_FLOAT : SPH_DOUBLE;
+    options.method.gradient_correction = variant == 2;
+    options.method.artificial_stress = variant ? 0.3 : 0;
     struct summed *one = sum(c, &options);
     for (int threads = 2; threads <= 3; threads++) {
-      options.threads = threads;
+      options.fidelity.threads = threads;
       struct summed *s = sum(c, &options);
       assert_memory_equal(s, one, sizeof *s);
       free(s);

@@ -34,7 +34,7 @@ static struct sph_system *cube(const struct sph_palpha *porosity, bool strength,
                                       SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaws *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
   struct sph_body_physics body = {.material = case_basalt, .strength = strength, .porosity = porosity, .flaws = list};
-  struct sph_parameters parameters = sph_parameters_default();
+  struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   *count = p->n;
   sph_flaws_free(list);
@@ -236,7 +236,7 @@ static struct impact impact_of(const struct sph_palpha *target, const struct sph
                                           .flaws = m.flaws[b],
                                           .porosity = b ? projectile : target};
   }
-  struct sph_parameters parameters = sph_parameters_default();
+  struct case_parameters parameters = case_parameters_default();
   m.s = case_system(m.p, 2, bodies, &parameters);
   return m;
 }
@@ -374,15 +374,15 @@ static void refused(void **state) {
   struct sph_particles *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
   struct sph_palpha bad = porous_basalt;
   struct sph_body_physics body = {.material = case_basalt, .porosity = &bad};
-  struct sph_parameters parameters = sph_parameters_default();
+  struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
   struct error error;
   bad.solid_pressure = 1;
-  assert_int_equal(sph_system_create(p, 1, &body, &parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "solid_pressure"));
   bad = porous_basalt;
   p->distention[5] = 1.6;
-  assert_int_equal(sph_system_create(p, 1, &body, &parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "distention"));
   sph_particles_free(p);
 }

@@ -38,7 +38,7 @@ static void ledger_by_hand(void **state) {
     lx += m * (y * w - z * v), ly += m * (z * u - x * w), lz += m * (x * v - y * u);
   }
   const struct sph_body_physics fluid = {.material = case_basalt};
-  const struct sph_parameters parameters = sph_parameters_default();
+  const struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &fluid, &parameters);
   const struct sph_ledger l = sph_system_ledger(s);
   const double got[] = {l.kinetic,
@@ -145,7 +145,7 @@ static void fast_damping(void **state) {
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 10}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700, 1.21, SPH_WITH_STRESS | SPH_WITH_DAMPING);
   const struct sph_body_physics body = {.material = case_basalt, .strength = true};
-  const struct sph_parameters parameters = sph_parameters_default();
+  const struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   const double courant = 1 / s->now.worst[SPH_LIMIT_COURANT];
   sph_system_free(s);
@@ -197,7 +197,7 @@ static void slack_is_never_overrated(void **state) {
 static void flaws_open_by_the_damaged_stress(void **state) {
   (void)state;
   struct collision c = collide(0);
-  c.parameters.cap = SPH_CAP_NONE;
+  c.parameters.in.fracture.cap = SPH_CAP_NONE;
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   static const struct {
     double tension, pressure, damage; /* of the weakest flaw's E eps; D */
@@ -350,7 +350,7 @@ static void held(void **state) {
       p->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
-  const struct sph_parameters parameters = sph_parameters_default();
+  const struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   const double first = case_total(sph_system_ledger(s));
   case_run(s, 10e-6);

@@ -55,7 +55,7 @@ static struct collision everything_on(int precision) {
                                           .sound_speed = 2000};
   const struct case_block blocks[2] = {{{18, 18, 18}, {0, 0, 0}, {0, 0, 0}, spacing},
                                        {{SMALL, SMALL, SMALL}, {6.3e-3, 7.7e-3, 18.9e-3}, {0, 0, -3000}, spacing}};
-  struct collision c = {.parameters = sph_parameters_default()};
+  struct collision c = {.parameters = case_parameters_default()};
   c.particles = case_make(blocks, 2, 2700, 1.21,
                           SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD | SPH_WITH_DAMPING | SPH_WITH_DISTENTION);
   const size_t target = 18 * 18 * 18;
@@ -73,10 +73,12 @@ static struct collision everything_on(int precision) {
                                            .porosity = &pores};
   c.physics[1] = (struct sph_body_physics){.material = case_basalt, .strength = true};
   c.physics[1].material.tension_limit = 1e8;
-  c.parameters.artificial_stress = 0.2;
-  c.parameters.spacing_over_h = 1 / 1.21;
-  c.parameters.gradient_correction = c.parameters.volume_weights = c.parameters.compact_flaws = true;
-  c.parameters.precision = precision;
+  c.parameters.in.method.artificial_stress = 0.2;
+  c.parameters.domain.spacing_over_h = 1 / 1.21;
+  c.parameters.in.method.gradient_correction = true;
+  c.parameters.in.method.volume_weights = true;
+  c.parameters.in.fidelity.flaws = SPH_FLAWS_COMPACT;
+  c.parameters.in.fidelity.precision = precision;
   return c;
 }
 
@@ -85,7 +87,7 @@ static void every_module(void **state) {
   for (int precision = SPH_DOUBLE; precision <= SPH_FLOAT; precision++) {
     struct collision c = everything_on(precision);
     struct sph_system *whole = case_system(c.particles, 2, c.physics, &c.parameters);
-    c.parameters.threads = 2;
+    c.parameters.in.fidelity.threads = 2;
     struct sph_system *again = case_system(c.particles, 2, c.physics, &c.parameters);
     case_steps(whole, 45);
     unsigned char *bytes;
@@ -168,7 +170,7 @@ static void threads(void **state) {
   (void)state;
   struct collision c = collide(1000);
   struct sph_system *one = case_system(c.particles, 2, c.physics, &c.parameters);
-  c.parameters.threads = 2;
+  c.parameters.in.fidelity.threads = 2;
   struct sph_system *two = case_system(c.particles, 2, c.physics, &c.parameters);
   case_steps(one, 60);
   case_steps(two, 60);
@@ -194,7 +196,7 @@ static void renumbered(void **state) {
     q->vz[i] = p->vz[k];
   }
   const struct sph_body_physics solid = {.material = case_basalt, .strength = true};
-  const struct sph_parameters parameters = sph_parameters_default();
+  const struct case_parameters parameters = case_parameters_default();
   struct sph_system *a = case_system(p, 1, &solid, &parameters), *b = case_system(q, 1, &solid, &parameters);
   case_steps(a, 50);
   case_steps(b, 50);

@@ -37,9 +37,9 @@ static void clamps(void **state) {
     p->vx[i] = 300 * sin(6000 * p->y[i]);
   }
   const struct sph_body_physics fluid = {.material = case_basalt};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.viscosity_alpha = parameters.viscosity_beta = 0; /* no heating: it would hide the clamp */
-  parameters.cfl = 0.03;                                      /* the integrator's own error small beside it */
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0; /* no heating: it would hide the clamp */
+  parameters.in.fidelity.cfl = 0.03;                                /* the integrator's own error small beside it */
   struct sph_system *s = case_system(p, 1, &fluid, &parameters);
   const double first = case_total(sph_system_ledger(s));
   case_steps(s, 300);
@@ -62,8 +62,8 @@ static void thin(void **state) {
   for (size_t i = 0; i < p->n; i++)
     p->energy[i] = 5e7; /* vapour */
   const struct sph_body_physics fluid = {.material = case_basalt};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.density_lowest = 0.5;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.domain.lowest_density = 0.5;
   struct sph_system *s = case_system(p, 1, &fluid, &parameters);
   case_steps(s, 150);
   assert_true(sph_system_ledger(s).density_held > 0);
@@ -84,9 +84,9 @@ static void not_thinner_than_alone(void **state) {
                                           .elastic_pressure = 1e6,
                                           .solid_pressure = 1e8,
                                           .sound_speed = NAN};
-  const struct sph_parameters parameters = sph_parameters_default();
-  const double alone = 1 / (M_PI * pow(parameters.h_highest * SPH_BODIES_H, 3)); /* of the density at rest */
-  assert_true(parameters.density_lowest > 0.8 * alone && parameters.density_lowest < 2 * alone);
+  const struct case_parameters parameters = case_parameters_default();
+  const double alone = 1 / (M_PI * pow(SPH_HIGHEST_H * SPH_BODIES_H, 3)); /* of the density at rest */
+  assert_true(parameters.domain.lowest_density > 0.8 * alone && parameters.domain.lowest_density < 2 * alone);
   const struct case_block block = {{6, 6, 6}, {0, 0, 0}, {0, 0, 0}, spacing};
   struct sph_particles *p = case_make(&block, 1, 2700.0 / 50, 1.21, SPH_WITH_DISTENTION);
   for (size_t i = 0; i < p->n; i++)
@@ -134,35 +134,43 @@ static void refused(void **state) {
   struct error error;
   struct sph_body_physics lacking[2] = {c.physics[0], c.physics[1]};
   lacking[1].material.shear_modulus = NAN;
-  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "body 1: shear_modulus"));
   assert_null(s);
   lacking[1] = c.physics[1];
   lacking[0].material.tillotson.E0 = NAN;
-  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "body 0: tillotson.E0"));
   lacking[0] = c.physics[0];
   lacking[0].strength = false;
-  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(c.particles, 2, lacking, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "flaws but no strength"));
   c.particles->density[40] = NAN;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "particle 40"));
   c.particles->density[40] = 2700;
-  c.parameters.cfl = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  c.parameters.in.fidelity.cfl = 0;
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "cfl"));
-  c.parameters.cfl = 0.3;
-  c.parameters.periodic[1] = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  c.parameters.in.fidelity.cfl = 0.3;
+  c.parameters.domain.periodic[1] = 0;
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "along y"));
-  c.parameters.periodic[1] = NAN;
-  c.parameters.threads = 0;
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  c.parameters.domain.periodic[1] = NAN;
+  c.parameters.in.fidelity.threads = 0;
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "threads"));
-  c.parameters.threads = 1;
+  c.parameters.in.fidelity.threads = 1;
   c.particles->body[3] = 1; /* then body 0 again: out of order */
-  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters, &s, &error), STATUS_CONTENT);
+  assert_int_equal(sph_system_create(c.particles, 2, c.physics, &c.parameters.in, &c.parameters.domain, &s, &error),
+                   STATUS_CONTENT);
   assert_non_null(strstr(error.message, "out of order"));
   let_go(&c);
 }

@@ -101,7 +101,7 @@ static void extremes(void **state) {
                energies[SIDE] = {-1e12, -1, -0.0, 0, 1e-300, 1, 2.45e9, 1e12};
   static const char *const classes[] = {"baseline", "v3", "v4"};
   const struct case_block block = {.count = {SIDE, SIDE, 1}, .spacing = 1e-3};
-  const struct sph_parameters parameters = sph_parameters_default();
+  const struct case_parameters parameters = case_parameters_default();
   for (int k = 0; k < MATERIALS; k++) {
     const struct sph_tillotson *t = &materials[k].t;
     double rho0 = materials[k].density;

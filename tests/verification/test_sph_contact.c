@@ -29,7 +29,7 @@ static void nylon_on_basalt(void **state) {
     const bool cubic = form < 4;
     struct solid_case c = solid_make(2);
     c.physics[0].material = target, c.physics[1].material = projectile;
-    c.parameters.gradient_correction = form & 1, c.parameters.volume_weights = form & 2;
+    c.parameters.in.method.gradient_correction = form & 1, c.parameters.in.method.volume_weights = form & 2;
     solid_bar(&c, cubic ? SPH_LATTICE_CUBIC : SPH_LATTICE_HEXAGONAL, 0, length, spacing, false);
     c.body[1].shape = c.body[0].shape, c.body[1].lattice = c.body[0].lattice;
     c.body[1].shape.side[0] = thickness, c.body[1].shape.centre[0] = length + thickness / 2;

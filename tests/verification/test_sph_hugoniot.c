@@ -47,7 +47,7 @@ static struct shock drive(const struct sph_material *m, double up, double spacin
   const double spacing = 1e-4, half = spacings * spacing, width = 1.5 * spacing;
   struct solid_case c = solid_make(1);
   c.physics[0].material = *m;
-  c.parameters.gradient_correction = correction;
+  c.parameters.in.method.gradient_correction = correction;
   solid_bar(&c, lattice, 0, piston ? half : 2 * half, spacing, false);
   solid_build(&c, piston ? SPH_WITH_HELD : 0);
   struct sph_particles *p = c.particles;
@@ -211,7 +211,7 @@ static void ramp(bool correction) {
   m->yield_stress = 3.5e7;
   m->melt_energy = (double)NAN;
   c.physics[0].strength = true;
-  c.parameters.gradient_correction = correction;
+  c.parameters.in.method.gradient_correction = correction;
   solid_bar(&c, SPH_LATTICE_HEXAGONAL, 0, length, spacing, false);
   solid_build(&c, SPH_WITH_STRESS | SPH_WITH_HELD);
   struct sph_particles *p = c.particles;

@@ -31,10 +31,10 @@ static double vibrate(double dt, double viscosity, double *out, size_t n) {
     p->vy[i] = 15 * cos(500 * p->z[i]);
   }
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.viscosity_alpha = viscosity;
-  parameters.viscosity_beta = 2 * viscosity;
-  parameters.largest_time_step = dt;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.viscosity.alpha = viscosity;
+  parameters.in.viscosity.beta = 2 * viscosity;
+  parameters.domain.largest_time_step = dt;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   case_run(s, 1.28e-6);
   const struct sph_ledger l = sph_system_ledger(s);
@@ -86,9 +86,9 @@ static double turned(bool correction, double steps, bool whole_body) {
       p->stress[k][i] = first[k];
   }
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.gradient_correction = correction;
-  parameters.largest_time_step = M_PI / 2 / w / steps;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.method.gradient_correction = correction;
+  parameters.domain.largest_time_step = M_PI / 2 / w / steps;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   /* about the axis (1, 1, 1)/sqrt(3): Rodrigues */
   const double n = 1 / sqrt(3.0);
@@ -187,10 +187,10 @@ static void yield_ramp(void **state) {
   m.yield_stress = 2e6;
   m.tillotson.B = 0;
   const struct sph_body_physics solid = {.material = m, .strength = true};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.gradient_correction = true;
-  parameters.viscosity_alpha = parameters.viscosity_beta = 0;
-  parameters.largest_time_step = 2e-9;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.method.gradient_correction = true;
+  parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
+  parameters.domain.largest_time_step = 2e-9;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   const double K = m.tillotson.A, mu = m.shear_modulus, Y = m.yield_stress, limit = Y / (2 * mu); /* strain at yield */
   const double at[4] = {0.2 * limit, 0.8 * limit, 1.5 * limit, 2.2 * limit};
@@ -236,9 +236,9 @@ static void shear(void **state) {
   (void)state;
   struct sph_particles *p = strained(6, 0, 0, 0, 200);
   const struct sph_body_physics solid = {.material = elastic_basalt(), .strength = true};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.gradient_correction = true;
-  parameters.viscosity_alpha = parameters.viscosity_beta = 0;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.method.gradient_correction = true;
+  parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   case_run(s, 1e-5);
   sph_system_read(s, p);
@@ -273,13 +273,13 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
   struct sph_flaws *flaws = case_flaws(p->n, volume, 3, 0);
   struct sph_material m = elastic_basalt();
   const struct sph_body_physics solid = {.material = m, .strength = true, .flaws = flaws};
-  struct sph_parameters parameters = sph_parameters_default();
-  parameters.gradient_correction = true;
-  parameters.growth = growth;
-  parameters.cap = cap;
-  parameters.compact_flaws = compact;
-  parameters.damage_step = damage_step;
-  parameters.largest_time_step = 5e-9;
+  struct case_parameters parameters = case_parameters_default();
+  parameters.in.method.gradient_correction = true;
+  parameters.in.fracture.growth = growth;
+  parameters.in.fracture.cap = cap;
+  parameters.in.fidelity.flaws = compact;
+  parameters.in.fidelity.damage_step = damage_step;
+  parameters.domain.largest_time_step = 5e-9;
   struct sph_system *s = case_system(p, 1, &solid, &parameters);
   const double K = m.tillotson.A, mu = m.shear_modulus, young = 9 * K * mu / (3 * K + mu);
   const double speed = 0.4 * sqrt((K + 4 * mu / 3) / 2700), radius = spacing * cbrt(3 / (4 * M_PI));
@@ -363,9 +363,9 @@ static void damaged_stress(void **state) {
       struct sph_material m = elastic_basalt();
       m.tillotson.B = 0;
       const struct sph_body_physics solid = {.material = m, .strength = true, .flaws = flaws};
-      struct sph_parameters parameters = sph_parameters_default();
-      parameters.gradient_correction = true;
-      parameters.viscosity_alpha = parameters.viscosity_beta = 0;
+      struct case_parameters parameters = case_parameters_default();
+      parameters.in.method.gradient_correction = true;
+      parameters.in.viscosity.alpha = parameters.in.viscosity.beta = 0;
       struct sph_system *s = case_system(p, 1, &solid, &parameters);
       case_run(s, 1e-6);
       sph_system_read(s, p);
@@ -424,7 +424,7 @@ static void pressures(void **state) {
     if (limited)
       m.tension_limit = 1e9;
     const struct sph_body_physics fluid = {.material = m};
-    const struct sph_parameters parameters = sph_parameters_default();
+    const struct case_parameters parameters = case_parameters_default();
     struct sph_system *s = case_system(p, 1, &fluid, &parameters);
     for (size_t i = 0; i < s->n; i++) {
       const struct sph_pressure plain = sph_tillotson(&m.tillotson, 2700, s->c.density[i], s->c.energy[i]);
@@ -451,7 +451,7 @@ static void torn_matter_bears_no_shear(void **state) {
     if (kind < 2)
       m.tension_limit = 1e9;
     const struct sph_body_physics body = {.material = m, .strength = true, .flaws = kind == 1 ? flaws : NULL};
-    const struct sph_parameters parameters = sph_parameters_default();
+    const struct case_parameters parameters = case_parameters_default();
     struct sph_system *s = case_system(p, 1, &body, &parameters);
     for (size_t i = 0; i < s->n; i++) {
       s->c.density[i] = 2700 * (0.8 + 0.4 * (double)i / (double)s->n);
@@ -485,8 +485,8 @@ static void elastic_pair(void **state) {
     struct sph_particles *p = case_make(blocks, 2, 2700, 1.21, strength ? SPH_WITH_STRESS : 0);
     const struct sph_body_physics body = {.material = elastic_basalt(), .strength = strength};
     const struct sph_body_physics physics[2] = {body, body};
-    struct sph_parameters parameters = sph_parameters_default();
-    parameters.gradient_correction = correction;
+    struct case_parameters parameters = case_parameters_default();
+    parameters.in.method.gradient_correction = correction;
     struct sph_system *s = case_system(p, 2, physics, &parameters);
     const struct sph_ledger first = sph_system_ledger(s);
     case_run(s, 12e-6);

@@ -26,7 +26,7 @@ static struct rings collide(double epsilon, double across, bool correction) {
   const double cm = 0.01, spacing = cm / across, sound = 100, speed = 0.059 * sound;
   struct solid_case c = solid_make(2);
   const double height = sph_lattice_period(SPH_LATTICE_HEXAGONAL, spacing, 2,
-                                           5.5 * SPH_BODIES_H * spacing * (1 + c.parameters.skin));
+                                           5.5 * SPH_BODIES_H * spacing * (1 + c.parameters.in.fidelity.skin));
   for (int b = 0; b < 2; b++) {
     c.physics[b].material = (struct sph_material){
         .density = 1000,
@@ -45,11 +45,11 @@ static struct rings collide(double epsilon, double across, bool correction) {
     c.body[b].lattice.spacing = spacing;
     c.body[b].lattice.periodic[2] = true;
   }
-  c.parameters.periodic[2] = height;
-  c.parameters.artificial_stress = epsilon;
-  c.parameters.gradient_correction = correction;
-  c.parameters.viscosity_alpha = 1; /* as in the paper */
-  c.parameters.viscosity_beta = 2;
+  c.parameters.domain.periodic[2] = height;
+  c.parameters.in.method.artificial_stress = epsilon;
+  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.viscosity.alpha = 1; /* as in the paper */
+  c.parameters.in.viscosity.beta = 2;
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const double towards[2][3] = {{speed, 0, 0}, {-speed, 0, 0}};

@@ -69,9 +69,9 @@ static struct front run_crack(double particles, bool correction, int growth, boo
     if (hypot(p->x[i], p->y[i]) < 3e-3 && fabs(p->z[i]) < spacing)
       p->damage_cbrt[i] = 1;
   }
-  c.parameters.gradient_correction = correction;
-  c.parameters.growth = growth;
-  c.parameters.crack_radius_support = support;
+  c.parameters.in.method.gradient_correction = correction;
+  c.parameters.in.fracture.growth = growth;
+  c.parameters.in.fracture.crack_radius = support;
   struct sph_flaws *flaws = one_flaw_each(p, ratio * strain);
   c.physics[0].flaws = flaws;
   solid_start(&c);

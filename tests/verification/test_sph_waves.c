@@ -35,7 +35,7 @@ static struct wave plane_wave(int lattice, enum polarisation kind, int along, do
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.gradient_correction = correction;
+  c.parameters.in.method.gradient_correction = correction;
   solid_bar(&c, lattice, along, length, spacing, true);
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
@@ -155,7 +155,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
   struct solid_case c = solid_make(1);
   c.physics[0].material = solid_basalt();
   c.physics[0].strength = true;
-  c.parameters.gradient_correction = correction;
+  c.parameters.in.method.gradient_correction = correction;
   struct sph_body *b = &c.body[0];
   b->shape = (struct sph_shape){.kind = SPH_SHAPE_CYLINDER,
                                 .centre = {0, 0, length / 2},
@@ -164,7 +164,7 @@ static struct wave rod_wave(double radius_over_h, bool correction) {
                                 .axis = {0, 0, 1}};
   b->lattice.spacing = radius / radius_over_h / SPH_BODIES_H;
   b->lattice.periodic[2] = true;
-  c.parameters.periodic[2] = length;
+  c.parameters.domain.periodic[2] = length;
   solid_build(&c, SPH_WITH_STRESS);
   struct sph_particles *p = c.particles;
   const struct sph_material *m = &c.physics[0].material;

@@ -30,8 +30,8 @@ double sph_fracture_limit(size_t active, size_t total, int cap) {
                                 : 1;
 }
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
-  (void)parameters;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
   return body->flaws != NULL;
 }
 

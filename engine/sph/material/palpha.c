@@ -298,8 +298,8 @@ struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, doub
 
 /* 4. As a module of the moving solid */
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
-  (void)parameters;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
   return body->porosity != NULL;
 }
 

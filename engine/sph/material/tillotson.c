@@ -59,8 +59,8 @@ struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double rho0, do
   return (struct sph_pressure){r.p, r.by_rho, r.by_u, sqrt(c2 > floor2 ? c2 : floor2)};
 }
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
-  (void)parameters;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
   return !body->porosity;
 }
 

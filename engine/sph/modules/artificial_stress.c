@@ -9,9 +9,9 @@
 
 #include <math.h>
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
-  (void)body, (void)p;
-  return p->artificial_stress > 0;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
+  return inputs->method.artificial_stress > 0;
 }
 
 const struct sph_module sph_artificial_stress_module = {

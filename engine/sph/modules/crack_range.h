@@ -59,8 +59,8 @@ RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body,
     const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young, bracket);
     s->c.open_from[i] = bracket[0] * body->young;
     s->c.open_below[i] = bracket[1] * body->young;
-    s->c.open_rate[i] = open ? sph_fracture_rate(open, s->p.growth) * s->c.crack_rate[i] : 0;
-    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->p.cap) : 0;
+    s->c.open_rate[i] = open ? sph_fracture_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
+    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->in.fracture.cap) : 0;
   }
   s->c.damage_rate[i] = crack_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
   if (s->c.damage[i] >= 1)

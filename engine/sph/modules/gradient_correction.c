@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
-  (void)body, (void)p;
-  return p->gradient_correction;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
+  return inputs->method.gradient_correction;
 }
 
 const struct sph_module sph_gradient_correction_module = {

@@ -23,7 +23,7 @@ struct sph_module {
   const char *doc;    /* what it models, for a person */
   const char *source; /* paper and equation */
   const char *when;   /* the condition that turns it on, for a person */
-  bool (*on)(const struct sph_body_physics *body, const struct sph_parameters *parameters);
+  bool (*on)(const struct sph_body_physics *body, const struct sph_inputs *inputs);
   int bytes;               /* it adds per particle, to the moving system */
   size_t hook[SPH_STAGES]; /* offset of its loop in struct sph_ranges (ranges.h); 0 = none */
 };

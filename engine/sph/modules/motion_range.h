@@ -55,7 +55,7 @@ RANGE_HOOK void motion_predict(struct sph_system *s, const struct sph_solid *bod
   }
   double *density = s->c.density, *energy = s->c.energy, *h = s->c.h;
   const double *density_rate = s->c.density_rate, *energy_rate = s->c.energy_rate;
-  const double *h0 = s->c.h_initial, h_low = s->p.h_lowest, h_high = s->p.h_highest;
+  const double *h0 = s->c.h_initial, h_low = SPH_LOWEST_H, h_high = s->highest_h;
   RANGE_LOOP
   for (size_t m = 0; m < n; m++) {
     const size_t i = low + m;
@@ -165,9 +165,9 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const double *energy_rate = s->c.energy_rate, *energy = s->c.energy, *h0 = s->c.h_initial;
   const double *x = s->c.x, *y = s->c.y, *z = s->c.z, *vx = s->c.vx, *vy = s->c.vy, *vz = s->c.vz;
   double *density = s->c.density, *density_rate = s->c.density_rate, *h = s->c.h;
-  const double h_low = s->p.h_lowest, h_high = s->p.h_highest;
+  const double h_low = SPH_LOWEST_H, h_high = s->highest_h;
   const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
-  const double alpha = 0.6 * s->p.viscosity_alpha, beta = 0.6 * s->p.viscosity_beta, step = 2 * s->p.cfl;
+  const double alpha = 0.6 * s->in.viscosity.alpha, beta = 0.6 * s->in.viscosity.beta, step = 2 * s->in.fidelity.cfl;
   double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK], growth[SPH_BLOCK];
   int64_t lost = 0;
   RANGE_LOOP
@@ -200,13 +200,13 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   }
   motion_clamp(s, body, b);
   b->slack -= range_largest(growth, n);
-  b->worst[SPH_LIMIT_COURANT] = range_larger(range_largest(courant, n) / s->p.cfl,
+  b->worst[SPH_LIMIT_COURANT] = range_larger(range_largest(courant, n) / s->in.fidelity.cfl,
                                              b->worst[SPH_LIMIT_COURANT]); /* motion_hold's */
-  b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->p.cfl;
+  b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->in.fidelity.cfl;
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
   if (fracture && s->c.damage_rate)
-    b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->p.damage_step;
+    b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->in.fidelity.damage_step;
   if (!lost)
     return;
   for (size_t k = n; k-- > 0;) { /* the first of them, by place */

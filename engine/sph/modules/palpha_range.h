@@ -151,7 +151,7 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
   const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8];
   const double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor, *density = s->c.density;
   const double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed, *h = s->c.h;
-  const double edge = body->porosity.given.elastic_pressure, cfl = s->p.cfl;
+  const double edge = body->porosity.given.elastic_pressure, cfl = s->in.fidelity.cfl;
   double inverse[SPH_BLOCK];
   const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
@@ -162,7 +162,7 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
     const double share = squeeze > 0 && soon > edge && rest[i] > 1 ? 1 : 1 - f[i];
     inverse[k] = share * alpha[i] * fabs(squeeze);
   }
-  b->worst[SPH_LIMIT_DISTENTION] = range_largest(inverse, n) / (0.75 * s->p.distention_step);
+  b->worst[SPH_LIMIT_DISTENTION] = range_largest(inverse, n) / (0.75 * s->in.fidelity.distention_step);
 }
 
 #endif

@@ -2,9 +2,9 @@
 
 #include <math.h>
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
-  (void)body, (void)p;
-  return p->viscosity_alpha > 0 || p->viscosity_beta > 0;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
+  return inputs->viscosity.alpha > 0 || inputs->viscosity.beta > 0;
 }
 
 const struct sph_module sph_viscosity_module = {

@@ -123,8 +123,8 @@ uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double 
   return (w->strain ? active_exact : active_compact)(w, i, strain, bracket);
 }
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *parameters) {
-  (void)parameters;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)inputs;
   return body->flaws != NULL;
 }
 

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-static bool on(const struct sph_body_physics *body, const struct sph_parameters *p) {
-  (void)body, (void)p;
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  (void)body, (void)inputs;
   return body->strength && isfinite(body->material.yield_stress);
 }
 

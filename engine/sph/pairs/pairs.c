@@ -63,7 +63,7 @@ struct sph_pairs {
 };
 
 static size_t threads_of(const struct sph_pairs *p) {
-  return p->options.threads > 1 ? (size_t)p->options.threads : 1;
+  return p->options.fidelity.threads > 1 ? (size_t)p->options.fidelity.threads : 1;
 }
 
 /* So many chunks later than summed a chunk's sums are handed over. One thread does it at once, while they are in its
@@ -89,7 +89,7 @@ static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
 
 status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct sph_pairs **out, struct error *error) {
   *out = NULL;
-  if (options->precision == SPH_FLOAT && n > SPH_NUMBER)
+  if (options->fidelity.precision == SPH_FLOAT && n > SPH_NUMBER)
     return status_fail(error, STATUS_CONTENT, "float precision takes %d particles at most, not %zu: use double",
                        SPH_NUMBER, n);
   struct sph_pairs *p = calloc(1, sizeof *p);
@@ -98,10 +98,10 @@ status sph_pairs_create(size_t n, const struct sph_pair_options *options, struct
     p->units = (struct units){1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     p->n = n;
     p->kernels = sph_pairs_kernels_choose();
-    p->single = options->precision == SPH_FLOAT;
+    p->single = options->fidelity.precision == SPH_FLOAT;
     p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
-    p->artificial = options->artificial_stress > 0 && options->strength;
-    const bool corrected = options->gradient_correction;
+    p->artificial = options->method.artificial_stress > 0 && options->strength;
+    const bool corrected = options->method.gradient_correction;
     const size_t middle = p->single ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
     p->in_columns = p->artificial && corrected ? PAIR_WIDE : p->artificial || corrected ? middle : PAIR_NARROW;
     p->out_columns = corrected ? middle : PAIR_NARROW;
@@ -179,7 +179,7 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
 #pragma omp parallel for schedule(static) reduction(min                                                                \
                                                     : least) reduction(max                                             \
                                                                        : widest)                                       \
-    num_threads(p->options.threads) if (p->options.threads > 1)
+    num_threads((int)p->options.fidelity.threads) if (p->options.fidelity.threads > 1)
 #endif
   for (size_t i = 0; i < p->n; i++) {
     p->reach[i] = at[3][i] + at[4][i];
@@ -193,7 +193,7 @@ status sph_pairs_relist(struct sph_pairs *p, struct error *error) {
   for (int d = 0; d < 3; d++) /* a periodic axis is 2^32 quanta round, so that integers wrap where it does */
     p->quantum[d] = isnan(p->options.periodic[d]) ? p->grain : p->options.periodic[d] * 0x1p-32;
   const status code = sph_chunks_list(&p->lists, p->n, at[0], at[1], at[2], p->reach, p->options.periodic,
-                                      p->options.threads, error);
+                                      (int)p->options.fidelity.threads, error);
   if (code)
     return code;
   if (!grow(&p->foreign, &p->foreign_capacity, p->lists.halos, p->out_columns * p->records->bytes) ||
@@ -245,14 +245,14 @@ static struct sph_pair_source source_of(const struct sph_pairs *p, const struct 
                                         u->per_mass},
                               .pressure = f->pressure_term,
                               .stress_factor = f->stress_factor,
-                              .volume_weights = p->options.volume_weights};
+                              .volume_weights = p->options.method.volume_weights};
   s.column[PAIR_SOUND] = f->sound_speed, s.scale[PAIR_SOUND] = u->per_velocity;
   s.column[PAIR_DENSITY] = f->density, s.scale[PAIR_DENSITY] = u->per_density;
   for (int k = 0; k < 6; k++) {
     s.column[PAIR_XX + k] = p->options.strength && k < 5 ? f->stress[k] : NULL;
     s.column[PAIR_ARTIFICIAL + k] = p->opposed[k];
     s.scale[PAIR_XX + k] = s.scale[PAIR_ARTIFICIAL + k] = u->per_specific;
-    s.correction[k] = p->options.gradient_correction ? f->correction[k] : NULL;
+    s.correction[k] = p->options.method.gradient_correction ? f->correction[k] : NULL;
   }
   for (int d = 0; d < 3; d++)
     s.per_quantum[d] = 1 / p->quantum[d];
@@ -288,7 +288,7 @@ static double sum_chunk(struct sph_pairs *p, const struct sph_chunk *c, const st
                                       .start = c->lists.start,
                                       .count = c->lists.count,
                                       .neighbour = c->lists.j};
-  const bool corrected = p->options.gradient_correction;
+  const bool corrected = p->options.method.gradient_correction;
   const unsigned mode = flush_tiny();
   const size_t size = p->out_columns * records->bytes;
   memset(out, 0, view.slots * size);
@@ -315,7 +315,7 @@ static void *sums_of_chunk(const struct sph_pairs *p, size_t k) {
 /* What the own particles of chunk k got as foreign ones of all chunks before it. */
 INLINE void add_foreign(const struct sph_pairs *p, size_t k, const bool whole) {
   const struct sph_chunk *c = &p->lists.chunk[k];
-  const size_t columns = p->options.gradient_correction ? SUM_COLUMNS : PAIR_NARROW,
+  const size_t columns = p->options.method.gradient_correction ? SUM_COLUMNS : PAIR_NARROW,
                size = p->out_columns * p->records->bytes;
   char *own = sums_of_chunk(p, k);
   for (size_t q = 0; q < c->stretches; q++) {
@@ -347,7 +347,7 @@ static struct sph_pair_sums sums_in(const struct sph_pairs *p, double *room) {
                             .signal = room + 13 * STRIDE};
   for (size_t k = 0; k < 9; k++)
     s.gradient[k] = room + (SUM_GRADIENT + k) * STRIDE;
-  if (!p->options.gradient_correction)
+  if (!p->options.method.gradient_correction)
     return s;
   s.power = room + 14 * STRIDE;
   for (size_t k = 0; k < 6; k++)
@@ -362,12 +362,12 @@ static struct sph_pair_sink sink_of(const struct sph_pairs *p, const struct sph_
                             .scale = {acceleration, acceleration, acceleration},
                             .mass_unit = u->mass,
                             .density_unit = u->density,
-                            .volume_weights = p->options.volume_weights};
+                            .volume_weights = p->options.method.volume_weights};
   for (int k = 0; k < 9; k++)
     s.column[SUM_GRADIENT + k] = sums->gradient[k], s.scale[SUM_GRADIENT + k] = u->velocity / u->length;
   s.column[SUM_HEATING] = sums->heating, s.scale[SUM_HEATING] = -0.5 * acceleration * u->velocity;
   s.column[SUM_SIGNAL] = sums->signal, s.scale[SUM_SIGNAL] = u->velocity;
-  for (int k = 0; k < 6 && p->options.gradient_correction; k++)
+  for (int k = 0; k < 6 && p->options.method.gradient_correction; k++)
     s.column[SUM_MOMENT + k] = sums->correction[k], s.scale[SUM_MOMENT + k] = p->single ? -p->grain / u->length : -1;
   return s;
 }
@@ -415,7 +415,7 @@ static void hand_over(const struct pass *w, size_t k, double *room) {
       p->single ? add_foreign(p, k, false) : add_foreign(p, k, true);
     sink.density = f->density + first, sink.mass = f->mass + first;
     p->records->unpack(&sink, 0, count, p->out_columns, records + done * size);
-    if (p->options.gradient_correction)
+    if (p->options.method.gradient_correction)
       correct(p, first, count, f, &sums);
     restore_tiny(mode);
     w->take(w->context, first, count, &sums);
@@ -465,13 +465,13 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     choose_units(p, n, f);
   struct pass w = {.pairs = p, .fields = f, .take = take, .context = context};
   struct sph_pair_constants *constants = &w.constants;
-  *constants = (struct sph_pair_constants){.alpha = o->viscosity_alpha,
-                                           .twice_beta = 2 * o->viscosity_beta,
+  *constants = (struct sph_pair_constants){.alpha = o->viscosity.alpha,
+                                           .twice_beta = 2 * o->viscosity.beta,
                                            .spline_at_spacing = sph_spline(o->spacing_over_h, 1) / SPH_SPLINE_NORM,
                                            .norm = SPH_SPLINE_NORM *
                                                    (p->single ? pow(p->units.length / p->grain, 4) : 1),
                                            .strength = o->strength,
-                                           .volume_weights = o->volume_weights};
+                                           .volume_weights = o->method.volume_weights};
   for (int d = 0; d < 3; d++) {
     constants->periodic[d] = o->periodic[d];
     constants->per_period[d] = 1 / o->periodic[d];
@@ -479,19 +479,19 @@ void sph_pairs_sum(struct sph_pairs *p, size_t n, const struct sph_pair_fields *
     constants->wrapped |= !isnan(o->periodic[d]);
   }
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(o->threads) if (o->threads > 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads((int)o->fidelity.threads) if (o->fidelity.threads > 1)
 #endif
   for (size_t k = 0; k < p->lists.count; k++) {
     struct sph_chunk *c = &p->lists.chunk[k];
     atomic_init(&c->summed, false);
     atomic_init(&c->delivered, false);
     if (p->artificial)
-      p->kernels->oppose(o->artificial_stress, f->stress, f->stress_factor, f->pressure_term, c->first,
+      p->kernels->oppose(o->method.artificial_stress, f->stress, f->stress_factor, f->pressure_term, c->first,
                          c->first + c->own, p->opposed);
   }
   w.source = source_of(p, f);
 #ifdef _OPENMP
-#pragma omp parallel num_threads(o->threads) if (o->threads > 1)
+#pragma omp parallel num_threads((int)o->fidelity.threads) if (o->fidelity.threads > 1)
   take_turns(&w, (size_t)omp_get_thread_num());
 #else
   take_turns(&w, 0);

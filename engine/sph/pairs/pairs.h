@@ -23,22 +23,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "engine/sph/scene/inputs.h"
 #include "schemas/status.h"
 
 /* float: what the pair loop reads and sums. All else stays double; positions are read as integers in units of h/2^20,
  * so that a scene of kilometres is as accurate as a small one. */
 enum sph_precision { SPH_DOUBLE, SPH_FLOAT };
 
+/* Sections of the inputs, and what follows from the bodies. */
 struct sph_pair_options {
-  double viscosity_alpha, viscosity_beta;
-  bool strength; /* stress[] is given; else the pressure alone */
-  bool gradient_correction;
-  double artificial_stress; /* Monaghan 2000, epsilon of R; 0: absent (not computed) */
-  double spacing_over_h;    /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
-  bool volume_weights;      /* m_j/rho_j instead of m_j/rho_i in the velocity gradient */
-  double periodic[3];       /* m, length of the periodic box along each axis; NaN = open */
-  int precision;            /* enum sph_precision */
-  int threads;              /* OpenMP; the bits do not depend on it */
+  struct sph_viscosity viscosity;
+  struct sph_method method;
+  struct sph_fidelity fidelity; /* precision, and threads, on which the bits do not depend */
+  bool strength;                /* stress[] is given; else the pressure alone */
+  double spacing_over_h;        /* initial particle spacing over h: the f = W(r)/W(spacing) of the artificial stress */
+  double periodic[3];           /* m, length of the periodic box along each axis; NaN = open */
 };
 
 /* Arrays of n in sorted order; read only. */

@@ -56,10 +56,10 @@ static status make_system(struct sph_run *run, struct error *error) {
     if (field_is_off(body->material.yield_stress))
       physics[b].material.yield_stress = HUGE_VAL; /* never yields */
   }
-  struct sph_parameters parameters = sph_describe_parameters(in);
-  parameters.spacing_over_h = run->range[0].nearest / run->range[0].h;
-  memcpy(parameters.periodic, run->periodic, sizeof parameters.periodic);
-  return sph_system_create(run->start, (size_t)run->body_count, physics, &parameters, &run->system, error);
+  struct sph_domain domain = SPH_DOMAIN_OPEN;
+  domain.spacing_over_h = run->range[0].nearest / run->range[0].h;
+  memcpy(domain.periodic, run->periodic, sizeof domain.periodic);
+  return sph_system_create(run->start, (size_t)run->body_count, physics, in, &domain, &run->system, error);
 }
 
 static status check_memory(const struct sph_inputs *in, struct error *error) {

@@ -77,8 +77,6 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error);
 char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
 double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, near enough */
-struct sph_parameters
-sph_describe_parameters(const struct sph_inputs *inputs); /* fidelity and options; not `periodic` */
 
 /* restart.c */
 status sph_restart_save(struct sph_run *run, const char *path, struct error *error);

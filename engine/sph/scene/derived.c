@@ -7,30 +7,8 @@
 
 enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
 
-double sph_derived_bulk_modulus(const struct sph_material *m) {
-  return m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A;
-}
-
-double sph_derived_young_modulus(const struct sph_material *m) {
-  double K = sph_derived_bulk_modulus(m);
-  return 9 * K * m->shear_modulus / (3 * K + m->shear_modulus);
-}
-
-double sph_derived_poisson_ratio(const struct sph_material *m) {
-  double K = sph_derived_bulk_modulus(m);
-  return (3 * K - 2 * m->shear_modulus) / (2 * (3 * K + m->shear_modulus));
-}
-
-double sph_derived_wave_speed(const struct sph_body_inputs *b) { /* pressure answers with A, whatever K says */
-  const struct sph_material *m = &b->material;
-  double bulk2 = m->tillotson.A / m->density, shear2 = b->strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
-  if (sph_derived_porous(b) && !field_is_off(m->porosity.sound_speed))
-    bulk2 = m->porosity.sound_speed * m->porosity.sound_speed;
-  return sqrt(bulk2 + shear2);
-}
-
-double sph_derived_crack_speed(const struct sph_material *m) {
-  return 0.4 * sqrt((sph_derived_bulk_modulus(m) + 4.0 / 3 * m->shear_modulus) / m->density);
+double sph_derived_wave_speed(const struct sph_body_inputs *b) {
+  return sph_derived_longitudinal_speed(&b->material, b->strength, sph_derived_porous(b));
 }
 
 bool sph_derived_cracks(const struct sph_body_inputs *b) {
@@ -45,7 +23,7 @@ bool sph_derived_porous(const struct sph_body_inputs *b) {
 }
 
 double sph_derived_density(const struct sph_body_inputs *b) {
-  return sph_derived_porous(b) ? b->material.density / b->material.porosity.distention : b->material.density;
+  return sph_derived_bulk_density(&b->material, sph_derived_porous(b) ? &b->material.porosity : NULL);
 }
 
 bool sph_derived_has_projectile(const struct sph_inputs *in) {

@@ -3,6 +3,7 @@
 #define CLAST_ENGINE_SPH_SCENE_DERIVED_H
 
 #include "engine/sph/body/shape.h"
+#include "engine/sph/material/derived.h"
 #include "engine/sph/scene/inputs.h"
 
 bool sph_derived_has_projectile(const struct sph_inputs *inputs);
@@ -13,12 +14,8 @@ bool sph_derived_has_intruder(const struct sph_inputs *inputs);
 bool sph_derived_cracks(const struct sph_body_inputs *body);
 /* Has it pores? A crush curve and a distention above 1. */
 bool sph_derived_porous(const struct sph_body_inputs *body);
-double sph_derived_density(const struct sph_body_inputs *body);        /* kg/m^3, with the pores */
-double sph_derived_bulk_modulus(const struct sph_material *material);  /* Pa, K of Young's modulus */
-double sph_derived_young_modulus(const struct sph_material *material); /* Pa */
-double sph_derived_poisson_ratio(const struct sph_material *material);
-double sph_derived_wave_speed(const struct sph_body_inputs *body);   /* m/s, longitudinal */
-double sph_derived_crack_speed(const struct sph_material *material); /* m/s, c_g */
+double sph_derived_density(const struct sph_body_inputs *body);    /* kg/m^3, with the pores */
+double sph_derived_wave_speed(const struct sph_body_inputs *body); /* m/s, longitudinal */
 /* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);

@@ -26,26 +26,6 @@ enum {
 enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
 static const double euler = 0.57721566490153286;
 
-struct sph_parameters sph_describe_parameters(const struct sph_inputs *in) {
-  struct sph_parameters p = sph_parameters_default();
-  p.viscosity_alpha = in->viscosity.alpha;
-  p.viscosity_beta = in->viscosity.beta;
-  p.artificial_stress = in->method.artificial_stress;
-  p.gradient_correction = in->method.gradient_correction;
-  p.volume_weights = in->method.volume_weights;
-  p.cfl = in->fidelity.cfl;
-  p.damage_step = in->fidelity.damage_step;
-  p.growth = in->fracture.growth;
-  p.cap = in->fracture.cap;
-  p.crack_radius_support = in->fracture.crack_radius == 1;
-  p.compact_flaws = in->fidelity.flaws == 1;
-  p.distention_step = in->fidelity.distention_step;
-  p.skin = in->fidelity.skin;
-  p.precision = in->fidelity.precision;
-  p.threads = (int)in->fidelity.threads;
-  return p;
-}
-
 static double flaws_expected(double particles) {
   return particles * (log(fmax(particles, 1)) + euler);
 }
@@ -138,7 +118,6 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
 
 /* Who asks for a module: the bodies for which it is on. */
 static bool modules(const struct sph_inputs *in, FILE *out) {
-  struct sph_parameters parameters = sph_describe_parameters(in);
   struct sph_flaws some = {.particles = 1};
   int bytes = 0;
   for (size_t k = 0; k < sph_modules_count(); k++) {
@@ -151,7 +130,7 @@ static bool modules(const struct sph_inputs *in, FILE *out) {
                                          .strength = body->strength,
                                          .flaws = sph_derived_cracks(body) ? &some : NULL,
                                          .porosity = sph_derived_porous(body) ? &body->material.porosity : NULL};
-      if (module->on(&physics, &parameters))
+      if (module->on(&physics, in))
         on |= 1 << b;
     }
     if (on)

@@ -14,6 +14,10 @@ enum sph_kind {
 };
 enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
 enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
+/* R_s of a particle: the radius of the sphere of its volume, or 2h. */
+enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
+/* Every flaw of a particle, or the lowest, the highest and the number of them. */
+enum sph_flaw_lists { SPH_FLAWS_EXACT, SPH_FLAWS_COMPACT };
 
 struct sph_body_inputs {
   int shape;                           /* enum sph_shape_kind */
@@ -28,61 +32,78 @@ struct sph_body_inputs {
   struct sph_material material;
 };
 
+struct sph_sides {
+  int far;      /* 0 free, 1 damped */
+  double depth; /* m */
+};
+struct sph_impact {
+  int projectile;           /* enum sph_projectile_by */
+  double mass;              /* kg */
+  double specific_energy;   /* J/kg */
+  double speed, angle, gap; /* m/s, rad, m */
+};
+struct sph_stretch {
+  double rate, grip, flaw_free; /* 1/s, m, m */
+};
+struct sph_collision {
+  double speed, gap; /* m/s, m */
+};
+struct sph_fracture {
+  int draw;         /* enum sph_flaw_draw */
+  int growth, cap;  /* enum sph_fracture_growth, enum sph_fracture_cap */
+  int crack_radius; /* enum sph_crack_radius */
+};
+struct sph_viscosity {
+  double alpha, beta; /* 1 */
+};
+struct sph_method {
+  double artificial_stress; /* epsilon; 0: absent */
+  bool gradient_correction, volume_weights;
+};
+struct sph_fragment_rules {
+  double static_strength, damage, link_length; /* Pa, 1, 1 */
+  int link_h;                                  /* 0 initial, 1 current */
+  bool veneer;
+};
+struct sph_stop_rules {
+  double end_time, quiet_time, quiet_growth; /* s, s, 1 */
+};
+struct sph_fidelity {
+  int64_t particles, points;
+  double projectile_spacing; /* 1, over the target's */
+  bool graded;
+  double fine_spacing, fine_radius;                    /* m */
+  double smoothing, cfl, damage_step, distention_step; /* 1 */
+  double skin;                                         /* 1, over h */
+  int precision;                                       /* enum sph_precision */
+  int flaws;                                           /* enum sph_flaw_lists */
+  int64_t threads;
+  double energy_bound; /* 1; NaN = off */
+};
+
+/* Bodies and physics read these sections themselves: their names, defaults and ranges stand in inputs.c alone. */
 struct sph_inputs {
   int kind; /* enum sph_kind: the protocol */
   struct sph_body_inputs target, projectile;
+  struct sph_sides sides;
+  struct sph_impact impact;
+  struct sph_stretch stretch;
   struct {
-    int far;      /* 0 free, 1 damped */
-    double depth; /* m */
-  } sides;
-  struct {
-    int projectile; /* enum sph_projectile_by */
-    double mass, specific_energy;
-    double speed, angle, gap;
-  } impact;
-  struct {
-    double rate, grip, flaw_free;
-  } stretch;
-  struct {
-    double speed;
+    double speed; /* m/s */
   } vibration;
+  struct sph_collision collision;
   struct {
-    double speed, gap;
-  } collision;
-  struct {
-    double speed;
+    double speed; /* m/s */
   } piston;
+  struct sph_fracture fracture;
+  struct sph_viscosity viscosity;
+  struct sph_method method;
+  struct sph_fragment_rules fragments;
   struct {
-    int draw, growth, cap, crack_radius;
-  } fracture;
-  struct {
-    double alpha, beta;
-  } viscosity;
-  struct {
-    double artificial_stress;
-    bool gradient_correction, volume_weights;
-  } method;
-  struct {
-    double static_strength, damage, link_length;
-    int link_h; /* 0 initial, 1 current */
-    bool veneer;
-  } fragments;
-  struct {
-    double ejection_speed;
+    double ejection_speed; /* m/s */
   } crater;
-  struct {
-    double end_time, quiet_time, quiet_growth;
-  } stop;
-  struct {
-    int64_t particles, points;
-    double projectile_spacing;
-    bool graded;
-    double fine_spacing, fine_radius;
-    double smoothing, cfl, damage_step, distention_step, skin;
-    int precision, flaws;
-    int64_t threads;
-    double energy_bound; /* NaN = off */
-  } fidelity;
+  struct sph_stop_rules stop;
+  struct sph_fidelity fidelity;
 };
 
 extern const struct field_table sph_inputs;

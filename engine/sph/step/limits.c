@@ -11,8 +11,8 @@ double sph_limits_step(const struct sph_system *s, double until, int *limiter) {
       *limiter = k;
     }
   double dt = 1 / inverse;
-  if (dt > s->p.largest_time_step) {
-    dt = s->p.largest_time_step;
+  if (dt > s->domain.largest_time_step) {
+    dt = s->domain.largest_time_step;
     *limiter = SPH_LIMIT_GIVEN;
   }
   if (dt >= until - s->now.time) {

@@ -64,9 +64,9 @@ static double wrapped(double x, double length) {
 void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
   for (size_t i = 0; i < s->n; i++) {
     const size_t to = s->id[i];
-    out->x[to] = wrapped(s->c.x[i], s->p.periodic[0]);
-    out->y[to] = wrapped(s->c.y[i], s->p.periodic[1]);
-    out->z[to] = wrapped(s->c.z[i], s->p.periodic[2]);
+    out->x[to] = wrapped(s->c.x[i], s->domain.periodic[0]);
+    out->y[to] = wrapped(s->c.y[i], s->domain.periodic[1]);
+    out->z[to] = wrapped(s->c.z[i], s->domain.periodic[2]);
     out->vx[to] = s->c.vx[i];
     out->vy[to] = s->c.vy[i];
     out->vz[to] = s->c.vz[i];

@@ -3,6 +3,7 @@
 #ifndef CLAST_ENGINE_SPH_STEP_SYSTEM_H
 #define CLAST_ENGINE_SPH_STEP_SYSTEM_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "engine/sph/body/flaws.h"
@@ -11,6 +12,7 @@
 #include "engine/sph/material/material.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/pairs/pairs.h"
+#include "engine/sph/scene/inputs.h"
 
 /* What one body is made of, and which physics it has. Off means absent: nothing is stored or called for it. */
 struct sph_body_physics {
@@ -20,27 +22,21 @@ struct sph_body_physics {
   const struct sph_palpha *porosity; /* NULL: solid; copied at create */
 };
 
-struct sph_parameters {
-  double viscosity_alpha, viscosity_beta; /* Monaghan: 1.5, 3 */
-  double artificial_stress;               /* 0 = absent; elastic scenes only */
-  double spacing_over_h;                  /* initial spacing over h */
-  bool gradient_correction;               /* linear consistency of the velocity gradient, keeps rigid rotation */
-  bool volume_weights;                    /* m_j/rho_j in the velocity gradient (bodies of different density touch) */
-  double cfl;                             /* of h/(c + viscous), 0.2-0.4 */
-  double damage_step;                     /* largest change of D^(1/3) a step */
-  double distention_step;                 /* largest change of alpha a step */
-  double largest_time_step;               /* s, NaN = off */
-  int growth, cap;                        /* enum sph_fracture_growth, sph_fracture_cap */
-  bool crack_radius_support;              /* R_s = 2h instead of (3V/4pi)^(1/3) */
-  bool compact_flaws;                     /* (lowest, highest, number) per particle instead of the exact list */
-  double h_lowest, h_highest;             /* bounds of h over its initial value */
-  double density_lowest; /* over the initial one: below, the density is held and what that does is booked */
-  double skin;           /* least slack of the neighbour lists over h; fast particles have more */
-  double periodic[3];    /* m, length of the periodic box per direction; NaN = open */
-  int precision;         /* enum sph_precision */
-  int threads;           /* OpenMP, 1 = none; same bits whatever the number */
+/* What the step needs beside bodies and inputs: it follows from where the particles stand, or is a bound. */
+struct sph_domain {
+  double periodic[3];       /* m, length of the periodic box per direction; NaN = open */
+  double spacing_over_h;    /* first particle spacing over h: the artificial stress */
+  double largest_time_step; /* s, NaN = off */
+  double lowest_density;    /* over the first one: below, the density is held, and the ledger counts it */
 };
-struct sph_parameters sph_parameters_default(void);
+/* An open space. 0.03 is the density of a particle alone, m W(0), at the largest h: thinner ones would have P/rho^2
+ * without bound. */
+#define SPH_DOMAIN_OPEN                                                                                                \
+  { .periodic = {NAN, NAN, NAN}, .spacing_over_h = 0.95, .largest_time_step = NAN, .lowest_density = 0.03 }
+
+/* Bounds of h over its first value. */
+#define SPH_LOWEST_H  0.5
+#define SPH_HIGHEST_H 2.0
 
 enum sph_limiter { /* what set the time step */
                    SPH_LIMIT_COURANT,
@@ -65,11 +61,12 @@ struct sph_ledger {
 
 struct sph_system; /* opaque */
 
-/* `particles` is copied. Periodic directions run from 0 to their length. STATUS_MEMORY, before anything is allocated
- * when it would not fit; STATUS_CONTENT when a body lacks a material value that its physics needs (named). */
+/* All arguments are copied. Of the inputs a system reads viscosity, method, fracture and fidelity. Periodic directions
+ * run from 0 to their length. STATUS_MEMORY, before anything is allocated when it would not fit; STATUS_CONTENT when an
+ * input is out of its range, or when a body lacks a material value that its physics needs (named). */
 status sph_system_create(const struct sph_particles *particles, size_t body_count,
-                         const struct sph_body_physics *bodies, const struct sph_parameters *parameters,
-                         struct sph_system **out, struct error *error);
+                         const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
+                         const struct sph_domain *domain, struct sph_system **out, struct error *error);
 void sph_system_free(struct sph_system *system); /* NULL is fine */
 size_t sph_system_bytes(const struct sph_system *system);
 

@@ -40,37 +40,48 @@ static status check_body(size_t index, const struct sph_body_physics *b, size_t 
   return STATUS_OK;
 }
 
-static status check_parameters(const struct sph_parameters *p, struct error *error) {
+/* Does the row describe a member of one of the sections that a system reads? */
+static bool is_read(const struct field *row) {
   const struct {
-    const char *name;
-    double value, low, high;
-  } range[] = {
-      {"viscosity_alpha", p->viscosity_alpha, 0, 1e3},
-      {"viscosity_beta", p->viscosity_beta, 0, 1e3},
-      {"artificial_stress", p->artificial_stress, 0, 10},
-      {"spacing_over_h", p->spacing_over_h, 0.1, 2},
-      {"cfl", p->cfl, 1e-6, 1},
-      {"damage_step", p->damage_step, 1e-9, INFINITY},
-      {"distention_step", p->distention_step, 1e-9, INFINITY},
-      {"h_lowest", p->h_lowest, 1e-3, 1},
-      {"h_highest", p->h_highest, 1, 1e3},
-      {"density_lowest", p->density_lowest, 1e-12, 1},
-      {"skin", p->skin, 0, 1},
-  };
-  for (size_t k = 0; k < sizeof range / sizeof *range; k++)
-    if (!(range[k].value >= range[k].low && range[k].value <= range[k].high))
-      return status_fail(error, STATUS_CONTENT, "%s is %g; it must lie between %g and %g", range[k].name,
-                         range[k].value, range[k].low, range[k].high);
-  if (p->largest_time_step <= 0) /* NaN: off */
-    return status_fail(error, STATUS_CONTENT, "largest_time_step is %g s; it must be above 0", p->largest_time_step);
+    size_t offset, size;
+  } section[] = {
+#define SECTION(member_) {offsetof(struct sph_inputs, member_), sizeof(((struct sph_inputs *)0)->member_)}
+      SECTION(viscosity), SECTION(method), SECTION(fracture), SECTION(fidelity)};
+  for (size_t k = 0; k < sizeof section / sizeof *section; k++)
+    if (row->offset >= section[k].offset && row->offset - section[k].offset < section[k].size)
+      return true;
+  return false;
+}
+
+/* Inputs within the ranges of their rows. A number that follows from other inputs may still be missing: none is read
+ * here. */
+static status check_inputs(const struct sph_inputs *inputs, struct error *error) {
+  for (size_t k = 0; k < sph_inputs.count; k++) {
+    const struct field *row = &sph_inputs.rows[k];
+    struct field_value value, unused;
+    if (!is_read(row) || row->flags & FIELD_DERIVED)
+      continue;
+    field_get(row, inputs, &value);
+    const status code = field_set_value(row, &value, &unused, error);
+    if (code)
+      return code;
+  }
+  return STATUS_OK;
+}
+
+static status check_domain(const struct sph_domain *domain, struct error *error) {
   for (int k = 0; k < 3; k++)
-    if (p->periodic[k] <= 0 || isinf(p->periodic[k]))
-      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c", p->periodic[k], "xyz"[k]);
-  if (p->threads < 1 || p->threads > 4096)
-    return status_fail(error, STATUS_CONTENT, "threads is %d; it must lie between 1 and 4096", p->threads);
-  if (p->growth < SPH_GROWTH_CUBE_ROOT || p->growth > SPH_GROWTH_LINEAR || p->cap < SPH_CAP_BA95 ||
-      p->cap > SPH_CAP_NONE)
-    return status_fail(error, STATUS_CONTENT, "there is no growth law %d with cap %d", p->growth, p->cap);
+    if (domain->periodic[k] <= 0 || isinf(domain->periodic[k]))
+      return status_fail(error, STATUS_CONTENT, "the periodic box is %g m long along %c", domain->periodic[k],
+                         "xyz"[k]);
+  if (!(domain->spacing_over_h > 0) || isinf(domain->spacing_over_h))
+    return status_fail(error, STATUS_CONTENT, "the spacing over h is %g; it must be above 0", domain->spacing_over_h);
+  if (domain->largest_time_step <= 0) /* NaN: off */
+    return status_fail(error, STATUS_CONTENT, "the largest time step is %g s; it must be above 0",
+                       domain->largest_time_step);
+  if (!(domain->lowest_density > 0 && domain->lowest_density <= 1))
+    return status_fail(error, STATUS_CONTENT, "the lowest density is %g of the first; it must be above 0, at most 1",
+                       domain->lowest_density);
   return STATUS_OK;
 }
 
@@ -110,19 +121,19 @@ static status check_memory(const struct sph_particles *p, struct error *error) {
 }
 
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
-                        const struct sph_parameters *parameters, struct error *error) {
-  status done = check_parameters(parameters, error);
-  if (done == STATUS_OK)
-    done = check_particles(particles, body_count, bodies, error);
+                        const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error) {
+  status code = check_inputs(inputs, error);
+  if (!code)
+    code = check_domain(domain, error);
+  if (!code)
+    code = check_particles(particles, body_count, bodies, error);
   size_t low = 0;
-  for (size_t b = 0; b < body_count && done == STATUS_OK; b++) {
+  for (size_t b = 0; b < body_count && !code; b++) {
     size_t high = low;
     while (high < particles->n && particles->body[high] == b)
       high++;
-    done = check_body(b, &bodies[b], high - low, error);
+    code = check_body(b, &bodies[b], high - low, error);
     low = high;
   }
-  if (done == STATUS_OK)
-    done = check_memory(particles, error);
-  return done;
+  return code ? code : check_memory(particles, error);
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
+#include "engine/sph/material/derived.h"
 #include "engine/sph/material/tillotson.h"
 #include "engine/sph/modules/ranges.h"
 #include "engine/sph/step/system_list.h"
@@ -77,7 +78,7 @@ static bool is_there(enum need need, const struct sph_particles *p, const struct
   case DAMAGE: return s->damage;
   case DISTENTION: return s->pores;
   case COMPACTION: return s->pores && s->damage;
-  case CORRECTION: return s->p.gradient_correction;
+  case CORRECTION: return s->in.method.gradient_correction;
   case TENSION: return s->pores && s->fracture;
   case ALWAYS: break;
   }
@@ -149,7 +150,7 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b, const struct
     }
     for (size_t m = 0; m < sph_modules_count(); m++) {
       const struct sph_module *module = sph_modules_at(m);
-      if (module->hook[stage] && module->on(physics, &s->p))
+      if (module->hook[stage] && module->on(physics, &s->in))
         memcpy(&to[(*count)++], (const char *)r + module->hook[stage], sizeof(sph_hook));
     }
   }
@@ -167,18 +168,16 @@ static status make_body(struct sph_system *s, size_t index, struct error *error)
       return done;
     b->physics.porosity = &b->porosity.given;
   }
-  b->density = m->density / (physics->porosity ? physics->porosity->distention : 1);
-  b->lowest_density = s->p.density_lowest * b->density;
-  const double K = m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A,
-               mu = physics->strength ? m->shear_modulus : 0;
-  b->young = 9 * K * mu / (3 * K + mu);
-  b->crack_speed = 0.4 * sqrt((K + 4 * mu / 3) / m->density);
+  b->density = sph_derived_bulk_density(m, physics->porosity);
+  b->lowest_density = s->domain.lowest_density * b->density;
+  b->young = sph_derived_young_modulus(m);
+  b->crack_speed = sph_derived_crack_speed(m);
   choose_hooks(s, b, physics);
   const struct sph_flaws *flaws = physics->flaws;
   if (!flaws)
     return STATUS_OK;
   b->physics.flaws = NULL; /* the caller's; ours are the lists */
-  return sph_weibull_make(flaws, s->p.compact_flaws, &b->weibull, error);
+  return sph_weibull_make(flaws, s->in.fidelity.flaws == SPH_FLAWS_COMPACT, &b->weibull, error);
 }
 
 /* Distention as given (or alpha_0), at the pressure that goes with it. */
@@ -212,7 +211,7 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
     memcpy(s->c.damping, p->damping, s->n * sizeof(double));
   for (size_t i = 0; i < s->n; i++) {
     s->id[i] = (uint32_t)i;
-    for (int k = 0; s->p.gradient_correction && k < 6; k++)
+    for (int k = 0; s->in.method.gradient_correction && k < 6; k++)
       s->c.correction[k][i] = k == 0 || k == 3 || k == 5;
     const struct sph_solid *b = &s->solid[p->body[i]];
     if (s->strength && b->physics.strength && p->stress[0]) {
@@ -227,7 +226,8 @@ static void fill(struct sph_system *s, const struct sph_particles *p) {
     if (!b->weibull)
       continue;
     const double volume = p->mass[i] / p->density[i];
-    const double radius = s->p.crack_radius_support ? 2 * p->h[i] : cbrt(3 * volume / (4 * M_PI));
+    const double radius = s->in.fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT ? 2 * p->h[i]
+                                                                                  : cbrt(3 * volume / (4 * M_PI));
     const double damage = p->damage_cbrt ? p->damage_cbrt[i] : 0;
     s->c.damage[i] = damage;
     if (s->c.tension)
@@ -258,25 +258,22 @@ static status make_blocks(struct sph_system *s, struct error *error) {
 
 static status make_pairs(struct sph_system *s, struct error *error) {
   struct sph_pair_options o = {
-      .viscosity_alpha = s->p.viscosity_alpha,
-      .viscosity_beta = s->p.viscosity_beta,
+      .viscosity = s->in.viscosity,
+      .method = s->in.method,
+      .fidelity = s->in.fidelity,
       .strength = s->strength,
-      .gradient_correction = s->p.gradient_correction,
-      .artificial_stress = s->p.artificial_stress,
-      .spacing_over_h = s->p.spacing_over_h,
-      .volume_weights = s->p.volume_weights,
-      .precision = s->p.precision,
-      .threads = s->p.threads,
+      .spacing_over_h = s->domain.spacing_over_h,
   };
-  memcpy(o.periodic, s->p.periodic, sizeof o.periodic);
+  memcpy(o.periodic, s->domain.periodic, sizeof o.periodic);
   return sph_pairs_create(s->n, &o, &s->pairs, error);
 }
 
 /* However far matter expands, h stays within what a thin periodic box allows. */
 static void bound_h(struct sph_system *s, const struct sph_particles *p) {
-  const double most = sph_system_list_reach(&s->p);
+  const double most = sph_system_list_reach(&s->domain);
+  s->highest_h = SPH_HIGHEST_H;
   for (size_t i = 0; i < p->n; i++)
-    s->p.h_highest = fmax(1, fmin(s->p.h_highest, most / (p->h[i] * (1 + s->p.skin))));
+    s->highest_h = fmax(1, fmin(s->highest_h, most / (p->h[i] * (1 + s->in.fidelity.skin))));
 }
 
 static status build(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies,
@@ -315,16 +312,17 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
 }
 
 status sph_system_create(const struct sph_particles *particles, size_t body_count,
-                         const struct sph_body_physics *bodies, const struct sph_parameters *parameters,
-                         struct sph_system **out, struct error *error) {
+                         const struct sph_body_physics *bodies, const struct sph_inputs *inputs,
+                         const struct sph_domain *domain, struct sph_system **out, struct error *error) {
   *out = NULL;
-  status done = sph_system_check(particles, body_count, bodies, parameters, error);
+  status done = sph_system_check(particles, body_count, bodies, inputs, domain, error);
   if (done != STATUS_OK)
     return done;
   struct sph_system *s = calloc(1, sizeof *s);
   if (!s)
     return status_fail(error, STATUS_MEMORY, "no memory for a system");
-  s->p = *parameters;
+  s->in = *inputs;
+  s->domain = *domain;
   s->n = particles->n;
   s->body_count = body_count;
   s->ranges = sph_ranges_choose();

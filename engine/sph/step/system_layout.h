@@ -88,7 +88,9 @@ struct sph_progress {
 struct sph_ranges; /* ranges.h */
 
 struct sph_system {
-  struct sph_parameters p;
+  struct sph_inputs in; /* viscosity, method, fracture and fidelity of it */
+  struct sph_domain domain;
+  double highest_h; /* over its first value: SPH_HIGHEST_H, or what a thin periodic box allows */
   struct sph_progress now;
   size_t n, stride; /* particles; doubles from one column to the next */
   struct sph_columns c;
@@ -115,6 +117,6 @@ size_t sph_system_create_columns(struct sph_system *system, double **slot[SPH_CO
 
 /* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
-                        const struct sph_parameters *parameters, struct error *error);
+                        const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error);
 
 #endif

@@ -24,7 +24,8 @@ static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
 /* What stands at order[i] comes to i. */
 static bool permute(struct sph_system *s) {
   double **slot[SPH_COLUMNS];
-  const size_t columns = sph_system_create_columns(s, slot), threads = s->p.threads > 1 ? (size_t)s->p.threads : 1;
+  const size_t columns = sph_system_create_columns(s, slot),
+               threads = s->in.fidelity.threads > 1 ? (size_t)s->in.fidelity.threads : 1;
   double *room = malloc(threads * s->n * sizeof *room);
   if (!room) {
     s->fault = SPH_FAULT_MEMORY;
@@ -32,7 +33,7 @@ static bool permute(struct sph_system *s) {
     return false;
   }
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 1) num_threads(s->p.threads) if (s->p.threads > 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t k = 0; k < columns; k++) {
 #ifdef _OPENMP
@@ -85,11 +86,11 @@ static double wrapped(double x, double length) {
 }
 
 static void wrap(struct sph_system *s) {
-  const double *length = s->p.periodic;
+  const double *length = s->domain.periodic;
   if (!(length[0] > 0 || length[1] > 0 || length[2] > 0))
     return;
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) num_threads(s->p.threads) if (s->p.threads > 1)
+#pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t i = 0; i < s->n; i++) {
     s->c.x[i] = wrapped(s->c.x[i], length[0]);
@@ -102,11 +103,11 @@ static double cube(double x) {
   return x * x * x;
 }
 
-double sph_system_list_reach(const struct sph_parameters *p) {
+double sph_system_list_reach(const struct sph_domain *domain) {
   double thinnest = INFINITY;
   for (int d = 0; d < 3; d++)
-    if (p->periodic[d] < thinnest)
-      thinnest = p->periodic[d];
+    if (domain->periodic[d] < thinnest)
+      thinnest = domain->periodic[d];
   return 0.2499 * thinnest; /* twice that of a pair, 2 (h + slack), must fit */
 }
 
@@ -115,11 +116,11 @@ double sph_system_list_reach(const struct sph_parameters *p) {
  * short. A thin periodic box bounds the reach. */
 static bool list_anew(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
-  const double skin = s->p.skin, horizon = (double)s->now.horizon * s->dt;
-  const double reach = sph_system_list_reach(&s->p);
+  const double skin = s->in.fidelity.skin, horizon = (double)s->now.horizon * s->dt;
+  const double reach = sph_system_list_reach(&s->domain);
   double *const *listed = sph_pairs_listed(s->pairs);
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
+#pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
@@ -160,7 +161,7 @@ static double lost_on_room(const struct sph_system *s) {
 }
 
 static void lengthen(struct sph_system *s) {
-  const uint64_t most = horizon_most[s->p.precision];
+  const uint64_t most = horizon_most[s->in.fidelity.precision];
   s->now.horizon = s->now.horizon && s->now.horizon < most / 2 ? 2 * s->now.horizon : most;
 }
 
@@ -180,12 +181,13 @@ bool sph_system_list(struct sph_system *s) {
     return false;
   /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some
    * eight times the loss */
-  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 && lost_on_room(s) > 2 * listing[s->p.precision]) {
+  while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 &&
+         lost_on_room(s) > 2 * listing[s->in.fidelity.precision]) {
     s->now.horizon /= 2;
     if (!list_anew(s))
       return false;
   }
-  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->p.precision])
+  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->in.fidelity.precision])
     lengthen(s); /* the next ones */
   return true;
 }

@@ -11,6 +11,6 @@ bool sph_system_list(struct sph_system *system);
 bool sph_system_list_again(struct sph_system *system);
 /* m: what h with its slack may be at most, so that no particle meets its own image in a thin periodic box; infinite in
  * the open. */
-double sph_system_list_reach(const struct sph_parameters *parameters);
+double sph_system_list_reach(const struct sph_domain *domain);
 
 #endif

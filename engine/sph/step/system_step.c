@@ -29,7 +29,7 @@ static void look_up_slack(struct sph_system *s, struct sph_block *block) {
 
 static void before_pairs(struct sph_system *s) {
 #ifdef _OPENMP
-#pragma omp parallel for schedule(dynamic, 4) num_threads(s->p.threads) if (s->p.threads > 1)
+#pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
@@ -55,7 +55,7 @@ static size_t first_block(const struct sph_system *s, size_t at) {
 /* What the pair loop found for a piece goes on at once into the rates of its blocks. */
 static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
   struct sph_system *s = context;
-  for (size_t m = 0; s->p.gradient_correction && m < 6; m++)
+  for (size_t m = 0; s->in.method.gradient_correction && m < 6; m++)
     memcpy(s->c.correction[m] + first, sums->correction[m], count * sizeof(double));
   for (size_t k = first_block(s, first); k < s->block_count && s->block[k].low < first + count; k++) {
     struct sph_block *block = &s->block[k];
@@ -150,7 +150,7 @@ static bool advance(struct sph_system *s, double dt) {
 }
 
 bool sph_system_step_begin(struct sph_system *s) {
-  if (s->p.gradient_correction && !advance(s, 0))
+  if (s->in.method.gradient_correction && !advance(s, 0))
     return false; /* forces need the correction of the pass before */
   return advance(s, 0);
 }

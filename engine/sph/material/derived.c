@@ -1,0 +1,34 @@
+#include "engine/sph/material/derived.h"
+
+#include <math.h>
+
+double sph_derived_bulk_modulus(const struct sph_material *m) {
+  return m->bulk_modulus > 0 ? m->bulk_modulus : m->tillotson.A;
+}
+
+double sph_derived_young_modulus(const struct sph_material *m) {
+  const double K = sph_derived_bulk_modulus(m);
+  return 9 * K * m->shear_modulus / (3 * K + m->shear_modulus);
+}
+
+double sph_derived_poisson_ratio(const struct sph_material *m) {
+  const double K = sph_derived_bulk_modulus(m);
+  return (3 * K - 2 * m->shear_modulus) / (2 * (3 * K + m->shear_modulus));
+}
+
+double sph_derived_crack_speed(const struct sph_material *m) {
+  return 0.4 * sqrt((sph_derived_bulk_modulus(m) + 4 * m->shear_modulus / 3) / m->density);
+}
+
+double sph_derived_bulk_density(const struct sph_material *m, const struct sph_palpha *porosity) {
+  return porosity ? m->density / porosity->distention : m->density;
+}
+
+/* Pressure answers with A, whatever K is. */
+double sph_derived_longitudinal_speed(const struct sph_material *m, bool strength, bool porous) {
+  const double shear2 = strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
+  double bulk2 = m->tillotson.A / m->density;
+  if (porous && !isnan(m->porosity.sound_speed))
+    bulk2 = m->porosity.sound_speed * m->porosity.sound_speed;
+  return sqrt(bulk2 + shear2);
+}

@@ -1,0 +1,19 @@
+/* What a moving solid of a test reads beside its bodies: the inputs at the defaults of their rows, and an open space.
+ */
+#ifndef CLAST_TESTS_CASE_PARAMETERS_H
+#define CLAST_TESTS_CASE_PARAMETERS_H
+
+#include "engine/sph/step/system.h"
+
+struct case_parameters {
+  struct sph_inputs in;
+  struct sph_domain domain;
+};
+
+static inline struct case_parameters case_parameters_default(void) {
+  struct case_parameters p = {.domain = SPH_DOMAIN_OPEN};
+  field_defaults(&sph_inputs, &p.in);
+  return p;
+}
+
+#endif
