@@ -98,13 +98,13 @@ int main(void) {
           return 1;
       best[pores] = fmin(best[pores], (now() - start) / (STEPS * particles));
       if (pores < 2) {
-        sph_hook hook = pores ? s->ranges->palpha : s->ranges->tillotson;
+        sph_hook hook = s->ranges->module[pores ? SPH_MODULE_palpha : SPH_MODULE_tillotson][SPH_RESPOND];
         for (size_t k = 0; pores && k < s->block_count; k++)
           if (!s->solid[s->block[k].body].physics.porosity)
             s->block[k].high = s->block[k].low; /* the projectile has none */
         loops[pores] = fmin(loops[pores], loop(s, hook));
         if (pores)
-          limit = fmin(limit, loop(s, s->ranges->palpha_limit));
+          limit = fmin(limit, loop(s, s->ranges->module[SPH_MODULE_palpha][SPH_RATES]));
       }
       bytes[pores] = (double)sph_system_bytes(s) / particles;
       sph_system_free(s);

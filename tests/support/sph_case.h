@@ -12,7 +12,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-#include "engine/sph/step/system.h"
+#include "engine/sph/modules/ranges.h"
 #include "tests/support/case_parameters.h"
 
 #define CASE_UNUSED __attribute__((unused))
@@ -87,6 +87,42 @@ static CASE_UNUSED void case_run(struct sph_system *s, double until) {
     if (!sph_system_step(s, until))
       fail_msg("at %g s: %s", sph_system_time(s), sph_system_failure(s));
 }
+
+/* One loop of a module. */
+struct case_loop {
+  int module, stage; /* enum sph_module_index, enum sph_stage */
+};
+
+/* Runs these loops over all blocks, with the same terms; those of rates find simple shear, dv_x/dy = 1/s. Loops of
+ * bodies that do not have the module are run, too, unless `only_on`. */
+static CASE_UNUSED void case_loops(struct sph_system *s, const struct case_loop *loops, size_t count, bool only_on) {
+  double zero[SPH_BLOCK] = {0}, one[SPH_BLOCK];
+  for (size_t i = 0; i < SPH_BLOCK; i++)
+    one[i] = 1;
+  struct sph_pair_sums sums = {.ax = zero, .ay = zero, .az = zero, .heating = zero, .signal = zero};
+  for (int k = 0; k < 9; k++)
+    sums.gradient[k] = k == 1 ? one : zero;
+  for (size_t k = 0; k < s->block_count; k++) {
+    struct sph_block *block = &s->block[k];
+    const struct sph_solid *body = &s->solid[block->body];
+    struct sph_terms terms = {.solid_density = s->c.density + block->low};
+    block->sums = &sums;
+    block->terms = &terms;
+    for (size_t l = 0; l < count; l++)
+      if (!only_on || body->modules >> loops[l].module & 1)
+        s->ranges->module[loops[l].module][loops[l].stage](s, body, block);
+    block->sums = NULL;
+    block->terms = NULL;
+  }
+}
+#define CASE_LOOPS(s, only_on, ...)                                                                                    \
+  case_loops(s, (const struct case_loop[]){__VA_ARGS__},                                                               \
+             sizeof((const struct case_loop[]){__VA_ARGS__}) / sizeof(struct case_loop), only_on)
+
+/* From the yield limit to the stress that has returned to it. */
+#define CASE_YIELD(s)                                                                                                  \
+  CASE_LOOPS(s, true, {SPH_MODULE_yield, SPH_YIELD}, {SPH_MODULE_tension_limit, SPH_YIELD},                            \
+             {SPH_MODULE_palpha, SPH_YIELD_OF_BODY}, {SPH_MODULE_elastic, SPH_RETURN})
 
 static CASE_UNUSED double case_total(struct sph_ledger l) {
   return l.kinetic + l.internal + l.damped - l.work_of_held;

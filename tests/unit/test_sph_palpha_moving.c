@@ -4,7 +4,6 @@
 
 #include "engine/random.h"
 #include "engine/sph/material/tillotson.h"
-#include "engine/sph/modules/ranges.h"
 
 static const struct sph_palpha porous_basalt = {.distention = 1.5,
                                                 .curve = SPH_CRUSH_QUADRATIC,
@@ -42,21 +41,9 @@ static struct sph_system *cube(const struct sph_palpha *porosity, bool strength,
   return s;
 }
 
-/* A hook over all blocks; those of rates find simple shear, dv_x/dy = 1/s. */
-static void call(struct sph_system *s, size_t offset) {
-  double zero[SPH_BLOCK] = {0}, one[SPH_BLOCK];
-  for (size_t i = 0; i < SPH_BLOCK; i++)
-    one[i] = 1;
-  struct sph_pair_sums sums = {.ax = zero, .ay = zero, .az = zero, .heating = zero, .signal = zero};
-  for (int k = 0; k < 9; k++)
-    sums.gradient[k] = k == 1 ? one : zero;
-  sph_hook hook;
-  memcpy(&hook, (const char *)s->ranges + offset, sizeof hook);
-  for (size_t k = 0; k < s->block_count; k++) {
-    s->block[k].sums = &sums;
-    hook(s, &s->solid[s->block[k].body], &s->block[k]);
-    s->block[k].sums = NULL;
-  }
+/* The state of pores at the densities and energies as they are, and what other modules are told of it. */
+static void respond(struct sph_system *s) {
+  CASE_LOOPS(s, true, {SPH_MODULE_palpha, SPH_RESPOND}, {SPH_MODULE_palpha, SPH_PUBLISH});
 }
 
 /* Random states, all branches mixed within a block: the loop gives what sph_palpha_update gives. */
@@ -66,7 +53,7 @@ static void loop_is_the_formula(void **state) {
   for (uint64_t round = 0; round < 60; round++) {
     size_t n;
     struct sph_system *s = cube(given[round % 2], false, false, &n);
-    const struct sph_palpha_law *law = &s->solid[0].porosity;
+    const struct sph_palpha_law *law = s->solid[0].prepared[SPH_MODULE_palpha];
     double rest[216], alpha[216], rho[216], u[216];
     int crushed = 0, solid = 0, elastic = 0;
     for (size_t i = 0; i < n; i++) {
@@ -79,7 +66,7 @@ static void loop_is_the_formula(void **state) {
       u[i] = r[1] < 0.7 ? 1e4 * r[2] : r[1] < 0.9 ? 1e6 * r[2] : 1e8 * r[2];
       s->c.rest_distention[i] = rest[i], s->c.distention[i] = alpha[i], s->c.density[i] = rho[i], s->c.energy[i] = u[i];
     }
-    call(s, offsetof(struct sph_ranges, palpha));
+    respond(s);
     for (size_t i = 0; i < n; i++) {
       struct sph_palpha_state want = sph_palpha_update(law, rest[i], alpha[i], rho[i], u[i]);
       crushed += want.rest < rest[i] && want.rest > 1, solid += want.rest == 1,
@@ -106,7 +93,7 @@ static void deviator_follows_alpha(void **state) {
       s->c.stress[k][i] = 1e6 * (k + 1);
     s->c.density[i] = 1800 * (1 + 0.6 * (double)i / (double)n);
   }
-  call(s, offsetof(struct sph_ranges, palpha));
+  respond(s);
   bool moved = false;
   for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 5; k++)
@@ -124,15 +111,15 @@ static void shear_rate(void **state) {
   struct sph_system *s = cube(&porous_basalt, true, false, &n);
   for (size_t i = 0; i < n; i++)
     s->c.density[i] = 1800 * (1 + 0.6 * (double)i / (double)n);
-  call(s, offsetof(struct sph_ranges, palpha));
+  respond(s);
   for (size_t i = 0; i < n; i++) {
     for (int k = 0; k < 5; k++)
       s->c.stress[k][i] = s->c.stress_rate[k][i] = 0;
   }
-  call(s, offsetof(struct sph_ranges, elastic_rates));
+  CASE_LOOPS(s, true, {SPH_MODULE_elastic, SPH_RATES});
   double lowest = 1;
   for (size_t i = 0; i < n; i++) {
-    struct sph_palpha_state want = sph_palpha_update(&s->solid[0].porosity, 1.5, 1.5,
+    struct sph_palpha_state want = sph_palpha_update(s->solid[0].prepared[SPH_MODULE_palpha], 1.5, 1.5,
                                                      1800 * (1 + 0.6 * (double)i / (double)n), 0);
     near(s->c.stress_rate[1][i], want.shear_factor / want.distention * 2.27e10, 1e-5 * 2.27e10, "shear stress rate");
     lowest = fmin(lowest, want.shear_factor);
@@ -150,7 +137,7 @@ static void yield_falls_with_alpha(void **state) {
     for (int k = 0; k < 5; k++)
       s->c.stress[k][i] = 1e12;
   }
-  call(s, offsetof(struct sph_ranges, yield));
+  CASE_YIELD(s);
   for (size_t i = 0; i < n; i++) {
     double **t = s->c.stress, xx = t[0][i], xy = t[1][i], xz = t[2][i], yy = t[3][i], yz = t[4][i];
     double J2 = xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz;
@@ -173,7 +160,7 @@ static void tension_limit_is_of_the_body(void **state) {
     s->c.density[i] = expanded * 2700 / s->c.distention[i];
     s->c.pressure[i] = i % 2 ? -1e7 : 2e5;
   }
-  call(s, offsetof(struct sph_ranges, tension_limit));
+  CASE_LOOPS(s, false, {SPH_MODULE_palpha, SPH_PUBLISH}, {SPH_MODULE_tension_limit, SPH_LIMIT});
   for (size_t i = 0; i < n; i++)
     near(s->c.pressure[i],
          i % 2 == 0   ? 2e5
@@ -189,16 +176,16 @@ static void damage_adds_up(void **state) {
   for (int flaws = 0; flaws < 2; flaws++) {
     size_t n;
     struct sph_system *s = cube(&porous_basalt, true, flaws, &n);
-    assert_true(!s->c.tension == !flaws);
+    assert_true(!s->c.flaw_damage == !flaws);
     for (int step = 0; step < 3; step++) { /* loaded, unloaded, loaded again */
       for (size_t i = 0; i < n; i++) {
-        if (s->c.tension)
-          s->c.tension[i] = (double)(i % 7) / 6;
+        if (s->c.flaw_damage)
+          s->c.flaw_damage[i] = (double)(i % 7) / 6;
         s->c.density[i] = (step == 1 ? 1700 : 1800 * (1 + 0.6 * (double)i / (double)n));
       }
-      call(s, offsetof(struct sph_ranges, palpha));
+      respond(s);
       for (size_t i = 0; i < n; i++) {
-        double c = sph_palpha_damage_cbrt(&s->solid[0].porosity, s->c.rest_distention[i]);
+        double c = sph_palpha_damage_cbrt(s->solid[0].prepared[SPH_MODULE_palpha], s->c.rest_distention[i]);
         double want = fmin(1, cbrt(c * c * c + (flaws ? pow((double)(i % 7) / 6, 3) : 0)));
         near(s->c.damage[i], want, 1e-12, "damage");
       }
@@ -272,7 +259,7 @@ static void solid_bits(void **state) {
   assert_null(a.s->c.rest_distention);
   assert_null(a.s->c.shear_factor);
   assert_null(a.s->c.compaction);
-  assert_null(a.s->c.tension);
+  assert_null(a.s->c.flaw_damage);
   assert_int_equal(a.s->solid[0].before_count, b.s->solid[0].before_count);
   free(sa);
   free(sb);

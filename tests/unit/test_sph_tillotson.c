@@ -122,8 +122,7 @@ static void extremes(void **state) {
       struct sph_system *s = case_system(particles, 1, &body, &parameters);
       for (size_t i = 0; i < s->n; i++)
         s->c.density[i] = etas[i / SIDE] * rho0, s->c.energy[i] = energies[i % SIDE];
-      for (size_t b = 0; b < s->block_count; b++)
-        s->ranges->tillotson(s, &s->solid[0], &s->block[b]);
+      CASE_LOOPS(s, true, {SPH_MODULE_tillotson, SPH_RESPOND});
       for (size_t i = 0; i < s->n; i++) {
         const double rho = s->c.density[i], u = fmax(s->c.energy[i], 0), eta = rho / rho0;
         const struct sph_pressure p = sph_tillotson(t, rho0, rho, s->c.energy[i]);

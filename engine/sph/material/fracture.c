@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "engine/sph/modules/ranges.h"
-
 /* Trigonometric solution of the characteristic cubic (Smith 1961, Commun. ACM 4, 168), scaled by the tensor's size. */
 double sph_fracture_largest_tension(double xx, double xy, double xz, double yy, double yz, double zz) {
   double mean = (xx + yy + zz) / 3;
@@ -29,21 +27,3 @@ double sph_fracture_limit(size_t active, size_t total, int cap) {
          : cap == SPH_CAP_COUNT ? cbrt(share)
                                 : 1;
 }
-
-static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)inputs;
-  return body->flaws != NULL;
-}
-
-const struct sph_module sph_fracture_module = {
-    .name = "fracture",
-    .doc = "Damage grows from open flaws, D^(1/3) at n^p c_g/R_s up to its cap, and takes tension and shear away: "
-           "(1-D) S, and (1-D) P "
-           "where P < 0. It never heals.",
-    .source = "Grady & Kipp 1980; Benz & Asphaug 1995, sections 3 and 4.3",
-    .when = "a body whose material has Weibull parameters",
-    .on = on,
-    .bytes = 4 * sizeof(double),
-    .hook = {[SPH_PREDICT] = offsetof(struct sph_ranges, damage_predict),
-             [SPH_RESPOND] = offsetof(struct sph_ranges, crack)},
-};

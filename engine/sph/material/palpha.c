@@ -4,7 +4,6 @@
 #include <stdbool.h>
 
 #include "engine/sph/material/tillotson.h"
-#include "engine/sph/modules/ranges.h"
 
 /* 1. Curves */
 
@@ -295,27 +294,3 @@ struct sph_palpha_state sph_palpha_update(const struct sph_palpha_law *law, doub
   s.sound_speed = isnan(law->given.sound_speed) ? c : c + (law->given.sound_speed - c) * (alpha - 1) / (top - 1);
   return s;
 }
-
-/* 4. As a module of the moving solid */
-
-static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)inputs;
-  return body->porosity != NULL;
-}
-
-bool sph_palpha_harms(const struct sph_body_physics *body) {
-  return body->porosity && body->strength;
-}
-
-const struct sph_module sph_palpha_module = {
-    .name = "palpha",
-    .doc = "Pores below the resolution: distention alpha follows a crush curve under load and an elastic branch when "
-           "unloaded; "
-           "it acts on pressure, deviator, yield stress, sound speed and damage.",
-    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008",
-    .when = "a body with porosity (distention above 1)",
-    .on = on,
-    .bytes = 5 * (int)sizeof(double), /* 3 without strength, 4 without flaws */
-    .hook =
-        {[SPH_RESPOND] = offsetof(struct sph_ranges, palpha), [SPH_RATES] = offsetof(struct sph_ranges, palpha_limit)},
-};

@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-#include "engine/sph/modules/ranges.h"
-
 struct branch {
   double p, by_rho, by_u;
 };
@@ -58,18 +56,3 @@ struct sph_pressure sph_tillotson(const struct sph_tillotson *t, double rho0, do
   double floor2 = t->A / (4 * rho0);
   return (struct sph_pressure){r.p, r.by_rho, r.by_u, sqrt(c2 > floor2 ? c2 : floor2)};
 }
-
-static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)inputs;
-  return !body->porosity;
-}
-
-const struct sph_module sph_tillotson_module = {
-    .name = "tillotson",
-    .doc = "Pressure and sound speed of rock, ice or metal from the cold solid to its vapour; no pressure-squared term "
-           "in tension.",
-    .source = "Tillotson 1962; Melosh 1989, appendix II",
-    .when = "every body without pores (in a body with pores it acts behind the distention)",
-    .on = on,
-    .hook = {[SPH_RESPOND] = offsetof(struct sph_ranges, tillotson)},
-};

@@ -7,8 +7,6 @@
  * (energy.clamped). */
 #include "engine/sph/modules/ranges.h"
 
-#include <math.h>
-
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->method.artificial_stress > 0;
@@ -20,6 +18,6 @@ const struct sph_module sph_artificial_stress_module = {
     .source = "Monaghan 2000; Gray, Monaghan & Swift 2001",
     .when = "artificial_stress above 0",
     .on = on,
-    .bytes = 6 * sizeof(double), /* R (pairs.c) */
-    .hook = {0},
+    .bytes_in_pairs = 6 * sizeof(double), /* R */
+    .cost = 70,
 };

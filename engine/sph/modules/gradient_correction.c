@@ -1,11 +1,20 @@
+/* Velocity gradients exact for linear fields: a term of the pair loop (pairs/pairs.h has the equations).
+ *
+ *   method.gradient_correction */
 #include "engine/sph/modules/ranges.h"
-
-#include <math.h>
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
   return inputs->method.gradient_correction;
 }
+
+/* B = 1 at first: xx xy xz yy yz zz. */
+static const struct sph_column_need columns[] = {{SPH_COLUMN(correction[0]), 1, 1, NULL},
+                                                 {SPH_COLUMN(correction[1]), 2, 0, NULL},
+                                                 {SPH_COLUMN(correction[3]), 1, 1, NULL},
+                                                 {SPH_COLUMN(correction[4]), 1, 0, NULL},
+                                                 {SPH_COLUMN(correction[5]), 1, 1, NULL},
+                                                 {0}};
 
 const struct sph_module sph_gradient_correction_module = {
     .name = "gradient_correction",
@@ -15,6 +24,7 @@ const struct sph_module sph_gradient_correction_module = {
     .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
     .when = "gradient_correction is asked for",
     .on = on,
-    .bytes = (6 + 5) * sizeof(double), /* B, and wider records of what foreign particles get (pairs.c) */
-    .hook = {0},
+    .columns = columns,
+    .bytes_in_pairs = 92, /* wider records, also of what foreign particles get: measured */
+    .cost = 65,
 };

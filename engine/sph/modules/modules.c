@@ -1,28 +1,39 @@
+/* Which modules a body has, and what they need. */
 #include "engine/sph/modules/modules.h"
 
-/* The order, and why. Stages come first (modules.h); within a stage:
- *   pressure before the tension limit that cuts it;
- *   equations of state first: distention changes P, the stored deviator, the yield stress and damage;
- *   yield before the flaws: the stress that opens flaws is one that the solid can bear;
- *   flaws before the damaged stress, which every body's own output loop makes last: D of this step acts in this step;
- *   the pair loop's own options (viscosity, artificial stress, gradient correction) have no hooks: they are in it. */
-static const struct sph_module *const list[] = {
-    &sph_elastic_module,
-    &sph_tillotson_module,
-    &sph_palpha_module,
-    &sph_tension_limit_module,
-    &sph_yield_module,
-    &sph_weibull_module,
-    &sph_fracture_module,
-    &sph_viscosity_module,
-    &sph_artificial_stress_module,
-    &sph_gradient_correction_module,
-};
-
-size_t sph_modules_count(void) {
-  return sizeof list / sizeof *list;
-}
+static const struct sph_module *const list[SPH_MODULES] = {
+#define ADDRESS(name) &sph_##name##_module,
+    SPH_MODULE_LIST(ADDRESS, ADDRESS)};
 
 const struct sph_module *sph_modules_at(size_t index) {
   return list[index];
+}
+
+uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  uint64_t on = 0, taken = 0;
+  for (size_t m = SPH_MODULES; m-- > 0;) { /* the last module that sets a quantity is the one that acts */
+    const uint64_t quantity = list[m]->sets ? UINT64_C(1) << list[m]->sets : 0;
+    if (quantity & taken || !list[m]->on(body, inputs))
+      continue;
+    taken |= quantity;
+    on |= UINT64_C(1) << m;
+  }
+  return on;
+}
+
+uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body) {
+  uint64_t columns = 0;
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    for (const struct sph_column_need *c = list[m]->columns; c && c->count && modules >> m & 1; c++)
+      if (!c->needed || c->needed(body))
+        columns |= ((UINT64_C(1) << c->count) - 1) << c->first;
+  return columns;
+}
+
+size_t sph_modules_bytes_in_pairs(uint64_t modules) {
+  size_t bytes = 0;
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (modules >> m & 1)
+      bytes += (size_t)list[m]->bytes_in_pairs;
+  return bytes;
 }

@@ -1,22 +1,52 @@
 /* Physics modules of the solid, as descriptors. Off means absent: a body that does not have a module is never called
  * for it, and columns that no body needs are not allocated. The scene decides; nobody flips switches.
  *
- * A hook works on a whole range of particles of one body; it is compiled once per CPU class (ranges.h). A step runs,
- * block by block: every `predict` hook in the order of the list, every `respond` hook in the same order, then the pair
- * loop, then every `rates` hook. */
+ * A module owns its physics: NAME.c has its description, columns, checks and what it prepares, NAME_loop.h its loops
+ * over particles, compiled once per CPU class (ranges.h). It acts on other modules only through columns and through
+ * struct sph_terms (system_layout.h), never by a flag inside their loops:
+ *   solid_density  density of the solid matter, which the equation of state publishes
+ *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
+ *   two_mu         effective 2 mu, where it is not the material's
+ *   flaw_damage    damage by flaws, where another module damages the body, too
+ *
+ * A step runs, block by block, the stages in order and within a stage the modules in the order of list.h; the pair loop
+ * stands before `rates`. */
 #ifndef CLAST_ENGINE_SPH_MODULES_MODULES_H
 #define CLAST_ENGINE_SPH_MODULES_MODULES_H
 
+#include "engine/sph/modules/list.h"
 #include "engine/sph/step/system.h"
 
-enum sph_stage {              /* when in a step a hook runs */
-                 SPH_PREDICT, /* carry the module's own variables to the new time, by the rates of the old one */
-                 SPH_RESPOND, /* from the predicted state to what the pair loop needs: pressure, sound speed, damaged
-                                 stress */
-                 SPH_RATES,   /* after the pair loop: new rates from the velocity gradient, and half the change of rates
-                                 added */
-                 SPH_STAGES
+enum sph_module_index {
+#define SPH_MODULE_INDEX(name) SPH_MODULE_##name,
+  SPH_MODULE_LIST(SPH_MODULE_INDEX, SPH_MODULE_INDEX) SPH_MODULES
 };
+
+enum sph_stage {
+  SPH_PREDICT,       /* carries the module's own variables to the new time, by the rates of the old one */
+  SPH_RESPOND,       /* pressure and sound speed of the predicted state */
+  SPH_PUBLISH,       /* terms that other modules read */
+  SPH_LIMIT,         /* bounds of the pressure */
+  SPH_YIELD,         /* the yield limit of the solid: a law sets it, other modules lower it */
+  SPH_YIELD_OF_BODY, /* from the solid's yield limit to that of the body */
+  SPH_RETURN,        /* the deviator back to the yield limit; this and the two before only where a law sets a limit */
+  SPH_CRACK,         /* open flaws and their rates, from the stress that the solid bears */
+  SPH_RATES,         /* after the pair loop: new rates from the velocity gradient, and half the change of rates added */
+  SPH_STAGES
+};
+
+/* Of the modules that set the same quantity the last that is on acts; the others are off. */
+enum sph_module_sets { SPH_SETS_NOTHING, SPH_SETS_PRESSURE, SPH_SETS_YIELD_LIMIT };
+
+/* Members of struct sph_columns, `count` of them from `first` on. */
+struct sph_column_need {
+  size_t first, count;                                 /* SPH_COLUMNS_OF(member); a count of 0 ends a list */
+  double initial;                                      /* of all particles, other bodies' too */
+  bool (*needed)(const struct sph_body_physics *body); /* NULL: in every body that has the module */
+};
+
+struct sph_particles;
+struct sph_solid;
 
 struct sph_module {
   const char *name;   /* "yield" */
@@ -24,19 +54,30 @@ struct sph_module {
   const char *source; /* paper and equation */
   const char *when;   /* the condition that turns it on, for a person */
   bool (*on)(const struct sph_body_physics *body, const struct sph_inputs *inputs);
-  int bytes;               /* it adds per particle, to the moving system */
-  size_t hook[SPH_STAGES]; /* offset of its loop in struct sph_ranges (ranges.h); 0 = none */
+  enum sph_module_sets sets;
+  const struct sph_column_need *columns; /* NULL: none */
+  int bytes_in_pairs;                    /* per particle, of the pair loop's records */
+  double cost;                           /* ns of one core per particle-step, where it is an option (bench_sph) */
+  /* All optional. `check` refuses what the rows of inputs and materials cannot: STATUS_CONTENT, without "body n: ". */
+  status (*check)(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first, size_t last,
+                  struct error *error);
+  /* Makes body->prepared[index]; `free_prepared` frees it, `bytes_prepared` counts it. */
+  status (*prepare)(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error);
+  void (*free_prepared)(void *prepared);
+  size_t (*bytes_prepared)(const void *prepared);
+  /* Initial values of the body's columns. */
+  void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
 };
 
-extern const struct sph_module sph_elastic_module, sph_tillotson_module, sph_palpha_module, sph_tension_limit_module,
-    sph_yield_module, sph_weibull_module, sph_fracture_module, sph_viscosity_module, sph_artificial_stress_module,
-    sph_gradient_correction_module;
+#define SPH_MODULE_EXTERN(name) extern const struct sph_module sph_##name##_module;
+SPH_MODULE_LIST(SPH_MODULE_EXTERN, SPH_MODULE_EXTERN)
 
-/* Do pores that close damage this body? Every body with pores and strength. */
-bool sph_palpha_harms(const struct sph_body_physics *body);
-
-/* In the order in which they act; modules.c says why. */
-size_t sph_modules_count(void);
-const struct sph_module *sph_modules_at(size_t index);
+const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_index */
+/* The modules that act in a body, a bit each. */
+uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
+/* The columns that these modules need in a body, a bit each (SPH_COLUMNS_OF). */
+uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body);
+/* Bytes per particle that they add to the pair loop's records. */
+size_t sph_modules_bytes_in_pairs(uint64_t modules);
 
 #endif

@@ -8,23 +8,12 @@
 #include "engine/sph/step/system_layout.h"
 
 struct sph_ranges {
-  /* predict */
-  sph_hook motion_predict;  /* x v rho u h */
-  sph_hook elastic_predict; /* S */
-  sph_hook damage_predict;  /* D^(1/3) */
-  /* respond */
-  sph_hook tillotson;     /* P and c of rho and u */
-  sph_hook palpha;        /* the same with pores: alpha, P, c, f, S, damage by compaction */
-  sph_hook tension_limit; /* P >= -limit */
-  sph_hook yield;         /* S back to the yield surface */
-  sph_hook crack;         /* open flaws: rate and cap of D^(1/3) */
-  /* what the pair loop takes */
-  sph_hook output_fluid, output_whole, output_damaged;
-  /* rates */
-  sph_hook palpha_limit;                                  /* of the time step, by alpha */
+  const sph_hook *module[SPH_MODULES]; /* SPH_STAGES loops of each; NULL: the module has none */
+  /* What every body has, whatever its modules (motion_loop.h). */
+  sph_hook predict;                                       /* x v rho u h */
+  sph_hook output_fluid, output_whole, output_damaged;    /* what the pair loop takes */
   sph_hook hold;                                          /* held freedoms and damping: the new accelerations */
   sph_hook fluid_rates;                                   /* u */
-  sph_hook elastic_rates;                                 /* u and S */
   sph_hook correct_fluid, correct_whole, correct_damaged; /* v rho h, and the limits of the time step */
 };
 

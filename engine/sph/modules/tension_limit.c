@@ -1,9 +1,15 @@
-#include "engine/sph/modules/ranges.h"
-
+/* A spall strength for matter without flaws, and torn matter (tension_limit_loop.h).
+ *
+ *   material.tension_limit   Pa; off: no limit
+ *
+ * It reads the density of the solid matter that the equation of state publishes; it bounds the pressure and lowers the
+ * yield limit. */
 #include <math.h>
 
+#include "engine/sph/modules/ranges.h"
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)body, (void)inputs;
+  (void)inputs;
   return !body->flaws && body->material.tension_limit >= 0 && isfinite(body->material.tension_limit);
 }
 
@@ -20,6 +26,4 @@ const struct sph_module sph_tension_limit_module = {
     .source = "Asphaug & Melosh 1993; the fall with expansion, and what it limits with pores, are our choices",
     .when = "a material with a tension_limit in a body without flaws",
     .on = on,
-    .bytes = 0,
-    .hook = {[SPH_RESPOND] = offsetof(struct sph_ranges, tension_limit)},
 };

@@ -1,6 +1,7 @@
+/* Artificial viscosity: a term of the pair loop (pairs/pairs_kernels_sum.h).
+ *
+ *   viscosity.alpha, viscosity.beta   linear and quadratic; both 0: none */
 #include "engine/sph/modules/ranges.h"
-
-#include <math.h>
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)body, (void)inputs;
@@ -13,6 +14,4 @@ const struct sph_module sph_viscosity_module = {
     .source = "Monaghan 1992; Benz & Asphaug 1995, section 4.1",
     .when = "viscosity alpha or beta above 0",
     .on = on,
-    .bytes = 0,
-    .hook = {0},
 };

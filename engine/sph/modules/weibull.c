@@ -1,9 +1,13 @@
+/* The flaws of one body, ready for the step (weibull.h).
+ *
+ *   material.weibull.m, material.weibull.k   n(eps) = k eps^m flaws per volume open below the strain eps
+ *   fidelity.flaws                           exact or compact lists */
 #include "engine/sph/modules/weibull.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/modules/modules.h"
+#include "engine/sph/step/system_layout.h"
 
 struct sph_weibull_lists {
   size_t particles, count;
@@ -128,13 +132,29 @@ static bool on(const struct sph_body_physics *body, const struct sph_inputs *inp
   return body->flaws != NULL;
 }
 
+static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
+  struct sph_weibull_lists *lists = NULL;
+  const status code = sph_weibull_make(body->physics.flaws, inputs->fidelity.flaws == SPH_FLAWS_COMPACT, &lists, error);
+  body->prepared[SPH_MODULE_weibull] = lists;
+  return code;
+}
+
+static void free_prepared(void *prepared) {
+  sph_weibull_free(prepared);
+}
+
+static size_t bytes_prepared(const void *prepared) {
+  return sph_weibull_bytes(prepared);
+}
+
 const struct sph_module sph_weibull_module = {
     .name = "weibull",
     .doc = "Explicit flaws: each particle has its own list of strains at which a flaw opens, or that list's lowest, "
-           "number and "
-           "exponent (compact).",
+           "number and exponent (compact).",
     .source = "Benz & Asphaug 1995, eqs. 11 and 20",
     .when = "a body whose material has Weibull parameters",
     .on = on,
-    .bytes = 4 * sizeof(double), /* and the lists: about 12 thresholds per particle, or 20 bytes compact */
+    .prepare = prepare,
+    .free_prepared = free_prepared,
+    .bytes_prepared = bytes_prepared,
 };

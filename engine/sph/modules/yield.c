@@ -1,9 +1,18 @@
-#include "engine/sph/modules/ranges.h"
-
+/* Von Mises' yield limit, Y0 (1 - u/u_melt) and 0 beyond (yield_loop.h).
+ *
+ *   material.yield_stress   Y0; off: the body never yields
+ *   material.melt_energy    u_melt; off: the limit does not depend on the energy
+ *
+ * Another yield law is a module like this one: its loop of the stage SPH_YIELD writes the terms' yield_limit, a bound
+ * of sqrt(3 J2) of the solid's stress in Pa, and its descriptor sets SPH_SETS_YIELD_LIMIT. It stands behind this one in
+ * list.h and before tension_limit; where it is on, this one is off. It may read pressure (of the body), density, energy
+ * and, where sph_solid_has(body, SPH_COLUMN(damage)), D^(1/3) of this step's beginning. */
 #include <math.h>
 
+#include "engine/sph/modules/ranges.h"
+
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
-  (void)body, (void)inputs;
+  (void)inputs;
   return body->strength && isfinite(body->material.yield_stress);
 }
 
@@ -13,6 +22,5 @@ const struct sph_module sph_yield_module = {
     .source = "Benz & Asphaug 1995, eqs. 8-10, with the square root that eq. 9 lacks",
     .when = "a body with strength whose yield_stress is finite",
     .on = on,
-    .bytes = 0,
-    .hook = {[SPH_RESPOND] = offsetof(struct sph_ranges, yield)},
+    .sets = SPH_SETS_YIELD_LIMIT,
 };

@@ -49,12 +49,7 @@ static status make_system(struct sph_run *run, struct error *error) {
   struct sph_body_physics physics[SPH_RUN_BODIES];
   for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_inputs *body = b == 1 && sph_derived_has_projectile(in) ? &in->projectile : &in->target;
-    physics[b] = (struct sph_body_physics){.material = body->material,
-                                           .strength = body->strength,
-                                           .flaws = run->flaws[b],
-                                           .porosity = sph_derived_porous(body) ? &body->material.porosity : NULL};
-    if (field_is_off(body->material.yield_stress))
-      physics[b].material.yield_stress = HUGE_VAL; /* never yields */
+    physics[b] = sph_derived_physics(body, run->flaws[b]);
   }
   struct sph_domain domain = SPH_DOMAIN_OPEN;
   domain.spacing_over_h = run->range[0].nearest / run->range[0].h;

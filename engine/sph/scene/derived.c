@@ -22,6 +22,16 @@ bool sph_derived_porous(const struct sph_body_inputs *b) {
   return b->material.porosity.curve != SPH_CRUSH_NONE && b->material.porosity.distention > 1;
 }
 
+struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *b, const struct sph_flaws *flaws) {
+  struct sph_body_physics physics = {.material = b->material,
+                                     .strength = b->strength,
+                                     .flaws = flaws,
+                                     .porosity = sph_derived_porous(b) ? &b->material.porosity : NULL};
+  if (field_is_off(b->material.yield_stress))
+    physics.material.yield_stress = HUGE_VAL; /* never yields */
+  return physics;
+}
+
 double sph_derived_density(const struct sph_body_inputs *b) {
   return sph_derived_bulk_density(&b->material, sph_derived_porous(b) ? &b->material.porosity : NULL);
 }

@@ -9,32 +9,53 @@
 #include "engine/sph/modules/modules.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
+#include "engine/sph/step/system_layout.h"
 
-/* Bytes per particle of the moving system but its lists (sph_system_bytes of 10 000 particles; 100 less of 100 000),
- * what the gradient correction adds, lists at the usual h, and all that stands beside the system (particles as set up
- * and as read back; fragments at the end, when dust is many: what a whole process had at its peak, less the system). */
-enum {
-  BYTES_SYSTEM = 690,
-  BYTES_CORRECTION = 140,
-  BYTES_LISTS = 108,
-  BYTES_BESIDE = 450,
-  BYTES_PER_FLAW = 16,
-  BYTES_ANYWAY = 4 << 20
-};
-/* Nanoseconds of one core for a particle-step of the basalt sphere, and what two options add (bench_sph; AVX-512 at 2
- * to 3 GHz). */
-enum { COST_DOUBLE = 260, COST_FLOAT = 160, COST_CORRECTION = 65, COST_ARTIFICIAL = 70 };
+/* What stands beside the moving system, per particle (as set up and as read back; fragments at the end, when dust is
+ * many: the peak of a whole process, less the system), per flaw, and in any case. */
+enum { BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
+/* Nanoseconds of one core for a particle-step of the basalt sphere without options (bench_sph; AVX-512 at 2 to 3 GHz);
+ * modules say what options add. */
+enum { COST_DOUBLE = 260, COST_FLOAT = 160 };
 static const double euler = 0.57721566490153286;
 
 static double flaws_expected(double particles) {
   return particles * (log(fmax(particles, 1)) + euler);
 }
 
+enum { BODIES = 2 };
+
+/* What the bodies of a scene bring into the moving system. */
+struct need {
+  uint64_t modules[BODIES], columns; /* bits (modules.h): of each body, of all */
+  size_t pairs;                      /* bytes per particle of the pair loop's options */
+  size_t bytes;                      /* per particle, of modules alone */
+};
+
+static struct need need_of(const struct sph_inputs *in) {
+  static const struct sph_flaws some = {.particles = 1};
+  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far;
+  struct need need = {.columns = sph_system_columns_of_all(damped)};
+  uint64_t of_modules = 0;
+  for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
+    const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
+    const struct sph_body_physics physics = sph_derived_physics(body, sph_derived_cracks(body) ? &some : NULL);
+    need.modules[b] = sph_modules_of(&physics, in);
+    of_modules |= sph_modules_columns(need.modules[b], &physics);
+    need.pairs = sph_modules_bytes_in_pairs(need.modules[b]); /* options of the pair loop: the same for all bodies */
+  }
+  need.columns |= of_modules;
+  need.bytes = need.pairs;
+  for (; of_modules; of_modules &= of_modules - 1)
+    need.bytes += sizeof(double);
+  return need;
+}
+
 size_t sph_describe_memory(const struct sph_inputs *in) {
-  double particles = sph_derived_particles(in),
-         lists = pow(in->fidelity.smoothing / SPH_BODIES_H * (1 + in->fidelity.skin), 3) * BYTES_LISTS;
-  double bytes = BYTES_ANYWAY + particles * (BYTES_SYSTEM + BYTES_BESIDE + lists +
-                                             (in->method.gradient_correction ? BYTES_CORRECTION : 0));
+  const struct need need = need_of(in);
+  const double particles = sph_derived_particles(in);
+  double bytes = BYTES_ANYWAY +
+                 particles * (sph_system_bytes_expected(need.columns, need.pairs, &in->fidelity) + BYTES_BESIDE);
   if (sph_derived_cracks(&in->target))
     bytes += flaws_expected(particles) * BYTES_PER_FLAW;
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
@@ -49,9 +70,11 @@ static double steps_expected(const struct sph_inputs *in) {
 
 /* Particle-steps of one core in a second. */
 static double speed_expected(const struct sph_inputs *in) {
+  const struct need need = need_of(in);
   double cost = in->fidelity.precision == SPH_FLOAT ? COST_FLOAT : COST_DOUBLE;
-  cost += (in->method.gradient_correction ? COST_CORRECTION : 0) +
-          (in->method.artificial_stress > 0 ? COST_ARTIFICIAL : 0);
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if ((need.modules[0] | need.modules[1]) >> m & 1)
+      cost += sph_modules_at(m)->cost;
   return 1e9 / cost;
 }
 
@@ -116,32 +139,19 @@ static void protocol(const struct sph_inputs *in, FILE *out) {
   }
 }
 
-/* Who asks for a module: the bodies for which it is on. */
-static bool modules(const struct sph_inputs *in, FILE *out) {
-  struct sph_flaws some = {.particles = 1};
-  int bytes = 0;
-  for (size_t k = 0; k < sph_modules_count(); k++) {
-    const struct sph_module *module = sph_modules_at(k);
-    const char *who[3] = {"", "target", "projectile"};
-    int on = 0;
-    for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
-      const struct sph_body_inputs *body = b ? &in->projectile : &in->target;
-      struct sph_body_physics physics = {.material = body->material,
-                                         .strength = body->strength,
-                                         .flaws = sph_derived_cracks(body) ? &some : NULL,
-                                         .porosity = sph_derived_porous(body) ? &body->material.porosity : NULL};
-      if (module->on(&physics, in))
-        on |= 1 << b;
-    }
+/* The modules, and the bodies in which each is on. */
+static void modules(const struct sph_inputs *in, FILE *out) {
+  static const char *const who[] = {"", "target", "projectile", "target, projectile"};
+  const struct need need = need_of(in);
+  for (size_t m = 0; m < SPH_MODULES; m++) {
+    const struct sph_module *module = sph_modules_at(m);
+    const unsigned on = (unsigned)(need.modules[0] >> m & 1) | (unsigned)(need.modules[1] >> m & 1) << 1;
     if (on)
-      fprintf(out, "  %s (%s%s%s): %s [%s]\n", module->name, on & 1 ? who[1] : "", on == 3 ? ", " : "",
-              on & 2 ? who[2] : "", module->doc, module->source);
+      fprintf(out, "  %s (%s): %s [%s]\n", module->name, who[on], module->doc, module->source);
     else
       fprintf(out, "  %s: no; on with %s\n", module->name, module->when);
-    bytes += on ? module->bytes : 0;
   }
-  fprintf(out, "  these modules add %d bytes per particle\n", bytes);
-  return true;
+  fprintf(out, "  these modules add %zu bytes per particle\n", need.bytes);
 }
 
 static void numbers(const struct sph_inputs *in, FILE *out) {

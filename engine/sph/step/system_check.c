@@ -3,40 +3,18 @@
 
 #include "engine/sph/step/system_layout.h"
 
-/* Material values that the body's physics needs. */
-static status check_body(size_t index, const struct sph_body_physics *b, size_t particles, struct error *error) {
-  const struct sph_material *m = &b->material;
-  const struct {
-    const char *name;
-    double value;
-    bool needed, may_be_zero;
-  } needs[] = {
-      {"density", m->density, true, false},
-      {"tillotson.A", m->tillotson.A, true, false},
-      {"tillotson.B", m->tillotson.B, true, true},
-      {"tillotson.a", m->tillotson.a, true, true},
-      {"tillotson.b", m->tillotson.b, true, true},
-      {"tillotson.alpha", m->tillotson.alpha, true, true},
-      {"tillotson.beta", m->tillotson.beta, true, true},
-      {"tillotson.E0", m->tillotson.E0, true, false},
-      {"tillotson.E_iv", m->tillotson.E_iv, true, false},
-      {"tillotson.E_cv", m->tillotson.E_cv, true, false},
-      {"shear_modulus", m->shear_modulus, b->strength, true},
-  };
-  for (size_t k = 0; k < sizeof needs / sizeof *needs; k++) {
-    const double v = needs[k].value;
-    if (needs[k].needed && !(isfinite(v) && (needs[k].may_be_zero ? v >= 0 : v > 0)))
-      return status_fail(error, STATUS_CONTENT, "body %zu: %s is %g; its physics needs a number %s", index,
-                         needs[k].name, v, needs[k].may_be_zero ? "not below 0" : "above 0");
+/* What its modules ask of a body, whose particles are first .. last - 1. */
+static status check_body(size_t index, const struct sph_body_physics *b, const struct sph_particles *particles,
+                         size_t first, size_t last, const struct sph_inputs *inputs, struct error *error) {
+  for (size_t m = 0; m < SPH_MODULES; m++) {
+    const struct sph_module *module = sph_modules_at(m);
+    struct error why = {0};
+    if (!module->check || !module->on(b, inputs))
+      continue;
+    const status code = module->check(b, particles, first, last, &why);
+    if (code)
+      return status_fail(error, code, "body %zu: %.3000s", index, why.message);
   }
-  if (b->strength && !(m->yield_stress >= 0)) /* infinite: never yields */
-    return status_fail(error, STATUS_CONTENT, "body %zu: yield_stress is %g; a body with strength needs one", index,
-                       m->yield_stress);
-  if (b->flaws && !(b->strength && m->shear_modulus > 0))
-    return status_fail(error, STATUS_CONTENT, "body %zu has flaws but no strength: only a solid cracks", index);
-  if (b->flaws && b->flaws->particles != particles)
-    return status_fail(error, STATUS_CONTENT, "body %zu has %zu particles, but flaws for %zu", index, particles,
-                       b->flaws->particles);
   return STATUS_OK;
 }
 
@@ -85,8 +63,7 @@ static status check_domain(const struct sph_domain *domain, struct error *error)
   return STATUS_OK;
 }
 
-static status check_particles(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies,
-                              struct error *error) {
+static status check_particles(const struct sph_particles *p, size_t body_count, struct error *error) {
   if (p->n == 0 || p->n >= UINT32_MAX)
     return status_fail(error, STATUS_CONTENT, "there are %zu particles", p->n);
   for (size_t i = 0; i < p->n; i++) {
@@ -100,18 +77,21 @@ static status check_particles(const struct sph_particles *p, size_t body_count, 
     if (p->body[i] >= body_count || (i > 0 && p->body[i] < p->body[i - 1]))
       return status_fail(error, STATUS_CONTENT, "particle %zu belongs to body %u of %zu, or out of order", i,
                          (unsigned)p->body[i], body_count);
-    const struct sph_palpha *pores = bodies[p->body[i]].porosity;
-    if (pores && p->distention && !(p->distention[i] >= 1 && p->distention[i] <= pores->distention))
-      return status_fail(error, STATUS_CONTENT,
-                         "particle %zu has distention %g; it must lie between 1 and its body's %g", i, p->distention[i],
-                         pores->distention);
   }
   return STATUS_OK;
 }
 
-/* Refused before anything is allocated: what the columns, lists and flaws of n particles take is about this. */
-static status check_memory(const struct sph_particles *p, struct error *error) {
-  const double bytes = (double)p->n * (SPH_COLUMNS * sizeof(double) + 60.0 * sizeof(uint32_t) + 400);
+/* Refused before anything is allocated. */
+static status check_memory(const struct sph_particles *p, size_t body_count, const struct sph_body_physics *bodies,
+                           const struct sph_inputs *inputs, struct error *error) {
+  uint64_t columns = sph_system_columns_of_all(p->damping != NULL);
+  size_t pairs = 0;
+  for (size_t b = 0; b < body_count; b++) {
+    const uint64_t modules = sph_modules_of(&bodies[b], inputs);
+    columns |= sph_modules_columns(modules, &bodies[b]);
+    pairs = sph_modules_bytes_in_pairs(modules); /* options of the pair loop: the same for all bodies */
+  }
+  const double bytes = (double)p->n * sph_system_bytes_expected(columns, pairs, &inputs->fidelity);
   const double there = (double)sph_particles_memory();
   if (bytes > there)
     return status_fail(error, STATUS_MEMORY,
@@ -126,14 +106,14 @@ status sph_system_check(const struct sph_particles *particles, size_t body_count
   if (!code)
     code = check_domain(domain, error);
   if (!code)
-    code = check_particles(particles, body_count, bodies, error);
-  size_t low = 0;
+    code = check_particles(particles, body_count, error);
+  size_t first = 0;
   for (size_t b = 0; b < body_count && !code; b++) {
-    size_t high = low;
-    while (high < particles->n && particles->body[high] == b)
-      high++;
-    code = check_body(b, &bodies[b], high - low, error);
-    low = high;
+    size_t last = first;
+    while (last < particles->n && particles->body[last] == b)
+      last++;
+    code = check_body(b, &bodies[b], particles, first, last, inputs, error);
+    first = last;
   }
-  return code ? code : check_memory(particles, error);
+  return code ? code : check_memory(particles, body_count, bodies, inputs, error);
 }

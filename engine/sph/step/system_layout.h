@@ -8,13 +8,12 @@
 #define CLAST_ENGINE_SPH_STEP_SYSTEM_LAYOUT_H
 
 #include "engine/sph/modules/modules.h"
-#include "engine/sph/modules/weibull.h"
 #include "engine/sph/step/system.h"
 
-enum { SPH_BLOCK = SPH_PIECE, SPH_HOOKS = 24 };
+enum { SPH_BLOCK = SPH_PIECE, SPH_HOOKS = 4 + SPH_MODULES * SPH_STAGES };
 
-/* Columns, all of n. Not allocated (NULL) where no body needs them: system_create.c has the rows. The deviator is kept
- * by five components, xx xy xz yy yz: its trace is zero by construction. */
+/* Columns, all of n. NULL where no body needs them: the modules (and system_columns.c, for what every body has) say
+ * which a body needs. The deviator is kept by five components, xx xy xz yy yz: its trace is zero by construction. */
 struct sph_columns {
   double *x, *y, *z;
   double *vx, *vy, *vz;
@@ -25,53 +24,75 @@ struct sph_columns {
   double *density_rate, *energy_rate;
   double *pressure, *sound_speed; /* undamaged, bulk */
   double *pressure_term;          /* -P/rho^2, damaged: what the pair loop takes */
+  double *damping;
+  /* elastic */
   double *stress[5], *stress_rate[5];
-  double *stress_factor;                     /* (1-D)/rho^2: what the pair loop takes times the stress */
-  double *damage, *damage_rate, *damage_cap; /* D^(1/3); the rate holds until the cap; */
-  double *weakest;                           /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
+  double *stress_factor; /* (1-D)/rho^2: what the pair loop takes times the stress */
+  double *two_mu;        /* Pa, effective, where a module publishes it; else the material's holds */
+  /* fracture */
+  double *damage;                   /* D^(1/3), of all causes */
+  double *flaw_damage;              /* D^(1/3) by flaws, where `damage` has other causes, too */
+  double *damage_rate, *damage_cap; /* by flaws; the rate holds until the cap */
+  double *weakest;                  /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
   double *open_from, *open_below,
       *open_rate;     /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
   double *crack_rate; /* c_g / R_s, 1/s */
-  double *damping;
-  /* pores */
+  /* palpha */
   double *distention, *rest_distention; /* alpha, now and at P = 0 (palpha.h) */
   double *shear_factor;                 /* f of the last evaluation */
-  double *tension, *compaction;         /* D^(1/3) by flaws and by closed pores, of which `damage` is made */
-  double *correction[6];                /* B, of the gradient correction, at the last pair loop */
+  double *compaction;                   /* D^(1/3) by closed pores */
+  /* gradient correction */
+  double *correction[6]; /* B, at the last pair loop */
 };
+
+/* The place of a column among all, and a run of them: their first and how many. */
+#define SPH_COLUMN(name)     (offsetof(struct sph_columns, name) / sizeof(double *))
+#define SPH_COLUMNS_OF(name) SPH_COLUMN(name), sizeof(((struct sph_columns *)NULL)->name) / sizeof(double *)
+enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
+_Static_assert(SPH_COLUMNS <= 64, "a bit per column");
 
 struct sph_solid;
 struct sph_block;
 typedef void (*sph_hook)(struct sph_system *system, const struct sph_solid *body, struct sph_block *block);
 
+/* What modules tell each other about the particles of a block (0 is its first) while the hooks before the pair loop
+ * run. */
+struct sph_terms {
+  const double *solid_density;   /* kg/m^3; the density of the body unless a module publishes another */
+  double yield_limit[SPH_BLOCK]; /* Pa, bound of sqrt(3 J2) of the stored deviator */
+  double published[SPH_BLOCK];   /* memory of the module that publishes solid_density */
+};
+
 /* A fixed piece of a body that lies within one piece of the pair loop, and what its hooks found there in this step. */
 struct sph_block {
   size_t low, high;
+  struct sph_terms *terms;          /* only while `before` hooks run */
   const struct sph_pair_sums *sums; /* of its particles, the first of them at 0; only while `after` hooks run */
   uint32_t body;
   double worst[SPH_LIMITS];    /* largest inverse of a time step, 1/s, per limiter */
   double clamped;              /* J */
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
-  double slack; /* m: so much of its slack each particle has left at least; below 0 one may have none left, once looked
-                   up has none */
+  double slack;   /* m: every particle has at least this much of its slack left; below 0 one may have none left */
   double swollen; /* volume that lists reach, over that of the supports, beyond what the skin adds; summed */
   size_t lost;    /* place of a particle that is no longer finite, or n */
 };
 
-/* A body's constants, made once from its material. */
+/* A body: its modules and its constants, made once from its material. */
 struct sph_solid {
-  struct sph_body_physics physics; /* porosity points at `porosity`, flaws is NULL (see weibull) */
-  struct sph_palpha_law porosity;
-  struct sph_weibull_lists *weibull;
-  size_t first, last; /* its particles */
-  double young;       /* Pa, 9 K mu/(3 K + mu) */
-  double crack_speed; /* m/s, 0.4 sqrt((K + 4 mu/3)/rho0) */
-  double density;     /* kg/m^3 at the start: material density over distention */
+  struct sph_body_physics physics; /* flaws is NULL (modules/weibull.c has them) */
+  uint64_t modules, columns;       /* that it has: bits by enum sph_module_index, by SPH_COLUMN */
+  void *prepared[SPH_MODULES];     /* by its modules (sph_module.prepare) */
+  size_t first, last;              /* its particles */
+  double density;                  /* kg/m^3 at the start, bulk */
   double lowest_density;
   sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* what a step calls, in order */
   size_t before_count, after_count;
 };
+
+static inline bool sph_solid_has(const struct sph_solid *body, size_t column) {
+  return body->columns >> column & 1;
+}
 
 /* All that changes from step to step and is no column. */
 struct sph_progress {
@@ -103,17 +124,24 @@ struct sph_system {
   size_t body_count, block_count;
   struct sph_solid *solid; /* its bodies */
   struct sph_block *block;
-  bool strength, fracture, pores; /* some body has it */
-  bool damage;                    /* of flaws, or of pores that close */
+  uint64_t columns; /* that some body needs */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
   int fault; /* enum sph_fault; in words: */
   char failure[256];
 };
 
-/* Pointer slots of the columns that exist, in a fixed order. Returns how many. */
-enum { SPH_COLUMNS = sizeof(struct sph_columns) / sizeof(double *) };
-size_t sph_system_create_columns(struct sph_system *system, double **slot[SPH_COLUMNS]);
+/* system_columns.c: which columns every body has, a bit each. */
+uint64_t sph_system_columns_of_all(bool damped);
+/* Allocates the system's columns and the arrays beside them, at their initial values. STATUS_MEMORY. */
+status sph_system_columns_take(struct sph_system *system, const struct sph_particles *particles, struct error *error);
+/* Pointers to the columns that exist, in a fixed order. Returns how many. */
+size_t sph_system_columns_list(const struct sph_system *system, double *column[SPH_COLUMNS]);
+/* Values of particles as they are set up; sph_system_read is the way back. */
+void sph_system_columns_fill(struct sph_system *system, const struct sph_particles *particles);
+
+/* x within the periodic box; as it is where `length` is NaN. */
+double sph_system_wrapped(double x, double length);
 
 /* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,

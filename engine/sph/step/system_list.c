@@ -23,8 +23,8 @@ static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
 
 /* What stands at order[i] comes to i. */
 static bool permute(struct sph_system *s) {
-  double **slot[SPH_COLUMNS];
-  const size_t columns = sph_system_create_columns(s, slot),
+  double *all[SPH_COLUMNS];
+  const size_t columns = sph_system_columns_list(s, all),
                threads = s->in.fidelity.threads > 1 ? (size_t)s->in.fidelity.threads : 1;
   double *room = malloc(threads * s->n * sizeof *room);
   if (!room) {
@@ -41,7 +41,7 @@ static bool permute(struct sph_system *s) {
 #else
     double *scratch = room;
 #endif
-    double *column = *slot[k];
+    double *column = all[k];
     for (size_t i = 0; i < s->n; i++)
       scratch[i] = column[s->order[i]];
     memcpy(column, scratch, s->n * sizeof(double));
@@ -78,13 +78,6 @@ static bool sort(struct sph_system *s) {
   return permute(s);
 }
 
-static double wrapped(double x, double length) {
-  if (!(length > 0))
-    return x;
-  x -= length * floor(x / length);
-  return x < length ? x : 0;
-}
-
 static void wrap(struct sph_system *s) {
   const double *length = s->domain.periodic;
   if (!(length[0] > 0 || length[1] > 0 || length[2] > 0))
@@ -93,9 +86,9 @@ static void wrap(struct sph_system *s) {
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t i = 0; i < s->n; i++) {
-    s->c.x[i] = wrapped(s->c.x[i], length[0]);
-    s->c.y[i] = wrapped(s->c.y[i], length[1]);
-    s->c.z[i] = wrapped(s->c.z[i], length[2]);
+    s->c.x[i] = sph_system_wrapped(s->c.x[i], length[0]);
+    s->c.y[i] = sph_system_wrapped(s->c.y[i], length[1]);
+    s->c.z[i] = sph_system_wrapped(s->c.z[i], length[2]);
   }
 }
 

@@ -13,13 +13,13 @@ struct section {
 enum { SECTIONS = SPH_COLUMNS + 10 };
 
 static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
-  double **slot[SPH_COLUMNS];
+  double *column[SPH_COLUMNS];
   size_t count = 0;
-  const size_t columns = sph_system_create_columns(s, slot);
+  const size_t columns = sph_system_columns_list(s, column);
   out[count++] = (struct section){&s->n, sizeof s->n};
   out[count++] = (struct section){&s->now, sizeof s->now};
   for (size_t k = 0; k < columns; k++)
-    out[count++] = (struct section){*slot[k], s->n * sizeof(double)};
+    out[count++] = (struct section){column[k], s->n * sizeof(double)};
   for (int k = 0; k < 5; k++)
     out[count++] = (struct section){sph_pairs_listed(s->pairs)[k], s->n * sizeof(double)};
   out[count++] = (struct section){s->id, s->n * sizeof *s->id};

@@ -33,7 +33,11 @@ static void before_pairs(struct sph_system *s) {
 #endif
   for (size_t k = 0; k < s->block_count; k++) {
     struct sph_block *block = &s->block[k];
+    struct sph_terms terms;
+    terms.solid_density = s->c.density + block->low;
+    block->terms = &terms;
     run(s, block, s->solid[block->body].before, s->solid[block->body].before_count);
+    block->terms = NULL;
     if (block->slack < 0)
       look_up_slack(s, block);
   }

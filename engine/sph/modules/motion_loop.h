@@ -4,8 +4,8 @@
  * positions x* = x + dt v + dt^2/2 a are not corrected. That is velocity Verlet for forces of positions alone and
  * second order for all. h keeps h^3 rho: h <- h (rho_old/rho_new)^(1/3), the integral of dh/dt = -(h/3) (drho/dt)/rho,
  * within bounds. */
-#ifndef CLAST_ENGINE_SPH_MODULES_MOTION_RANGE_H
-#define CLAST_ENGINE_SPH_MODULES_MOTION_RANGE_H
+#ifndef CLAST_ENGINE_SPH_MODULES_MOTION_LOOP_H
+#define CLAST_ENGINE_SPH_MODULES_MOTION_LOOP_H
 
 #include "engine/sph/modules/range_tools.h"
 
@@ -80,6 +80,29 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid
     term[i] = -pressure[i] / (density[i] * density[i]);
 }
 
+/* Of the stored stress (1-D) S acts, and (1-D) P where P < 0. */
+RANGE_INLINE void motion_output(struct sph_system *s, struct sph_block *b, bool damaged) {
+  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
+  double *term = s->c.pressure_term, *factor = s->c.stress_factor;
+  RANGE_LOOP
+  for (size_t i = b->low; i < b->high; i++) {
+    const double inverse = 1 / (density[i] * density[i]);
+    const double left = damaged ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
+    const double share = damaged ? left * inverse : inverse, p = pressure[i];
+    term[i] = -p * (p < 0 ? share : inverse);
+    factor[i] = share;
+  }
+}
+
+RANGE_HOOK void motion_output_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  motion_output(s, b, false);
+}
+RANGE_HOOK void motion_output_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  motion_output(s, b, true);
+}
+
 /* The step damps what would grow from step to step where rate times dt is above 1 (v' = v - rate dt v*: the roots of
  * its two time levels leave the unit circle there). */
 static const double MOTION_DAMPING_SHARE = 0.9;
@@ -144,7 +167,7 @@ enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
  *   density   a tenth of 1/|div v|
  *   damage    damage_step over the rate of D^(1/3) */
 RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool strength,
-                                 bool fracture) {
+                                 bool damaged) {
   const double half = 0.5 * s->dt;
   const size_t low = b->low, n = b->high - b->low;
   double *const velocity[3] = {s->c.vx, s->c.vy, s->c.vz};
@@ -181,7 +204,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double size = range_smaller(range_larger(grown, h_low * h0[i]), h_high * h0[i]);
     growth[k] = range_larger(size - h[i], 0);
     h[i] = size;
-    const double left = fracture ? 1 - d[i] * d[i] * d[i] : 1;
+    const double left = damaged ? 1 - d[i] * d[i] * d[i] : 1;
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
     /* Debris without neighbours (signal < 0) has nobody to send a wave to: hot, it would halve the step of all. It must
@@ -205,7 +228,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   b->worst[SPH_LIMIT_FORCE] = sqrt(sqrt(range_largest(force, n))) / s->in.fidelity.cfl;
   b->worst[SPH_LIMIT_ENERGY] = MOTION_ENERGY_SHARE_INVERSE * range_largest(heat, n);
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
-  if (fracture && s->c.damage_rate)
+  if (damaged && s->c.damage_rate)
     b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->in.fidelity.damage_step;
   if (!lost)
     return;

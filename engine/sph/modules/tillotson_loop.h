@@ -1,7 +1,7 @@
 /* Tillotson pressure and sound speed over a range. Nearly all matter is cold or compressed: that branch is computed for
  * all (no transcendental function in it), and the few hot, expanded particles are done again by the general form. */
-#ifndef CLAST_ENGINE_SPH_MODULES_TILLOTSON_RANGE_H
-#define CLAST_ENGINE_SPH_MODULES_TILLOTSON_RANGE_H
+#ifndef CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
+#define CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
 
 #include "engine/sph/material/tillotson.h"
 #include "engine/sph/modules/range_tools.h"
@@ -35,16 +35,6 @@ RANGE_HOOK void tillotson_range(struct sph_system *s, const struct sph_solid *bo
     }
 }
 
-RANGE_HOOK void tillotson_tension_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double lowest = -body->physics.material.tension_limit, per_density = 1 / body->physics.material.density;
-  const double *density = s->c.density, *distention = s->c.distention;
-  double *pressure = s->c.pressure;
-  RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++) {
-    const double of_solid = (distention ? distention[i] : 1) * density[i] * per_density;
-    const double whole = range_smaller(range_larger(10 * (of_solid - 0.9), 0), 1); /* torn matter does not pull */
-    pressure[i] = range_larger(pressure[i], lowest * whole);
-  }
-}
+static const sph_hook tillotson_hooks[SPH_STAGES] = {[SPH_RESPOND] = tillotson_range};
 
 #endif

@@ -7,13 +7,16 @@
  * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
  * of it. (Where the two larger values meet, rounding of det S makes that 1e-8 of |S|, as with acos.) */
-#ifndef CLAST_ENGINE_SPH_MODULES_CRACK_RANGE_H
-#define CLAST_ENGINE_SPH_MODULES_CRACK_RANGE_H
+#ifndef CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
+#define CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
 
+#include "engine/sph/material/derived.h"
+#include "engine/sph/material/fracture.h"
 #include "engine/sph/modules/range_tools.h"
+#include "engine/sph/modules/weibull.h"
 
 /* cos(2/3 acos(s)) on [0, 1]: Chebyshev interpolation, in powers of 2 s - 1. */
-RANGE_INLINE double crack_third_cosine(double s) {
+RANGE_INLINE double fracture_third_cosine(double s) {
   static const double c[17] = {0.766044443118978,       0.24740906632284043,     -0.015509188436481955,
                                0.002466352815691789,    -0.0005041246913301313,  0.00011642544451832467,
                                -2.891993360699116e-05,  7.54113105182103e-06,    -2.035886681257262e-06,
@@ -28,23 +31,23 @@ RANGE_INLINE double crack_third_cosine(double s) {
 }
 
 /* Largest principal value of a deviator. */
-RANGE_INLINE double crack_largest(double xx, double xy, double xz, double yy, double yz) {
+RANGE_INLINE double fracture_largest(double xx, double xy, double xz, double yy, double yz) {
   const double zz = -(xx + yy);
   const double third = (xx * xx + yy * yy + xx * yy + xy * xy + xz * xz + yz * yz) * (1.0 / 3); /* J2/3 */
   const double size = sqrt(third), inverse = third > 0 ? 1 / (size * third) : 0;
   const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   const double cosine = range_smaller(range_larger(0.5 * det * inverse, -1), 1);
-  return 2 * size * crack_third_cosine(sqrt(0.5 + 0.5 * cosine));
+  return 2 * size * fracture_third_cosine(sqrt(0.5 + 0.5 * cosine));
 }
 
-/* What flaws have done: all damage, unless pores close in this body, too (palpha_range adds the two up). */
-RANGE_INLINE double *crack_own_damage(const struct sph_system *s, const struct sph_solid *body) {
-  return body->physics.porosity ? s->c.tension : s->c.damage;
+/* D^(1/3) by flaws: all damage, unless another module damages the body, too. */
+RANGE_INLINE double *fracture_own_damage(const struct sph_system *s, const struct sph_solid *body) {
+  return sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : s->c.damage;
 }
 
-RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+RANGE_HOOK void fracture_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double dt = s->dt, *rate = s->c.damage_rate, *cap = s->c.damage_cap;
-  double *d = crack_own_damage(s, body);
+  double *d = fracture_own_damage(s, body);
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++)
     d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
@@ -52,22 +55,24 @@ RANGE_HOOK void crack_damage_predict(struct sph_system *s, const struct sph_soli
 
 /* One particle whose strain (times E) is known. Its list is looked up only when the strain has left the bracket between
  * two thresholds. */
-RANGE_INLINE void crack_open(struct sph_system *s, const struct sph_solid *body, size_t i, double stress) {
+RANGE_INLINE void fracture_open(struct sph_system *s, const struct sph_solid *body, size_t i, double young,
+                                double stress) {
   if (!(stress >= s->c.open_from[i] && stress < s->c.open_below[i])) {
+    const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
     const size_t own = s->id[i] - body->first;
     double bracket[2];
-    const uint32_t open = sph_weibull_active(body->weibull, own, stress / body->young, bracket);
-    s->c.open_from[i] = bracket[0] * body->young;
-    s->c.open_below[i] = bracket[1] * body->young;
+    const uint32_t open = sph_weibull_active(flaws, own, stress / young, bracket);
+    s->c.open_from[i] = bracket[0] * young;
+    s->c.open_below[i] = bracket[1] * young;
     s->c.open_rate[i] = open ? sph_fracture_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
-    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(body->weibull, own), s->in.fracture.cap) : 0;
+    s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(flaws, own), s->in.fracture.cap) : 0;
   }
-  s->c.damage_rate[i] = crack_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
+  s->c.damage_rate[i] = fracture_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
   if (s->c.damage[i] >= 1)
     s->c.weakest[i] = INFINITY; /* nothing left to open */
 }
 
-RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = s->c.damage;
   const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
   const double *yz = s->c.stress[4];
@@ -89,14 +94,18 @@ RANGE_HOOK void crack_range(struct sph_system *s, const struct sph_solid *body, 
   }
   if (!count)
     return;
+  const double young = sph_derived_young_modulus(&body->physics.material);
   RANGE_LOOP
   for (size_t m = 0; m < count; m++) {
     const size_t i = low + which[m];
     const double left = 1 - d[i] * d[i] * d[i], p = pressure[i];
-    strain[m] = crack_largest(xx[i], xy[i], xz[i], yy[i], yz[i]) - (p > 0 ? p / range_larger(left, 1e-30) : p);
+    strain[m] = fracture_largest(xx[i], xy[i], xz[i], yy[i], yz[i]) - (p > 0 ? p / range_larger(left, 1e-30) : p);
   }
   for (size_t m = 0; m < count; m++)
-    crack_open(s, body, low + which[m], strain[m]);
+    fracture_open(s, body, low + which[m], young, strain[m]);
 }
+
+static const sph_hook fracture_hooks[SPH_STAGES] =
+    {[SPH_PREDICT] = fracture_damage_predict, [SPH_CRACK] = fracture_range};
 
 #endif

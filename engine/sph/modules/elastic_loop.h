@@ -1,10 +1,9 @@
-/* Hooke's law in a turning frame, and what damage leaves of the stress.
+/* Hooke's law in a turning frame, and the return of the stress to the yield limit.
  *
  * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in
- * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged; of it (1-D)
- * S acts, and (1-D) P where P < 0. */
-#ifndef CLAST_ENGINE_SPH_MODULES_ELASTIC_RANGE_H
-#define CLAST_ENGINE_SPH_MODULES_ELASTIC_RANGE_H
+ * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged. */
+#ifndef CLAST_ENGINE_SPH_MODULES_ELASTIC_LOOP_H
+#define CLAST_ENGINE_SPH_MODULES_ELASTIC_LOOP_H
 
 #include "engine/sph/modules/range_tools.h"
 
@@ -20,34 +19,12 @@ RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *bo
   }
 }
 
-RANGE_INLINE void elastic_output(struct sph_system *s, struct sph_block *b, bool fracture) {
-  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
-  double *term = s->c.pressure_term, *factor = s->c.stress_factor;
-  RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++) {
-    const double inverse = 1 / (density[i] * density[i]);
-    const double left = fracture ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
-    const double share = fracture ? left * inverse : inverse, p = pressure[i];
-    term[i] = -p * (p < 0 ? share : inverse);
-    factor[i] = share;
-  }
-}
-
-RANGE_HOOK void elastic_output_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  (void)body;
-  elastic_output(s, b, false);
-}
-RANGE_HOOK void elastic_output_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  (void)body;
-  elastic_output(s, b, true);
-}
-
 /* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]; with the gradient
  * correction eps of the uncorrected gradient, which is conjugate to the forces (pairs.h). */
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b,
-                                     bool pores) {
-  const double half = 0.5 * s->dt, solid_two_mu = 2 * body->physics.material.shear_modulus;
-  const double *f = s->c.shear_factor, *alpha = s->c.distention;
+                                     bool published) {
+  const double half = 0.5 * s->dt, material_two_mu = 2 * body->physics.material.shear_modulus;
+  const double *effective = s->c.two_mu;
   double *const *g = b->sums->gradient;
   const double *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3], *g4 = g[4], *g5 = g[5], *g6 = g[6], *g7 = g[7],
                *g8 = g[8];
@@ -65,7 +42,7 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
     const size_t i = low + k;
     const double exx = g0[k], eyy = g4[k], ezz = g8[k], divergence = exx + eyy + ezz, third = divergence * (1.0 / 3);
     const double exy = 0.5 * (g1[k] + g3[k]), exz = 0.5 * (g2[k] + g6[k]), eyz = 0.5 * (g5[k] + g7[k]);
-    const double two_mu = pores ? solid_two_mu * f[i] / alpha[i] : solid_two_mu;
+    const double two_mu = published ? effective[i] : material_two_mu;
     const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
     const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
     const double axx = factor[i] * xx, ayy = factor[i] * yy; /* what acts */
@@ -90,13 +67,32 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
   }
 }
 
-/* With pores: dS/dt = (f/alpha) 2 mu dev(eps) + R S - S R; the share of alpha's change, -(S/alpha) dalpha/dt, is in
- * palpha_range. */
 RANGE_HOOK void elastic_rates(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  if (body->physics.porosity)
+  if (sph_solid_has(body, SPH_COLUMN(two_mu)))
     elastic_rates_loop(s, body, b, true);
   else
     elastic_rates_loop(s, body, b, false);
 }
+
+/* S -> f S, f = min(1, Y/sqrt(3 J2)), J2 = S:S/2 [BA95 eqs. 8-10; eq. 9 lacks the root: only with it does S land on
+ * the yield surface]. Y is the yield limit that the modules have left in the terms. */
+RANGE_HOOK void elastic_return(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  const double *limit = b->terms->yield_limit;
+  double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3], *yz = s->c.stress[4];
+  const size_t low = b->low, n = b->high - b->low;
+  RANGE_LOOP
+  for (size_t k = 0; k < n; k++) {
+    const size_t i = low + k;
+    const double y = limit[k];
+    const double J2 = xx[i] * xx[i] + yy[i] * yy[i] + xx[i] * yy[i] + xy[i] * xy[i] + xz[i] * xz[i] + yz[i] * yz[i];
+    const double size2 = 3 * J2;
+    const double f = size2 > y * y ? y / sqrt(size2) : 1;
+    xx[i] *= f, xy[i] *= f, xz[i] *= f, yy[i] *= f, yz[i] *= f;
+  }
+}
+
+static const sph_hook elastic_hooks[SPH_STAGES] =
+    {[SPH_PREDICT] = elastic_predict, [SPH_RETURN] = elastic_return, [SPH_RATES] = elastic_rates};
 
 #endif

@@ -4,8 +4,8 @@
  * Newton steps from the last alpha are done for all, without branches, so that they vectorise; the others (crushing,
  * hot, far off) are done again by sph_palpha_update. An elastic particle is accepted when it missed by less than 1e-9
  * before the second step, as there. */
-#ifndef CLAST_ENGINE_SPH_MODULES_PALPHA_RANGE_H
-#define CLAST_ENGINE_SPH_MODULES_PALPHA_RANGE_H
+#ifndef CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
+#define CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
 
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/modules/range_tools.h"
@@ -61,7 +61,7 @@ RANGE_INLINE double palpha_shear_factor(const struct palpha_try *t, double rho) 
 }
 
 RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, double *was) {
-  const struct sph_palpha_law *law = &body->porosity;
+  const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
   const struct sph_tillotson *solid = &law->solid;
   const struct palpha_constants constants = {solid->A,
                                              solid->B,
@@ -114,14 +114,14 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
     pressure[i] = now.pressure;
     sound_speed[i] = now.sound_speed;
     f[i] = now.shear_factor;
-    if (now.rest < rest[i] && s->c.compaction)
+    if (now.rest < rest[i] && sph_solid_has(body, SPH_COLUMN(compaction)))
       s->c.compaction[i] = sph_palpha_damage_cbrt(law, now.rest);
     rest[i] = now.rest;
   }
 }
 
 /* The stored deviator is the bulk one, S_s/alpha: alpha S holds while alpha changes, dS/dt = ... - (S/alpha) dalpha/dt.
- * Total damage D = min(1, D_tension + D_compaction). */
+ * Total damage D = min(1, D by flaws + D by compaction). */
 RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   double was[SPH_BLOCK];
   palpha_respond(s, body, b, was);
@@ -129,6 +129,7 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
     return;
   const size_t low = b->low, n = b->high - b->low;
   const double *alpha = s->c.distention;
+  const double *flaws = sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : NULL;
   for (int c = 0; c < 5; c++) {
     double *stress = s->c.stress[c];
     RANGE_LOOP
@@ -136,12 +137,41 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
       stress[low + k] *= was[k] / alpha[low + k];
   }
   for (size_t i = low; i < low + n; i++) {
-    const double closed = s->c.compaction[i], open = s->c.tension && body->weibull ? s->c.tension[i] : 0;
+    const double closed = s->c.compaction[i], open = flaws ? flaws[i] : 0;
     if (closed == 0)
       s->c.damage[i] = open;
     else
       s->c.damage[i] = range_smaller(1, cbrt(closed * closed * closed + open * open * open));
   }
+}
+
+/* For other modules: the density of the solid between the pores, and the effective shear modulus, (f/alpha) 2 mu
+ * [JBM08]. (The share of alpha's change in dS/dt is in palpha_range.) */
+RANGE_HOOK void palpha_publish(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  const double *alpha = s->c.distention, *f = s->c.shear_factor, *density = s->c.density;
+  double *solid_density = b->terms->published, *two_mu = s->c.two_mu;
+  const double solid_two_mu = 2 * body->physics.material.shear_modulus;
+  const size_t low = b->low, n = b->high - b->low;
+  RANGE_LOOP
+  for (size_t k = 0; k < n; k++)
+    solid_density[k] = alpha[low + k] * density[low + k];
+  b->terms->solid_density = solid_density;
+  if (!sph_solid_has(body, SPH_COLUMN(two_mu)))
+    return;
+  RANGE_LOOP
+  for (size_t i = low; i < low + n; i++)
+    two_mu[i] = solid_two_mu * f[i] / alpha[i];
+}
+
+/* The stored S is that of the body: |S| <= Y/alpha. */
+RANGE_HOOK void palpha_yield(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  (void)body;
+  const double *alpha = s->c.distention + b->low;
+  double *limit = b->terms->yield_limit;
+  const size_t n = b->high - b->low;
+  RANGE_LOOP
+  for (size_t k = 0; k < n; k++)
+    limit[k] /= alpha[k];
 }
 
 /* |dalpha| <= distention_step a step, by dalpha/dt = (f - 1) (alpha/rho) drho/dt; matter that a Courant step may bring
@@ -151,7 +181,8 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
   const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8];
   const double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor, *density = s->c.density;
   const double *pressure = s->c.pressure, *sound_speed = s->c.sound_speed, *h = s->c.h;
-  const double edge = body->porosity.given.elastic_pressure, cfl = s->in.fidelity.cfl;
+  const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
+  const double edge = law->given.elastic_pressure, cfl = s->in.fidelity.cfl;
   double inverse[SPH_BLOCK];
   const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
@@ -164,5 +195,10 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
   }
   b->worst[SPH_LIMIT_DISTENTION] = range_largest(inverse, n) / (0.75 * s->in.fidelity.distention_step);
 }
+
+static const sph_hook palpha_hooks[SPH_STAGES] = {[SPH_RESPOND] = palpha_range,
+                                                  [SPH_PUBLISH] = palpha_publish,
+                                                  [SPH_YIELD_OF_BODY] = palpha_yield,
+                                                  [SPH_RATES] = palpha_limit};
 
 #endif

@@ -1,0 +1,36 @@
+/* The modules of the solid, in the order in which they act within a stage. This is the only list of them: the
+ * descriptors (modules.c) and the loops of every CPU class (ranges_body.h, which defines SPH_MODULE_LOOPS) follow.
+ *
+ *   elastic      first: its stress is what the others act on
+ *   tillotson, palpha   the last of them that is on sets the pressure
+ *   yield        sets the yield limit; a later law that is on replaces it
+ *   tension_limit   after the pressure that it bounds, after the yield limit that it lowers
+ *   weibull, fracture   the stress that opens flaws is one that the solid can bear
+ *   the rest are options of the pair loop and have no loops here
+ *
+ * To add a module: NAME.c with its descriptor, NAME_loop.h with its loops, and a line in each of the two lists below.
+ * Values that it needs of a material are rows of material/material_rows.h. */
+#ifdef SPH_MODULE_LOOPS
+
+#include "engine/sph/modules/elastic_loop.h"
+#include "engine/sph/modules/fracture_loop.h"
+#include "engine/sph/modules/palpha_loop.h"
+#include "engine/sph/modules/tension_limit_loop.h"
+#include "engine/sph/modules/tillotson_loop.h"
+#include "engine/sph/modules/yield_loop.h"
+
+#else
+
+#define SPH_MODULE_LIST(WITH_LOOPS, WITHOUT)                                                                           \
+  WITH_LOOPS(elastic)                                                                                                  \
+  WITH_LOOPS(tillotson)                                                                                                \
+  WITH_LOOPS(palpha)                                                                                                   \
+  WITH_LOOPS(yield)                                                                                                    \
+  WITH_LOOPS(tension_limit)                                                                                            \
+  WITHOUT(weibull)                                                                                                     \
+  WITH_LOOPS(fracture)                                                                                                 \
+  WITHOUT(viscosity)                                                                                                   \
+  WITHOUT(artificial_stress)                                                                                           \
+  WITHOUT(gradient_correction)
+
+#endif
