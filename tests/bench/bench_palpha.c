@@ -42,9 +42,11 @@ static struct sph_system *make(const struct sph_material *material, bool pores, 
   struct sph_flaws *list = NULL;
   if (flaws && sph_flaws_make(&law, large, NULL, NULL, 0, &list, NULL) != STATUS_OK)
     exit(1);
-  struct sph_body_physics bodies[2] =
-      {{.material = *material, .strength = true, .flaws = list, .porosity = pores ? &material->porosity : NULL},
-       {.material = *material, .strength = true}};
+  struct sph_body_physics bodies[2] = {{.material = *material, .strength = true, .flaws = list},
+                                       {.material = *material, .strength = true}};
+  bodies[1].material.porosity.curve = SPH_CRUSH_NONE;
+  if (!pores)
+    bodies[0].material.porosity.curve = SPH_CRUSH_NONE;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
   struct error error;
@@ -100,7 +102,7 @@ int main(void) {
       if (pores < 2) {
         sph_hook hook = s->ranges->module[pores ? SPH_MODULE_palpha : SPH_MODULE_tillotson][SPH_RESPOND];
         for (size_t k = 0; pores && k < s->block_count; k++)
-          if (!s->solid[s->block[k].body].physics.porosity)
+          if (!(s->solid[s->block[k].body].modules >> SPH_MODULE_palpha & 1))
             s->block[k].high = s->block[k].low; /* the projectile has none */
         loops[pores] = fmin(loops[pores], loop(s, hook));
         if (pores)

@@ -243,7 +243,7 @@ static void sizes_follow(void **state) {
 static void pores(void **state) {
   (void)state;
   struct sph_inputs in = good("target: {material: {name: porous-ice}}");
-  assert_true(in.target.material.porosity.distention == 1.5 && sph_derived_porous(&in.target));
+  assert_true(in.target.material.porosity.distention == 1.5 && sph_derived_porous(&in.target.material));
   assert_true(fabs(in.target.material.porosity.fraction - 1.0 / 3) < 1e-15);
   assert_true(fabs(sph_derived_density(&in.target) - 917 / 1.5) < 1e-12);
   assert_true(fabs(sph_derived_target_mass(&in) / (4.0 / 3 * M_PI * 2.7e-5 * 917 / 1.5) - 1) < 1e-12);
@@ -266,7 +266,7 @@ static void pores(void **state) {
   assert_true(fabs(thin.fragments.static_strength / (young * tgamma(1 + 1 / 9.6) * pow(kv / 2.5, -1 / 9.6)) - 1) <
               1e-12);
   in = good("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
-  assert_true(!sph_derived_porous(&in.target) && sph_derived_density(&in.target) == 917);
+  assert_true(!sph_derived_porous(&in.target.material) && sph_derived_density(&in.target) == 917);
   accepted("target: {material: {name: porous-ice, porosity: {distention: 1}}}");
   in = good("projectile: {material: {name: pumice, porosity: {distention: 3}}}\nimpact: {projectile: mass, mass: 1 g}");
   assert_true(fabs(sph_derived_projectile_mass(&in) / 1e-3 - 1) < 1e-12 &&

@@ -3,6 +3,7 @@
 #include "tests/support/sph_case.h"
 
 #include "engine/random.h"
+#include "engine/sph/material/palpha.h"
 #include "engine/sph/material/tillotson.h"
 
 static const struct sph_palpha porous_basalt = {.distention = 1.5,
@@ -32,7 +33,9 @@ static struct sph_system *cube(const struct sph_palpha *porosity, bool strength,
   struct sph_particles *p = case_make(&block, 1, 2700 / (porosity ? porosity->distention : 1), 1.05,
                                       SPH_WITH_STRESS | SPH_WITH_DAMAGE);
   struct sph_flaws *list = flaws ? case_flaws(p->n, 1e-30, 1, 0) : NULL;
-  struct sph_body_physics body = {.material = case_basalt, .strength = strength, .porosity = porosity, .flaws = list};
+  struct sph_body_physics body = {.material = case_basalt, .strength = strength, .flaws = list};
+  if (porosity)
+    body.material.porosity = *porosity;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   *count = p->n;
@@ -218,10 +221,9 @@ static struct impact impact_of(const struct sph_palpha *target, const struct sph
   const size_t count[2] = {600, 125};
   for (int b = 0; b < 2; b++) {
     m.flaws[b] = strength ? case_flaws(count[b], 1e-300, 1, (uint64_t)b) : NULL;
-    bodies[b] = (struct sph_body_physics){.material = case_basalt,
-                                          .strength = strength,
-                                          .flaws = m.flaws[b],
-                                          .porosity = b ? projectile : target};
+    bodies[b] = (struct sph_body_physics){.material = case_basalt, .strength = strength, .flaws = m.flaws[b]};
+    if (b ? projectile : target)
+      bodies[b].material.porosity = b ? *projectile : *target;
   }
   struct case_parameters parameters = case_parameters_default();
   m.s = case_system(m.p, 2, bodies, &parameters);
@@ -359,15 +361,16 @@ static void refused(void **state) {
   (void)state;
   struct case_block block = {.count = {3, 3, 3}, .spacing = 1e-3};
   struct sph_particles *p = case_make(&block, 1, 1800, 1.05, SPH_WITH_DISTENTION);
-  struct sph_palpha bad = porous_basalt;
-  struct sph_body_physics body = {.material = case_basalt, .porosity = &bad};
+  struct sph_body_physics body = {.material = case_basalt};
+  struct sph_palpha *bad = &body.material.porosity;
+  *bad = porous_basalt;
   struct case_parameters parameters = case_parameters_default();
   struct sph_system *s;
   struct error error;
-  bad.solid_pressure = 1;
+  bad->solid_pressure = 1;
   assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "solid_pressure"));
-  bad = porous_basalt;
+  *bad = porous_basalt;
   p->distention[5] = 1.6;
   assert_int_equal(sph_system_create(p, 1, &body, &parameters.in, &parameters.domain, &s, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "distention"));

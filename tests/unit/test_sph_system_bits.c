@@ -67,10 +67,8 @@ static struct collision everything_on(int precision) {
       c.particles->damping[i] = 1e6;
   }
   c.flaws[0] = case_flaws(target, (double)target * pow(spacing, 3), 7, 0);
-  c.physics[0] = (struct sph_body_physics){.material = case_basalt,
-                                           .strength = true,
-                                           .flaws = c.flaws[0],
-                                           .porosity = &pores};
+  c.physics[0] = (struct sph_body_physics){.material = case_basalt, .strength = true, .flaws = c.flaws[0]};
+  c.physics[0].material.porosity = pores;
   c.physics[1] = (struct sph_body_physics){.material = case_basalt, .strength = true};
   c.physics[1].material.tension_limit = 1e8;
   c.parameters.in.method.artificial_stress = 0.2;

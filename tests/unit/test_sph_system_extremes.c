@@ -91,7 +91,8 @@ static void not_thinner_than_alone(void **state) {
   struct sph_particles *p = case_make(&block, 1, 2700.0 / 50, 1.21, SPH_WITH_DISTENTION);
   for (size_t i = 0; i < p->n; i++)
     p->distention[i] = 50;
-  const struct sph_body_physics body = {.material = case_basalt, .porosity = &pores};
+  struct sph_body_physics body = {.material = case_basalt};
+  body.material.porosity = pores;
   struct sph_system *s = case_system(p, 1, &body, &parameters);
   case_steps(s, 3);
   assert_true(sph_system_ledger(s).density_held == 0);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "engine/sph/material/derived.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/material/tillotson.h"
 
@@ -57,9 +58,10 @@ static struct sph_front front_of(const struct matter *m, const struct sph_front 
   return front_to(m, ahead, sqrt(low * high));
 }
 
-status sph_plane_shock(const struct sph_material *material, bool porous, double piston, struct sph_plane_shock *out,
+status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error) {
   static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};
+  const bool porous = sph_derived_porous(material);
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
   status code = porous ? sph_palpha_prepare(&material->porosity, material, &law, error) : STATUS_OK;

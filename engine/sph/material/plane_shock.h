@@ -27,9 +27,9 @@ struct sph_plane_shock {
   struct sph_front precursor, shock; /* all NaN where there is none */
 };
 
-/* `porous`: the material's crush curve counts. STATUS_CONTENT: values that make no law, or a piston so fast (or slow)
+/* STATUS_CONTENT: values that make no law, or a piston so fast (or slow)
  * that no pressure up to 1e16 Pa holds it. */
-status sph_plane_shock(const struct sph_material *material, bool porous, double piston, struct sph_plane_shock *out,
+status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error);
 
 #endif

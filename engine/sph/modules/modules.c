@@ -30,6 +30,14 @@ uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *bo
   return columns;
 }
 
+void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
+                        struct sph_particles *particles, size_t first, size_t last) {
+  const uint64_t modules = sph_modules_of(body, inputs);
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (modules >> m & 1 && list[m]->set_up)
+      list[m]->set_up(body, particles, first, last);
+}
+
 size_t sph_modules_bytes_in_pairs(uint64_t modules) {
   size_t bytes = 0;
   for (size_t m = 0; m < SPH_MODULES; m++)

@@ -61,6 +61,8 @@ struct sph_module {
   /* All optional. `check` refuses what the rows of inputs and materials cannot: STATUS_CONTENT, without "body n: ". */
   status (*check)(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first, size_t last,
                   struct error *error);
+  /* The particles first .. last - 1 of a body that is set up at rest. */
+  void (*set_up)(const struct sph_body_physics *body, struct sph_particles *particles, size_t first, size_t last);
   /* Makes body->prepared[index]; `free_prepared` frees it, `bytes_prepared` counts it. */
   status (*prepare)(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error);
   void (*free_prepared)(void *prepared);
@@ -77,6 +79,9 @@ const struct sph_module *sph_modules_at(size_t index); /* by enum sph_module_ind
 uint64_t sph_modules_of(const struct sph_body_physics *body, const struct sph_inputs *inputs);
 /* The columns that these modules need in a body, a bit each (SPH_COLUMNS_OF). */
 uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *body);
+/* What the modules of a body give its particles at rest. */
+void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
+                        struct sph_particles *particles, size_t first, size_t last);
 /* Bytes per particle that they add to the pair loop's records. */
 size_t sph_modules_bytes_in_pairs(uint64_t modules);
 

@@ -15,7 +15,7 @@
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
-  return body->porosity && body->porosity->distention != 1;
+  return body->material.porosity.curve != SPH_CRUSH_NONE && body->material.porosity.distention != 1;
 }
 
 static bool with_strength(const struct sph_body_physics *body) {
@@ -28,7 +28,7 @@ static bool with_flaws(const struct sph_body_physics *body) {
 
 static status check(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first,
                     size_t last, struct error *error) {
-  const double top = body->porosity->distention;
+  const double top = body->material.porosity.distention;
   for (size_t i = first; particles->distention && i < last; i++)
     if (!(particles->distention[i] >= 1 && particles->distention[i] <= top))
       return status_fail(error, STATUS_CONTENT,
@@ -37,13 +37,18 @@ static status check(const struct sph_body_physics *body, const struct sph_partic
   return STATUS_OK;
 }
 
+static void set_up(const struct sph_body_physics *body, struct sph_particles *particles, size_t first, size_t last) {
+  for (size_t i = first; i < last; i++)
+    particles->distention[i] = body->material.porosity.distention;
+}
+
 static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
   struct sph_palpha_law *law = malloc(sizeof *law);
   (void)inputs;
   if (!law)
     return status_fail(error, STATUS_MEMORY, "no memory for a crush curve");
   body->prepared[SPH_MODULE_palpha] = law;
-  return sph_palpha_prepare(body->physics.porosity, &body->physics.material, law, error);
+  return sph_palpha_prepare(&body->physics.material.porosity, &body->physics.material, law, error);
 }
 
 static size_t bytes_prepared(const void *prepared) {
@@ -88,6 +93,7 @@ const struct sph_module sph_palpha_module = {
     .sets = SPH_SETS_PRESSURE,
     .columns = columns,
     .check = check,
+    .set_up = set_up,
     .prepare = prepare,
     .free_prepared = free,
     .bytes_prepared = bytes_prepared,

@@ -15,15 +15,15 @@ static bool on(const struct sph_body_physics *body, const struct sph_inputs *inp
 
 const struct sph_module sph_tension_limit_module = {
     .name = "tension_limit",
-    .doc = "Pressure is not below -tension_limit: a spall strength for matter without flaws. It falls with expansion "
-           "and is gone at "
-           "0.9 of the density: torn matter does not pull (nor shear), or P/rho^2 of thin debris would grow without "
-           "bound. "
-           "With pores it limits the pressure of the porous body, whatever its distention: tensile and spall strengths "
-           "are measured on the "
-           "body as it is. (The yield stress is the solid's and the body's is Y/alpha, as in the papers, which limit "
-           "tension by flaws.)",
-    .source = "Asphaug & Melosh 1993; the fall with expansion, and what it limits with pores, are our choices",
+    .doc =
+        "Pressure is not below -tension_limit: a spall strength for matter without flaws. It falls with expansion "
+        "and is gone at "
+        "0.9 of the density: torn matter does not pull (nor shear), or P/rho^2 of thin debris would grow without "
+        "bound. "
+        "It is that of the body as it is, whatever the density of its solid matter: so tensile and spall strengths are "
+        "measured.",
+    .source = "Asphaug & Melosh 1993; the fall with expansion, and that it is the strength of the body as it is, are "
+              "our choices",
     .when = "a material with a tension_limit in a body without flaws",
     .on = on,
 };

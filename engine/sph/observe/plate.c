@@ -16,7 +16,7 @@ status sph_plate_start(struct sph_run *run, struct error *error) {
   run->layer = malloc((size_t)in->fidelity.points * sizeof *run->layer);
   if (!run->layer)
     return status_fail(error, STATUS_MEMORY, "no memory for %lld layers", (long long)in->fidelity.points);
-  return sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &run->exact, error);
+  return sph_plane_shock(&in->target.material, in->piston.speed, &run->exact, error);
 }
 
 static size_t layer_of(const struct sph_run *run, size_t i) {

@@ -155,7 +155,7 @@ static double rebound(const struct sph_run *run) {
 /* The impact moves down along z at x = y = 0. The axis of an oblique impact is not followed. */
 struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
-  bool porous = sph_derived_porous(&in->target);
+  bool porous = sph_derived_porous(&in->target.material);
   return (struct sph_crater_options){.first = run->range[0].first,
                                      .count = run->range[0].n,
                                      .mass = run->range[0].mass,

@@ -8,6 +8,7 @@
 
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
+#include "engine/sph/step/system_layout.h"
 
 enum {
   LOOK_INTERVAL = 8,    /* steps between looks at the damage */
@@ -88,9 +89,7 @@ status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph
   run->seed = seed;
   if ((code = sph_protocol_bodies(run, error)) || (code = make_system(run, error)))
     goto cleanup;
-  int arrays = (run->start->stress[0] ? SPH_WITH_STRESS : 0) | (run->start->damage_cbrt ? SPH_WITH_DAMAGE : 0) |
-               (run->start->distention ? SPH_WITH_DISTENTION : 0);
-  if ((code = sph_particles_make(run->start->n, arrays, &run->now, error)) ||
+  if ((code = sph_particles_make(run->start->n, sph_system_columns_arrays(run->system->columns), &run->now, error)) ||
       (code = sph_protocol_record_start(run, error)))
     goto cleanup;
   for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own */

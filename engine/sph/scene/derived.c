@@ -8,7 +8,7 @@
 enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
 
 double sph_derived_wave_speed(const struct sph_body_inputs *b) {
-  return sph_derived_longitudinal_speed(&b->material, b->strength, sph_derived_porous(b));
+  return sph_derived_longitudinal_speed(&b->material, b->strength);
 }
 
 bool sph_derived_cracks(const struct sph_body_inputs *b) {
@@ -18,22 +18,15 @@ bool sph_derived_cracks(const struct sph_body_inputs *b) {
   return b->fracture == SPH_FRACTURE_ON || known;
 }
 
-bool sph_derived_porous(const struct sph_body_inputs *b) {
-  return b->material.porosity.curve != SPH_CRUSH_NONE && b->material.porosity.distention > 1;
-}
-
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *b, const struct sph_flaws *flaws) {
-  struct sph_body_physics physics = {.material = b->material,
-                                     .strength = b->strength,
-                                     .flaws = flaws,
-                                     .porosity = sph_derived_porous(b) ? &b->material.porosity : NULL};
+  struct sph_body_physics physics = {.material = b->material, .strength = b->strength, .flaws = flaws};
   if (field_is_off(b->material.yield_stress))
     physics.material.yield_stress = HUGE_VAL; /* never yields */
   return physics;
 }
 
 double sph_derived_density(const struct sph_body_inputs *b) {
-  return sph_derived_bulk_density(&b->material, sph_derived_porous(b) ? &b->material.porosity : NULL);
+  return sph_derived_bulk_density(&b->material);
 }
 
 bool sph_derived_has_projectile(const struct sph_inputs *in) {

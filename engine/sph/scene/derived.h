@@ -13,11 +13,9 @@ int sph_derived_bodies(const struct sph_inputs *inputs);
 bool sph_derived_has_intruder(const struct sph_inputs *inputs);
 /* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
 bool sph_derived_cracks(const struct sph_body_inputs *body);
-/* Has it pores? A crush curve and a distention above 1. */
-bool sph_derived_porous(const struct sph_body_inputs *body);
 /* What the moving system is told of the body. */
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *body, const struct sph_flaws *flaws);
-double sph_derived_density(const struct sph_body_inputs *body);    /* kg/m^3, with the pores */
+double sph_derived_density(const struct sph_body_inputs *body);    /* kg/m^3, bulk */
 double sph_derived_wave_speed(const struct sph_body_inputs *body); /* m/s, longitudinal */
 /* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);

@@ -194,8 +194,7 @@ static void front(const char *name, const struct sph_front *f, FILE *out) {
 
 static void plate(const struct sph_inputs *in, FILE *out) {
   struct sph_plane_shock exact;
-  if (in->kind != SPH_PISTON ||
-      sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, NULL))
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
     return;
   if (exact.has_precursor)
     front("elastic precursor", &exact.precursor, out);

@@ -164,7 +164,7 @@ static status check_piston(const struct sph_inputs *in, struct error *error) {
   if (in->fidelity.points < 20)
     REFUSE("fidelity.points is %lld: a shock is spread over about ten particles, so give 20 or more",
            (long long)in->fidelity.points);
-  return sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, error);
+  return sph_plane_shock(&in->target.material, in->piston.speed, &exact, error);
 }
 
 static status check_protocol(const struct sph_inputs *in, struct error *error) {

@@ -63,7 +63,7 @@ static double static_strength(const struct sph_inputs *in) {
  * missing. */
 static double plate_time(const struct sph_inputs *in) {
   struct sph_plane_shock exact;
-  if (sph_plane_shock(&in->target.material, sph_derived_porous(&in->target), in->piston.speed, &exact, NULL))
+  if (sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
     return NAN;
   return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }

@@ -6,6 +6,7 @@
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
+#include "engine/sph/step/system_layout.h"
 
 enum { Z = 2 };
 
@@ -55,18 +56,17 @@ static void place_plate(struct sph_run *run) {
   }
 }
 
+/* The arrays that the modules of the bodies need, and those of the protocol. */
 static int arrays_of(const struct sph_inputs *in) {
-  int arrays = 0;
+  static const struct sph_flaws some = {.particles = 1};
+  uint64_t columns = 0;
   const struct sph_body_inputs *bodies[] = {&in->target, &in->projectile};
   for (int b = 0; b < 1 + sph_derived_has_projectile(in); b++) {
-    if (bodies[b]->strength)
-      arrays |= SPH_WITH_STRESS;
-    if (sph_derived_cracks(bodies[b]) ||
-        (bodies[b]->strength && sph_derived_porous(bodies[b]))) /* pores that close harm, too */
-      arrays |= SPH_WITH_DAMAGE;
-    if (sph_derived_porous(bodies[b]))
-      arrays |= SPH_WITH_DISTENTION;
+    const struct sph_body_physics physics = sph_derived_physics(bodies[b],
+                                                                sph_derived_cracks(bodies[b]) ? &some : NULL);
+    columns |= sph_modules_columns(sph_modules_of(&physics, in), &physics);
   }
+  int arrays = sph_system_columns_arrays(columns);
   if (in->kind == SPH_STRETCH || in->kind == SPH_PISTON)
     arrays |= SPH_WITH_HELD;
   if (in->target.shape == SPH_SHAPE_BOX && in->sides.far)
@@ -204,14 +204,6 @@ static status damp(struct sph_run *run, struct error *error) {
                      in->sides.depth, run->range[0].spacing);
 }
 
-static void open_pores(struct sph_run *run) {
-  for (int b = 0; run->start->distention && b < run->body_count; b++)
-    for (size_t i = run->range[b].first; i < run->range[b].first + run->range[b].n; i++)
-      run->start->distention[i] = sph_derived_porous(inputs_of(run, b))
-                                      ? inputs_of(run, b)->material.porosity.distention
-                                      : 1;
-}
-
 status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   double flight[3] = {0, 0, 0};
@@ -231,7 +223,10 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
   if (code || (code = make_bodies(run, error)))
     return code;
   run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
-  open_pores(run);
+  for (int b = 0; b < run->body_count; b++) {
+    const struct sph_body_physics physics = sph_derived_physics(inputs_of(run, b), NULL);
+    sph_modules_set_up(&physics, in, run->start, run->range[b].first, run->range[b].first + run->range[b].n);
+  }
   if ((code = set_in_motion(run, flight, error)) || (code = damp(run, error)))
     return code;
   return make_flaws(run, error);

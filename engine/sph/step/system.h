@@ -10,16 +10,14 @@
 #include "engine/sph/body/particles.h"
 #include "engine/sph/material/fracture.h"
 #include "engine/sph/material/material.h"
-#include "engine/sph/material/palpha.h"
 #include "engine/sph/pairs/pairs.h"
 #include "engine/sph/scene/inputs.h"
 
 /* What one body is made of, and which physics it has. Off means absent: nothing is stored or called for it. */
 struct sph_body_physics {
   struct sph_material material;
-  bool strength;                     /* deviatoric stress: Hooke, Jaumann, radial return */
-  const struct sph_flaws *flaws;     /* NULL: no fracture; by the body's own particle order; copied at create */
-  const struct sph_palpha *porosity; /* NULL: solid; copied at create */
+  bool strength;                 /* deviatoric stress: Hooke, Jaumann, radial return */
+  const struct sph_flaws *flaws; /* NULL: no fracture; by the body's own particle order; copied at create */
 };
 
 /* What the step needs beside bodies and inputs: it follows from where the particles stand, or is a bound. */

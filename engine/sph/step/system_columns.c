@@ -49,6 +49,17 @@ uint64_t sph_system_columns_of_all(bool damped) {
   return (end - first) | (damped ? UINT64_C(1) << SPH_COLUMN(damping) : 0);
 }
 
+int sph_system_columns_arrays(uint64_t columns) {
+  int arrays = 0;
+  if (columns >> SPH_COLUMN(stress) & 1)
+    arrays |= SPH_WITH_STRESS;
+  if (columns >> SPH_COLUMN(damage) & 1)
+    arrays |= SPH_WITH_DAMAGE;
+  if (columns >> SPH_COLUMN(distention) & 1)
+    arrays |= SPH_WITH_DISTENTION;
+  return arrays;
+}
+
 size_t sph_system_columns_list(const struct sph_system *s, double *column[SPH_COLUMNS]) {
   struct sph_columns columns = s->c;
   size_t count = 0;

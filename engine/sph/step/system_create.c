@@ -55,10 +55,9 @@ static status make_body(struct sph_system *s, struct sph_solid *b, struct error 
     if (code)
       return code;
   }
-  b->density = sph_derived_bulk_density(&b->physics.material, b->physics.porosity);
+  b->density = sph_derived_bulk_density(&b->physics.material);
   b->lowest_density = s->domain.lowest_density * b->density;
-  b->physics.porosity = NULL; /* the caller's, as the flaws are; the modules have made what they need of them */
-  b->physics.flaws = NULL;
+  b->physics.flaws = NULL; /* the caller's; the modules have made what they need of them */
   choose_hooks(s, b);
   return STATUS_OK;
 }

@@ -133,6 +133,8 @@ struct sph_system {
 
 /* system_columns.c: which columns every body has, a bit each. */
 uint64_t sph_system_columns_of_all(bool damped);
+/* The arrays of particles (enum sph_particle_arrays) that go with such columns. */
+int sph_system_columns_arrays(uint64_t columns);
 /* Allocates the system's columns and the arrays beside them, at their initial values. STATUS_MEMORY. */
 status sph_system_columns_take(struct sph_system *system, const struct sph_particles *particles, struct error *error);
 /* Pointers to the columns that exist, in a fixed order. Returns how many. */
