@@ -41,7 +41,7 @@ struct sph_material {
   double melt_energy;   /* J/kg, NaN: yield does not depend on u */
   double tension_limit; /* Pa: lowest pressure is -tension_limit where no flaws limit tension; NaN = off */
   struct sph_weibull weibull;
-  struct sph_palpha porosity; /* whether a body has pores is said by sph_body_physics.porosity */
+  struct sph_palpha porosity;
 };
 
 #endif
