@@ -55,7 +55,7 @@ size_t sph_describe_memory(const struct sph_inputs *in) {
   const struct need need = need_of(in);
   const double particles = sph_derived_particles(in);
   double bytes = BYTES_ANYWAY +
-                 particles * (sph_system_bytes_expected(need.columns, need.pairs, &in->fidelity) + BYTES_BESIDE);
+                 particles * (sph_system_columns_bytes(need.columns, need.pairs, &in->fidelity) + BYTES_BESIDE);
   if (sph_derived_cracks(&in->target))
     bytes += flaws_expected(particles) * BYTES_PER_FLAW;
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;

@@ -58,6 +58,10 @@ double sph_system_neighbours(const struct sph_system *s) {
   return s->now.neighbours;
 }
 
+void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
+  sph_system_columns_read(s, out);
+}
+
 static const struct sph_weibull_lists *flaws_of(const struct sph_solid *body) {
   return body->prepared[SPH_MODULE_weibull];
 }

@@ -67,9 +67,6 @@ status sph_system_create(const struct sph_particles *particles, size_t body_coun
                          const struct sph_domain *domain, struct sph_system **out, struct error *error);
 void sph_system_free(struct sph_system *system); /* NULL is fine */
 size_t sph_system_bytes(const struct sph_system *system);
-/* Bytes per particle, near enough to plan, of a system with these columns (a bit each, of all bodies) and `pairs` bytes
- * for options of the pair loop. Flaws are not in it. */
-double sph_system_bytes_expected(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity);
 
 enum sph_fault { /* why a step could not be done */
                  SPH_FAULT_NONE,

@@ -91,7 +91,7 @@ static status check_memory(const struct sph_particles *p, size_t body_count, con
     columns |= sph_modules_columns(modules, &bodies[b]);
     pairs = sph_modules_bytes_in_pairs(modules); /* options of the pair loop: the same for all bodies */
   }
-  const double bytes = (double)p->n * sph_system_bytes_expected(columns, pairs, &inputs->fidelity);
+  const double bytes = (double)p->n * sph_system_columns_bytes(columns, pairs, &inputs->fidelity);
   const double there = (double)sph_particles_memory();
   if (bytes > there)
     return status_fail(error, STATUS_MEMORY,

@@ -134,14 +134,14 @@ void sph_system_columns_fill(struct sph_system *s, const struct sph_particles *p
         sph_modules_at(m)->fill(s, &s->solid[b], p);
 }
 
-double sph_system_bytes_expected(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity) {
+double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity) {
   enum { RECORDS = 378, LISTS = 108 }; /* of the pair loop at the usual h, without options; measured */
   const double reach = fidelity->smoothing / SPH_BODIES_H * (1 + fidelity->skin);
   return (double)(count_of(columns) * sizeof(double) + 2 * sizeof(uint32_t) + pairs + RECORDS) +
          LISTS * reach * reach * reach;
 }
 
-double sph_system_wrapped(double x, double length) {
+double sph_system_columns_wrapped(double x, double length) {
   if (!(length > 0))
     return x;
   x -= length * floor(x / length);
@@ -154,7 +154,7 @@ static void read_column(const struct sph_system *s, const double *column, double
     out[s->id[i]] = column ? column[i] : absent;
 }
 
-void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
+void sph_system_columns_read(const struct sph_system *s, struct sph_particles *out) {
   struct sph_columns columns = s->c;
   for (size_t k = 0; k < sizeof carried / sizeof *carried; k++) {
     double *to = member_of(out, carried[k].member);
@@ -162,7 +162,7 @@ void sph_system_read(const struct sph_system *s, struct sph_particles *out) {
       continue;
     read_column(s, *slot_of(&columns, carried[k].column), to, carried[k].absent);
     for (size_t i = 0; k < 3 && i < s->n; i++)
-      to[i] = sph_system_wrapped(to[i], s->domain.periodic[k]);
+      to[i] = sph_system_columns_wrapped(to[i], s->domain.periodic[k]);
   }
   for (size_t i = 0; out->stress[0] && s->c.stress[0] && i < s->n; i++) {
     for (int k = 0; k < 5; k++)

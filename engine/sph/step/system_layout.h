@@ -139,11 +139,15 @@ int sph_system_columns_arrays(uint64_t columns);
 status sph_system_columns_take(struct sph_system *system, const struct sph_particles *particles, struct error *error);
 /* Pointers to the columns that exist, in a fixed order. Returns how many. */
 size_t sph_system_columns_list(const struct sph_system *system, double *column[SPH_COLUMNS]);
-/* Values of particles as they are set up; sph_system_read is the way back. */
+/* Values of particles as they are set up, and the way back (sph_system_read). */
 void sph_system_columns_fill(struct sph_system *system, const struct sph_particles *particles);
+void sph_system_columns_read(const struct sph_system *system, struct sph_particles *out);
+/* Bytes per particle, near enough to plan, of a system with these columns (a bit each, of all bodies) and `pairs` bytes
+ * for options of the pair loop. Flaws are not in it. */
+double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph_fidelity *fidelity);
 
 /* x within the periodic box; as it is where `length` is NaN. */
-double sph_system_wrapped(double x, double length);
+double sph_system_columns_wrapped(double x, double length);
 
 /* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,

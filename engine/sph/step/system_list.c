@@ -86,9 +86,9 @@ static void wrap(struct sph_system *s) {
 #pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
   for (size_t i = 0; i < s->n; i++) {
-    s->c.x[i] = sph_system_wrapped(s->c.x[i], length[0]);
-    s->c.y[i] = sph_system_wrapped(s->c.y[i], length[1]);
-    s->c.z[i] = sph_system_wrapped(s->c.z[i], length[2]);
+    s->c.x[i] = sph_system_columns_wrapped(s->c.x[i], length[0]);
+    s->c.y[i] = sph_system_columns_wrapped(s->c.y[i], length[1]);
+    s->c.z[i] = sph_system_columns_wrapped(s->c.z[i], length[2]);
   }
 }
 
