@@ -1,5 +1,5 @@
-/* Reading a YAML 1.2 (core schema) document into a struct through its field table, with every error of the file
- * reported in one go as
+/* Reading a YAML 1.2 (core schema) document into a struct through its field table, with all errors of the
+ * file in one report:
  *     file:line:col: error: path: what was expected, what came, what to do
  *       the line
  *       ^~~~

@@ -1,5 +1,5 @@
 /* The tree of a document, made from libfyaml's events. Our own tree, not libfyaml's document: limits on depth, size and
- * aliases hold while it grows, and every duplicate key, tag and lost alias of a file is reported in one go. */
+ * aliases hold while it grows, and one report holds every duplicate key, tag and lost alias of a file. */
 #include <libfyaml.h>
 #include <stdlib.h>
 #include <string.h>

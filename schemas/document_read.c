@@ -24,7 +24,7 @@ static bool listed(const char *word, const char *const *words) {
   return false;
 }
 
-/* The words that may stand at this level, each once; malloc'd, the strings too. */
+/* The words allowed at this level, each once; malloc'd, the strings, too. */
 static char **siblings(const struct reading *r, const char *prefix) {
   size_t length = strlen(prefix), count = 0, extra = 0;
   while (r->also && r->also[extra])
@@ -65,7 +65,7 @@ static void unknown(const struct reading *r, const document_node *mapping, docum
   free(words);
 }
 
-/* What stands under a key: a row's value, a section, or neither. */
+/* What a key means: the value of a row, a section, or neither. */
 struct meaning {
   const struct field *row;
   bool section;
@@ -119,7 +119,7 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
   }
 }
 
-/* The mapping that would hold a path, as far as the document has it: where a missing key is reported. */
+/* The innermost mapping of the document on the way to a path: a missing key is reported there. */
 static document_node *holder(document_node *mapping, const char *path) {
   for (;;) {
     size_t length = strcspn(path, ".");
@@ -134,17 +134,13 @@ static document_node *holder(document_node *mapping, const char *path) {
   }
 }
 
-/* A condition cannot be judged when a row that it rests on was given, but wrongly. */
+/* False when a row that controls this one was given with a bad value: the condition cannot be judged. */
 static bool judgeable(const struct reading *r, const struct field *row) {
   for (size_t links = 0; row && row->when && links <= r->table->count; links++) {
-    const struct field *other = NULL;
-    size_t length = strcspn(row->when, "=");
-    for (size_t i = 0; i < r->table->count && !other; i++)
-      if (strncmp(r->table->rows[i].path, row->when, length) == 0 && !r->table->rows[i].path[length])
-        other = &r->table->rows[i];
-    if (other && r->places[other - r->table->rows].key && !r->places[other - r->table->rows].good)
+    row = field_controller(r->table, row);
+    const struct place *place = row ? &r->places[row - r->table->rows] : NULL;
+    if (place && place->key && !place->good)
       return false;
-    row = other;
   }
   return true;
 }

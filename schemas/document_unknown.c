@@ -22,7 +22,7 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
   if (key->faulty)
     return;
   struct document *document = key->document;
-  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: nobody will see the guess */
+  if (document->error_count >= DOCUMENT_MOST_ERRORS) { /* only counted: the guess would not be shown */
     document->error_count++;
     return;
   }

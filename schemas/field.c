@@ -148,9 +148,10 @@ void field_defaults(const struct field_table *table, void *object) {
   }
 }
 
-static const struct field *exact(const struct field_table *table, const char *path, size_t length) {
-  for (size_t i = 0; i < table->count; i++)
-    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == 0)
+const struct field *field_controller(const struct field_table *table, const struct field *row) {
+  const size_t length = row->when ? strcspn(row->when, "=") : 0;
+  for (size_t i = 0; length && i < table->count; i++)
+    if (strncmp(table->rows[i].path, row->when, length) == 0 && !table->rows[i].path[length])
       return &table->rows[i];
   return NULL;
 }
@@ -176,7 +177,7 @@ static const struct field *unmet(const struct field_table *table, const struct f
                                  const struct field **other) {
   for (size_t links = 0; row->when; links++) {
     const char *equals = strchr(row->when, '=');
-    *other = equals ? exact(table, row->when, (size_t)(equals - row->when)) : NULL;
+    *other = equals ? field_controller(table, row) : NULL;
     if (!*other || links > table->count)
       return row;
     bool met = false;

@@ -84,6 +84,8 @@ void field_column_name(const char *path, char *name, size_t size);
 
 /* Fills every row, required ones with zero or NaN; members that no row describes are left alone. */
 void field_defaults(const struct field_table *table, void *object);
+/* The row that decides whether this one is active; NULL when it has no condition, or a condition on an unknown row. */
+const struct field *field_controller(const struct field_table *table, const struct field *row);
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
 
 /* Why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is active. */

@@ -24,7 +24,7 @@ void field_json_value(const struct field *row, const struct field_value *value, 
   }
 }
 
-/* Rows that share their first word become one object. They need not stand together in the table: every section is
+/* Rows that share their first word become one object. They need not be neighbours in the table: every section is
  * opened once, at its first active row, and gathers the rest from there. */
 static void write_level(const struct field_table *table, const void *object, const char *prefix, size_t length,
                         FILE *out) {

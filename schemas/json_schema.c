@@ -213,20 +213,12 @@ void json_schema_properties(const struct field_table *table, int indent, FILE *o
 
 /* ---- conditions ---- */
 
-static const struct field *controller(const struct field_table *table, const char *when) {
-  size_t length = strcspn(when, "=");
-  for (size_t i = 0; i < table->count; i++)
-    if (same_start(table->rows[i].path, when, length) && !table->rows[i].path[length])
-      return &table->rows[i];
-  return NULL;
-}
-
 /* True when the row has this condition, or its controlling row rests on it. */
 static bool rests_on(const struct field_table *table, const struct field *row, const char *when) {
   for (size_t links = 0; row && row->when && links <= table->count; links++) {
     if (strcmp(row->when, when) == 0)
       return true;
-    row = controller(table, row->when);
+    row = field_controller(table, row);
   }
   return false;
 }
@@ -314,7 +306,7 @@ static int conditions(const struct field_table *table, int indent, FILE *out) {
   int count = 0;
   for (size_t i = 0; i < table->count; i++) {
     const char *when = table->rows[i].when;
-    const struct field *control = when ? controller(table, when) : NULL;
+    const struct field *control = field_controller(table, &table->rows[i]);
     bool seen = false;
     for (size_t j = 0; when && j < i && !seen; j++)
       seen = table->rows[j].when && strcmp(table->rows[j].when, when) == 0;

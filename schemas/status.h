@@ -1,6 +1,6 @@
 /* Statuses and errors: what every fallible call returns and fills.
  *
- * The values are the process exit codes (BSD sysexits), so main() returns a status as it stands. Nothing below
+ * The values are the process exit codes (BSD sysexits), so main() returns a status unchanged. Nothing below
  * main() prints or exits; it returns a status and says in `struct error` what happened, where, and what to do. */
 #ifndef CLAST_SCHEMAS_STATUS_H
 #define CLAST_SCHEMAS_STATUS_H
@@ -23,8 +23,8 @@ typedef enum status {
 #undef STATUS_ENUM
 } status;
 
-/* Caller-owned. `message` is whole sentences for a person: what, where, what to do. May span lines: it has room for the
- * report of a document with a few dozen errors (schemas/document.h). */
+/* Caller-owned. `message` is whole sentences for a person: what, where, what to do. It may span lines: a
+ * report of a document with a few dozen errors fits (schemas/document.h). */
 struct error {
   status status;
   char message[8192];

@@ -116,7 +116,7 @@ struct parser {
 
 static const struct unit one = {.factor = 1, .times = 1, .per = 1};
 
-/* Case does not count, but for one letter: "m" and "M" differ. */
+/* Case does not count, except in a single letter: "m" and "M" differ. */
 static bool same_but_case(const char *name, size_t length, const char *known) {
   return strlen(known) == length && strncasecmp(known, name, length) == 0 && (length > 1 || known[0] == name[0]);
 }

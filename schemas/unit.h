@@ -22,7 +22,7 @@ struct unit {
 status unit_parse(const char *text, struct unit *unit, struct error *error);
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 
-/* "5 km/s" with expected "m/s" -> 5000. A bare number is taken in the expected unit. Refuses NaN, inf, hex floats,
+/* "5 km/s" with expected "m/s" -> 5000. A number without a unit is in the expected unit. Refuses NaN, inf, hex floats,
  * trailing text, wrong dimension; messages say which unit was expected and what came. The result is the double nearest
  * to the exact decimal value whenever the unit is a power of ten of SI. */
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);

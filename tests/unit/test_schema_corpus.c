@@ -104,9 +104,7 @@ static void emit_row(const struct engine_kind *engine, const struct field *row, 
   emit(engine->name, NULL, NULL, row->path, text);
   if (!row->when)
     return;
-  char path[128];
-  snprintf(path, sizeof path, "%.*s", (int)strcspn(row->when, "="), row->when);
-  const struct field *control = field_find(engine->inputs, path, NULL);
+  const struct field *control = field_controller(engine->inputs, row);
   for (size_t i = 0; control && control->kind == FIELD_CHOICE && control->choices[i]; i++)
     emit(engine->name, control->path, control->choices[i], row->path, text);
   if (control && control->kind == FIELD_BOOLEAN) {
