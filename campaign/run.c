@@ -59,7 +59,7 @@ static status resume(const struct run_request *request, void **run, struct error
                        "the restart file '%s' is of seed %llu, not %llu: ask for seed %llu, or name another file",
                        request->restart_path, (unsigned long long)seed, (unsigned long long)request->seed,
                        (unsigned long long)seed);
-  return code ? code : request->kind->restore(request->inputs, request->restart_path, run, error);
+  return code ? code : restart_load(request->kind, request->inputs, request->restart_path, run, error);
 }
 
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,

@@ -1,4 +1,4 @@
-/* An engine is a descriptor (design: joint 2): scene in, result out, no MPI, no SQLite, no printing, no exit().
+/* An engine is a descriptor: scene in, result out, no MPI, no SQLite, no printing, no exit().
  *
  * A run is a pure function of (typed inputs, seed, results_version): the same bits on any rank, in any order. */
 #ifndef CLAST_ENGINE_ENGINE_H
@@ -6,6 +6,8 @@
 
 #include "engine/outcome.h"
 #include "schemas/field.h"
+
+struct restart_run;
 
 struct engine_kind {
   const char *name;                  /* "dem" */
@@ -40,9 +42,12 @@ struct engine_kind {
   /* Big fields (grains, beams, break log, curves; particles) as one self-describing HDF5 file, written to a temporary
    * name and renamed. Also what pictures are drawn from. */
   status (*write_snapshot)(void *run, const char *path, struct error *error);
-  status (*save)(void *run, const char *path, struct error *error);                         /* restart file */
-  status (*restore)(const void *inputs, const char *path, void **run, struct error *error); /* same bits after it */
-  void (*free)(void *run);                                                                  /* NULL is fine */
+  /* What a restart file holds (engine/restart.h): the run as it stands, and its moving system as bytes.
+   * load_system: STATUS_CONTENT when the bytes fit no system of this run, STATUS_MEMORY. */
+  struct restart_run (*restart)(void *run);
+  void (*save_system)(const void *run, void *bytes);
+  status (*load_system)(void *run, const void *bytes, size_t size, struct error *error);
+  void (*free)(void *run); /* NULL is fine */
 };
 
 size_t engine_count(void);

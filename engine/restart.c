@@ -9,13 +9,37 @@
 #include "engine/cpu_class.h"
 
 static const char magic[8] = "CLASTRUN";
-enum { VERSION = 2, PARTS = 8 };
+/* 3: state and progress without members that nothing read; the order of a grain system's arrays. */
+enum { VERSION = 3 };
+enum { STATE, SAMPLES, SYSTEM, PARTS };
 
-struct restart {
-  unsigned char *bytes;
-  uint64_t seed;
-  struct restart_part part[PARTS];
+struct part {
+  const void *at; /* not aligned */
+  size_t size;
 };
+
+size_t restart_blocks_size(const struct restart_block *blocks, size_t count) {
+  size_t total = 0;
+  for (size_t k = 0; k < count; k++)
+    total += blocks[k].size;
+  return total;
+}
+
+void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes) {
+  unsigned char *to = bytes;
+  for (size_t k = 0; k < count; k++) {
+    memcpy(to, blocks[k].at, blocks[k].size);
+    to += blocks[k].size;
+  }
+}
+
+void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes) {
+  const unsigned char *from = bytes;
+  for (size_t k = 0; k < count; k++) {
+    memcpy(blocks[k].at, from, blocks[k].size);
+    from += blocks[k].size;
+  }
+}
 
 static char *identity(const struct engine_kind *kind, const void *inputs) {
   char *rows = field_identity(kind->inputs, inputs), *text = NULL;
@@ -59,11 +83,12 @@ static bool get_exactly(struct bytes *b, uint64_t number) {
   return get(b, &came, sizeof came) && came == number;
 }
 
-status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t seed, size_t count,
-                    const struct restart_part *parts, const char *path, struct error *error) {
+/* Writes a file of these parts. */
+static status write_parts(const struct engine_kind *kind, const void *inputs, uint64_t seed,
+                          const struct part parts[PARTS], const char *path, struct error *error) {
   char *text = identity(kind, inputs);
   struct bytes b = {.size = text ? sizeof magic + 8 * 6 + strlen(text) : 0};
-  for (size_t k = 0; k < count; k++)
+  for (size_t k = 0; k < PARTS; k++)
     b.size += 8 + parts[k].size;
   b.at = text ? malloc(b.size) : NULL;
   if (!b.at) {
@@ -76,8 +101,8 @@ status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t
   put_number(&b, cpu_class_choose());
   put_number(&b, strlen(text));
   put(&b, text, strlen(text));
-  put_number(&b, count);
-  for (size_t k = 0; k < count; k++) {
+  put_number(&b, PARTS);
+  for (size_t k = 0; k < PARTS; k++) {
     put_number(&b, parts[k].size);
     put(&b, parts[k].at, parts[k].size);
   }
@@ -88,19 +113,35 @@ status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t
   return code;
 }
 
-/* Everything between head and checksum. */
-static bool read_parts(struct bytes *b, size_t count, struct restart *restart) {
+status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
+  const struct restart_run r = kind->restart(run);
+  void *system = malloc(r.system_size);
+  if (!system)
+    return status_fail(error, STATUS_MEMORY, "no memory to save '%s'", path);
+  kind->save_system(run, system);
+  const struct part parts[PARTS] = {
+      [STATE] = {r.state.at, r.state.size},
+      [SAMPLES] = {r.sample, *r.samples * r.sample_size},
+      [SYSTEM] = {system, r.system_size},
+  };
+  status code = write_parts(kind, r.inputs, r.seed, parts, path, error);
+  free(system);
+  return code;
+}
+
+/* Reads everything between head and checksum. */
+static bool read_parts(struct bytes *b, struct part parts[PARTS]) {
   b->size -= 8;
-  bool good = count <= PARTS && get_exactly(b, count);
-  for (size_t k = 0; good && k < count; k++) {
+  if (!get_exactly(b, PARTS))
+    return false;
+  for (size_t k = 0; k < PARTS; k++) {
     uint64_t size;
-    good = get(b, &size, 8) && size <= b->size - b->used;
-    if (good) {
-      restart->part[k] = (struct restart_part){b->at + b->used, size};
-      b->used += size;
-    }
+    if (!get(b, &size, 8) || size > b->size - b->used)
+      return false;
+    parts[k] = (struct part){b->at + b->used, size};
+    b->used += size;
   }
-  return good && b->used == b->size;
+  return b->used == b->size;
 }
 
 status restart_peek(const char *path, uint64_t *seed, struct error *error) {
@@ -121,85 +162,81 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
   return STATUS_OK;
 }
 
-status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path,
-                    struct restart **out, struct error *error) {
-  *out = NULL;
-  struct bytes b = {0};
-  char *text = identity(kind, inputs), head[sizeof magic];
-  struct restart *restart = calloc(1, sizeof *restart);
-  uint64_t length, sum, class;
-  status code = text && restart ? atomic_file_read(path, "restart file", &b.at, &b.size, error)
-                                : status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
-  if (code)
-    goto cleanup;
-  if (b.size < sizeof magic + 8 || !get(&b, head, sizeof head) || memcmp(head, magic, sizeof magic) != 0) {
-    code = status_fail(error, STATUS_CONTENT,
-                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
-    goto cleanup;
-  }
-  memcpy(&sum, b.at + b.size - 8, 8);
-  if (sum != checksum(b.at, b.size - 8)) {
-    code = status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
-                       path);
-    goto cleanup;
-  }
-  const bool known = get_exactly(&b, VERSION) && get(&b, &restart->seed, 8) && get(&b, &class, 8);
-  if (known && class != (uint64_t)cpu_class_choose()) {
-    const char *name = cpu_class_name((enum cpu_class) class);
-    code = status_fail(
-        error, STATUS_CONTENT,
-        "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
-        "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
-        path, name, cpu_class_name(cpu_class_choose()), name);
-    goto cleanup;
-  }
-  if (!known || !get(&b, &length, 8) || length != strlen(text) || b.size - b.used < length ||
-      memcmp(b.at + b.used, text, length) != 0) {
-    code = status_fail(
-        error, STATUS_CONTENT,
-        "the restart file '%s' belongs to another scene or another version of clast: start the run afresh", path);
-    goto cleanup;
-  }
-  b.used += length;
-  if (!read_parts(&b, count, restart)) {
-    code = restart_refuse(path, error);
-    goto cleanup;
-  }
-  restart->bytes = b.at;
-  b.at = NULL;
-  *out = restart;
-  restart = NULL;
-cleanup:
-  free(text);
-  free(b.at);
-  free(restart);
-  return code;
-}
-
-status restart_refuse(const char *path, struct error *error) {
+static status refuse(const char *path, struct error *error) {
   return status_fail(error, STATUS_CONTENT,
                      "the restart file '%s' was written by another build of clast: start the run afresh", path);
 }
 
-uint64_t restart_seed(const struct restart *restart) {
-  return restart->seed;
+/* Reads magic, checksum, version, seed, class and identity: everything before the parts. */
+static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
+  char head[sizeof magic];
+  uint64_t sum, class, length;
+  if (b->size < sizeof magic + 8 || !get(b, head, sizeof head) || memcmp(head, magic, sizeof magic) != 0)
+    return status_fail(error, STATUS_CONTENT,
+                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
+  memcpy(&sum, b->at + b->size - 8, 8);
+  if (sum != checksum(b->at, b->size - 8))
+    return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
+                       path);
+
+  const bool known = get_exactly(b, VERSION) && get(b, seed, 8) && get(b, &class, 8);
+  if (known && class != (uint64_t)cpu_class_choose()) {
+    const char *name = cpu_class_name((enum cpu_class) class);
+    return status_fail(
+        error, STATUS_CONTENT,
+        "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
+        "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
+        path, name, cpu_class_name(cpu_class_choose()), name);
+  }
+  if (!known || !get(b, &length, 8) || length != strlen(identity) || b->size - b->used < length ||
+      memcmp(b->at + b->used, identity, length) != 0)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "the restart file '%s' belongs to another scene or another version of clast: start the run afresh", path);
+  b->used += length;
+  return STATUS_OK;
 }
 
-struct restart_part restart_part(const struct restart *restart, size_t index) {
-  return restart->part[index];
+/* Fills a run, which has just been created, from the parts. */
+static status load_parts(const struct engine_kind *kind, void *run, const struct part parts[PARTS], const char *path,
+                         struct error *error) {
+  const struct restart_run r = kind->restart(run);
+  if (parts[STATE].size != r.state.size)
+    return refuse(path, error);
+  memcpy(r.state.at, parts[STATE].at, r.state.size);
+  if (*r.samples > r.sample_capacity || parts[SAMPLES].size != *r.samples * r.sample_size)
+    return refuse(path, error);
+  if (parts[SAMPLES].size)
+    memcpy(r.sample, parts[SAMPLES].at, parts[SAMPLES].size);
+  status code = kind->load_system(run, parts[SYSTEM].at, parts[SYSTEM].size, error);
+  return code == STATUS_CONTENT ? refuse(path, error) : code;
 }
 
-bool restart_copy(const struct restart *restart, size_t index, void *to, size_t size) {
-  if (restart->part[index].size != size)
-    return false;
-  if (size)
-    memcpy(to, restart->part[index].at, size);
-  return true;
-}
-
-void restart_close(struct restart *restart) {
-  if (!restart)
-    return;
-  free(restart->bytes);
-  free(restart);
+status restart_load(const struct engine_kind *kind, const void *inputs, const char *path, void **out,
+                    struct error *error) {
+  *out = NULL;
+  struct bytes b = {0};
+  struct part parts[PARTS];
+  uint64_t seed = 0;
+  void *run = NULL;
+  status code = STATUS_OK;
+  char *text = identity(kind, inputs);
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
+  if ((code = atomic_file_read(path, "restart file", &b.at, &b.size, error)) ||
+      (code = read_head(&b, text, path, &seed, error)))
+    goto cleanup;
+  if (!read_parts(&b, parts)) {
+    code = refuse(path, error);
+    goto cleanup;
+  }
+  if ((code = kind->prepare(inputs, seed, &run, error)) || (code = load_parts(kind, run, parts, path, error)))
+    goto cleanup;
+  *out = run;
+  run = NULL;
+cleanup:
+  kind->free(run);
+  free(b.at);
+  free(text);
+  return code;
 }

@@ -1,8 +1,10 @@
-/* Restart files of any engine: what the next step depends on, for the same binary on the same CPU class; written under
- * a temporary name and renamed.
+/* Restart files of any engine: what the next step of a run depends on, for the same binary on the same CPU class. A
+ * file is written under a temporary name and renamed.
  *
  *   "CLASTRUN", u64 version, u64 seed, u64 CPU class, u64 length + identity (engine, results_version, all inputs), u64
- * number of parts, each u64 size + bytes, u64 FNV-1a of all before it. */
+ * number of parts, each u64 size + bytes, u64 FNV-1a of all before it.
+ *
+ * Parts: the run's state (a plain value), its samples, its moving system. */
 #ifndef CLAST_ENGINE_RESTART_H
 #define CLAST_ENGINE_RESTART_H
 
@@ -11,30 +13,36 @@
 
 #include "engine/engine.h"
 
-struct restart_part {
-  const void *at;
-  size_t size;
+/* Memory that is saved and loaded as it stands. */
+struct restart_block {
+  void *at;
+  size_t size; /* bytes */
+};
+size_t restart_blocks_size(const struct restart_block *blocks, size_t count); /* bytes of all */
+/* `bytes` holds all blocks one after the other. */
+void restart_blocks_save(const struct restart_block *blocks, size_t count, void *bytes);
+void restart_blocks_load(const struct restart_block *blocks, size_t count, const void *bytes);
+
+/* How restart files see a run; an engine fills it (engine_kind.restart). Everything is borrowed from the run. */
+struct restart_run {
+  const void *inputs;
+  uint64_t seed;
+  struct restart_block state;
+  const uint64_t *samples; /* within the state: how many samples there are */
+  void *sample;            /* sample_capacity of them, sample_size bytes each */
+  size_t sample_size, sample_capacity;
+  size_t system_size; /* bytes that save_system writes */
 };
 
 /* STATUS_IO, STATUS_MEMORY. */
-status restart_save(const struct engine_kind *kind, const void *inputs, uint64_t seed, size_t count,
-                    const struct restart_part *parts, const char *path, struct error *error);
+status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error);
+/* Creates the run that a file was saved of; the same bits follow. *run is NULL on failure. STATUS_MISSING, STATUS_IO,
+ * STATUS_MEMORY; STATUS_CONTENT: no restart file, damaged, of another CPU class, of other inputs or another version. */
+status restart_load(const struct engine_kind *kind, const void *inputs, const char *path, void **run,
+                    struct error *error);
 
-/* The seed of the run that a file is of, without reading the rest. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no
+/* The seed of the run that a file was saved of, without reading the rest. STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no
  * restart file. */
 status restart_peek(const char *path, uint64_t *seed, struct error *error);
-
-struct restart; /* owns the file's bytes */
-/* STATUS_MISSING, STATUS_IO; STATUS_CONTENT: no restart file, damaged, of another CPU class, of other inputs or another
- * version, or not `count` parts. */
-status restart_open(const struct engine_kind *kind, const void *inputs, size_t count, const char *path,
-                    struct restart **out, struct error *error);
-uint64_t restart_seed(const struct restart *restart);
-struct restart_part restart_part(const struct restart *restart, size_t index); /* borrowed, not aligned */
-/* Copies part `index` to `to`; false, and nothing copied, when it has not just that size. */
-bool restart_copy(const struct restart *restart, size_t index, void *to, size_t size);
-void restart_close(struct restart *restart); /* NULL is fine */
-/* What to say when the parts do not fit the run. */
-status restart_refuse(const char *path, struct error *error);
 
 #endif

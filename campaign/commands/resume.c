@@ -4,6 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "engine/restart.h"
 #include "schemas/clock.h"
 
 enum { EVERY_S = 300 };
@@ -25,7 +26,7 @@ void resume_begin(struct resume *resume, const char *path) {
 status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error) {
   if (!stopped && clock_s() - resume->saved < EVERY_S)
     return STATUS_OK;
-  status code = kind->save(run, resume->path, error);
+  status code = restart_save(kind, run, resume->path, error);
   resume->saved = clock_s();
   if (code || !stopped)
     return code;

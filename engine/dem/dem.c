@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "engine/dem/run/run.h"
+#include "engine/restart.h"
 
 /* Measured by tests/unit/test_dem_engine.c on the built-in scenes; without that, a body's bytes per grain: outlines,
  * beams and contacts of the moving system, its tessellation, and what fragments need at the end. */
@@ -57,15 +58,25 @@ static status write_snapshot(void *run, const char *path, struct error *error) {
   return dem_snapshot_write(run, path, error);
 }
 
-static status save(void *run, const char *path, struct error *error) {
-  return dem_restart_save(run, path, error);
+static struct restart_run restart(void *run) {
+  struct dem_run *r = run;
+  return (struct restart_run){.inputs = &r->inputs,
+                              .seed = r->seed,
+                              .state = {&r->state, sizeof r->state},
+                              .samples = &r->state.samples,
+                              .sample = r->sample,
+                              .sample_size = sizeof *r->sample,
+                              .sample_capacity = r->sample_capacity,
+                              .system_size = dem_system_state_size(r->system)};
 }
 
-static status restore(const void *inputs, const char *path, void **run, struct error *error) {
-  struct dem_run *made;
-  status code = dem_restart_load(inputs, path, &made, error);
-  *run = made;
-  return code;
+static void save_system(const void *run, void *bytes) {
+  dem_system_state_save(((const struct dem_run *)run)->system, bytes);
+}
+
+static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
+  const struct dem_run *r = run;
+  return dem_system_state_load(r->system, bytes, size) ? STATUS_OK : status_fail(error, STATUS_CONTENT, "%s", "");
 }
 
 static void release(void *run) {
@@ -93,7 +104,8 @@ const struct engine_kind dem_engine = {
     .time = time_of,
     .finish = finish,
     .write_snapshot = write_snapshot,
-    .save = save,
-    .restore = restore,
+    .restart = restart,
+    .save_system = save_system,
+    .load_system = load_system,
     .free = release,
 };

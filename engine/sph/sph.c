@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "engine/restart.h"
 #include "engine/sph/observe/observe.h"
 
 static void complete(void *inputs, const bool *given) {
@@ -56,15 +57,28 @@ static status write_snapshot(void *run, const char *path, struct error *error) {
   return sph_snapshot_write(run, path, error);
 }
 
-static status save(void *run, const char *path, struct error *error) {
-  return sph_restart_save(run, path, error);
+static struct restart_run restart(void *run) {
+  struct sph_run *r = run;
+  return (struct restart_run){.inputs = &r->inputs,
+                              .seed = r->seed,
+                              .state = {&r->state, sizeof r->state},
+                              .samples = &r->state.samples,
+                              .sample = r->sample,
+                              .sample_size = sizeof *r->sample,
+                              .sample_capacity = r->sample_capacity,
+                              .system_size = sph_system_state_size(r->system)};
 }
 
-static status restore(const void *inputs, const char *path, void **run, struct error *error) {
-  struct sph_run *made;
-  status code = sph_restart_load(inputs, path, &made, error);
-  *run = made;
-  return code;
+static void save_system(const void *run, void *bytes) {
+  sph_system_state_save(((const struct sph_run *)run)->system, bytes);
+}
+
+static status load_system(void *run, const void *bytes, size_t size, struct error *error) {
+  const struct sph_run *r = run;
+  if (sph_system_state_load(r->system, bytes, size))
+    return STATUS_OK;
+  status code = sph_system_fault(r->system) == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT;
+  return status_fail(error, code, "%s", sph_system_failure(r->system));
 }
 
 static void release(void *run) {
@@ -92,7 +106,8 @@ const struct engine_kind sph_engine = {
     .time = time_of,
     .finish = finish,
     .write_snapshot = write_snapshot,
-    .save = save,
-    .restore = restore,
+    .restart = restart,
+    .save_system = save_system,
+    .load_system = load_system,
     .free = release,
 };

@@ -75,7 +75,7 @@ static double ringing(const char *name, double scale, bool with_reference, doubl
   printf("dem_overlap_share_%s %.3f 1\n", name, share / samples);
   printf("dem_energy_error_%s %.2e 1\n", name, (l.kinetic + l.beam + l.contact) / before - 1.0);
   printf("dem_list_rebuilds_%s %.0f 1\n", name, (double)system->now.rebuilds);
-  printf("dem_bytes_per_grain_%s %.0f B\n", name, (double)dem_system_bytes(system) / cells);
+  printf("dem_bytes_per_grain_%s %.0f B\n", name, (double)dem_system_arrays_bytes(system) / cells);
   dem_system_free(system);
   dem_tessellation_free(t);
   return reference_speed;

@@ -53,7 +53,7 @@ static void builtin_scenes_say_what_they_model(void **state) {
     struct error error = {0};
     void *run;
     assert_int_equal(dem_engine.prepare(&inputs, 1, &run, &error), STATUS_OK);
-    size_t bytes = dem_system_bytes(((struct dem_run *)run)->system);
+    size_t bytes = dem_system_arrays_bytes(((struct dem_run *)run)->system);
     if (!(bytes < dem_engine.memory(&inputs)))
       fail_msg("%s: %zu bytes promised, the system alone has %zu", scenes[k], dem_engine.memory(&inputs), bytes);
     double expected = dem_inputs_grains(&inputs), grains = (double)((struct dem_run *)run)->tessellation->cell_count;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "engine/cpu_class.h"
+#include "engine/restart.h"
 #include "tests/support/sweep.h"
 
 static char folder[] = "/tmp/clast_run_files_XXXXXX";
@@ -59,10 +60,10 @@ static void continues(const struct engine_kind *kind, const void *inputs) {
   void *run = stepped(kind, inputs, 11, half), *again;
   struct error error = {0};
   const double time = kind->time(run);
-  if (kind->save(run, in_folder("run.restart"), &error))
+  if (restart_save(kind, run, in_folder("run.restart"), &error))
     fail_msg("%s", error.message);
   kind->free(run);
-  if (kind->restore(inputs, in_folder("run.restart"), &again, &error))
+  if (restart_load(kind, inputs, in_folder("run.restart"), &again, &error))
     fail_msg("%s", error.message);
   assert_true(kind->time(again) == time && time > 0);
   run_case_same(kind, &straight, run_case_end(kind, again, 37));
@@ -94,7 +95,7 @@ static void restart_continues_with_the_same_bits(void **state) {
 static void refused(const struct engine_kind *kind, const void *inputs, const char *path, const char *why) {
   struct error error = {0};
   void *run;
-  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_CONTENT);
+  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_CONTENT);
   assert_null(run);
   if (!strstr(error.message, why) || !strstr(error.message, path))
     fail_msg("no \"%s\" in: %s", why, error.message);
@@ -106,7 +107,7 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
   char path[200];
   snprintf(path, sizeof path, "%s", in_folder("a.restart"));
   void *run = stepped(kind, inputs, 1, 5);
-  assert_int_equal(kind->save(run, path, NULL), STATUS_OK);
+  assert_int_equal(restart_save(kind, run, path, NULL), STATUS_OK);
   kind->free(run);
   refused(kind, other, path, "another scene");
   refused(foreign, foreign_inputs, path, "another scene");
@@ -126,14 +127,14 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
     fputc(byte, file);
     fclose(file);
   }
-  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_OK);
+  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
   kind->free(run);
   assert_int_equal(truncate(path, info.st_size / 2), 0);
   refused(kind, inputs, path, "cut short");
   assert_int_equal(truncate(path, 0), 0);
   refused(kind, inputs, path, "no restart file");
   unlink(path);
-  assert_int_equal(kind->restore(inputs, path, &run, &error), STATUS_MISSING);
+  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_MISSING);
 }
 
 static void damaged_or_foreign_restart_is_refused(void **state) {
@@ -165,7 +166,7 @@ static void restart_of_another_cpu_class_is_refused(void **state) {
   for (int k = 0; k < 2; k++) {
     setenv("CLAST_CPU", "baseline", 1);
     void *run = stepped(kind[k], inputs[k], 1, 5);
-    assert_int_equal(kind[k]->save(run, path, NULL), STATUS_OK);
+    assert_int_equal(restart_save(kind[k], run, path, NULL), STATUS_OK);
     kind[k]->free(run);
     if (asked)
       setenv("CLAST_CPU", before, 1);
@@ -183,7 +184,7 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   assert_int_equal(kind->write_snapshot(run, in_folder("no/such/folder.hdf"), &error), STATUS_IO);
   assert_non_null(strstr(error.message, "No such file"));
   assert_int_equal(kind->write_snapshot(run, "/dev/full/fields.hdf", &error), STATUS_IO);
-  assert_int_equal(kind->save(run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
+  assert_int_equal(restart_save(kind, run, in_folder("no/such/folder.restart"), &error), STATUS_IO);
   signal(SIGXFSZ, SIG_IGN); /* a disk that fills up: a limit on file size gives the same error at the same place */
   struct rlimit before, limit;
   assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -191,7 +192,7 @@ static void failed_writes_leave_nothing(const struct engine_kind *kind, const vo
   limit.rlim_cur = 10000;
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
   status fields = kind->write_snapshot(run, in_folder("full.hdf"), &error);
-  status restart = kind->save(run, in_folder("full.restart"), &error);
+  status restart = restart_save(kind, run, in_folder("full.restart"), &error);
   assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
   assert_int_equal(fields, STATUS_IO);
   assert_int_equal(restart, STATUS_IO);
@@ -231,13 +232,13 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   char path[200];
   snprintf(path, sizeof path, "%s", in_folder("a.restart"));
   void *run = stepped(&sph_engine, &inputs, 1, 5), *again;
-  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   for (int k = 0; k < 20; k++) {
     const pid_t child = fork();
     assert_true(child >= 0);
     if (child == 0)
       for (;;)
-        if (sph_engine.save(run, path, NULL))
+        if (restart_save(&sph_engine, run, path, NULL))
           _exit(1);
     nanosleep(&(struct timespec){.tv_nsec = 1000000 + k * 173000}, NULL);
     kill(child, SIGKILL);
@@ -245,7 +246,7 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
     assert_int_equal(waitpid(child, &ended, 0), child);
     assert_true(WIFSIGNALED(ended));
     struct error error = {0};
-    if (sph_engine.restore(&inputs, path, &again, &error))
+    if (restart_load(&sph_engine, &inputs, path, &again, &error))
       fail_msg("%s", error.message);
     assert_true(sph_engine.time(again) == sph_engine.time(run));
     sph_engine.free(again);
@@ -255,13 +256,13 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   FILE *stale = fopen(in_folder("a.restart.tmp"), "wb");  /* of a process that is gone */
   fputs("of a write that was never finished", stale);
   fclose(stale);
-  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   assert_int_equal(beside(&temporary), 0);
   FILE *other = fopen(in_folder("a.restart.tmp"), "wb"); /* of one that is at it */
   fputs("half", other);
   fflush(other);
   assert_int_equal(flock(fileno(other), LOCK_EX), 0);
-  assert_int_equal(sph_engine.save(run, path, NULL), STATUS_OK);
+  assert_int_equal(restart_save(&sph_engine, run, path, NULL), STATUS_OK);
   assert_true(beside(&temporary) == 1 && temporary);
   struct stat there;
   assert_true(stat(in_folder("a.restart.tmp"), &there) == 0 && there.st_size == 4);
@@ -269,7 +270,7 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   const pid_t rival = fork(); /* two that write the same file: no write fails */
   assert_true(rival >= 0);
   for (int k = 0; k < 100; k++)
-    if (sph_engine.save(run, path, NULL)) {
+    if (restart_save(&sph_engine, run, path, NULL)) {
       if (rival == 0)
         _exit(1);
       fail();
@@ -280,7 +281,7 @@ static void killed_amid_a_write_the_file_is_whole(void **state) {
   assert_int_equal(waitpid(rival, &ended, 0), rival);
   assert_true(WIFEXITED(ended) && WEXITSTATUS(ended) == 0);
   assert_int_equal(beside(&temporary), 0);
-  assert_int_equal(sph_engine.restore(&inputs, path, &again, NULL), STATUS_OK);
+  assert_int_equal(restart_load(&sph_engine, &inputs, path, &again, NULL), STATUS_OK);
   sph_engine.free(again);
   sph_engine.free(run);
   unlink(path);

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "engine/restart.h"
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
@@ -178,22 +179,22 @@ static void chunks_and_restarts_do_not_matter(void **state) {
     assert_int_equal(sph_engine.prepare(&cases[c], 3, &run, NULL), STATUS_OK);
     assert_int_equal(sph_engine.step(run, (uint64_t)whole.outcome.steps / 2 + 1, &finished, NULL), STATUS_OK);
     assert_false(finished);
-    if (sph_engine.save(run, path, &error))
+    if (restart_save(&sph_engine, run, path, &error))
       fail_msg("%s", error.message);
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
     sph_engine.free(run);
-    if (sph_engine.restore(&cases[c], path, &run, &error))
+    if (restart_load(&sph_engine, &cases[c], path, &run, &error))
       fail_msg("%s", error.message);
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
-    if (sph_engine.save(run, path, &error)) /* at the end, too: no step is left to find anything again */
+    if (restart_save(&sph_engine, run, path, &error)) /* at the end, too: no step is left to find anything again */
       fail_msg("%s", error.message);
     sph_engine.free(run);
-    if (sph_engine.restore(&cases[c], path, &run, &error))
+    if (restart_load(&sph_engine, &cases[c], path, &run, &error))
       fail_msg("%s", error.message);
     run_case_same(&sph_engine, &whole, run_case_end(&sph_engine, run, 0));
     sph_engine.free(run);
     cases[c].viscosity.alpha += 0.1;
-    assert_int_equal(sph_engine.restore(&cases[c], path, &run, &error), STATUS_CONTENT);
+    assert_int_equal(restart_load(&sph_engine, &cases[c], path, &run, &error), STATUS_CONTENT);
     assert_null(run);
     unlink(path);
     free(whole.fragments);

@@ -105,31 +105,6 @@ static void repack_bonds(struct dem_system *s) {
   s->now.bond_blocks = blocks;
 }
 
-static bool grow_near(struct dem_system *s) {
-  const size_t capacity = s->near_capacity * 2;
-  const size_t general = s->bond_capacity * DEM_BLOCK + capacity;
-  struct dem_near_block *near = aligned_alloc(64, capacity / DEM_BLOCK * sizeof *near);
-  struct dem_near_pair *pairs = malloc(capacity * sizeof *pairs);
-  uint32_t *list = malloc(general * sizeof *list);
-  if (!near || !pairs || !list) {
-    free(near);
-    free(pairs);
-    free(list);
-    return false;
-  }
-  memcpy(near, s->near, s->near_capacity / DEM_BLOCK * sizeof *near);
-  memcpy(pairs, s->near_pair, s->near_capacity * sizeof *pairs);
-  free(s->near);
-  free(s->near_pair);
-  free(s->general);
-  s->near = near;
-  s->near_pair = pairs;
-  s->general = list;
-  s->near_capacity = capacity;
-  s->general_capacity = general;
-  return true;
-}
-
 static bool grow_cells(struct dem_system *s) {
   const size_t capacity = s->cell_capacity * 2;
   uint32_t *grain = realloc(s->cell_grain, capacity * sizeof *grain);
@@ -138,7 +113,7 @@ static bool grow_cells(struct dem_system *s) {
   uint32_t *next = realloc(s->cell_next, capacity * sizeof *next);
   if (next)
     s->cell_next = next;
-  int32_t(*key)[2] = realloc(s->cell_key, capacity * sizeof *key);
+  dem_cell *key = realloc(s->cell_key, capacity * sizeof *key);
   if (key)
     s->cell_key = key;
   if (!grain || !next || !key)
@@ -168,7 +143,7 @@ static int32_t pair_of(const struct dem_system *s, uint32_t i, uint32_t j) {
 static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct dem_ring *mine) {
   const struct dem_columns *c = &s->c;
   const double dx = c->x[j] - c->x[i], dy = c->y[j] - c->y[i];
-  const double skins = c->skin[i] + c->skin[j], reach = s->radius[i] + s->radius[j] + skins;
+  const double skins = c->skin[i] + c->skin[j], reach = s->c.radius[i] + s->c.radius[j] + skins;
   if (dx * dx + dy * dy > reach * reach)
     return true;
   const int32_t pair = pair_of(s, i, j);
@@ -184,7 +159,7 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
   s->kernels->best_side(ring, &overlap);
   if (overlap.gap > skins)
     return true;
-  if (s->now.near_count == s->near_capacity && !grow_near(s))
+  if (s->now.near_count == s->near_capacity && !dem_system_arrays_grow_near(s, 2 * s->near_capacity))
     return false;
   struct dem_near_pair *near = &s->near_pair[s->now.near_count];
   *near = (struct dem_near_pair){.first = j, .second = i, .pair = pair};
@@ -201,7 +176,7 @@ static void set_skins(struct dem_system *s) {
   double *const speed = c->list_x; /* until the positions go there */
   const double reach = horizon_steps * s->in->fidelity.time_step;
   for (size_t i = 0; i < s->count; ++i)
-    speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->radius[i] * fabs(c->spin[i]);
+    speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->c.radius[i] * fabs(c->spin[i]);
   for (size_t i = 0; i < s->count; ++i) {
     double fastest = speed[i];
     for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; ++k)
@@ -237,7 +212,7 @@ bool dem_neighbours_make(struct dem_system *s) {
   for (uint32_t i = 0; i < s->count; ++i) {
     if (!s->present[i])
       continue;
-    const double reach = s->radius[i] + s->c.skin[i];
+    const double reach = s->c.radius[i] + s->c.skin[i];
     const int32_t x0 = cell_of(s->c.x[i] - reach, per_size), x1 = cell_of(s->c.x[i] + reach, per_size);
     const int32_t y0 = cell_of(s->c.y[i] - reach, per_size), y1 = cell_of(s->c.y[i] + reach, per_size);
     s->cell_low[i][0] = x0;

@@ -2,8 +2,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/dem/beams/breaking.h"
 #include "engine/random.h"
@@ -29,82 +27,6 @@ struct dem_contact dem_assemble_contact(const struct dem_system *s, uint32_t i, 
 
 /* Grains are this much smaller than their cells, so that rounding gives no overlap at rest: a gap of 1e-11 cells. */
 static const double shrink = 1e-11;
-
-static void *zeroed(size_t count, size_t size) {
-  const size_t bytes = ((count ? count : 1) * size + 63) / 64 * 64;
-  void *block = aligned_alloc(64, bytes);
-  if (block)
-    memset(block, 0, bytes);
-  return block;
-}
-
-static bool allocate(struct dem_system *s, size_t vertices) {
-  double **const columns[] = {&s->c.x,          &s->c.y,
-                              &s->c.angle,      &s->c.cosine,
-                              &s->c.sine,       &s->c.vx,
-                              &s->c.vy,         &s->c.spin,
-                              &s->c.fx,         &s->c.fy,
-                              &s->c.torque,     &s->c.mobility_x,
-                              &s->c.mobility_y, &s->c.mobility_angle,
-                              &s->c.guess_vx,   &s->c.guess_vy,
-                              &s->c.guess_spin, &s->c.list_x,
-                              &s->c.list_y,     &s->c.list_angle,
-                              &s->c.skin,       &s->radius};
-  const size_t basic = sizeof columns / sizeof *columns, gear = s->in->fidelity.integrator == DEM_GEAR ? 12 : 0;
-  s->arena_doubles = (basic + gear) * s->padded;
-  s->arena = zeroed(s->arena_doubles, sizeof *s->arena);
-  const size_t n = s->count, pairs = s->pair_count;
-  s->mass = zeroed(n, sizeof *s->mass);
-  s->inertia = zeroed(n, sizeof *s->inertia);
-  s->diameter = zeroed(n, sizeof *s->diameter);
-  s->first_vertex = zeroed(n + 1, sizeof *s->first_vertex);
-  s->outline_x = zeroed(vertices, sizeof *s->outline_x);
-  s->outline_y = zeroed(vertices, sizeof *s->outline_y);
-  s->first_partner = zeroed(n + 2, sizeof *s->first_partner);
-  s->partner = zeroed(2 * pairs, sizeof *s->partner);
-  s->partner_pair = zeroed(2 * pairs, sizeof *s->partner_pair);
-  s->freedoms = zeroed(n, 1);
-  s->present = zeroed(n, 1);
-  s->held_vx = zeroed(n, sizeof *s->held_vx);
-  s->held_vy = zeroed(n, sizeof *s->held_vy);
-  s->held_spin = zeroed(n, sizeof *s->held_spin);
-  s->held = zeroed(n, sizeof *s->held);
-  s->pair = zeroed(pairs, sizeof *s->pair);
-  s->pair_contact = zeroed(pairs, sizeof *s->pair_contact);
-  s->alive = zeroed(pairs, 1);
-  s->windowed = zeroed(pairs, 1);
-  s->bond_capacity = (pairs + DEM_BLOCK - 1) / DEM_BLOCK;
-  s->pair_lane = zeroed(pairs, sizeof *s->pair_lane);
-  s->lane_pair = zeroed(s->bond_capacity * DEM_BLOCK, sizeof *s->lane_pair);
-  s->bond = zeroed(s->bond_capacity, sizeof *s->bond);
-  s->log = zeroed(pairs, sizeof *s->log);
-  s->near_capacity = (4 * n + DEM_BLOCK) / DEM_BLOCK * DEM_BLOCK;
-  s->near = zeroed(s->near_capacity / DEM_BLOCK, sizeof *s->near);
-  s->near_pair = zeroed(s->near_capacity, sizeof *s->near_pair);
-  s->general_capacity = s->bond_capacity * DEM_BLOCK + s->near_capacity;
-  s->general = zeroed(s->general_capacity, sizeof *s->general);
-  s->cell_capacity = 8 * n + 64;
-  for (s->cell_buckets = 64; s->cell_buckets < 2 * n;)
-    s->cell_buckets *= 2;
-  s->cell_head = malloc(s->cell_buckets * sizeof *s->cell_head);
-  s->cell_grain = malloc(s->cell_capacity * sizeof *s->cell_grain);
-  s->cell_next = malloc(s->cell_capacity * sizeof *s->cell_next);
-  s->cell_key = malloc(s->cell_capacity * sizeof *s->cell_key);
-  s->cell_low = malloc(n * sizeof *s->cell_low);
-  if (!s->arena || !s->mass || !s->inertia || !s->diameter || !s->first_vertex || !s->outline_x || !s->outline_y ||
-      !s->first_partner || !s->partner || !s->partner_pair || !s->freedoms || !s->present || !s->held_vx ||
-      !s->held_vy || !s->held_spin || !s->held || !s->pair || !s->pair_contact || !s->alive || !s->windowed ||
-      !s->pair_lane || !s->lane_pair || !s->bond || !s->log || !s->near || !s->near_pair || !s->general ||
-      !s->cell_head || !s->cell_grain || !s->cell_next || !s->cell_key || !s->cell_low)
-    return false;
-  double *next = s->arena;
-  for (size_t k = 0; k < basic; ++k, next += s->padded)
-    *columns[k] = next;
-  for (int k = 0; k < 3 && gear; ++k)
-    for (int order = 2; order < 6; ++order, next += s->padded)
-      s->c.gear[k][order] = next;
-  return true;
-}
 
 static status grains(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
   double total = 0.0;
@@ -134,8 +56,8 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
       const size_t at = s->first_vertex[i] + v;
       s->outline_x[at] = keep * (t->vertex[first + v].x - t->centroid[i].x);
       s->outline_y[at] = keep * (t->vertex[first + v].y - t->centroid[i].y);
-      s->radius[i] = fmax(s->radius[i], hypot(s->outline_x[at], s->outline_y[at]));
-      if (!(s->radius[i] < 1e30))
+      s->c.radius[i] = fmax(s->c.radius[i], hypot(s->outline_x[at], s->outline_y[at]));
+      if (!(s->c.radius[i] < 1e30))
         return status_fail(error, STATUS_CONTENT, "grain %zu has a vertex that is no finite number.", i);
     }
   }
@@ -284,7 +206,8 @@ status dem_assemble(struct dem_system *s, const struct dem_tessellation *t, uint
   s->pair_count = t->pair_count;
   s->padded = (s->count + 2 + DEM_BLOCK - 1) / DEM_BLOCK * DEM_BLOCK;
   s->ghost = (uint32_t)s->count;
-  if (!allocate(s, t->first_vertex[t->cell_count] - t->first_vertex[0]))
+  s->vertex_count = t->first_vertex[t->cell_count] - t->first_vertex[0];
+  if (!dem_system_arrays_allocate(s))
     return status_fail(error, STATUS_MEMORY, "not enough memory for %zu grains.", s->count);
 
   s->now.bond_blocks = s->bond_capacity;

@@ -17,10 +17,10 @@ struct dem_sample {
 struct dem_state {
   int finished, stop, outcome_state;
   char message[FIELD_TEXT_SIZE];
-  double energy_input, closed_start;          /* J/m; ledger at the start */
-  double momentum_start[2];                   /* of the grains that are free along that axis */
-  double force_before[2], impulse[2];         /* on held grains: at the step before; its time integral (trapezoids) */
-  double stress_sum, strain_sum, lateral_sum; /* loading: since the last sample */
+  double energy_input, closed_start;  /* J/m; ledger at the start */
+  double momentum_start[2];           /* of the grains that are free along that axis */
+  double force_before[2], impulse[2]; /* on held grains: at the step before; its time integral (trapezoids) */
+  double stress_sum, strain_sum;      /* loading: since the last sample */
   uint64_t summed, samples;
   double stress_peak, strain_peak, time_peak; /* loading: magnitudes at the largest stress */
 };
@@ -80,9 +80,7 @@ double dem_describe_threshold_energy(const struct dem_inputs *inputs, const stru
 double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
 
-/* fields.c, restart.c */
+/* snapshot.c */
 status dem_snapshot_write(struct dem_run *run, const char *path, struct error *error);
-status dem_restart_save(struct dem_run *run, const char *path, struct error *error);
-status dem_restart_load(const struct dem_inputs *inputs, const char *path, struct dem_run **out, struct error *error);
 
 #endif

@@ -26,7 +26,7 @@ LANES_INLINE void motion_check(const struct dem_system *s, size_t g, lanes_i *mo
   const struct dem_columns *c = &s->c;
   const lanes_d x = lanes_load(c->x + g), y = lanes_load(c->y + g), angle = lanes_load(c->angle + g);
   const lanes_d dx = x - lanes_load(c->list_x + g), dy = y - lanes_load(c->list_y + g);
-  const lanes_d swing = lanes_load(s->radius + g) * lanes_abs(angle - lanes_load(c->list_angle + g));
+  const lanes_d swing = lanes_load(c->radius + g) * lanes_abs(angle - lanes_load(c->list_angle + g));
   const lanes_d left = lanes_load(c->skin + g) - swing;
   *moved |= (dx * dx + dy * dy > left * left) | (left < 0.0);
   const lanes_d speed = lanes_abs(lanes_load(c->vx + g)) + lanes_abs(lanes_load(c->vy + g)) +

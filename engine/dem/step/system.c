@@ -76,28 +76,8 @@ cleanup:
 void dem_system_free(struct dem_system *s) {
   if (!s)
     return;
-  void *const blocks[] = {s->arena,     s->mass,      s->inertia,       s->diameter,  s->first_vertex,
-                          s->outline_x, s->outline_y, s->first_partner, s->partner,   s->partner_pair,
-                          s->freedoms,  s->present,   s->held_vx,       s->held_vy,   s->held_spin,
-                          s->held,      s->pair,      s->pair_contact,  s->alive,     s->windowed,
-                          s->pair_lane, s->lane_pair, s->bond,          s->near,      s->near_pair,
-                          s->general,   s->cell_head, s->cell_grain,    s->cell_next, s->cell_key,
-                          s->cell_low,  s->log};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    free(blocks[k]);
+  dem_system_arrays_free(s);
   free(s);
-}
-
-size_t dem_system_bytes(const struct dem_system *s) {
-  const size_t n = s->count, pairs = s->pair_count;
-  return sizeof *s + s->arena_doubles * sizeof(double) +
-         n * (3 * sizeof(double) + 2 + 3 * sizeof(double) + 3 * sizeof(uint32_t)) +
-         s->first_vertex[n] * 2 * sizeof(double) +
-         pairs *
-             (4 * sizeof(uint32_t) + sizeof *s->pair + 3 * sizeof(double) + 2 + 2 * sizeof(int32_t) + sizeof *s->log) +
-         s->bond_capacity * sizeof *s->bond + s->near_capacity / DEM_BLOCK * sizeof *s->near +
-         s->near_capacity * sizeof *s->near_pair + s->general_capacity * sizeof(uint32_t) + n * sizeof *s->cell_low +
-         s->cell_buckets * sizeof(uint32_t) + s->cell_capacity * (2 * sizeof(uint32_t) + sizeof *s->cell_key);
 }
 
 void dem_system_set_velocity(struct dem_system *s, uint32_t grain, double vx, double vy, double spin) {

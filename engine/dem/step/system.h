@@ -29,7 +29,6 @@ struct dem_system; /* opaque; layout in system_layout.h, for this folder only */
 status dem_system_create(const struct dem_tessellation *tessellation, const struct dem_inputs *inputs, uint64_t seed,
                          struct dem_system **out, struct error *error);
 void dem_system_free(struct dem_system *system); /* NULL is fine */
-size_t dem_system_bytes(const struct dem_system *system);
 
 /* Boundary conditions and loads, per grain. */
 void dem_system_set_velocity(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);

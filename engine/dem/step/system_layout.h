@@ -9,6 +9,7 @@
 #define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 
 #include "engine/dem/step/system.h"
+#include "engine/restart.h"
 
 enum { DEM_BLOCK = 8, DEM_MAX_VERTICES = 64, DEM_NO_PAIR = -1 };
 #define DEM_ALIGNED __attribute__((aligned(64)))
@@ -70,74 +71,107 @@ struct dem_progress {
   double time, last_break;
   uint64_t steps, rebuilds;
   double contact, damping, friction, broken_beam, external_work; /* booked so far, J/m (contact: printed law) */
-  uint64_t break_count, bond_blocks, near_count, live_pairs;
+  uint64_t break_count, bond_blocks, near_count;
   uint64_t ready; /* forces belong to the positions */
   uint64_t gear_started;
 };
 
 struct dem_kernels; /* kernels.h */
 
-struct dem_columns { /* padded to blocks of eight */
-  double *x, *y, *angle, *cosine, *sine;
-  double *vx, *vy, *spin;
-  double *fx, *fy, *torque;
-  double *mobility_x, *mobility_y, *mobility_angle; /* 1/mass, 1/moment; 0 = held or gone */
-  double *guess_vx, *guess_vy, *guess_spin;         /* velocities the dissipative forces see */
-  double *list_x, *list_y, *list_angle, *skin;      /* where the neighbour list was made, and how far it holds */
-  double *gear[3][6];                               /* x, y, angle: dt^k/k! d^k/dt^k, k = 2..5 (0, 1 unused) */
+/* Columns: one double per grain, padded to blocks of eight; they lie in one arena. */
+#define DEM_COLUMNS(COLUMN)                                                                                            \
+  COLUMN(x)                                                                                                            \
+  COLUMN(y)                                                                                                            \
+  COLUMN(angle)                                                                                                        \
+  COLUMN(cosine) COLUMN(sine) COLUMN(vx) COLUMN(vy) COLUMN(spin) COLUMN(fx) COLUMN(fy) COLUMN(torque)                  \
+      COLUMN(mobility_x) COLUMN(mobility_y) COLUMN(mobility_angle) /* 1/mass, 1/moment; 0 = held or removed */         \
+      COLUMN(guess_vx) COLUMN(guess_vy) COLUMN(guess_spin)         /* velocities for the dissipative forces */         \
+      COLUMN(list_x) COLUMN(list_y) COLUMN(list_angle)             /* state when the neighbour list was made */        \
+      COLUMN(skin)                                                 /* distance over which the list holds */            \
+      COLUMN(radius)                                               /* distance of the farthest vertex */
+
+/* Arrays of a system: the element's type, the name, how many elements are allocated, and how many of them the next step
+ * depends on (a restart file saves those). This is the only list: it declares, allocates, frees, counts and saves. */
+#define DEM_ARRAYS(ARRAY)                                                                                              \
+  ARRAY(double, arena, s->arena_doubles, s->arena_doubles) /* all columns */                                           \
+  /* grains, fixed */                                                                                                  \
+  ARRAY(double, mass, s->count, 0)                                                                                     \
+  ARRAY(double, inertia, s->count, 0)                                                                                  \
+  ARRAY(double, diameter, s->count, 0)                                                                                 \
+  ARRAY(uint32_t, first_vertex, s->count + 1, 0) /* into the outlines; each grain's closes on itself */                \
+  ARRAY(double, outline_x, s->vertex_count, 0)   /* body frame */                                                      \
+  ARRAY(double, outline_y, s->vertex_count, 0)                                                                         \
+  ARRAY(uint32_t, first_partner, s->count + 2, 0) /* tessellation neighbours of each grain */                          \
+  ARRAY(uint32_t, partner, 2 * s->pair_count, 0)                                                                       \
+  ARRAY(uint32_t, partner_pair, 2 * s->pair_count, 0)                                                                  \
+  /* grains, changed by the protocol: what is held, and at which velocity */                                           \
+  ARRAY(unsigned char, freedoms, s->count, s->count)                                                                   \
+  ARRAY(unsigned char, present, s->count, s->count)                                                                    \
+  ARRAY(double, held_vx, s->count, s->count)                                                                           \
+  ARRAY(double, held_vy, s->count, s->count)                                                                           \
+  ARRAY(double, held_spin, s->count, s->count)                                                                         \
+  ARRAY(uint32_t, held, s->count, s->count)                                                                            \
+  /* tessellation pairs */                                                                                             \
+  ARRAY(dem_pair, pair, s->pair_count, 0)                                                                              \
+  ARRAY(struct dem_contact, pair_contact, s->pair_count, 0) /* fixed at the start, with the pair's own S_ref */        \
+  ARRAY(unsigned char, windowed, s->pair_count, 0)          /* the bond block's window handles the contact */          \
+  ARRAY(unsigned char, alive, s->pair_count, s->pair_count) /* the beam holds */                                       \
+  ARRAY(int32_t, pair_lane, s->pair_count, s->pair_count)   /* lane in the bond blocks, or DEM_NO_PAIR */              \
+  ARRAY(int32_t, lane_pair, DEM_BLOCK * s->bond_capacity, DEM_BLOCK * s->bond_capacity) /* the inverse */              \
+  ARRAY(struct dem_bond_block, bond, s->bond_capacity, s->now.bond_blocks)                                             \
+  ARRAY(struct dem_break, log, s->pair_count, s->now.break_count)                                                      \
+  /* near pairs */                                                                                                     \
+  ARRAY(struct dem_near_block, near, s->near_capacity / DEM_BLOCK, (s->now.near_count + DEM_BLOCK - 1) / DEM_BLOCK)    \
+  ARRAY(struct dem_near_pair, near_pair, s->near_capacity, s->now.near_count)                                          \
+  ARRAY(uint32_t, general, DEM_BLOCK * s->bond_capacity + s->near_capacity, 0) /* pairs for the general overlap */     \
+  /* cell grid of the neighbour search, used only while a list is made */                                              \
+  ARRAY(uint32_t, cell_head, s->cell_buckets, 0)                                                                       \
+  ARRAY(uint32_t, cell_grain, s->cell_capacity, 0)                                                                     \
+  ARRAY(uint32_t, cell_next, s->cell_capacity, 0)                                                                      \
+  ARRAY(dem_cell, cell_key, s->cell_capacity, 0) /* cell of an entry */                                                \
+  ARRAY(dem_cell, cell_low, s->count, 0)         /* lowest cell of a grain */
+
+typedef uint32_t dem_pair[2];
+typedef int32_t dem_cell[2];
+
+struct dem_columns {
+#define DEM_COLUMN(name) double *name;
+  DEM_COLUMNS(DEM_COLUMN)
+#undef DEM_COLUMN
+  double *gear[3][6]; /* x, y, angle: dt^k/k! d^k/dt^k, k = 2..5 (0, 1 unused); NULL with velocity Verlet */
 };
 
 struct dem_system {
   const struct dem_inputs *in; /* borrowed */
   struct dem_progress now;
-  size_t count, padded; /* grains; with ghosts, a multiple of eight */
-  uint32_t ghost;       /* the first of two ghosts */
-  bool velocities;      /* contact forces need velocities (damping, friction, printed law's ledger) */
-  struct dem_columns c;
-  double *arena; /* holds every column */
+  size_t count, padded;               /* grains; with ghosts, a multiple of eight */
+  size_t vertex_count, pair_count;    /* of all outlines; of the tessellation */
+  size_t bond_capacity;               /* blocks */
+  size_t near_capacity;               /* pairs, a multiple of eight */
+  size_t cell_capacity, cell_buckets; /* entries; a power of two */
   size_t arena_doubles;
-
-  /* grains, fixed */
-  double *mass, *inertia, *diameter;
-  double *radius;                                   /* of the farthest vertex; padded */
-  uint32_t *first_vertex;                           /* count + 1, into the outlines; each grain's closes on itself */
-  double *outline_x, *outline_y;                    /* body frame */
-  uint32_t *first_partner, *partner, *partner_pair; /* tessellation neighbours of each grain */
-  double mean_diameter;
-
-  /* grains, changing by hand */
-  unsigned char *freedoms, *present;
-  double *held_vx, *held_vy, *held_spin;
-  uint32_t *held;
-  size_t held_count;
-
-  /* tessellation pairs */
-  size_t pair_count;
-  uint32_t (*pair)[2];
-  struct dem_contact *pair_contact; /* fixed at the start, with the pair's own S_ref */
-  unsigned char *alive;             /* beam */
-  unsigned char *windowed;          /* contact handled by the bond block's window */
-  int32_t *pair_lane;               /* lane in the bond blocks, or DEM_NO_PAIR */
-  int32_t *lane_pair;               /* and back */
-  struct dem_bond_block *bond;
-  size_t bond_capacity; /* blocks */
-
-  /* near pairs */
-  struct dem_near_block *near;
-  struct dem_near_pair *near_pair;
-  size_t near_capacity; /* pairs */
-  uint32_t *general;    /* pairs for the general overlap, this step */
-  size_t general_capacity, general_count;
-
-  /* cells of the neighbour search, only used while a list is made */
-  uint32_t *cell_head, *cell_grain, *cell_next;
-  int32_t (*cell_key)[2], (*cell_low)[2]; /* cell of an entry; lowest cell of a grain */
-  size_t cell_capacity, cell_buckets;
-
-  struct dem_break *log;
+  size_t held_count, general_count; /* entries of held, of general */
+  uint32_t ghost;                   /* the first of two ghosts */
+  bool velocities;                  /* contact forces need velocities (damping, friction, printed law's ledger) */
+  double mean_diameter;             /* m */
+  struct dem_columns c;
+#define DEM_ARRAY(type, name, allocated, saved) type *name;
+  DEM_ARRAYS(DEM_ARRAY)
+#undef DEM_ARRAY
   struct dem_sums sums;
   const struct dem_kernels *kernels;
 };
+
+/* Allocates every array for the grains and pairs counted so far, zeroed. False: no memory; what was allocated is in
+ * the system. */
+bool dem_system_arrays_allocate(struct dem_system *system);
+void dem_system_arrays_free(struct dem_system *system);
+size_t dem_system_arrays_bytes(const struct dem_system *system); /* of the arrays and the system itself */
+/* Gives the near list a capacity of at least `pairs`; what it holds stays. False: no memory, and nothing changes. */
+bool dem_system_arrays_grow_near(struct dem_system *system, size_t pairs);
+/* Lists what the next step depends on, and returns how many blocks there are. */
+enum { DEM_SAVED_BLOCKS = 48 };
+size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block blocks[DEM_SAVED_BLOCKS]);
 
 /* Forces at the positions now, with the lists as they are. `dt` books the dissipated powers for a step's length. */
 void dem_system_evaluate(struct dem_system *system, double dt);

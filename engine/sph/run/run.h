@@ -29,7 +29,7 @@ struct sph_state {
   double first_damage;                        /* s, NaN: none yet */
   double quiet_damage, quiet_since;           /* mean damage, and when it was that; the rule of stop.quiet_time */
   uint64_t limited[SPH_LIMITS];               /* steps that each limiter set */
-  uint64_t samples, skipped;                  /* of the curve */
+  uint64_t samples;                           /* of the curve */
   double peak_stress, peak_strain, peak_time; /* stretch */
   double mode_before, mode_time;              /* vibration: amplitude at the last look */
   double crossing_first, crossing_last;       /* s, interpolated zero crossings of the mode */
@@ -77,9 +77,5 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error);
 char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
 double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, near enough */
-
-/* restart.c */
-status sph_restart_save(struct sph_run *run, const char *path, struct error *error);
-status sph_restart_load(const struct sph_inputs *inputs, const char *path, struct sph_run **out, struct error *error);
 
 #endif
