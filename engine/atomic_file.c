@@ -1,3 +1,4 @@
+/* Files that exist whole or not at all. */
 #include "engine/atomic_file.h"
 
 #include <errno.h>
@@ -10,11 +11,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Opens a new file beside `path`: FILE.tmp, which its writer locks. A lock dies with its process, so that what one left
- * behind that was killed is taken over by the next writer of the same file; where another is at it now (or where there
- * are no locks) it is FILE.PID.tmp. NULL: errno says why. */
-static FILE *begin(const char *path, char *temporary, size_t room) {
-  snprintf(temporary, room, "%s.tmp", path);
+/* Opens a new file beside `path`: FILE.tmp, which its writer locks. A lock dies with its process, so the next writer
+ * takes over the file that a killed writer left behind. Where another writer holds the lock, or the file system has no
+ * locks, the name is FILE.PID.tmp. `size` is that of the buffer `temporary`. NULL: errno says why. */
+static FILE *begin(const char *path, char *temporary, size_t size) {
+  snprintf(temporary, size, "%s.tmp", path);
   int file = open(temporary, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   struct stat mine, there;
   if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0 && fstat(file, &mine) == 0 && stat(temporary, &there) == 0 &&
@@ -23,7 +24,7 @@ static FILE *begin(const char *path, char *temporary, size_t room) {
     return fdopen(file, "wb");
   if (file >= 0)
     close(file);
-  snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
+  snprintf(temporary, size, "%s.%ld.tmp", path, (long)getpid());
   return fopen(temporary, "wb");
 }
 
@@ -41,7 +42,7 @@ status atomic_file_write(const char *path, const char *what, const void *bytes, 
   if (!good && file)
     unlink(temporary);
   if (file)
-    fclose(file); /* all of it is on the disk; only now the lock goes */
+    fclose(file); /* releases the lock, after all is on the disk */
   free(temporary);
   return code;
 }

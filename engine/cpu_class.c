@@ -1,3 +1,4 @@
+/* The choice of the CPU class for the hot loops. */
 #include "engine/cpu_class.h"
 
 #include <stdlib.h>

@@ -1,9 +1,8 @@
-/* Which of the x86-64 microarchitecture levels the hot loops run on: they are compiled for each, and chosen at run
- * time.
+/* The x86-64 microarchitecture level that the hot loops run on: they are compiled for each, and chosen at run time.
  *
- * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run. The environment
- * variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine does not have is not used, the best one is.
- */
+ * Bits are promised within one class, because contraction to FMA differs; so the class is recorded with a run. The
+ * environment variable CLAST_CPU=baseline|v3|v4 limits the class. A class that the machine lacks is replaced by the
+ * best one below it. */
 #ifndef CLAST_ENGINE_CPU_CLASS_H
 #define CLAST_ENGINE_CPU_CLASS_H
 

@@ -1,3 +1,4 @@
+/* The list of engines. */
 #include "engine/engine.h"
 
 #include <string.h>

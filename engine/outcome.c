@@ -1,3 +1,4 @@
+/* The rows of what every engine reports of a run. */
 #include "engine/outcome.h"
 
 #include <math.h>

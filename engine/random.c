@@ -1,3 +1,4 @@
+/* Philox counters behind the random numbers of all engines. */
 #include "engine/random.h"
 
 /* Random123's headers are not -Wconversion clean; ours is. */

@@ -1,11 +1,11 @@
-/* Random numbers: counter-based (Random123 Philox4x64-10), so that a draw depends on (seed, purpose, item, draw) alone,
- * never on order, threads or restarts (design: joint 3). Known-answer vectors are tested. */
+/* Counter-based random numbers (Random123 Philox4x64-10): a draw depends on (seed, purpose, item, draw) alone, never on
+ * order, threads or restarts. A test compares known-answer vectors. */
 #ifndef CLAST_ENGINE_RANDOM_H
 #define CLAST_ENGINE_RANDOM_H
 
 #include <stdint.h>
 
-enum random_purpose { /* pinned: they are part of what a seed means */
+enum random_purpose { /* never changed: they are part of what a seed means */
                       RANDOM_LATTICE = 1,
                       RANDOM_THRESHOLD = 2,
                       RANDOM_FLAW_STRENGTH = 3,

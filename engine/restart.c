@@ -1,3 +1,4 @@
+/* The writer and reader of restart files. */
 #include "engine/restart.h"
 
 #include <errno.h>

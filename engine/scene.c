@@ -1,3 +1,4 @@
+/* Scenes: built-in documents, reading, overrides, checks, identity. */
 #include "engine/scene.h"
 
 #include <stdlib.h>
@@ -6,6 +7,7 @@
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
 #include "schemas/document.h"
+#include "schemas/json_schema.h"
 #include "schemas/text.h"
 
 /* ---- built-in scenes ---- */
@@ -68,7 +70,7 @@ static struct scene *create(const struct engine_kind *kind) {
   return scene;
 }
 
-/* Takes the document. */
+/* Frees the document. */
 static status read_document(struct document *document, const char *fallback, struct scene **out, struct error *error) {
   status code = STATUS_CONTENT;
   struct scene *scene = NULL;
@@ -200,8 +202,8 @@ status scene_set_text(struct scene *scene, const char *path, const char *text, s
   return code ? code : scene_set(scene, row->path, &value, error);
 }
 
-/* A line of the document that overrides left without effect: its row is as if it had not been given. */
-static status take_back(struct scene *scene, size_t row, struct error *error) {
+/* Undoes a line of the document that has no effect because of an override: the row gets its default again. */
+static status set_back(struct scene *scene, size_t row, struct error *error) {
   const struct field_table *table = scene->kind->inputs;
   void *untouched = calloc(1, table->size);
   if (!untouched)
@@ -230,7 +232,7 @@ status scene_check(struct scene *scene, struct error *error) {
       return status_fail(error, STATUS_CONTENT, "%s: has no effect: it is %s; remove one or change the other",
                          row->path, why);
     } else if (scene->given[i]) {
-      const status code = take_back(scene, i, error);
+      const status code = set_back(scene, i, error);
       if (code)
         return code;
     }
@@ -260,11 +262,25 @@ char *scene_json(const struct scene *scene) {
   return text;
 }
 
+void scene_schema(const struct engine_kind *kind, FILE *out) {
+  char title[128], extra[512];
+  snprintf(title, sizeof title, "A scene of clast's engine %s", kind->name);
+  snprintf(extra, sizeof extra,
+           "\"engine\": {\"const\": \"%s\", \"description\": \"Which engine runs the scene.\"},\n"
+           "    \"name\": {\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d, \"description\": \"The "
+           "scene's name.\"},\n"
+           "    \"source\": {\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d, \"description\": "
+           "\"Where it comes from: "
+           "paper, section, figure.\"}",
+           kind->name, FIELD_TEXT_SIZE - 1, FIELD_TEXT_SIZE - 1);
+  json_schema_write(kind->inputs, title, extra, "engine", out);
+}
+
 void scene_identity(const struct scene *scene, uint64_t seed, uint8_t identity[16]) {
   char *inputs = field_identity(scene->kind->inputs, scene->inputs), *text = NULL;
   size_t size = 0;
   FILE *out = inputs ? open_memstream(&text, &size) : NULL;
-  memset(identity, 0, 16); /* all zero: no memory; no document hashes to that */
+  memset(identity, 0, 16); /* all zero: no memory */
   if (!out) {
     free(inputs);
     return;

@@ -1,3 +1,4 @@
+/* The descriptor of engine `dem`. */
 #include "engine/dem/dem.h"
 
 #include <math.h>
@@ -5,8 +6,8 @@
 #include "engine/dem/run/run.h"
 #include "engine/restart.h"
 
-/* Measured by tests/unit/test_dem_engine.c on the built-in scenes; without that, a body's bytes per grain: outlines,
- * beams and contacts of the moving system, its tessellation, and what fragments need at the end. */
+/* An upper bound per grain: outlines, beams and contacts of the moving system, the tessellation, and the search for
+ * fragments at the end. tests/unit/test_dem_engine.c compares it with the built-in scenes. */
 enum { BYTES_PER_GRAIN = 4000, BYTES_ANYWAY = 1 << 20 };
 
 static status check(const void *inputs, struct error *error) {

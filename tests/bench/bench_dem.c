@@ -31,7 +31,7 @@ static double reference_steps(struct reference_dem *reference, struct dem_system
   if (fabs(ours / theirs - 1.0) > 1e-6)
     fail("the reference does not compute the same energy", NULL);
   const double start = now();
-  for (int k = 0; k < steps; ++k)
+  for (int k = 0; k < steps; k++)
     reference_dem_step(reference);
   return now() - start;
 }
@@ -54,7 +54,7 @@ static double ringing(const char *name, double scale, bool with_reference, doubl
   const double before = l.kinetic + l.beam + l.contact;
   for (int k = 0; k < steps; k += every, ++samples) {
     const double start = now();
-    for (int i = 0; i < every; ++i)
+    for (int i = 0; i < every; i++)
       if (!dem_system_step(system))
         fail("a position is no longer finite", NULL);
     spent += now() - start;

@@ -26,7 +26,7 @@ static inline bool dem_disc_tessellation(double radius, double spacing, uint64_t
 
 static inline uint32_t dem_disc_centre(const struct dem_tessellation *t) {
   uint32_t centre = 0;
-  for (uint32_t i = 1; i < t->cell_count; ++i)
+  for (uint32_t i = 1; i < t->cell_count; i++)
     if (hypot(t->centroid[i].x, t->centroid[i].y) < hypot(t->centroid[centre].x, t->centroid[centre].y))
       centre = i;
   return centre;
@@ -38,8 +38,8 @@ static inline struct dem_point dem_disc_push(const struct dem_tessellation *t, u
   const uint32_t other = t->pair[pair][0] == centre ? t->pair[pair][1] : t->pair[pair][0];
   const uint32_t fi = t->first_vertex[centre], ni = t->first_vertex[centre + 1] - fi;
   const uint32_t fj = t->first_vertex[other], nj = t->first_vertex[other + 1] - fj;
-  for (uint32_t a = 0; a < ni; ++a)
-    for (uint32_t b = 0; b < nj; ++b) {
+  for (uint32_t a = 0; a < ni; a++)
+    for (uint32_t b = 0; b < nj; b++) {
       const struct dem_point p = t->vertex[fi + a], q = t->vertex[fi + (a + 1) % ni];
       const struct dem_point r = t->vertex[fj + b], u = t->vertex[fj + (b + 1) % nj];
       if (hypot(p.x - u.x, p.y - u.y) + hypot(q.x - r.x, q.y - r.y) < 1e-9 * t->side[pair] + 1e-14) {
@@ -54,8 +54,8 @@ static inline void dem_disc_charge(struct dem_system *system, const struct dem_t
                                    double energy) {
   const uint32_t centre = dem_disc_centre(t);
   double unit = 0.0;
-  for (int pass = 0; pass < 2; ++pass)
-    for (size_t k = 0; k < t->pair_count; ++k) {
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t k = 0; k < t->pair_count; k++) {
       if (t->pair[k][0] != centre && t->pair[k][1] != centre)
         continue;
       const uint32_t other = t->pair[k][0] == centre ? t->pair[k][1] : t->pair[k][0];

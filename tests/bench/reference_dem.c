@@ -1,3 +1,4 @@
+/* The frozen plain C version of the grains: the yardstick of bench_dem. */
 #include "tests/bench/reference_dem.h"
 
 #include <math.h>

@@ -50,18 +50,18 @@ static inline struct dem_tessellation *fixture_squares(uint32_t columns, uint32_
   t->grid_y = calloc(n, sizeof *t->grid_y);
   t->pair = calloc(pairs + 1, sizeof *t->pair);
   t->side = calloc(pairs + 1, sizeof *t->side);
-  for (uint32_t i = 0; i < n; ++i) {
+  for (uint32_t i = 0; i < n; i++) {
     const uint32_t a = i % columns, b = i / columns;
     const double x = a * (h + gap), y = b * h;
     t->first_vertex[i + 1] = 4 * (i + 1);
-    for (uint32_t v = 0; v < 4; ++v)
+    for (uint32_t v = 0; v < 4; v++)
       t->vertex[4 * i + v] = (struct dem_point){x + (v == 1 || v == 2 ? h : 0.0), y + (v >= 2 ? h : 0.0)};
     t->centroid[i] = (struct dem_point){x + 0.5 * h, y + 0.5 * h};
     t->area[i] = h * h;
     t->polar_moment[i] = h * h * h * h / 6.0;
     t->grid_x[i] = a;
     t->grid_y[i] = b;
-    for (int up = 0; up < 2 && bonded; ++up) {
+    for (int up = 0; up < 2 && bonded; up++) {
       if (up ? b + 1 == rows : a + 1 == columns)
         continue;
       t->pair[t->pair_count][0] = i;
@@ -118,13 +118,13 @@ static inline void fixture_place(struct dem_system *s, uint32_t grain, double x,
 static inline void fixture_evaluate(struct dem_system *s) {
   double *const columns[6] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle, s->c.vx, s->c.vy, s->c.spin};
   double *kept = calloc(6 * s->padded, sizeof *kept);
-  for (int k = 0; k < 6; ++k) {
+  for (int k = 0; k < 6; k++) {
     memcpy(kept + (size_t)k * s->padded, columns[k], s->padded * sizeof *kept);
     memset(columns[k], 0, s->padded * sizeof *kept);
   }
   s->now.ready = 0;
   assert_true(dem_system_step(s));
-  for (int k = 0; k < 6; ++k)
+  for (int k = 0; k < 6; k++)
     memcpy(columns[k], kept + (size_t)k * s->padded, s->padded * sizeof *kept);
   free(kept);
 }

@@ -20,20 +20,20 @@ static double force(const struct dem_system *s, size_t freedom) {
 /* K = -dF/du by central differences at the state now; angles are scaled by `arm` so that all entries are N/m. */
 static void stiffness(struct dem_system *s, size_t freedoms, double arm, double *k) {
   const double step = 1e-7 * h; /* central: error 1e-14 relative from the third derivative, 1e-9 from rounding */
-  for (size_t a = 0; a < freedoms; ++a) {
+  for (size_t a = 0; a < freedoms; a++) {
     const double unit = a % 3 == 2 ? 1.0 / arm : 1.0;
     for (int sign = -1; sign <= 1; sign += 2) {
       set(s, a, sign * step * unit);
       fixture_evaluate(s);
-      for (size_t b = 0; b < freedoms; ++b)
+      for (size_t b = 0; b < freedoms; b++)
         k[b * freedoms + a] = (sign < 0 ? 0.0 : k[b * freedoms + a]) -
                               sign * force(s, b) * (b % 3 == 2 ? 1.0 / arm : 1.0);
       if (sign < 0)
-        for (size_t b = 0; b < freedoms; ++b)
+        for (size_t b = 0; b < freedoms; b++)
           k[b * freedoms + a] = force(s, b) * (b % 3 == 2 ? 1.0 / arm : 1.0);
       set(s, a, -sign * step * unit);
     }
-    for (size_t b = 0; b < freedoms; ++b)
+    for (size_t b = 0; b < freedoms; b++)
       k[b * freedoms + a] /= 2.0 * step;
   }
 }
@@ -59,14 +59,14 @@ static void stiffness_is_timoshenko(void **state) {
                                  {-axial, 0, 0, axial, 0, 0},
                                  {0, -q, -q / 2, 0, q, -q / 2},
                                  {0, q / 2, q * far, 0, -q / 2, q * near}};
-  for (size_t a = 0; a < 36; ++a) /* 1e-6: rounding of forces over the step, 1e-16 / 1e-7 and some */
+  for (size_t a = 0; a < 36; a++) /* 1e-6: rounding of forces over the step, 1e-16 / 1e-7 and some */
     fixture_near(k[a], expected[a / 6][a % 6], 1e-6 * axial, "stiffness");
   gsl_matrix_view m = gsl_matrix_view_array(k, 6, 6);
   gsl_vector *values = gsl_vector_alloc(6);
   gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(6);
   gsl_eigen_symm(&m.matrix, values, work);
   int zero = 0;
-  for (size_t a = 0; a < 6; ++a) {
+  for (size_t a = 0; a < 6; a++) {
     assert_true(gsl_vector_get(values, a) > -1e-6 * axial);
     zero += gsl_vector_get(values, a) < 1e-6 * axial;
   }
@@ -85,7 +85,7 @@ static void force_is_the_energys_gradient(void **state) {
   in.contact.law = DEM_CONTACT_OFF;
   struct dem_system *s = fixture_create(t, &in);
   uint64_t seed = 1;
-  for (int trial = 0; trial < 50; ++trial) {
+  for (int trial = 0; trial < 50; trial++) {
     const double turn = 3.0 * fixture_random(&seed);
     fixture_place(s, 0, 0.2 * h * fixture_random(&seed), 0.2 * h * fixture_random(&seed),
                   turn + 0.3 * fixture_random(&seed));
@@ -93,11 +93,11 @@ static void force_is_the_energys_gradient(void **state) {
                   h * sin(turn) + 0.2 * h * fixture_random(&seed), turn + 0.3 * fixture_random(&seed));
     fixture_evaluate(s);
     double f[6], largest = 0.0;
-    for (size_t a = 0; a < 6; ++a) {
+    for (size_t a = 0; a < 6; a++) {
       f[a] = force(s, a);
       largest = fmax(largest, fabs(f[a]) / (a % 3 == 2 ? h : 1.0));
     }
-    for (size_t a = 0; a < 6; ++a) {
+    for (size_t a = 0; a < 6; a++) {
       const double step = a % 3 == 2 ? 1e-5 : 1e-5 * h;
       set(s, a, step);
       fixture_evaluate(s);
@@ -125,30 +125,30 @@ static void rotation_and_swap(void **state) {
   struct dem_inputs in = fixture_inputs();
   in.contact.law = DEM_CONTACT_OFF;
   struct dem_system *s = fixture_create(t, &in);
-  for (int k = 0; k <= 200; ++k) { /* up to 20 rad, so that the unwrapped angle passes pi thrice */
+  for (int k = 0; k <= 200; k++) { /* up to 20 rad, so that the unwrapped angle passes pi thrice */
     const double angle = 0.1 * k;
     fixture_place(s, 0, 0.5 * h - 0.5 * h * cos(angle), 0.5 * h - 0.5 * h * sin(angle), angle);
     fixture_place(s, 1, 0.5 * h + 0.5 * h * cos(angle), 0.5 * h + 0.5 * h * sin(angle), angle);
     fixture_evaluate(s);
-    for (size_t a = 0; a < 6; ++a) /* 20 rad have roundings of 4e-15, times E h (h) */
+    for (size_t a = 0; a < 6; a++) /* 20 rad have roundings of 4e-15, times E h (h) */
       fixture_near(force(s, a), 0.0, 1e-13 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "rigid rotation");
   }
   dem_system_free(s);
   /* u = (dx, dy, angle) of either end; swap means: turn the picture by 180 degrees. */
   double f[2][6];
-  for (int swap = 0; swap < 2; ++swap) {
+  for (int swap = 0; swap < 2; swap++) {
     s = fixture_create(t, &in);
     const double u[2][3] = {{0.01 * h, 0.02 * h, 0.05}, {0.03 * h, -0.01 * h, -0.08}};
-    for (uint32_t g = 0; g < 2; ++g) {
+    for (uint32_t g = 0; g < 2; g++) {
       const double *v = u[swap ? 1 - g : g], sign = swap ? -1.0 : 1.0;
       fixture_place(s, g, t->centroid[g].x + sign * v[0], t->centroid[g].y + sign * v[1], v[2]);
     }
     fixture_evaluate(s);
-    for (size_t a = 0; a < 6; ++a)
+    for (size_t a = 0; a < 6; a++)
       f[swap][a] = force(s, a);
     dem_system_free(s);
   }
-  for (size_t a = 0; a < 6; ++a)
+  for (size_t a = 0; a < 6; a++)
     fixture_near(f[0][a], (a % 3 == 2 ? 1.0 : -1.0) * f[1][(a + 3) % 6],
                  1e-12 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "swap");
   fixture_free(t);
@@ -166,8 +166,8 @@ static void cantilever(void **state) {
   stiffness(s, all, h, k);
   gsl_matrix *m = gsl_matrix_alloc(n, n);
   gsl_vector *load = gsl_vector_calloc(n), *u = gsl_vector_alloc(n);
-  for (size_t a = 0; a < n; ++a)
-    for (size_t b = 0; b < n; ++b)
+  for (size_t a = 0; a < n; a++)
+    for (size_t b = 0; b < n; b++)
       gsl_matrix_set(m, a, b, k[(a + 3) * all + b + 3]);
   gsl_vector_set(load, n - 2, 1.0); /* y of the last grain, 1 N per m of thickness */
   gsl_permutation *order = gsl_permutation_alloc(n);
@@ -196,11 +196,11 @@ static void square_lattice_modulus(void **state) {
   const struct dem_inputs in = fixture_inputs(); /* contact is on: pulled grains do not touch */
   struct dem_system *s = fixture_create(t, &in);
   const double strain = 1e-4;
-  for (uint32_t i = 0; i < n * n; ++i)
+  for (uint32_t i = 0; i < n * n; i++)
     fixture_place(s, i, t->centroid[i].x, t->centroid[i].y * (1.0 + strain), 0.0);
   fixture_evaluate(s);
   double top = 0.0;
-  for (uint32_t i = 0; i < n * n; ++i) {
+  for (uint32_t i = 0; i < n * n; i++) {
     const double scale = in.beam.young_modulus * h * strain;
     if (i / n > 0 && i / n < n - 1) /* 1e-9: rounding of lengths over the strain */
       fixture_near(s->c.fy[i], 0.0, 1e-9 * scale, "inner grains balance");

@@ -15,7 +15,7 @@ static struct impact collide(struct dem_inputs in, double v) {
   dem_system_set_velocity(s, 1, -v, 0.0, 0.0);
   struct impact out = {.least_push = (double)INFINITY};
   double began = -1.0;
-  for (int k = 0; k < 100000; ++k) {
+  for (int k = 0; k < 100000; k++) {
     assert_true(dem_system_step(s));
     const double deep = h - (s->c.x[1] - s->c.x[0]), push = -s->c.fx[0];
     if (deep > 0.0 && began < 0.0)
@@ -77,7 +77,7 @@ static void oblique_impact_conserves(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.5 * h, false);
   double error[2];
-  for (int fine = 0; fine < 2; ++fine) {
+  for (int fine = 0; fine < 2; fine++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.time_step = fine ? 2.5e-8 : 1e-7;
     struct dem_system *s = fixture_create(t, &in);
@@ -86,7 +86,7 @@ static void oblique_impact_conserves(void **state) {
     dem_system_set_velocity(s, 1, -20.0, 1.0, 100.0);
     const double before = fixture_total(dem_system_ledger(s));
     double deepest = 0.0;
-    for (int k = 0; k * in.fidelity.time_step < 1e-3; ++k) {
+    for (int k = 0; k * in.fidelity.time_step < 1e-3; k++) {
       assert_true(dem_system_step(s));
       if (k % 16 == 0)
         deepest = fmax(deepest, dem_system_ledger(s).contact);
@@ -107,9 +107,9 @@ static void oblique_impact_conserves(void **state) {
 static void friction_takes_energy_out(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 1e-6 * h, false);
-  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; ++law) {
+  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++) {
     double error[2];
-    for (int fine = 0; fine < 2; ++fine) {
+    for (int fine = 0; fine < 2; fine++) {
       struct dem_inputs in = fixture_inputs();
       in.contact.law = law;
       in.fidelity.time_step = fine ? 1e-8 : 4e-8;
@@ -122,7 +122,7 @@ static void friction_takes_energy_out(void **state) {
       const double before = fixture_total(dem_system_ledger(s));
       double kinetic = dem_system_ledger(s).kinetic;
       bool limited = false;
-      for (int k = 0; k * in.fidelity.time_step < 1e-4; ++k) {
+      for (int k = 0; k * in.fidelity.time_step < 1e-4; k++) {
         assert_true(dem_system_step(s));
         if (s->c.fx[0] < 0.0 && k * in.fidelity.time_step < 20e-6) {
           fixture_near(s->c.fy[0], 0.3 * s->c.fx[0], 0.02 * fabs(s->c.fx[0]), "Coulomb's limit");
@@ -148,7 +148,7 @@ static void friction_takes_energy_out(void **state) {
 static void bonded_switches(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, h, 0.0, true);
-  for (int on = 0; on < 2; ++on) {
+  for (int on = 0; on < 2; on++) {
     struct dem_inputs in = fixture_inputs();
     in.contact.bonded = on;
     in.beam.young_modulus = 0.0;

@@ -27,7 +27,7 @@ struct model {
 static struct polygon outline(const struct dem_tessellation *t, uint32_t grain, const struct place *at) {
   struct polygon p = {.count = (int)(t->first_vertex[grain + 1] - t->first_vertex[grain])};
   const long double c = cosl(at->angle), s = sinl(at->angle);
-  for (int v = 0; v < p.count; ++v) {
+  for (int v = 0; v < p.count; v++) {
     const struct dem_point *q = &t->vertex[t->first_vertex[grain] + (uint32_t)v];
     const long double x = (long double)q->x - t->centroid[grain].x, y = (long double)q->y - t->centroid[grain].y;
     p.x[v] = at->x + c * x - s * y;
@@ -39,11 +39,11 @@ static struct polygon outline(const struct dem_tessellation *t, uint32_t grain, 
 static long double overlap_area(const struct model *m, uint32_t i, uint32_t j, const struct place *at) {
   struct polygon p = outline(m->t, i, &at[i]);
   const struct polygon q = outline(m->t, j, &at[j]);
-  for (int k = 0; k < q.count && p.count; ++k) {
+  for (int k = 0; k < q.count && p.count; k++) {
     const int n = (k + 1) % q.count;
     const long double ex = q.x[n] - q.x[k], ey = q.y[n] - q.y[k];
     struct polygon cut = {0};
-    for (int v = 0; v < p.count; ++v) {
+    for (int v = 0; v < p.count; v++) {
       const int w = (v + 1) % p.count;
       const long double a = ex * (p.y[v] - q.y[k]) - ey * (p.x[v] - q.x[k]);
       const long double b = ex * (p.y[w] - q.y[k]) - ey * (p.x[w] - q.x[k]);
@@ -57,7 +57,7 @@ static long double overlap_area(const struct model *m, uint32_t i, uint32_t j, c
     p = cut;
   }
   long double twice = 0;
-  for (int v = 0; v < p.count; ++v) {
+  for (int v = 0; v < p.count; v++) {
     const int w = (v + 1) % p.count;
     twice += (p.x[v] - p.x[0]) * (p.y[w] - p.y[0]) - (p.y[v] - p.y[0]) * (p.x[w] - p.x[0]);
   }
@@ -86,7 +86,7 @@ static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
   const double di = sqrt(4.0 * t->area[i] / M_PI), dj = sqrt(4.0 * t->area[j] / M_PI);
   double side = 0.0;
   bool bonded = false;
-  for (size_t p = 0; p < t->pair_count; ++p)
+  for (size_t p = 0; p < t->pair_count; p++)
     if (t->pair[p][0] == i && t->pair[p][1] == j)
       side = t->side[p], bonded = m->beam[p];
   if (!m->present[i] || !m->present[j] || (bonded && !m->in.contact.bonded))
@@ -98,11 +98,11 @@ static long double contact_of(const struct model *m, uint32_t i, uint32_t j) {
 /* Potential of beams and, for the conservative law, of contacts. */
 static long double energy(const struct model *m, const struct place *at) {
   long double sum = 0;
-  for (size_t p = 0; p < m->t->pair_count; ++p)
+  for (size_t p = 0; p < m->t->pair_count; p++)
     if (m->beam[p])
       sum += beam_energy(m, p, at);
-  for (uint32_t i = 0; i < GRAINS && m->in.contact.law == DEM_CONTACT_CONSERVATIVE; ++i)
-    for (uint32_t j = i + 1; j < GRAINS; ++j) {
+  for (uint32_t i = 0; i < GRAINS && m->in.contact.law == DEM_CONTACT_CONSERVATIVE; i++)
+    for (uint32_t j = i + 1; j < GRAINS; j++) {
       const long double kappa = contact_of(m, i, j), area = kappa > 0 ? overlap_area(m, i, j, at) : 0;
       sum += kappa * area * area / 2;
     }
@@ -117,7 +117,7 @@ static long double *freedom(struct place *at, size_t k) {
 /* Generalised forces f[3 grain + k]: the energy's central differences and, for the printed law, Y A / L_c along the
  * unit vector of the area's gradient (the force acts in the contact line's middle, as the gradient's torque does). */
 static void expected_forces(const struct model *m, struct place *at, long double cell, long double f[3 * GRAINS]) {
-  for (size_t k = 0; k < 3 * GRAINS; ++k) {
+  for (size_t k = 0; k < 3 * GRAINS; k++) {
     /* 1e-8: truncation below 1e-14, rounding 1e-19/1e-8 */
     const long double step = k % 3 == 2 ? 1e-8L : 1e-8L * cell, here = *freedom(at, k);
     *freedom(at, k) = here + step;
@@ -129,13 +129,13 @@ static void expected_forces(const struct model *m, struct place *at, long double
   }
   if (m->in.contact.law != DEM_CONTACT_PRINTED)
     return;
-  for (uint32_t i = 0; i < GRAINS; ++i)
-    for (uint32_t j = i + 1; j < GRAINS; ++j) {
+  for (uint32_t i = 0; i < GRAINS; i++)
+    for (uint32_t j = i + 1; j < GRAINS; j++) {
       const long double law = contact_of(m, i, j), area = law > 0 ? overlap_area(m, i, j, at) : 0;
       if (!(area > 0))
         continue;
       long double slope[6];
-      for (size_t k = 0; k < 6; ++k) {
+      for (size_t k = 0; k < 6; k++) {
         const size_t which = 3 * (k < 3 ? i : j) + k % 3;
         const long double step = k % 3 == 2 ? 1e-8L : 1e-8L * cell, here = *freedom(at, which);
         *freedom(at, which) = here + step;
@@ -145,7 +145,7 @@ static void expected_forces(const struct model *m, struct place *at, long double
         *freedom(at, which) = here;
       }
       const long double chord = hypotl(slope[0], slope[1]);
-      for (size_t k = 0; k < 6 && chord > 0; ++k)
+      for (size_t k = 0; k < 6 && chord > 0; k++)
         f[3 * (k < 3 ? i : j) + k % 3] -= law * area * slope[k] / chord;
     }
 }
@@ -177,14 +177,14 @@ static double compare(const struct variant *v, int law, double size, double turn
   m.in.contact.law = law;
   m.in.contact.bonded = v->bonded_contact;
   struct dem_system *s = fixture_create(t, &m.in);
-  for (size_t p = 0; p < t->pair_count; ++p)
+  for (size_t p = 0; p < t->pair_count; p++)
     m.beam[p] = true;
-  for (uint32_t i = 0; i < GRAINS; ++i)
+  for (uint32_t i = 0; i < GRAINS; i++)
     m.present[i] = true;
   if (v->removed) {
     dem_system_remove(s, 4);
     m.present[4] = false;
-    for (size_t p = 0; p < t->pair_count; ++p)
+    for (size_t p = 0; p < t->pair_count; p++)
       m.beam[p] = t->pair[p][0] != 4 && t->pair[p][1] != 4;
   }
   for (size_t p = 0; p < t->pair_count && v->broken; p += 2) {
@@ -197,9 +197,9 @@ static double compare(const struct variant *v, int law, double size, double turn
   struct place at[GRAINS];
   uint64_t random = seed * 77 + 5;
   /* turned as a whole in several moves: a chord may turn by less than half a turn between evaluations */
-  for (int move = 0; move < 8; ++move) {
+  for (int move = 0; move < 8; move++) {
     const double angle = turned * (move + 1) / 8.0;
-    for (uint32_t i = 0; i < GRAINS; ++i) {
+    for (uint32_t i = 0; i < GRAINS; i++) {
       const double x = t->centroid[i].x + (move == 7 ? cell * size * fixture_random(&random) : 0.0);
       const double y = t->centroid[i].y + (move == 7 ? cell * size * fixture_random(&random) : 0.0);
       const double more = move == 7 ? size * fixture_random(&random) : 0.0;
@@ -211,10 +211,10 @@ static double compare(const struct variant *v, int law, double size, double turn
   long double f[3 * GRAINS];
   expected_forces(&m, at, cell, f);
   double largest = 0.0, worst = 0.0;
-  for (uint32_t i = 0; i < GRAINS; ++i) {
+  for (uint32_t i = 0; i < GRAINS; i++) {
     double got[3];
     dem_system_force(s, i, &got[0], &got[1], &got[2]);
-    for (size_t k = 0; k < 3; ++k) {
+    for (size_t k = 0; k < 3; k++) {
       const double arm = k == 2 ? cell : 1.0;
       largest = fmax(largest, fabs((double)f[3 * i + k]) / arm);
       worst = fmax(worst, fabs(got[k] - (double)f[3 * i + k]) / arm);
@@ -235,8 +235,8 @@ static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct
                      long double y[2]) {
   const struct polygon p = outline(m->t, i, &at[i]), q = outline(m->t, j, &at[j]);
   int count = 0;
-  for (int a = 0; a < p.count; ++a)
-    for (int b = 0; b < q.count; ++b) {
+  for (int a = 0; a < p.count; a++)
+    for (int b = 0; b < q.count; b++) {
       const int c = (a + 1) % p.count, d = (b + 1) % q.count;
       const long double ex = p.x[c] - p.x[a], ey = p.y[c] - p.y[a], fx = q.x[d] - q.x[b], fy = q.y[d] - q.y[b];
       const long double gx = q.x[b] - p.x[a], gy = q.y[b] - p.y[a], det = ex * fy - ey * fx;
@@ -245,7 +245,7 @@ static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct
         continue;
       if (count < 2)
         x[count] = p.x[a] + u * ex, y[count] = p.y[a] + u * ey;
-      ++count;
+      count++;
     }
   return count;
 }
@@ -254,9 +254,9 @@ static int crossings(const struct model *m, uint32_t i, uint32_t j, const struct
 static void damping_and_friction_as_written(void **state) {
   (void)state;
   int compared = 0;
-  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; ++law)
-    for (int bonded = 0; bonded < 2; ++bonded)
-      for (uint64_t seed = 1; seed <= 12; ++seed) {
+  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++)
+    for (int bonded = 0; bonded < 2; bonded++)
+      for (uint64_t seed = 1; seed <= 12; seed++) {
         const double cell = 0.01;
         struct dem_tessellation *t = NULL;
         struct error error = {0};
@@ -274,7 +274,7 @@ static void damping_and_friction_as_written(void **state) {
         struct dem_system *s = fixture_create(t, &m.in);
         struct place at[GRAINS];
         uint64_t random = seed;
-        for (uint32_t i = 0; i < GRAINS; ++i) {
+        for (uint32_t i = 0; i < GRAINS; i++) {
           m.present[i] = true;
           fixture_place(s, i, t->centroid[i].x + 0.1 * cell * fixture_random(&random),
                         t->centroid[i].y + 0.1 * cell * fixture_random(&random), 0.1 * fixture_random(&random));
@@ -286,8 +286,8 @@ static void damping_and_friction_as_written(void **state) {
         assert_true(dem_system_step(s));
         long double f[3 * GRAINS] = {0}, largest = 0;
         bool simple = true;
-        for (uint32_t i = 0; i < GRAINS; ++i)
-          for (uint32_t j = i + 1; j < GRAINS; ++j) {
+        for (uint32_t i = 0; i < GRAINS; i++)
+          for (uint32_t j = i + 1; j < GRAINS; j++) {
             const long double coefficient = contact_of(&m, i, j), area = overlap_area(&m, i, j, at);
             long double x[2], y[2];
             const int count = crossings(&m, i, j, at, x, y);
@@ -320,10 +320,10 @@ static void damping_and_friction_as_written(void **state) {
             f[3 * i] += fx, f[3 * i + 1] += fy, f[3 * i + 2] += (mx - at[i].x) * fy - (my - at[i].y) * fx;
             f[3 * j] -= fx, f[3 * j + 1] -= fy, f[3 * j + 2] -= (mx - at[j].x) * fy - (my - at[j].y) * fx;
           }
-        for (size_t k = 0; k < 3 * GRAINS; ++k)
+        for (size_t k = 0; k < 3 * GRAINS; k++)
           largest = fmaxl(largest, fabsl(f[k]) / (k % 3 == 2 ? cell : 1));
-        for (uint32_t i = 0; i < GRAINS && simple; ++i) /* grains are 1e-11 of themselves smaller than their cells */
-          for (size_t k = 0; k < 3; ++k) {
+        for (uint32_t i = 0; i < GRAINS && simple; i++) /* grains are 1e-11 of themselves smaller than their cells */
+          for (size_t k = 0; k < 3; k++) {
             double got[3];
             dem_system_force(s, i, &got[0], &got[1], &got[2]);
             fixture_near(got[k], (double)f[3 * i + k], 1e-8 * (double)largest * (k == 2 ? cell : 1.0), "force");
@@ -340,16 +340,16 @@ static void all_forces_are_gradients(void **state) {
   (void)state;
   static const char *const classes[] = {"baseline", "v3", "v4"};
   static const double sizes[] = {0.02, 0.1, 0.4};
-  for (size_t c = 0; c < 3; ++c) {
+  for (size_t c = 0; c < 3; c++) {
     assert_int_equal(setenv("CLAST_CPU", classes[c], 1), 0);
     if (strcmp(cpu_class_name(cpu_class_choose()), classes[c]) != 0) {
       print_message("          CPU class %s: not on this machine\n", classes[c]);
       continue;
     }
-    for (size_t v = 0; v < sizeof variants / sizeof *variants; ++v)
-      for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_OFF; ++law)
-        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
-          for (uint64_t seed = 1; seed <= 4; ++seed) {
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
+      for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_OFF; law++)
+        for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+          for (uint64_t seed = 1; seed <= 4; seed++) {
             const double turned = seed % 2 ? 0.0 : 7.0;
             const double error = compare(&variants[v], law, sizes[k], turned, seed);
             /* the grains are 1e-11 smaller than their cells, differences err by 1e-8 where an overlap's shape changes

@@ -9,8 +9,8 @@
  */
 static void driven_grains_do_work(void **state) {
   (void)state;
-  for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; ++integrator)
-    for (int which = 0; which < 3; ++which) {
+  for (int integrator = DEM_VERLET; integrator <= DEM_GEAR; integrator++)
+    for (int which = 0; which < 3; which++) {
       struct dem_tessellation *t = fixture_squares(2, 2, 0.01, 0.0, true);
       struct dem_inputs in = fixture_inputs();
       in.contact.law = DEM_CONTACT_OFF; /* smooth: what remains is the integrator's error */
@@ -19,7 +19,7 @@ static void driven_grains_do_work(void **state) {
       struct dem_system *s = fixture_create(t, &in);
       dem_system_hold(s, 0, which == 0 ? 1u : which == 1 ? 2u : 4u);
       const double before = fixture_total(dem_system_ledger(s));
-      for (int k = 0; k < 2000; ++k) {
+      for (int k = 0; k < 2000; k++) {
         const double speed = k < 1000 ? 1e-3 * k : 1.0; /* m/s; and a jolt below */
         const double jolt = k < 1500 ? 1.0 : -0.5;
         dem_system_drive(s, 0, which == 0 ? jolt * speed : 0.0, which == 1 ? jolt * speed : 0.0,
@@ -46,7 +46,7 @@ static void loads_balance(void **state) {
                                         "loading.ramp=1 ms"),
                                DEM_CASE("uniaxial", "body.columns=8", "body.rows=8", "loading.rate=5 1/s",
                                         "loading.ramp=1 ms")};
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 2; k++) {
     struct ran ran = run_case_run(&dem_engine, &cases[k], 3);
     assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
     assert_true(ran.results.dem.energy.external_work > 0.0);
@@ -60,14 +60,14 @@ static void loads_balance(void **state) {
  */
 static void sides_are_held_as_described(void **state) {
   (void)state;
-  for (int confined = 0; confined < 2; ++confined) {
+  for (int confined = 0; confined < 2; confined++) {
     struct dem_inputs inputs = DEM_CASE(confined ? "compression" : "uniaxial", "body.columns=8", "body.rows=8",
                                         "loading.rate=5 1/s", "loading.ramp=0.5 ms");
     struct dem_run *run;
     assert_int_equal(dem_run_create(&inputs, 3, &run, NULL), STATUS_OK);
     dem_run_advance(run, 1000);
     double along = 0.0, turned = 0.0, line = 0.0;
-    for (size_t k = 0; k < run->lower_count; ++k) {
+    for (size_t k = 0; k < run->lower_count; k++) {
       const struct dem_grain g = dem_system_grain(run->system, run->lower[k]);
       const struct dem_grain first = dem_system_grain(run->system, run->lower[0]);
       const struct dem_point *from = &run->tessellation->centroid[run->lower[k]];
@@ -90,7 +90,7 @@ static void strains_are_those_put_in(void **state) {
   assert_int_equal(dem_run_create(&inputs, 4, &run, NULL), STATUS_OK);
   const double axial = 2e-3, lateral = -7e-4;
   const struct dem_tessellation *t = run->tessellation;
-  for (uint32_t i = 0; i < t->cell_count; ++i) {
+  for (uint32_t i = 0; i < t->cell_count; i++) {
     run->system->c.x[i] = t->centroid[i].x * (1.0 + lateral);
     run->system->c.y[i] = t->centroid[i].y; /* as the sides do: each row keeps its line */
     if (t->grid_y[i] == 0)
@@ -119,7 +119,7 @@ static void modes_of_breaking(void **state) {
   } cases[] = {{1.01, 0.0, 0.0, 1, 0},  {0.99, 0.0, 0.0, 0, 0}, {0.1, 0.995, 0.0, 1, 1}, {0.1, 0.0, -0.995, 1, 1},
                {0.1, 0.985, 0.2, 0, 0}, {0.8, 0.37, 0.1, 1, 0}, {0.8, 0.35, 0.1, 0, 0},  {0.6, -0.1, 0.65, 1, 1},
                {0.6, 0.1, 0.63, 0, 0},  {-1.5, 0.0, 0.0, 0, 0}, {-0.1, 3.0, 3.0, 0, 0}};
-  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
@@ -160,9 +160,9 @@ static void grains_have_their_inertia(void **state) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2);
   const struct dem_inputs in = fixture_inputs();
   struct dem_system *s = fixture_create(t, &in);
-  for (uint32_t i = 0; i < t->cell_count; ++i) {
+  for (uint32_t i = 0; i < t->cell_count; i++) {
     long double area = 0, moment = 0;
-    for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; ++v) {
+    for (uint32_t v = t->first_vertex[i]; v < t->first_vertex[i + 1]; v++) {
       const uint32_t w = v + 1 < t->first_vertex[i + 1] ? v + 1 : t->first_vertex[i];
       const long double ax = (long double)t->vertex[v].x - t->centroid[i].x,
                         ay = (long double)t->vertex[v].y - t->centroid[i].y;
@@ -194,17 +194,17 @@ static void thresholds_are_weibulls(void **state) {
   struct dem_system *s = NULL;
   assert_int_equal(dem_system_create(t, &in, 11, &s, NULL), STATUS_OK);
   double sum[2] = {0}, square[2] = {0}, both = 0;
-  for (size_t k = 0; k < t->pair_count; ++k) {
+  for (size_t k = 0; k < t->pair_count; k++) {
     const struct dem_bond_block *b = &s->bond[k / DEM_BLOCK];
     const size_t lane = k % DEM_BLOCK;
     const double log_of[2] = {-0.5 * log(b->weight_strain[lane]) - log(b->length[lane] * in.threshold.strain),
                               -log(b->weight_angle[lane] * in.threshold.angle)};
-    for (int q = 0; q < 2; ++q)
+    for (int q = 0; q < 2; q++)
       sum[q] += log_of[q] / n, square[q] += log_of[q] * log_of[q] / n;
     both += log_of[0] * log_of[1] / n;
   }
   const double spread = M_PI / (m * sqrt(6.0));
-  for (int q = 0; q < 2; ++q) { /* five standard errors of a mean; of a deviation, ln t has kurtosis 5.4 */
+  for (int q = 0; q < 2; q++) { /* five standard errors of a mean; of a deviation, ln t has kurtosis 5.4 */
     fixture_near(sum[q], -0.57721566490153286 / m, 5.0 * spread / sqrt(n), "mean of ln t");
     fixture_near(sqrt(square[q] - sum[q] * sum[q]), spread, 5.0 * spread * sqrt(4.4 / 4.0 / n), "spread of ln t");
   }
@@ -216,8 +216,8 @@ static void thresholds_are_weibulls(void **state) {
 /* Squares face on, a tenth slower than the speed told to users and a tenth faster: they bounce, they pass. */
 static void grains_pass_where_said(void **state) {
   (void)state;
-  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; ++law)
-    for (int fast = 0; fast < 2; ++fast) {
+  for (int law = DEM_CONTACT_CONSERVATIVE; law <= DEM_CONTACT_PRINTED; law++)
+    for (int fast = 0; fast < 2; fast++) {
       struct dem_inputs inputs = DEM_CASE("disc-explosion", law == DEM_CONTACT_PRINTED ? "contact.law=printed" : NULL);
       const double speed = (fast ? 1.1 : 0.9) * dem_describe_passing_speed(&inputs);
       struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 1e-4, false);

@@ -3,23 +3,21 @@
 #include "tests/bench/dem_disc.h"
 #include "tests/verification/dem_fixture.h"
 
-#include "engine/dem/step/gear_start.h"
-
 #ifndef __SANITIZE_ADDRESS__ /* the sanitizer brings its own */
 static size_t allocations;   /* counted for the test that the step loop allocates nothing */
 void *__libc_malloc(size_t size);
 void *__libc_realloc(void *old, size_t size);
 void *__libc_memalign(size_t alignment, size_t size);
 void *malloc(size_t size) {
-  ++allocations;
+  allocations++;
   return __libc_malloc(size);
 }
 void *realloc(void *old, size_t size) {
-  ++allocations;
+  allocations++;
   return __libc_realloc(old, size);
 }
 void *aligned_alloc(size_t alignment, size_t size) {
-  ++allocations;
+  allocations++;
   return __libc_memalign(alignment, size);
 }
 #endif
@@ -29,7 +27,7 @@ static struct dem_system *charged(const struct dem_tessellation *t, const struct
                                   double spin) {
   struct dem_system *s = fixture_create(t, in);
   dem_disc_charge(s, t, in->grain.density, 80.0 * in->grain.density * 0.0314);
-  for (uint32_t i = 0; i < t->cell_count; ++i) {
+  for (uint32_t i = 0; i < t->cell_count; i++) {
     const struct dem_grain g = dem_system_grain(s, i);
     if (g.present)
       dem_system_set_velocity(s, i, g.vx + vx - spin * g.y, g.vy + spin * g.x, g.spin + spin);
@@ -43,7 +41,7 @@ struct momenta {
 
 static struct momenta momenta(const struct dem_system *s) {
   struct momenta m = {0};
-  for (uint32_t i = 0; i < s->count; ++i) {
+  for (uint32_t i = 0; i < s->count; i++) {
     const struct dem_grain g = dem_system_grain(s, i);
     if (!g.present)
       continue;
@@ -61,7 +59,7 @@ static struct momenta momenta(const struct dem_system *s) {
 static void momenta_are_conserved(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
-  for (int kind = 0; kind < 4; ++kind) {
+  for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
     in.contact.law = kind == 1 ? DEM_CONTACT_PRINTED : DEM_CONTACT_CONSERVATIVE;
     in.threshold.breaking = kind >= 1;
@@ -71,7 +69,7 @@ static void momenta_are_conserved(void **state) {
     in.fidelity.integrator = kind == 3 ? DEM_GEAR : DEM_VERLET;
     struct dem_system *s = charged(t, &in, 3.0, 40.0);
     const struct momenta before = momenta(s);
-    for (int k = 0; k < 2000; ++k)
+    for (int k = 0; k < 2000; k++)
       assert_true(dem_system_step(s));
     const struct momenta after = momenta(s);
     fixture_near(after.px, before.px, 1e-12 * before.scale, "momentum x");
@@ -91,7 +89,7 @@ static void energy_is_conserved(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
   double worst[3] = {0};
-  for (int fine = 0; fine < 3; ++fine) {
+  for (int fine = 0; fine < 3; fine++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.time_step = 2e-6 / (1 << fine);
     struct dem_system *s = charged(t, &in, 0.0, 0.0);
@@ -100,7 +98,7 @@ static void energy_is_conserved(void **state) {
     double mean = 0.0;
     int count = 0;
     for (int k = 0; k * in.fidelity.time_step < 10e-3; k += every, ++count) {
-      for (int i = 0; i < every; ++i)
+      for (int i = 0; i < every; i++)
         assert_true(dem_system_step(s));
       const double error = fixture_total(dem_system_ledger(s)) / before - 1.0;
       mean += error;
@@ -124,15 +122,15 @@ static double order(int integrator, double finest, const struct dem_tessellation
   in.fidelity.integrator = integrator;
   const double span = 64e-6;
   double *exact = calloc(3 * t->cell_count, sizeof *exact);
-  for (int run = 0; run < 3; ++run) {
+  for (int run = 0; run < 3; run++) {
     in.fidelity.time_step = run == 0 ? finest / 8.0 : run == 1 ? finest : 2.0 * finest;
     struct dem_system *s = charged(t, &in, 0.0, 0.0);
-    for (int k = 0, steps = (int)lround(span / in.fidelity.time_step); k < steps; ++k)
+    for (int k = 0, steps = (int)lround(span / in.fidelity.time_step); k < steps; k++)
       assert_true(dem_system_step(s));
     double sum = 0.0;
-    for (uint32_t i = 0; i < t->cell_count; ++i) {
+    for (uint32_t i = 0; i < t->cell_count; i++) {
       const double v[3] = {s->c.x[i], s->c.y[i], 0.01 * s->c.angle[i]};
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 3; k++) {
         if (run == 0)
           exact[3 * i + (size_t)k] = v[k];
         sum += (v[k] - exact[3 * i + (size_t)k]) * (v[k] - exact[3 * i + (size_t)k]);
@@ -164,7 +162,7 @@ static void gear_has_its_coefficients(void **state) {
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
   const double published[2][6] = {{3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
                                   {3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
-  for (int damped = 0; damped < 2; ++damped) {
+  for (int damped = 0; damped < 2; damped++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.integrator = DEM_GEAR;
     in.contact.normal_damping = damped ? 1.0 : 0.0; /* forces may depend on velocities: the other first coefficient */
@@ -173,21 +171,21 @@ static void gear_has_its_coefficients(void **state) {
     const double dt = in.fidelity.time_step;
     s->c.x[1] = start[0];
     s->c.vx[1] = start[1] / dt;
-    for (int k = 2; k < 6; ++k)
+    for (int k = 2; k < 6; k++)
       s->c.gear[0][k][1] = start[k];
     s->now.gear_started = 1;
     assert_true(dem_system_step(s));
     const int pascal[6][6] = {{1, 1, 1, 1, 1, 1},  {0, 1, 2, 3, 4, 5}, {0, 0, 1, 3, 6, 10},
                               {0, 0, 0, 1, 4, 10}, {0, 0, 0, 0, 1, 5}, {0, 0, 0, 0, 0, 1}};
     double predicted[6] = {0};
-    for (int k = 0; k < 6; ++k)
-      for (int j = 0; j < 6; ++j)
+    for (int k = 0; k < 6; k++)
+      for (int j = 0; j < 6; j++)
         predicted[k] += pascal[k][j] * start[j];
     const double error = 0.5 * dt * dt * s->c.fx[1] / s->mass[1] - predicted[2];
     const double got[6] = {s->c.x[1],          s->c.vx[1] * dt,    s->c.gear[0][2][1],
                            s->c.gear[0][3][1], s->c.gear[0][4][1], s->c.gear[0][5][1]};
     assert_true(fabs(error) > 1e-6);
-    for (int k = 0; k < 6; ++k) /* roundings of values of 1e-5, and of the position itself */
+    for (int k = 0; k < 6; k++) /* roundings of values of 1e-5, and of the position itself */
       fixture_near(got[k], predicted[k] + published[damped][k] * error, k ? 1e-19 : 1e-17, "Gear");
     dem_system_free(s);
   }
@@ -198,7 +196,7 @@ static void gear_has_its_coefficients(void **state) {
 static void ledger_closes(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
-  for (int kind = 0; kind < 4; ++kind) {
+  for (int kind = 0; kind < 4; kind++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
     in.fidelity.time_step = 2.5e-7;
@@ -209,7 +207,7 @@ static void ledger_closes(void **state) {
       in.contact.damping_bonded = true;
     struct dem_system *s = charged(t, &in, 0.0, 0.0);
     const double before = fixture_total(dem_system_ledger(s));
-    for (int k = 0; k < 8000; ++k)
+    for (int k = 0; k < 8000; k++)
       assert_true(dem_system_step(s));
     const struct dem_ledger l = dem_system_ledger(s);
     print_message(
@@ -226,7 +224,7 @@ static void ledger_closes(void **state) {
 /* At rest nothing acts, to the last bit, and nothing begins to move. */
 static void rest_is_rest(void **state) {
   (void)state;
-  for (int disorder = 0; disorder < 2; ++disorder) {
+  for (int disorder = 0; disorder < 2; disorder++) {
     const struct dem_lattice lattice = {.outline = DEM_OUTLINE_BLOCK,
                                         .spacing = 0.01,
                                         .disorder = disorder,
@@ -236,15 +234,15 @@ static void rest_is_rest(void **state) {
                                         .seed = 2};
     struct dem_tessellation *t = NULL;
     assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
-    for (int law = 0; law < 3; ++law) {
+    for (int law = 0; law < 3; law++) {
       struct dem_inputs in = fixture_inputs();
       in.contact.law = law;
       in.threshold.breaking = true;
       in.fidelity.integrator = law == 1 ? DEM_GEAR : DEM_VERLET;
       struct dem_system *s = fixture_create(t, &in);
-      for (int k = 0; k < 10; ++k)
+      for (int k = 0; k < 10; k++)
         assert_true(dem_system_step(s));
-      for (uint32_t i = 0; i < t->cell_count; ++i) {
+      for (uint32_t i = 0; i < t->cell_count; i++) {
         double fx, fy, torque;
         dem_system_force(s, i, &fx, &fy, &torque);
         assert_true(fx == 0.0 && fy == 0.0 && torque == 0.0 && s->c.vx[i] == 0.0 && s->c.x[i] == t->centroid[i].x);
@@ -260,7 +258,7 @@ static void rest_is_rest(void **state) {
 static void broken_is_unbonded(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
-  for (int on_bonded = 0; on_bonded < 2; ++on_bonded) {
+  for (int on_bonded = 0; on_bonded < 2; on_bonded++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
     in.threshold.strain = 1e-9;
@@ -269,15 +267,15 @@ static void broken_is_unbonded(void **state) {
     in.contact.damping_bonded = on_bonded;
     struct dem_system *broken = fixture_create(t, &in), *unbonded = fixture_create(t, &in);
     uint64_t seed = 9;
-    for (uint32_t i = 0; i < t->cell_count; ++i) {
+    for (uint32_t i = 0; i < t->cell_count; i++) {
       const double spin = 2000.0 * fixture_random(&seed);
-      for (int which = 0; which < 2; ++which) /* the whole expands, and corners of spinning grains hit each other */
+      for (int which = 0; which < 2; which++) /* the whole expands, and corners of spinning grains hit each other */
         dem_system_set_velocity(which ? unbonded : broken, i, 30.0 * t->centroid[i].x, 30.0 * t->centroid[i].y, spin);
     }
-    for (int32_t k = 0; k < (int32_t)t->pair_count; ++k)
+    for (int32_t k = 0; k < (int32_t)t->pair_count; k++)
       dem_breaking_cut(unbonded, k);
     const struct dem_break *log;
-    for (int k = 0; k < 1000; ++k) {
+    for (int k = 0; k < 1000; k++) {
       assert_true(dem_system_step(broken) && dem_system_step(unbonded));
       assert_int_equal(dem_system_breaks(broken, &log), t->pair_count);
       assert_memory_equal(broken->c.x, unbonded->c.x, t->cell_count * sizeof(double));
@@ -295,21 +293,21 @@ static void broken_is_unbonded(void **state) {
 static void restored_run_has_the_same_bits(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.1, 0.01069, 1.0, 5);
-  for (int integrator = 0; integrator < 2; ++integrator) {
+  for (int integrator = 0; integrator < 2; integrator++) {
     struct dem_inputs in = fixture_inputs();
     in.threshold.breaking = true;
     in.fidelity.integrator = integrator;
     in.contact.normal_damping = 1e3;
     in.threshold.modulus = 5.0;
     struct dem_system *s = charged(t, &in, 0.0, 0.0), *copy = fixture_create(t, &in);
-    for (int k = 0; k < 777; ++k)
+    for (int k = 0; k < 777; k++)
       assert_true(dem_system_step(s));
     const size_t size = dem_system_state_size(s);
     unsigned char *bytes = malloc(size), *again = malloc(size);
     dem_system_state_save(s, bytes);
     assert_false(dem_system_state_load(copy, bytes, size - 1));
     assert_true(dem_system_state_load(copy, bytes, size));
-    for (int k = 0; k < 777; ++k) {
+    for (int k = 0; k < 777; k++) {
       assert_true(dem_system_step(s) && dem_system_step(copy));
       if (k % 100 == 0) {
         const struct dem_ledger a = dem_system_ledger(s); /* asking one and not the other changes nothing */
@@ -353,7 +351,7 @@ static void gear_starts_with_the_derivatives(void **state) {
   const double exact[6] =
       {0, 0, -u * turn * turn / 2, -v * pow(turn, 3) / 6, u * pow(turn, 4) / 24, v * pow(turn, 5) / 120};
   const double order[6] = {0, 0, 1e-12, pow(turn, 4), pow(turn, 3), pow(turn, 2)}; /* of the one-sided differences */
-  for (int k = 2; k < 6; ++k) /* the next derivatives' terms stand before them with factors of a few */
+  for (int k = 2; k < 6; k++) /* the next derivatives' terms stand before them with factors of a few */
     fixture_near(s->c.gear[0][k][1], exact[k], fabs(exact[k]) * (10.0 * order[k] * (1.0 + u / v + v / u) + 1e-6),
                  "derivative");
   dem_system_free(s);
@@ -365,11 +363,11 @@ static void turning_grains_meet(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, false);
   const double half_length = 0.01, half_width = 0.0025, apart = 0.011; /* ends reach 0.0125 across, skins 0.0056 */
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 2; i++) {
     t->centroid[i] = (struct dem_point){apart * i, 0.0};
     t->area[i] = 4.0 * half_length * half_width;
     t->polar_moment[i] = t->area[i] * (half_length * half_length + half_width * half_width) / 3.0;
-    for (int v = 0; v < 4; ++v)
+    for (int v = 0; v < 4; v++)
       t->vertex[4 * i + v] = (struct dem_point){apart * i + (v == 1 || v == 2 ? half_width : -half_width),
                                                 v >= 2 ? half_length : -half_length};
   }
@@ -377,7 +375,7 @@ static void turning_grains_meet(void **state) {
   struct dem_system *s = fixture_create(t, &in);
   dem_system_set_velocity(s, 1, 0.0, 0.0, 800.0); /* a quarter turn in 2000 steps */
   bool met = false;
-  for (int k = 0; k < 2200 && !met; ++k) {
+  for (int k = 0; k < 2200 && !met; k++) {
     assert_true(dem_system_step(s));
     met = s->c.torque[0] != 0.0;
   }
@@ -397,18 +395,18 @@ static void far_flung_grain(void **state) {
   struct dem_inputs in = fixture_inputs();
   struct dem_system *s = fixture_create(t, &in);
   const size_t bytes = dem_system_arrays_bytes(s);
-  for (size_t k = 0; k < t->pair_count; ++k)
+  for (size_t k = 0; k < t->pair_count; k++)
     if (t->pair[k][0] == 0 || t->pair[k][1] == 0)
       dem_breaking_cut(s, (int32_t)k);
   fixture_place(s, 0, 1e6, -1e6, 0.0);
   dem_system_set_velocity(s, 0, 1e4, 0.0, 10.0);
-  for (int k = 0; k < 2000; ++k)
+  for (int k = 0; k < 2000; k++)
     assert_true(dem_system_step(s));
   assert_int_equal(dem_system_arrays_bytes(s), bytes);
   for (uint32_t i = 1; i < 20;
        ++i) /* so fast that their skins are as wide as skins get: room for more pairs, no more */
     dem_system_set_velocity(s, i, 0.0, 0.0, 1e6);
-  for (int k = 0; k < 100; ++k)
+  for (int k = 0; k < 100; k++)
     assert_true(dem_system_step(s));
   assert_true(dem_system_arrays_bytes(s) < 4 * bytes);
   dem_system_free(s);
@@ -424,7 +422,7 @@ static void step_loop_allocates_nothing(void **state) {
   struct dem_system *s = charged(t, &in, 0.0, 0.0);
   assert_true(dem_system_step(s));
   const size_t before = allocations;
-  for (int k = 0; k < 3000; ++k)
+  for (int k = 0; k < 3000; k++)
     assert_true(dem_system_step(s));
   assert_true(s->now.rebuilds > 5);
   assert_int_equal(allocations, before);
@@ -439,9 +437,9 @@ static void extremes(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 5);
   const double steps[] = {1e-30, 1e-4, 1.0, 1e20}, thresholds[] = {0.0, 1e-300, 1e20};
-  for (size_t a = 0; a < 4; ++a)
-    for (size_t b = 0; b < 3; ++b)
-      for (int integrator = 0; integrator < 2; ++integrator) {
+  for (size_t a = 0; a < 4; a++)
+    for (size_t b = 0; b < 3; b++)
+      for (int integrator = 0; integrator < 2; integrator++) {
         struct dem_inputs in = fixture_inputs();
         in.fidelity.time_step = steps[a];
         in.threshold.breaking = true;
@@ -450,7 +448,7 @@ static void extremes(void **state) {
         in.contact.normal_damping = in.contact.tangential_damping = b == 1 ? 1e20 : 0.0;
         in.contact.friction = 1.0;
         struct dem_system *s = charged(t, &in, 0.0, 1e3);
-        for (int k = 0; k < 300 && dem_system_step(s); ++k) {
+        for (int k = 0; k < 300 && dem_system_step(s); k++) {
         }
         dem_system_ledger(s);
         dem_system_overlap_share(s);
@@ -462,7 +460,7 @@ static void extremes(void **state) {
   assert_true(in.fidelity.time_step > dem_system_stable_time_step(s));
   int taken = 0;
   while (taken < 100000 && dem_system_step(s))
-    ++taken;
+    taken++;
   assert_true(taken < 100000);
   dem_system_free(s);
   in.grain.density = (double)NAN;

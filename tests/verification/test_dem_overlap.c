@@ -12,7 +12,7 @@ struct polygon {
 /* Cut `p` by the line through (x, y) along (ex, ey), keeping the left. */
 static struct polygon cut(const struct polygon *p, long double x, long double y, long double ex, long double ey) {
   struct polygon out = {0};
-  for (int v = 0; v < p->count; ++v) {
+  for (int v = 0; v < p->count; v++) {
     const int w = (v + 1) % p->count;
     const long double a = ex * (p->y[v] - y) - ey * (p->x[v] - x), b = ex * (p->y[w] - y) - ey * (p->x[w] - x);
     if (a >= 0) {
@@ -30,12 +30,12 @@ static struct polygon cut(const struct polygon *p, long double x, long double y,
 
 static long double brute_area(const struct dem_ring *a, const struct dem_ring *b) {
   struct polygon p = {.count = (int)a->count};
-  for (int v = 0; v < p.count; ++v)
+  for (int v = 0; v < p.count; v++)
     p.x[v] = a->x[v], p.y[v] = a->y[v];
-  for (size_t k = 0; k < b->count && p.count; ++k)
+  for (size_t k = 0; k < b->count && p.count; k++)
     p = cut(&p, b->x[k], b->y[k], (long double)b->x[k + 1] - b->x[k], (long double)b->y[k + 1] - b->y[k]);
   long double twice = 0;
-  for (int v = 0; v < p.count; ++v) {
+  for (int v = 0; v < p.count; v++) {
     const int w = (v + 1) % p.count;
     twice += (p.x[v] - p.x[0]) * (p.y[w] - p.y[0]) - (p.y[v] - p.y[0]) * (p.x[w] - p.x[0]);
   }
@@ -43,7 +43,7 @@ static long double brute_area(const struct dem_ring *a, const struct dem_ring *b
 }
 
 static void close_ring(struct dem_ring *r) {
-  for (size_t v = r->count; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v)
+  for (size_t v = r->count; v < DEM_MAX_VERTICES + DEM_BLOCK; v++)
     r->x[v] = r->x[0], r->y[v] = r->y[0];
 }
 
@@ -51,9 +51,9 @@ static void close_ring(struct dem_ring *r) {
 static void random_ring(uint64_t *seed, struct dem_ring *r, double thin, double x, double y, double turn) {
   r->count = 3 + (size_t)(4.5 * (1.0 + fixture_random(seed)));
   double angle = 0.0, angles[16], total = 0.0;
-  for (size_t v = 0; v < r->count; ++v)
+  for (size_t v = 0; v < r->count; v++)
     total += angles[v] = 0.1 + 1.0 + fixture_random(seed);
-  for (size_t v = 0; v < r->count; ++v) {
+  for (size_t v = 0; v < r->count; v++) {
     angle += angles[v] * 2.0 * M_PI / total;
     const double px = cos(angle), py = thin * sin(angle);
     r->x[v] = x + cos(turn) * px - sin(turn) * py;
@@ -63,7 +63,7 @@ static void random_ring(uint64_t *seed, struct dem_ring *r, double thin, double 
 }
 
 static void move_ring(struct dem_ring *r, double dx, double dy) {
-  for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v)
+  for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; v++)
     r->x[v] += dx, r->y[v] += dy;
 }
 
@@ -88,7 +88,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     const double l = ex * ex + ey * ey,
                  depth = fixture_random(seed) < 0.0 ? 0.0 : pow(10.0, -7.0 + 5.0 * fixture_random(seed));
     ring[1].count = ring[0].count;
-    for (size_t v = 0; v < ring[0].count; ++v) {
+    for (size_t v = 0; v < ring[0].count; v++) {
       const double px = ring[0].x[ring[0].count - 1 - v] - x, py = ring[0].y[ring[0].count - 1 - v] - y;
       const double d = (px * ey - py * ex) / l;
       ring[1].x[v] = x + px - 2.0 * d * ey - depth * ey / sqrt(l);
@@ -99,7 +99,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
   }
   case 5: /* one inside the other */
     random_ring(seed, &ring[1], 0.5, 0.0, 0.0, M_PI * fixture_random(seed));
-    for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v)
+    for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; v++)
       ring[1].x[v] *= 0.2, ring[1].y[v] *= 0.2;
     break;
   case 6: /* a corner of one on a corner of the other */
@@ -107,11 +107,11 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
     move_ring(&ring[1], ring[0].x[0] - ring[1].x[1], ring[0].y[0] - ring[1].y[1]);
     break;
   case 7: /* equal squares on a grid: exactly coinciding and collinear sides */
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; k++) {
       ring[k].count = 4;
       const double x = k ? 0.25 * floor(5.0 * fixture_random(seed)) : 0.0,
                    y = k ? 0.25 * floor(5.0 * fixture_random(seed)) : 0.0;
-      for (size_t v = 0; v < 4; ++v) {
+      for (size_t v = 0; v < 4; v++) {
         ring[k].x[v] = x + (v == 1 || v == 2);
         ring[k].y[v] = y + (v >= 2);
       }
@@ -121,8 +121,8 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
   default: /* the same, turned: the coincidences hold to rounding only */
     make_pair(seed, 7, ring);
     const double turn = M_PI * fixture_random(seed), c = cos(turn), s = sin(turn);
-    for (int k = 0; k < 2; ++k)
-      for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v) {
+    for (int k = 0; k < 2; k++)
+      for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; v++) {
         const double x = ring[k].x[v], y = ring[k].y[v];
         ring[k].x[v] = c * x - s * y, ring[k].y[v] = s * x + c * y;
       }
@@ -132,7 +132,7 @@ static void make_pair(uint64_t *seed, int kind, struct dem_ring ring[2]) {
 static void area_is_brute_forces(const struct dem_kernels *kernels, int pairs) {
   uint64_t seed = 3;
   double worst[KINDS] = {0}, largest = 0.0;
-  for (int n = 0; n < pairs; ++n) {
+  for (int n = 0; n < pairs; n++) {
     static struct dem_ring ring[2], kept[2];
     const int kind = n % KINDS;
     make_pair(&seed, kind, ring);
@@ -148,7 +148,7 @@ static void area_is_brute_forces(const struct dem_kernels *kernels, int pairs) {
     fixture_near(area, exact, kind >= 2 && kind != 5 && kind != 6 ? 2e-11 : 1e-12, "area");
   }
   print_message("          %s: worst error by kind:", kernels->name);
-  for (int k = 0; k < KINDS; ++k)
+  for (int k = 0; k < KINDS; k++)
     print_message(" %.1e", worst[k]);
   print_message("\n");
   assert_true(largest > 1.0);
@@ -167,8 +167,8 @@ static void overlap_best_class(void **state) {
 /* Points where the outlines cross. */
 static int crossings(const struct dem_ring ring[2], long double *px, long double *py) {
   int found = 0;
-  for (size_t a = 0; a < ring[0].count; ++a)
-    for (size_t b = 0; b < ring[1].count; ++b) {
+  for (size_t a = 0; a < ring[0].count; a++)
+    for (size_t b = 0; b < ring[1].count; b++) {
       const long double ax = ring[0].x[a], ay = ring[0].y[a], bx = ring[1].x[b], by = ring[1].y[b];
       const long double ex = ring[0].x[a + 1] - ax, ey = ring[0].y[a + 1] - ay;
       const long double fx = ring[1].x[b + 1] - bx, fy = ring[1].y[b + 1] - by, across = ex * fy - ey * fx;
@@ -187,7 +187,7 @@ static void chord_is_the_gradient(void **state) {
   (void)state;
   uint64_t seed = 5;
   int met = 0, chords = 0;
-  for (int n = 0; n < 20000; ++n) {
+  for (int n = 0; n < 20000; n++) {
     static struct dem_ring ring[2], moved[2];
     make_pair(&seed, 0, ring);
     struct dem_overlap o = {0};
@@ -195,18 +195,18 @@ static void chord_is_the_gradient(void **state) {
     dem_kernels_choose()->overlap(moved, &o);
     if (o.apart)
       continue;
-    ++met;
+    met++;
     const double step = 1e-7;
     double change[3];
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; k++) {
       double side[2];
-      for (int up = 0; up < 2; ++up) {
+      for (int up = 0; up < 2; up++) {
         const double d = up ? step : -step;
         memcpy(moved, ring, sizeof ring);
         if (k < 2)
           move_ring(&moved[0], k == 0 ? d : 0.0, k == 1 ? d : 0.0);
         else
-          for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; ++v) { /* turn about the sums' origin */
+          for (size_t v = 0; v < DEM_MAX_VERTICES + DEM_BLOCK; v++) { /* turn about the sums' origin */
             const double x = ring[0].x[v] - o.origin_x, y = ring[0].y[v] - o.origin_y;
             moved[0].x[v] = o.origin_x + cos(d) * x - sin(d) * y;
             moved[0].y[v] = o.origin_y + sin(d) * x + cos(d) * y;
@@ -229,7 +229,7 @@ static void chord_is_the_gradient(void **state) {
     fixture_near(length, hypot((double)(px[1] - px[0]), (double)(py[1] - py[0])), 1e-13, "chord");
     if (length < 1e-3)
       continue;
-    ++chords;
+    chords++;
     const double across = (-ty * (o.xx * tx + o.xy * ty) + tx * (o.xy * tx + o.yy * ty)) / length;
     fixture_near(o.moment / length, mx * tx + my * ty, 1e-11, "middle along"); /* 1e-14 over the shortest chord */
     fixture_near(across, -mx * ty + my * tx, 1e-11, "middle across");
@@ -243,23 +243,23 @@ static void windows_agree(double disorder) {
   struct dem_inputs in = fixture_inputs();
   in.beam.young_modulus = 0.0;
   const double sizes[] = {1e-6, 1e-4, 1e-2, 0.1, 0.3, 0.6};
-  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; ++k)
-    for (int friction = 0; friction < 2; ++friction) {
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+    for (int friction = 0; friction < 2; friction++) {
       in.fidelity.time_step = 1e-6;
       in.contact.normal_damping = friction ? 1e3 : 0.0;
       in.contact.tangential_damping = friction ? 1e3 : 0.0;
       in.contact.friction = friction ? 0.5 : 0.0;
       struct dem_system *window = fixture_create(t, &in), *general = fixture_create(t, &in);
-      for (size_t pair = 0; pair < general->pair_count; ++pair) {
+      for (size_t pair = 0; pair < general->pair_count; pair++) {
         general->windowed[pair] = 0;
         const int32_t lane = general->pair_lane[pair];
         general->bond[lane / DEM_BLOCK].stiffness[lane % DEM_BLOCK] = 0.0;
       }
       uint64_t seed = 7 + k;
-      for (uint32_t i = 0; i < t->cell_count; ++i) {
+      for (uint32_t i = 0; i < t->cell_count; i++) {
         const double dx = 0.01 * sizes[k] * fixture_random(&seed), dy = 0.01 * sizes[k] * fixture_random(&seed);
         const double angle = sizes[k] * fixture_random(&seed), spin = 100.0 * fixture_random(&seed);
-        for (int which = 0; which < 2; ++which) {
+        for (int which = 0; which < 2; which++) {
           struct dem_system *s = which ? general : window;
           fixture_place(s, i, t->centroid[i].x + dx, t->centroid[i].y + dy, angle);
           if (friction) /* seen by damping as it is, since nothing moves in the step */
@@ -267,8 +267,8 @@ static void windows_agree(double disorder) {
         }
       }
       if (friction) {
-        for (size_t i = 0; i < t->cell_count; ++i)
-          for (int which = 0; which < 2; ++which) {
+        for (size_t i = 0; i < t->cell_count; i++)
+          for (int which = 0; which < 2; which++) {
             struct dem_system *s = which ? general : window;
             s->c.mobility_x[i] = s->c.mobility_y[i] = s->c.mobility_angle[i] = 0.0;
           }
@@ -280,7 +280,7 @@ static void windows_agree(double disorder) {
         fixture_evaluate(general);
       }
       double largest = 0.0, worst = 0.0;
-      for (size_t i = 0; i < t->cell_count; ++i) {
+      for (size_t i = 0; i < t->cell_count; i++) {
         largest = fmax(largest, hypot(general->c.fx[i], general->c.fy[i]));
         worst = fmax(worst, hypot(general->c.fx[i] - window->c.fx[i], general->c.fy[i] - window->c.fy[i]));
         worst = fmax(worst, fabs(general->c.torque[i] - window->c.torque[i]) / 0.01);
@@ -312,7 +312,7 @@ static void windows_of_a_square_lattice(void **state) {
   struct dem_inputs in = fixture_inputs();
   in.beam.young_modulus = 0.0;
   struct dem_system *s = fixture_create(t, &in);
-  for (uint32_t i = 0; i < 36; ++i)
+  for (uint32_t i = 0; i < 36; i++)
     fixture_place(s, i, 77.7 + t->centroid[i].x * (1.0 - strain), 33.3 + t->centroid[i].y, 0.0);
   fixture_evaluate(s);
   const double face = in.grain.young_modulus / (2.0 * h / sqrt(M_PI)) * h * strain * h;
@@ -329,7 +329,7 @@ static void windows_of_odd_shapes(void **state) {
   const struct dem_inputs base = fixture_inputs();
   uint64_t seed = 11;
   int windows = 0, generals = 0;
-  for (int trial = 0; trial < 20000; ++trial) {
+  for (int trial = 0; trial < 20000; trial++) {
     struct dem_ring ring;
     do
       random_ring(&seed, &ring, 0.3 + 0.3 * (1.0 + fixture_random(&seed)), 0.0, 0.0, 3.0 * fixture_random(&seed));
@@ -340,14 +340,14 @@ static void windows_of_odd_shapes(void **state) {
     t->pair_count = 1;
     t->first_vertex[1] = (uint32_t)cut_at + 1;
     t->first_vertex[2] = (uint32_t)ring.count + 2;
-    for (size_t v = 0; v <= cut_at; ++v)
+    for (size_t v = 0; v <= cut_at; v++)
       t->vertex[v] = (struct dem_point){ring.x[v], ring.y[v]};
-    for (size_t v = cut_at; v <= ring.count; ++v)
+    for (size_t v = cut_at; v <= ring.count; v++)
       t->vertex[v + 1] = (struct dem_point){ring.x[v], ring.y[v]};
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2; k++) {
       const uint32_t first = t->first_vertex[k], n = t->first_vertex[k + 1] - first;
       double area = 0.0, x = 0.0, y = 0.0;
-      for (uint32_t v = 0; v < n; ++v) {
+      for (uint32_t v = 0; v < n; v++) {
         const struct dem_point a = t->vertex[first + v], b = t->vertex[first + (v + 1) % n];
         area += 0.5 * (a.x * b.y - a.y * b.x);
         x += a.x / n, y += a.y / n;
@@ -365,7 +365,7 @@ static void windows_of_odd_shapes(void **state) {
     const double size = pow(10.0, -1.0 + fixture_random(&seed));
     const double dx = size * fixture_random(&seed), dy = size * fixture_random(&seed),
                  angle = size * fixture_random(&seed);
-    for (int which = 0; which < 2; ++which)
+    for (int which = 0; which < 2; which++)
       fixture_place(which ? general : window, 1, t->centroid[1].x + dx, t->centroid[1].y + dy, angle);
     fixture_evaluate(window);
     fixture_evaluate(general);

@@ -1,11 +1,10 @@
 /* Tessellation pairs: beam and contact of eight pairs at a time.
  *
- * The beam is co-rotational (K99 eqs 7-12 with the physics notes' correction of eq 12): with phi the chord's angle
- * against its initial one and Theta = theta - phi,
- *   U = alpha (l - l0)^2 / 2 + delta l0^2 (Theta_1 - Theta_2)^2 / 2 + beta l0^2 Theta_1 Theta_2 / 2,
- *   M_1 = -dU/dTheta_1 = -beta l0^2 Theta_2 / 2 + delta l0^2 (Theta_2 - Theta_1), M_2 by swap,
- *   F_1 = alpha (l - l0) e + (M_1 + M_2)/l e_perp, F_2 = -F_1   (from dphi/dx = e_perp / l):
- * a potential force that conserves momentum and angular momentum.
+ * The beam is co-rotational (K99 eqs 7-12 with the correction of eq 12 in engine/dem/README.md): with phi the chord's
+ * angle against its initial one and Theta = theta - phi, U = alpha (l - l0)^2 / 2 + delta l0^2 (Theta_1 - Theta_2)^2 /
+ * 2 + beta l0^2 Theta_1 Theta_2 / 2, M_1 = -dU/dTheta_1 = -beta l0^2 Theta_2 / 2 + delta l0^2 (Theta_2 - Theta_1), M_2
+ * by swap, F_1 = alpha (l - l0) e + (M_1 + M_2)/l e_perp, F_2 = -F_1   (from dphi/dx = e_perp / l): a potential force
+ * that conserves momentum and angular momentum.
  *
  * The contact's window: of either grain the common side, the side before it and the side after it (vertices 0..3). It
  * gives the overlap of the whole polygons exactly when, for either grain, its vertices 0 and 3 are outside the other's
@@ -50,44 +49,56 @@ LANES_INLINE lanes_d bond_arcsine(lanes_d s) {
                                       z * (231.0 / 13312.0 + z * (143.0 / 10240.0 + z * (6435.0 / 557056.0))))))));
 }
 
-/* Contact by the window; returns lanes that need the general overlap, *touching lanes have their sums in *sums. */
-LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, const struct bond_ends *ends,
-                                 lanes_d apart_x, lanes_d apart_y, struct contact_sums *sums, lanes_d *origin_x,
-                                 lanes_d *origin_y, lanes_i *touching, bool velocities) {
-  const lanes_i active = lanes_load(block->stiffness + at) > 0.0;
-  /* Vertices 0..3 of either window; the origin is the middle of grain 1's common side. */
-  lanes_d x[2][4], y[2][4], ex[2][3], ey[2][3], cross[2][3], half_x[2], half_y[2];
-  lanes_d middle_x[2], middle_y[2];
-  for (int k = 0; k < 2; ++k) {
+/* Turns both windows to where the grains are now; (*origin_x, *origin_y) is the origin from grain 1's centre. */
+LANES_INLINE void bond_place_windows(const struct dem_bond_block *block, int at, const struct bond_ends *ends,
+                                     lanes_d apart_x, lanes_d apart_y, lanes_d x[2][4], lanes_d y[2][4],
+                                     lanes_d ex[2][3], lanes_d ey[2][3], lanes_d cross[2][3], lanes_d *origin_x,
+                                     lanes_d *origin_y) {
+  lanes_d half_x[2], half_y[2], middle_x[2], middle_y[2];
+  for (int k = 0; k < 2; k++) {
     const lanes_d c = ends->cosine[k], s = ends->sine[k];
     bond_rotate(c, s, block->middle_x[k] + at, block->middle_y[k] + at, &middle_x[k], &middle_y[k]);
     bond_rotate(c, s, block->half_x[k] + at, block->half_y[k] + at, &half_x[k], &half_y[k]);
     bond_rotate(c, s, block->before_x[k] + at, block->before_y[k] + at, &x[k][0], &y[k][0]);
     bond_rotate(c, s, block->after_x[k] + at, block->after_y[k] + at, &x[k][3], &y[k][3]);
-    x[k][1] = -half_x[k], y[k][1] = -half_y[k];
-    x[k][2] = half_x[k], y[k][2] = half_y[k];
+    x[k][1] = -half_x[k];
+    y[k][1] = -half_y[k];
+    x[k][2] = half_x[k];
+    y[k][2] = half_y[k];
   }
   const lanes_d shift_x = apart_x + middle_x[1] - middle_x[0], shift_y = apart_y + middle_y[1] - middle_y[0];
   *origin_x = middle_x[0];
   *origin_y = middle_y[0];
-  for (int v = 0; v < 4; ++v)
-    x[1][v] += shift_x, y[1][v] += shift_y;
-  for (int k = 0; k < 2; ++k) {
-    for (int e = 0; e < 3; ++e) {
+  for (int v = 0; v < 4; v++) {
+    x[1][v] += shift_x;
+    y[1][v] += shift_y;
+  }
+  for (int k = 0; k < 2; k++) {
+    for (int e = 0; e < 3; e++) {
       ex[k][e] = x[k][e + 1] - x[k][e];
       ey[k][e] = y[k][e + 1] - y[k][e];
     }
-    ex[k][1] = 2.0 * half_x[k], ey[k][1] = 2.0 * half_y[k];
-    for (int e = 0; e < 3; ++e)
+    ex[k][1] = 2.0 * half_x[k];
+    ey[k][1] = 2.0 * half_y[k];
+    for (int e = 0; e < 3; e++)
       cross[k][e] = x[k][e] * ey[k][e] - y[k][e] * ex[k][e];
   }
+}
+
+/* Contact by the window; returns lanes that need the general overlap, *touching lanes have their sums in *sums. */
+LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, const struct bond_ends *ends,
+                                 lanes_d apart_x, lanes_d apart_y, struct contact_sums *sums, lanes_d *origin_x,
+                                 lanes_d *origin_y, lanes_i *touching, bool velocities) {
+  const lanes_i active = lanes_load(block->stiffness + at) > 0.0;
+  lanes_d x[2][4], y[2][4], ex[2][3], ey[2][3], cross[2][3];
+  bond_place_windows(block, at, ends, apart_x, apart_y, x, y, ex, ey, cross, origin_x, origin_y);
   /* out[k][e][v]: vertex v of the other grain against side e of grain k, times the side's length; > 0 is outside. */
   lanes_d out[2][3][4];
-  for (int k = 0; k < 2; ++k)
-    for (int v = 0; v < 4; ++v)
+  for (int k = 0; k < 2; k++)
+    for (int v = 0; v < 4; v++)
       out[k][1][v] = x[1 - k][v] * ey[k][1] - y[1 - k][v] * ex[k][1] - cross[k][1];
   lanes_i separated = ~active, exact = active;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 2; k++) {
     const lanes_d nearest = lanes_min(out[k][1][1], out[k][1][2]);
     const lanes_d end = lanes_min(out[k][1][0], out[k][1][3]);
     separated |= (nearest >= 0.0) & (nearest <= end);
@@ -98,18 +109,18 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
   *sums = (struct contact_sums){0};
   if (!lanes_any(*touching))
     return general;
-  for (int k = 0; k < 2; ++k)
+  for (int k = 0; k < 2; k++)
     for (int e = 0; e < 3; e += 2)
-      for (int v = 0; v < 4; ++v)
+      for (int v = 0; v < 4; v++)
         out[k][e][v] = x[1 - k][v] * ey[k][e] - y[1 - k][v] * ex[k][e] - cross[k][e];
   /* Clip side a of grain 1 and side b of grain 2 against each other's half-planes: in either case the crossing is at
    * distance / difference of distances. */
   lanes_d enter[2][3], leave[2][3];
-  for (int k = 0; k < 2; ++k)
-    for (int e = 0; e < 3; ++e)
+  for (int k = 0; k < 2; k++)
+    for (int e = 0; e < 3; e++)
       enter[k][e] = lanes_all(0.0), leave[k][e] = lanes_all(1.0);
-  for (int a = 0; a < 3; ++a) {
-    for (int b = 0; b < 3; ++b) {
+  for (int a = 0; a < 3; a++) {
+    for (int b = 0; b < 3; b++) {
       const lanes_d on_a = out[1][b][a] / (out[1][b][a] - out[1][b][a + 1]);
       const lanes_d on_b = out[0][a][b] / (out[0][a][b] - out[0][a][b + 1]);
       lanes_i start_a = out[1][b][a] > 0.0, end_a = out[1][b][a + 1] > 0.0;
@@ -128,15 +139,15 @@ LANES_INLINE lanes_i bond_window(const struct dem_bond_block *block, int at, con
       leave[1][b] = lanes_min(leave[1][b], lanes_select(out[0][a][b + 1] > 0.0, on_b, lanes_all(1.0)));
     }
   }
-  for (int k = 0; k < 2; ++k)
-    for (int e = 0; e < 3; ++e)
+  for (int k = 0; k < 2; k++)
+    for (int e = 0; e < 3; e++)
       contact_add_piece(sums, enter[k][e], leave[k][e], x[k][e], y[k][e], ex[k][e], ey[k][e], k == 0, velocities);
   return general;
 }
 
 /* Lengths and directions at rest, as bond_range will compute them: strain and angle start at exactly zero. */
 LANES_INLINE void bond_rest(struct dem_system *s) {
-  for (size_t b = 0; b < s->now.bond_blocks; ++b) {
+  for (size_t b = 0; b < s->now.bond_blocks; b++) {
     struct dem_bond_block *block = &s->bond[b];
     for (int at = 0; at < DEM_BLOCK; at += LANES) {
       const lanes_d dx = lanes_gather(s->c.x, block->second + at) - lanes_gather(s->c.x, block->first + at);
@@ -149,106 +160,168 @@ LANES_INLINE void bond_rest(struct dem_system *s) {
   }
 }
 
-LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool contact, bool velocities) {
+/* Beams of LANES lanes now. */
+struct bond_beams {
+  lanes_d dx, dy, length, inverse; /* chord from grain 1 to grain 2; 1/length */
+  lanes_d ux, uy;                  /* its direction */
+  lanes_d theta_1, theta_2;        /* rotations of the ends against the chord */
+  lanes_d stretch;                 /* l - l0 */
+};
+
+struct bond_forces {
+  lanes_d x, y; /* on grain 1; grain 2 gets the opposite */
+  lanes_d torque_1, torque_2;
+};
+
+LANES_INLINE struct bond_ends bond_gather(const struct dem_columns *c, const uint32_t *const index[2], bool contact) {
+  struct bond_ends ends;
+  for (int k = 0; k < 2; k++) {
+    ends.x[k] = lanes_gather(c->x, index[k]);
+    ends.y[k] = lanes_gather(c->y, index[k]);
+    ends.angle[k] = lanes_gather(c->angle, index[k]);
+    if (contact) {
+      ends.cosine[k] = lanes_gather(c->cosine, index[k]);
+      ends.sine[k] = lanes_gather(c->sine, index[k]);
+    }
+  }
+  return ends;
+}
+
+/* Measures the chords. A chord that has turned far gets a new reference direction, unless the call only measures: then
+ * the evaluation before has already turned all references that had to turn. */
+LANES_INLINE struct bond_beams bond_chords(struct dem_bond_block *block, int at, const struct bond_ends *ends,
+                                           enum bond_work work) {
+  struct bond_beams b;
+  b.dx = ends->x[1] - ends->x[0];
+  b.dy = ends->y[1] - ends->y[0];
+  b.length = bond_length(b.dx, b.dy);
+  b.inverse = 1.0 / b.length;
+  b.ux = lanes_rounded(b.dx * b.inverse);
+  b.uy = lanes_rounded(b.dy * b.inverse);
+  lanes_d sine, forward;
+  for (;;) {
+    const lanes_d rx = lanes_load(block->reference_x + at), ry = lanes_load(block->reference_y + at);
+    sine = rx * (b.uy - ry) - ry * (b.ux - rx); /* = r x u, and exactly zero for u = r */
+    forward = rx * b.ux + ry * b.uy;
+    const lanes_i turned = (lanes_abs(sine) > 0.125) | (forward < 0.0);
+    if (work == BOND_MEASURE || __builtin_expect(!lanes_any(turned), 1))
+      break;
+    for (int lane = 0; lane < LANES; lane++)
+      if (turned[lane])
+        dem_breaking_turn(block, at + lane, b.ux[lane], b.uy[lane], sine[lane], forward[lane]);
+  }
+  const lanes_d phi = lanes_load(block->reference_angle + at) + bond_arcsine(sine);
+  b.theta_1 = ends->angle[0] - phi;
+  b.theta_2 = ends->angle[1] - phi;
+  b.stretch = b.length - lanes_load(block->length + at);
+  return b;
+}
+
+/* K99 eq 13, on stretched beams only. */
+LANES_INLINE void bond_break(struct dem_system *s, struct dem_bond_block *block, int at, const struct bond_beams *b) {
+  const lanes_d bending = lanes_max(lanes_abs(b->theta_1), lanes_abs(b->theta_2));
+  const lanes_d criterion = b->stretch * b->stretch * lanes_load(block->weight_strain + at) +
+                            bending * lanes_load(block->weight_angle + at);
+  const lanes_i broken = (criterion >= 1.0) & (b->stretch > 0.0);
+  if (__builtin_expect(!lanes_any(broken), 1))
+    return;
+  for (int lane = 0; lane < LANES; lane++)
+    if (broken[lane])
+      dem_breaking_lane(s, block, at + lane, b->length[lane], b->ux[lane], b->uy[lane], b->theta_1[lane],
+                        b->theta_2[lane]);
+}
+
+/* Forces of the beams; when measuring, their energy is added to the sums instead. */
+LANES_INLINE struct bond_forces bond_beam_forces(struct dem_system *s, const struct dem_bond_block *block, int at,
+                                                 const struct bond_beams *b, enum bond_work work) {
+  const lanes_d axial = lanes_load(block->axial + at);
+  const lanes_d along = lanes_load(block->cross + at), diagonal = lanes_load(block->diagonal + at);
+  if (work == BOND_MEASURE) {
+    const lanes_d energy = 0.5 * axial * b->stretch * b->stretch +
+                           0.5 * diagonal * (b->theta_1 - b->theta_2) * (b->theta_1 - b->theta_2) +
+                           along * b->theta_1 * b->theta_2;
+    lanes_store(s->sums.beam + at, lanes_load(s->sums.beam + at) + energy);
+  }
+  const lanes_d m1 = diagonal * (b->theta_2 - b->theta_1) - along * b->theta_2;
+  const lanes_d m2 = diagonal * (b->theta_1 - b->theta_2) - along * b->theta_1;
+  const lanes_d tension = axial * b->stretch, shear = (m1 + m2) * b->inverse;
+  return (struct bond_forces){.x = tension * b->ux - shear * b->uy,
+                              .y = tension * b->uy + shear * b->ux,
+                              .torque_1 = m1,
+                              .torque_2 = m2};
+}
+
+/* Contacts by the windows: adds their forces, or their energy when measuring. `lane` is the first lane's number; lanes
+ * that no window decides go to the general list. */
+LANES_INLINE void bond_contacts(struct dem_system *s, const struct dem_bond_block *block, int at, uint32_t lane,
+                                const uint32_t *const index[2], const struct bond_ends *ends,
+                                const struct bond_beams *b, enum bond_work work, bool velocities,
+                                struct bond_forces *forces) {
   const struct dem_columns *c = &s->c;
-  double *restrict fx = c->fx, *restrict fy = c->fy, *restrict torque = c->torque;
-  for (size_t b = 0; b < s->now.bond_blocks; ++b) {
-    struct dem_bond_block *block = &s->bond[b];
+  struct contact_sums sums;
+  struct contact_pairs pairs = {.apart_x = b->dx, .apart_y = b->dy, .stiffness = lanes_load(block->stiffness + at)};
+  lanes_i touching;
+  const lanes_i general = bond_window(block, at, ends, b->dx, b->dy, &sums, &pairs.origin_x, &pairs.origin_y, &touching,
+                                      velocities);
+  if (lanes_any(general))
+    for (uint32_t k = 0; k < LANES; k++)
+      if (general[k])
+        s->general[s->general_count++] = DEM_FROM_BOND | (lane + k);
+  if (work == BOND_MEASURE) {
+    const lanes_d area = lanes_mask(touching, 0.5 * sums.twice_area);
+    lanes_store(s->sums.contact + at, lanes_load(s->sums.contact + at) + 0.5 * pairs.stiffness * area * area);
+    for (int k = 0; k < LANES; k++)
+      s->sums.overlaps += area[k] > 0.0;
+    return;
+  }
+  if (!lanes_any(touching))
+    return;
+  if (velocities) {
+    pairs.normal_damping = lanes_load(block->normal_damping + at);
+    pairs.tangential_damping = lanes_load(block->tangential_damping + at);
+    for (int k = 0; k < 2; k++) {
+      pairs.vx[k] = lanes_gather(c->guess_vx, index[k]);
+      pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
+      pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
+    }
+  }
+  const struct contact_force f = contact_force(&sums, &pairs, touching, &s->in->contact, velocities, &s->sums, at);
+  forces->x += f.x;
+  forces->y += f.y;
+  forces->torque_1 += f.torque[0];
+  forces->torque_2 += f.torque[1];
+}
+
+/* Adds the forces to the grains, lane by lane: two lanes may share a grain. */
+LANES_INLINE void bond_scatter(double *fx, double *fy, double *torque, const uint32_t *const index[2],
+                               const struct bond_forces *f) {
+  for (int lane = 0; lane < LANES; lane++) {
+    const uint32_t i = index[0][lane], j = index[1][lane];
+    fx[i] += f->x[lane];
+    fy[i] += f->y[lane];
+    torque[i] += f->torque_1[lane];
+    fx[j] -= f->x[lane];
+    fy[j] -= f->y[lane];
+    torque[j] += f->torque_2[lane];
+  }
+}
+
+LANES_INLINE void bond_range(struct dem_system *s, enum bond_work work, bool contact, bool velocities) {
+  double *restrict fx = s->c.fx, *restrict fy = s->c.fy, *restrict torque = s->c.torque;
+  for (size_t k = 0; k < s->now.bond_blocks; k++) {
+    struct dem_bond_block *block = &s->bond[k];
     for (int at = 0; at < DEM_BLOCK; at += LANES) {
-      const uint32_t *index[2] = {block->first + at, block->second + at};
-      struct bond_ends ends;
-      for (int k = 0; k < 2; ++k) {
-        ends.x[k] = lanes_gather(c->x, index[k]);
-        ends.y[k] = lanes_gather(c->y, index[k]);
-        ends.angle[k] = lanes_gather(c->angle, index[k]);
-        if (contact) {
-          ends.cosine[k] = lanes_gather(c->cosine, index[k]);
-          ends.sine[k] = lanes_gather(c->sine, index[k]);
-        }
-      }
-      const lanes_d dx = ends.x[1] - ends.x[0], dy = ends.y[1] - ends.y[0];
-      const lanes_d length = bond_length(dx, dy), inverse = 1.0 / length;
-      const lanes_d ux = lanes_rounded(dx * inverse), uy = lanes_rounded(dy * inverse);
-      lanes_d sine, forward;
-      for (;;) {
-        const lanes_d rx = lanes_load(block->reference_x + at), ry = lanes_load(block->reference_y + at);
-        sine = rx * (uy - ry) - ry * (ux - rx); /* = r x u, and exactly zero for u = r */
-        forward = rx * ux + ry * uy;
-        const lanes_i turned = (lanes_abs(sine) > 0.125) | (forward < 0.0);
-        if (work == BOND_MEASURE || __builtin_expect(!lanes_any(turned), 1))
-          break; /* measuring changes nothing: the last evaluation has already turned what had to turn */
-        for (int lane = 0; lane < LANES; ++lane)
-          if (turned[lane])
-            dem_breaking_turn(block, at + lane, ux[lane], uy[lane], sine[lane], forward[lane]);
-      }
-      const lanes_d phi = lanes_load(block->reference_angle + at) + bond_arcsine(sine);
-      const lanes_d theta_1 = ends.angle[0] - phi, theta_2 = ends.angle[1] - phi;
-      const lanes_d stretch = length - lanes_load(block->length + at);
-      if (work == BOND_FORCES) {
-        const lanes_d bending = lanes_max(lanes_abs(theta_1), lanes_abs(theta_2));
-        const lanes_d criterion = stretch * stretch * lanes_load(block->weight_strain + at) +
-                                  bending * lanes_load(block->weight_angle + at); /* K99 eq 13 */
-        const lanes_i broken = (criterion >= 1.0) & (stretch > 0.0);
-        if (__builtin_expect(lanes_any(broken), 0))
-          for (int lane = 0; lane < LANES; ++lane)
-            if (broken[lane])
-              dem_breaking_lane(s, block, at + lane, length[lane], ux[lane], uy[lane], theta_1[lane], theta_2[lane]);
-      }
-      const lanes_d axial = lanes_load(block->axial + at);
-      const lanes_d along = lanes_load(block->cross + at), diagonal = lanes_load(block->diagonal + at);
-      if (work == BOND_MEASURE) {
-        const lanes_d energy = 0.5 * axial * stretch * stretch +
-                               0.5 * diagonal * (theta_1 - theta_2) * (theta_1 - theta_2) + along * theta_1 * theta_2;
-        lanes_store(s->sums.beam + at, lanes_load(s->sums.beam + at) + energy);
-      }
-      const lanes_d m1 = diagonal * (theta_2 - theta_1) - along * theta_2;
-      const lanes_d m2 = diagonal * (theta_1 - theta_2) - along * theta_1;
-      const lanes_d tension = axial * stretch, shear = (m1 + m2) * inverse;
-      lanes_d force_x = tension * ux - shear * uy, force_y = tension * uy + shear * ux;
-      lanes_d torque_1 = m1, torque_2 = m2;
-      if (contact) {
-        struct contact_sums sums;
-        struct contact_pairs pairs = {.apart_x = dx, .apart_y = dy, .stiffness = lanes_load(block->stiffness + at)};
-        lanes_i touching;
-        const lanes_i general = bond_window(block, at, &ends, dx, dy, &sums, &pairs.origin_x, &pairs.origin_y,
-                                            &touching, velocities);
-        if (lanes_any(general))
-          for (int lane = 0; lane < LANES; ++lane)
-            if (general[lane])
-              s->general[s->general_count++] = DEM_FROM_BOND | (uint32_t)(b * DEM_BLOCK + (size_t)(at + lane));
-        if (work == BOND_MEASURE) {
-          const lanes_d area = lanes_mask(touching, 0.5 * sums.twice_area);
-          lanes_store(s->sums.contact + at, lanes_load(s->sums.contact + at) + 0.5 * pairs.stiffness * area * area);
-          for (int lane = 0; lane < LANES; ++lane)
-            s->sums.overlaps += area[lane] > 0.0;
-        } else if (lanes_any(touching)) {
-          if (velocities) {
-            pairs.normal_damping = lanes_load(block->normal_damping + at);
-            pairs.tangential_damping = lanes_load(block->tangential_damping + at);
-            for (int k = 0; k < 2; ++k) {
-              pairs.vx[k] = lanes_gather(c->guess_vx, index[k]);
-              pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
-              pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
-            }
-          }
-          const struct contact_force f = contact_force(&sums, &pairs, touching, &s->in->contact, velocities, &s->sums,
-                                                       at);
-          force_x += f.x;
-          force_y += f.y;
-          torque_1 += f.torque[0];
-          torque_2 += f.torque[1];
-        }
-      }
+      const uint32_t *const index[2] = {block->first + at, block->second + at};
+      const struct bond_ends ends = bond_gather(&s->c, index, contact);
+      const struct bond_beams beams = bond_chords(block, at, &ends, work);
       if (work == BOND_FORCES)
-        for (int lane = 0; lane < LANES; ++lane) {
-          const uint32_t i = index[0][lane], j = index[1][lane];
-          fx[i] += force_x[lane];
-          fy[i] += force_y[lane];
-          torque[i] += torque_1[lane];
-          fx[j] -= force_x[lane];
-          fy[j] -= force_y[lane];
-          torque[j] += torque_2[lane];
-        }
+        bond_break(s, block, at, &beams);
+      struct bond_forces forces = bond_beam_forces(s, block, at, &beams, work);
+      if (contact)
+        bond_contacts(s, block, at, (uint32_t)(k * DEM_BLOCK + (size_t)at), index, &ends, &beams, work, velocities,
+                      &forces);
+      if (work == BOND_FORCES)
+        bond_scatter(fx, fy, torque, index, &forces);
     }
   }
 }

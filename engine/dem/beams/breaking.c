@@ -1,3 +1,4 @@
+/* What the break of a beam changes: lanes, log, ledger, contact. */
 #include "engine/dem/beams/breaking.h"
 
 #include <math.h>
@@ -32,9 +33,10 @@ static void remove_beam(struct dem_system *s, struct dem_bond_block *block, int 
     dem_breaking_set_contact(s, pair, block, (size_t)lane);
 }
 
-/* Where contacts act only between grains without a beam, a pair that overlaps as its beam breaks has its contact from
- * now on, at full force: the potential that appears with it, and what the second half of a Verlet step's kick does
- * without the first. What the surfaces cost is less by that; the ledger would gain it otherwise. */
+/* Energy that appears when a contact begins with a break, J/m. Where contacts act only between grains without a beam, a
+ * pair that overlaps as its beam breaks gets its contact at full force: the contact's potential, and the work of the
+ * second half kick of the Verlet step, which lacks the first half. The energy booked for the break is reduced by this;
+ * else the ledger would gain it. */
 static double contact_begins(const struct dem_system *s, int32_t pair) {
   if (s->in->contact.law != DEM_CONTACT_CONSERVATIVE || s->in->contact.bonded)
     return 0.0;
@@ -68,7 +70,7 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
   double energy = 0.5 * block->axial[lane] * stretch * stretch + 0.5 * block->diagonal[lane] * twist * twist +
                   block->cross[lane] * theta_first * theta_second;
   if (s->in->fidelity.integrator == DEM_VERLET) {
-    /* The second half of this step's kick will lack the beam: what it would have done to the grains is still theirs. */
+    /* The second half of this step's kick lacks the beam: the work that the beam would have done is booked here. */
     const uint32_t i = block->first[lane], j = block->second[lane];
     const double m1 = block->diagonal[lane] * (theta_second - theta_first) - block->cross[lane] * theta_second;
     const double m2 = block->diagonal[lane] * (theta_first - theta_second) - block->cross[lane] * theta_first;
@@ -104,7 +106,7 @@ void dem_breaking_clear(const struct dem_system *s, struct dem_bond_block *block
   block->second[lane] = s->ghost + 1;
   double *field = (double *)((char *)block + offsetof(struct dem_bond_block, reference_x));
   const size_t fields = (sizeof *block - offsetof(struct dem_bond_block, reference_x)) / sizeof(dem_lane);
-  for (size_t f = 0; f < fields; ++f)
+  for (size_t f = 0; f < fields; f++)
     field[f * DEM_BLOCK + (size_t)lane] = 0.0;
   block->reference_x[lane] = 1.0;
   block->length[lane] = 1.0;

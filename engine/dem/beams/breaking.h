@@ -1,22 +1,22 @@
-/* What happens to single lanes of the bond blocks: rarely, so outside of the wide loops. */
+/* Rare changes to single lanes of the bond blocks, outside of the vector loops. */
 #ifndef CLAST_ENGINE_DEM_BEAMS_BREAKING_H
 #define CLAST_ENGINE_DEM_BEAMS_BREAKING_H
 
 #include "engine/dem/step/system_layout.h"
 
-/* A beam's criterion is met: log it, book its energy, set its elastic constants to zero (K99 section 2.3), and let the
- * pair's contact and damping act if they were off while it was bonded. (ux, uy) is the chord's direction. */
+/* Breaks a beam: logs it, books its energy, sets its elastic constants to zero (K99 section 2.3), and switches on the
+ * pair's contact and damping if they were off while the beam held. (ux, uy) is the chord's direction. */
 void dem_breaking_lane(struct dem_system *system, struct dem_bond_block *block, int lane, double length, double ux,
                        double uy, double theta_first, double theta_second);
 
-/* Take the beam's elastic constants away without a log entry (removed grains). */
+/* Removes a beam without a log entry (removed grains). */
 void dem_breaking_cut(struct dem_system *system, int32_t pair);
 
-/* Point an unused lane at the ghosts, with every constant zero. */
+/* Points an unused lane at the ghosts, with every constant zero. */
 void dem_breaking_clear(const struct dem_system *system, struct dem_bond_block *block, int lane);
 
-/* Measure the chord's angle from its present direction (sine and cosine are against the old one): keeps it unwrapped
- * and small. */
+/* Makes the chord's present direction its reference (sine and cosine are those of the turn since the old one), so that
+ * the angle from the reference stays small and the total angle unwrapped. */
 void dem_breaking_turn(struct dem_bond_block *block, int lane, double ux, double uy, double sine, double cosine);
 
 /* Coefficients of a tessellation pair's contact as they act now: zero while the inputs switch off those of bonded

@@ -1,4 +1,5 @@
-/* Force of one contact from its overlap, several contacts at a time. K99 eqs 1-6, physics notes section 4.
+/* Force of one contact from its overlap, several contacts at a time. K99 eqs 1-6; engine/dem/README.md gives the
+ * derivation.
  *
  * With C the sum of the pieces of grain 1's outline inside grain 2 (the chord from P1 to P2) and n the unit vector that
  * is C turned left by 90 degrees (it points from 2 to 1): moving grain 1 by d changes the overlap area A by

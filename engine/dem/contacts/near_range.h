@@ -1,5 +1,4 @@
-/* Pairs of the near list, and the general overlap of those that neither their cached side nor a bond's window decides.
- */
+/* Pairs of the near list, and the general overlap of pairs that neither a cached side nor a bond's window decides. */
 #ifndef CLAST_ENGINE_DEM_CONTACTS_NEAR_RANGE_H
 #define CLAST_ENGINE_DEM_CONTACTS_NEAR_RANGE_H
 
@@ -7,11 +6,12 @@
 #include "engine/dem/contacts/neighbours.h"
 #include "engine/dem/contacts/overlap.h"
 
-/* Cached separating sides, eight pairs at a time; what they do not keep apart goes to the general list. */
+/* Tests the cached separating sides, several pairs at a time. Pairs that they do not separate go to the general list.
+ */
 LANES_INLINE void near_range(struct dem_system *s) {
   const struct dem_columns *c = &s->c;
   const size_t blocks = (s->now.near_count + DEM_BLOCK - 1) / DEM_BLOCK;
-  for (size_t b = 0; b < blocks; ++b) {
+  for (size_t b = 0; b < blocks; b++) {
     const struct dem_near_block *block = &s->near[b];
     for (int at = 0; at < DEM_BLOCK; at += LANES) {
       const uint32_t *owner = block->owner + at, *other = block->other + at;
@@ -22,7 +22,7 @@ LANES_INLINE void near_range(struct dem_system *s) {
       const lanes_d sx = lanes_load(block->side_x + at), sy = lanes_load(block->side_y + at);
       const lanes_d ex = oc * sx - os * sy, ey = os * sx + oc * sy;
       lanes_d out[3];
-      for (int v = 0; v < 3; ++v) {
+      for (int v = 0; v < 3; v++) {
         const lanes_d vx = lanes_load(block->vertex_x[v] + at), vy = lanes_load(block->vertex_y[v] + at);
         const lanes_d x = dx + (bc * vx - bs * vy), y = dy + (bs * vx + bc * vy);
         out[v] = x * ey - y * ex - lanes_load(block->offset + at);
@@ -30,7 +30,7 @@ LANES_INLINE void near_range(struct dem_system *s) {
       const lanes_i apart = (out[1] > 0.0) & (out[1] <= out[0]) & (out[1] <= out[2]);
       if (!lanes_any(~apart))
         continue;
-      for (int lane = 0; lane < LANES; ++lane)
+      for (int lane = 0; lane < LANES; lane++)
         if (!apart[lane] && owner[lane] != s->ghost)
           s->general[s->general_count++] = (uint32_t)(b * DEM_BLOCK + (size_t)(at + lane));
     }
@@ -48,7 +48,7 @@ struct near_batch {
 LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, bool measure, bool velocities) {
   if (!batch->count)
     return;
-  for (int lane = batch->count; lane < LANES; ++lane) {
+  for (int lane = batch->count; lane < LANES; lane++) {
     batch->first[lane] = s->ghost;
     batch->second[lane] = s->ghost + 1;
     for (int f = 0; f < NEAR_COLUMNS; f++)
@@ -70,17 +70,17 @@ LANES_INLINE void near_flush(struct dem_system *s, struct near_batch *batch, boo
   pairs.apart_y = lanes_gather(c->y, index[1]) - lanes_gather(c->y, index[0]);
   if (measure) {
     lanes_store(s->sums.contact, lanes_load(s->sums.contact) + 0.125 * pairs.stiffness * v[0] * v[0]);
-    for (int lane = 0; lane < batch->count; ++lane)
+    for (int lane = 0; lane < batch->count; lane++)
       s->sums.overlaps += v[0][lane] > 0.0;
   } else {
     if (velocities)
-      for (int k = 0; k < 2; ++k) {
+      for (int k = 0; k < 2; k++) {
         pairs.vx[k] = lanes_gather(c->guess_vx, index[k]);
         pairs.vy[k] = lanes_gather(c->guess_vy, index[k]);
         pairs.spin[k] = lanes_gather(c->guess_spin, index[k]);
       }
     const struct contact_force f = contact_force(&sums, &pairs, v[0] > 0.0, &s->in->contact, velocities, &s->sums, 0);
-    for (int lane = 0; lane < batch->count; ++lane) {
+    for (int lane = 0; lane < batch->count; lane++) {
       const uint32_t i = batch->first[lane], j = batch->second[lane];
       c->fx[i] += f.x[lane];
       c->fy[i] += f.y[lane];

@@ -1,3 +1,4 @@
+/* Neighbour lists: skins, the cell grid, near pairs, repacked bond blocks. */
 #include "engine/dem/contacts/neighbours.h"
 
 #include <math.h>
@@ -8,9 +9,9 @@
 #include "engine/dem/lattice/assemble.h"
 #include "engine/dem/step/kernels.h"
 
-static const double horizon_steps = 150.0; /* a skin holds about so many steps at the grain's present speed */
+static const double horizon_steps = 150.0; /* a skin lasts about this many steps at the grain's present speed */
 static const double smallest_skin = 0.25;  /* in mean diameters */
-static const double neighbour_share = 0.5;
+static const double neighbour_share = 0.5; /* of a neighbour's speed counts as the grain's own */
 static const double largest_skin = 3.0;
 static const uint32_t none = UINT32_MAX;
 
@@ -18,12 +19,12 @@ void dem_neighbours_ring(const struct dem_system *s, uint32_t grain, double dx, 
   const uint32_t first = s->first_vertex[grain];
   const double c = s->c.cosine[grain], sn = s->c.sine[grain];
   ring->count = s->first_vertex[grain + 1] - first;
-  for (size_t v = 0; v < ring->count; ++v) {
+  for (size_t v = 0; v < ring->count; v++) {
     const double x = s->outline_x[first + v], y = s->outline_y[first + v];
     ring->x[v] = c * x - sn * y + dx;
     ring->y[v] = sn * x + c * y + dy;
   }
-  for (size_t v = ring->count; v <= dem_overlap_last(ring); ++v) {
+  for (size_t v = ring->count; v <= dem_overlap_last(ring); v++) {
     ring->x[v] = ring->x[0];
     ring->y[v] = ring->y[0];
   }
@@ -43,21 +44,21 @@ void dem_neighbours_cache_side(struct dem_system *s, uint32_t near, const struct
   block->side_y[lane] = s->outline_y[to] - s->outline_y[from];
   block->offset[lane] = s->outline_x[from] * block->side_y[lane] - s->outline_y[from] * block->side_x[lane];
   const uint32_t first_other = s->first_vertex[other], count = s->first_vertex[other + 1] - first_other;
-  for (size_t v = 0; v < 3; ++v) {
+  for (size_t v = 0; v < 3; v++) {
     const size_t vertex = first_other + (overlap->vertex + (v == 0 ? count - 1 : v == 1 ? 0 : 1)) % count;
     block->vertex_x[v][lane] = s->outline_x[vertex];
     block->vertex_y[v][lane] = s->outline_y[vertex];
   }
 }
 
-/* Is a broken pair's contact still one of side on side, where a window serves? By where the grains are alone, so that
+/* Whether the contact of a broken pair is still side on side, so that its window is exact. Only the positions decide:
  * it does not matter when the beam broke. */
 static bool still_side_on_side(const struct dem_system *s, const struct dem_bond_block *block, size_t lane,
                                int32_t pair) {
   if (!s->windowed[pair])
     return false;
   double x[2], y[2];
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 2; k++) {
     const uint32_t grain = s->pair[pair][k];
     const double c = s->c.cosine[grain], sn = s->c.sine[grain];
     x[k] = s->c.x[grain] + c * block->middle_x[k][lane] - sn * block->middle_y[k][lane];
@@ -68,11 +69,11 @@ static bool still_side_on_side(const struct dem_system *s, const struct dem_bond
   return dx * dx + dy * dy < half && fabs(s->c.angle[s->pair[pair][0]] - s->c.angle[s->pair[pair][1]]) < 0.3;
 }
 
-/* Broken pairs that came apart leave the bond blocks; the lanes that remain move together, in their old order. */
+/* Broken pairs that came apart leave the bond blocks. The other lanes close up in their old order. */
 static void repack_bonds(struct dem_system *s) {
   const size_t lanes = s->now.bond_blocks * DEM_BLOCK;
   size_t kept = 0;
-  for (size_t lane = 0; lane < lanes; ++lane) {
+  for (size_t lane = 0; lane < lanes; lane++) {
     const int32_t pair = s->lane_pair[lane];
     if (pair == DEM_NO_PAIR)
       continue;
@@ -90,15 +91,15 @@ static void repack_bonds(struct dem_system *s) {
       const size_t start = offsetof(struct dem_bond_block, reference_x);
       double *write = (double *)((char *)to + start);
       const double *read = (const double *)((const char *)from + start);
-      for (size_t f = 0; f < (sizeof *to - start) / sizeof(dem_lane); ++f)
+      for (size_t f = 0; f < (sizeof *to - start) / sizeof(dem_lane); f++)
         write[f * DEM_BLOCK + a] = read[f * DEM_BLOCK + b];
       s->lane_pair[kept] = pair;
       s->pair_lane[pair] = (int32_t)kept;
     }
-    ++kept;
+    kept++;
   }
   const size_t blocks = (kept + DEM_BLOCK - 1) / DEM_BLOCK;
-  for (size_t lane = kept; lane < lanes; ++lane) {
+  for (size_t lane = kept; lane < lanes; lane++) {
     s->lane_pair[lane] = DEM_NO_PAIR;
     dem_breaking_clear(s, &s->bond[lane / DEM_BLOCK], (int)(lane % DEM_BLOCK));
   }
@@ -133,13 +134,13 @@ static size_t bucket_of(const struct dem_system *s, int32_t x, int32_t y) {
 }
 
 static int32_t pair_of(const struct dem_system *s, uint32_t i, uint32_t j) {
-  for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; ++k)
+  for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; k++)
     if (s->partner[k] == j)
       return (int32_t)s->partner_pair[k];
   return DEM_NO_PAIR;
 }
 
-/* List the pair j < i if its gap is within the two skins. */
+/* Lists the pair j < i if its gap is within the two skins. False: no memory. */
 static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct dem_ring *mine) {
   const struct dem_columns *c = &s->c;
   const double dx = c->x[j] - c->x[i], dy = c->y[j] - c->y[i];
@@ -166,31 +167,31 @@ static bool consider(struct dem_system *s, uint32_t i, uint32_t j, const struct 
   if (pair == DEM_NO_PAIR)
     near->contact = dem_assemble_contact(s, i, j, 0.0);
   dem_neighbours_cache_side(s, (uint32_t)s->now.near_count, &overlap);
-  ++s->now.near_count;
+  s->now.near_count++;
   return true;
 }
 
-/* A grain's skin also allows for the speed of its neighbours: a wave or a blow gives it that next. */
+/* A grain's skin also allows for the speed of its neighbours, which a wave or an impact will pass on to it. */
 static void set_skins(struct dem_system *s) {
   struct dem_columns *c = &s->c;
-  double *const speed = c->list_x; /* until the positions go there */
+  double *const speed = c->list_x; /* used as scratch until the positions are stored there */
   const double reach = horizon_steps * s->in->fidelity.time_step;
-  for (size_t i = 0; i < s->count; ++i)
+  for (size_t i = 0; i < s->count; i++)
     speed[i] = sqrt(c->vx[i] * c->vx[i] + c->vy[i] * c->vy[i]) + s->c.radius[i] * fabs(c->spin[i]);
-  for (size_t i = 0; i < s->count; ++i) {
+  for (size_t i = 0; i < s->count; i++) {
     double fastest = speed[i];
-    for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; ++k)
+    for (uint32_t k = s->first_partner[i]; k < s->first_partner[i + 1]; k++)
       fastest = fmax(fastest, neighbour_share * speed[s->partner[k]]);
     c->skin[i] = fmin(largest_skin * s->mean_diameter, fmax(smallest_skin * s->mean_diameter, fastest * reach));
   }
-  for (size_t i = 0; i < s->count; ++i) {
+  for (size_t i = 0; i < s->count; i++) {
     c->list_x[i] = c->x[i];
     c->list_y[i] = c->y[i];
     c->list_angle[i] = c->angle[i];
   }
-  /* The check of the skins runs over whole lanes: those that pad the last one must not look as if they had moved, or
-   * the list would be made again at every step of any body whose number of grains is no multiple of the lanes. */
-  for (size_t i = s->count; i < s->padded; ++i) {
+  /* The check of the skins runs over whole vectors. Padding lanes must not look as if they had moved, or the list would
+   * be made at every step of a body whose number of grains is no multiple of the vector's width. */
+  for (size_t i = s->count; i < s->padded; i++) {
     c->list_x[i] = c->x[i];
     c->list_y[i] = c->y[i];
     c->list_angle[i] = c->angle[i];
@@ -199,7 +200,7 @@ static void set_skins(struct dem_system *s) {
 }
 
 bool dem_neighbours_make(struct dem_system *s) {
-  ++s->now.rebuilds;
+  s->now.rebuilds++;
   set_skins(s);
   repack_bonds(s);
   s->now.near_count = 0;
@@ -207,9 +208,9 @@ bool dem_neighbours_make(struct dem_system *s) {
     return true;
   const double per_size = 1.0 / (1.5 * s->mean_diameter);
   size_t entries = 0;
-  for (size_t b = 0; b < s->cell_buckets; ++b)
+  for (size_t b = 0; b < s->cell_buckets; b++)
     s->cell_head[b] = none;
-  for (uint32_t i = 0; i < s->count; ++i) {
+  for (uint32_t i = 0; i < s->count; i++) {
     if (!s->present[i])
       continue;
     const double reach = s->c.radius[i] + s->c.skin[i];
@@ -219,8 +220,8 @@ bool dem_neighbours_make(struct dem_system *s) {
     s->cell_low[i][1] = y0;
     struct dem_ring mine;
     dem_neighbours_ring(s, i, 0.0, 0.0, &mine);
-    for (int32_t y = y0; y <= y1; ++y)
-      for (int32_t x = x0; x <= x1; ++x) {
+    for (int32_t y = y0; y <= y1; y++)
+      for (int32_t x = x0; x <= x1; x++) {
         const size_t bucket = bucket_of(s, x, y);
         for (uint32_t e = s->cell_head[bucket]; e != none; e = s->cell_next[e]) {
           if (s->cell_key[e][0] != x || s->cell_key[e][1] != y)
@@ -228,7 +229,7 @@ bool dem_neighbours_make(struct dem_system *s) {
           const uint32_t j = s->cell_grain[e];
           const int32_t home_x = s->cell_low[j][0], home_y = s->cell_low[j][1];
           if (x != (home_x > x0 ? home_x : x0) || y != (home_y > y0 ? home_y : y0))
-            continue; /* a pair is met once, in the lowest common cell of the two */
+            continue; /* a pair is considered once, in the lowest cell that both share */
           if (!consider(s, i, j, &mine))
             return false;
         }
@@ -241,11 +242,11 @@ bool dem_neighbours_make(struct dem_system *s) {
         s->cell_head[bucket] = (uint32_t)entries++;
       }
   }
-  for (size_t lane = s->now.near_count; lane % DEM_BLOCK; ++lane) {
+  for (size_t lane = s->now.near_count; lane % DEM_BLOCK; lane++) {
     struct dem_near_block *block = &s->near[lane / DEM_BLOCK];
     const size_t start = offsetof(struct dem_near_block, side_x);
     double *const fields = (double *)((char *)block + start);
-    for (size_t f = 0; f < (sizeof *block - start) / sizeof(dem_lane); ++f)
+    for (size_t f = 0; f < (sizeof *block - start) / sizeof(dem_lane); f++)
       fields[f * DEM_BLOCK + lane % DEM_BLOCK] = 0.0; /* so that equal states have equal bytes */
     block->owner[lane % DEM_BLOCK] = s->ghost;
     block->other[lane % DEM_BLOCK] = s->ghost + 1;

@@ -1,4 +1,4 @@
-/* Overlap of any two convex polygons, by boundary integrals: no case analysis.
+/* Overlap of any two convex polygons by boundary integrals, without case analysis.
  *
  * Every side of either is clipped to the other's half-planes (Cyrus-Beck intervals); the pieces of both outlines are
  * the outline of the overlap. Sides that coincide count once: as the first polygon's, with a tolerance above
@@ -9,26 +9,26 @@
 #include <math.h>
 
 #include "engine/dem/contacts/contact_law.h"
-#include "engine/dem/contacts/overlap_types.h"
+#include "engine/dem/contacts/neighbours.h"
 
-/* The side of either polygon that the other keeps farthest outside of; eight sides at a time. */
+/* Finds the side of either polygon that best separates the two, i.e. with the largest gap; several sides at a time. */
 LANES_INLINE void overlap_best_side(const struct dem_ring ring[2], struct dem_overlap *out) {
   out->gap = -(double)INFINITY;
-  for (int owner = 0; owner < 2; ++owner) {
+  for (int owner = 0; owner < 2; owner++) {
     const struct dem_ring *a = &ring[owner], *b = &ring[1 - owner];
     for (size_t k = 0; k < a->count; k += LANES) {
       const lanes_d x = lanes_load(a->x + k), y = lanes_load(a->y + k);
       const lanes_d ex = lanes_load(a->x + k + 1) - x, ey = lanes_load(a->y + k + 1) - y;
       const lanes_d size = lanes_sqrt(ex * ex + ey * ey);
       lanes_d nearest = lanes_all((double)INFINITY), vertex = lanes_all(0.0);
-      for (size_t v = 0; v < b->count; ++v) {
+      for (size_t v = 0; v < b->count; v++) {
         const lanes_d out_by = (b->x[v] - x) * ey - (b->y[v] - y) * ex;
         const lanes_i nearer = out_by < nearest;
         nearest = lanes_select(nearer, out_by, nearest);
         vertex = lanes_select(nearer, lanes_all((double)v), vertex);
       }
       const lanes_d gap = nearest / size;
-      for (size_t lane = 0; lane < LANES && k + lane < a->count; ++lane)
+      for (size_t lane = 0; lane < LANES && k + lane < a->count; lane++)
         if (gap[lane] > out->gap && size[lane] > 0.0) {
           out->gap = gap[lane];
           out->owner = owner;
@@ -46,7 +46,7 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
     const lanes_d x = lanes_load(p->x + v), y = lanes_load(p->y + v);
     const lanes_d ex = lanes_load(p->x + v + 1) - x, ey = lanes_load(p->y + v + 1) - y;
     lanes_d enter = lanes_all(0.0), leave = lanes_all(1.0);
-    for (size_t k = 0; k < q->count; ++k) {
+    for (size_t k = 0; k < q->count; k++) {
       const double sx = q->x[k + 1] - q->x[k], sy = q->y[k + 1] - q->y[k];
       const double same = sqrt(sx * sx + sy * sy) * tolerance;
       lanes_d from = (x - q->x[k]) * sy - (y - q->y[k]) * sx;
@@ -64,16 +64,16 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
 
 LANES_INLINE double overlap_total(lanes_d value) {
   double total = 0.0;
-  for (int lane = 0; lane < LANES; ++lane)
+  for (int lane = 0; lane < LANES; lane++)
     total += value[lane];
   return total;
 }
 
-/* The rings' origin is moved to the contact. */
+/* Computes the overlap. Moves the rings' origin to the contact. */
 static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *out) {
   double size = 0.0;
-  for (int k = 0; k < 2; ++k)
-    for (size_t v = 1; v < ring[k].count; ++v)
+  for (int k = 0; k < 2; k++)
+    for (size_t v = 1; v < ring[k].count; v++)
       size = fmax(size, fmax(fabs(ring[k].x[v] - ring[k].x[0]), fabs(ring[k].y[v] - ring[k].y[0])));
   const double tolerance = 1e-12 * size; /* above the rounding of positions */
   overlap_best_side(ring, out);
@@ -82,8 +82,8 @@ static inline void overlap_rings(struct dem_ring ring[2], struct dem_overlap *ou
     return;
   out->origin_x = ring[1 - out->owner].x[out->vertex];
   out->origin_y = ring[1 - out->owner].y[out->vertex];
-  for (int k = 0; k < 2; ++k)
-    for (size_t v = 0; v <= dem_overlap_last(&ring[k]); ++v) {
+  for (int k = 0; k < 2; k++)
+    for (size_t v = 0; v <= dem_overlap_last(&ring[k]); v++) {
       ring[k].x[v] -= out->origin_x;
       ring[k].y[v] -= out->origin_y;
     }

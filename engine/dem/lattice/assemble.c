@@ -1,3 +1,4 @@
+/* Constants of grains, beams and contacts, from the tessellation and the inputs. */
 #include "engine/dem/lattice/assemble.h"
 
 #include <float.h>
@@ -6,8 +7,8 @@
 #include "engine/dem/beams/breaking.h"
 #include "engine/random.h"
 
-/* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions, where a
- * window is seldom exact: their contact goes by the near list. */
+/* Common sides shorter than this share of the grains' mean diameter turn by large angles under small motions. A window
+ * is seldom exact there, so the near list handles their contact. */
 static const double shortest_window = 0.05;
 
 double dem_assemble_reference_side(double side, double diameter_i, double diameter_j) {
@@ -25,12 +26,12 @@ struct dem_contact dem_assemble_contact(const struct dem_system *s, uint32_t i, 
   return (struct dem_contact){stiffness, mass * contact->normal_damping, mass * contact->tangential_damping};
 }
 
-/* Grains are this much smaller than their cells, so that rounding gives no overlap at rest: a gap of 1e-11 cells. */
+/* Grains are smaller than their cells by this share, so that rounding gives no overlap at rest. */
 static const double shrink = 1e-11;
 
 static status grains(struct dem_system *s, const struct dem_tessellation *t, struct error *error) {
   double total = 0.0;
-  for (size_t i = 0; i < s->count; ++i) {
+  for (size_t i = 0; i < s->count; i++) {
     const uint32_t first = t->first_vertex[i], sides = t->first_vertex[i + 1] - first;
     if (sides < 3 || sides > DEM_MAX_VERTICES)
       return status_fail(error, STATUS_CONTENT, "grain %zu has %u sides; 3 to %d can be used.", i, sides,
@@ -52,7 +53,7 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
     const double far = fabs(t->centroid[i].x) + fabs(t->centroid[i].y) + s->diameter[i];
     const double keep = 1.0 - fmax(shrink, 8.0 * DBL_EPSILON * far / s->diameter[i]);
     s->first_vertex[i + 1] = first - t->first_vertex[0] + sides;
-    for (uint32_t v = 0; v < sides; ++v) {
+    for (uint32_t v = 0; v < sides; v++) {
       const size_t at = s->first_vertex[i] + v;
       s->outline_x[at] = keep * (t->vertex[first + v].x - t->centroid[i].x);
       s->outline_y[at] = keep * (t->vertex[first + v].y - t->centroid[i].y);
@@ -62,7 +63,7 @@ static status grains(struct dem_system *s, const struct dem_tessellation *t, str
     }
   }
   s->mean_diameter = total / (double)s->count;
-  for (size_t i = s->count; i < s->padded; ++i) {
+  for (size_t i = s->count; i < s->padded; i++) {
     s->c.skin[i] = 1.0;
     s->c.x[i] = (double)(i - s->count); /* one metre apart: unused lanes see a beam of length one */
   }
@@ -74,8 +75,8 @@ static bool common_side(const struct dem_tessellation *t, uint32_t i, uint32_t j
                         uint32_t *side_j) {
   const uint32_t fi = t->first_vertex[i], ni = t->first_vertex[i + 1] - fi;
   const uint32_t fj = t->first_vertex[j], nj = t->first_vertex[j + 1] - fj;
-  for (uint32_t a = 0; a < ni; ++a)
-    for (uint32_t b = 0; b < nj; ++b) {
+  for (uint32_t a = 0; a < ni; a++)
+    for (uint32_t b = 0; b < nj; b++) {
       const struct dem_point *p = &t->vertex[fi + a], *q = &t->vertex[fi + (a + 1) % ni];
       const struct dem_point *r = &t->vertex[fj + b], *u = &t->vertex[fj + (b + 1) % nj];
       if (fabs(p->x - u->x) <= tolerance && fabs(p->y - u->y) <= tolerance && fabs(q->x - r->x) <= tolerance &&
@@ -93,7 +94,7 @@ static void window(struct dem_system *s, struct dem_bond_block *block, size_t la
                    uint32_t side) {
   const uint32_t first = s->first_vertex[grain], sides = s->first_vertex[grain + 1] - first;
   double x[4], y[4];
-  for (uint32_t v = 0; v < 4; ++v) {
+  for (uint32_t v = 0; v < 4; v++) {
     const uint32_t at = first + (side + sides - 1 + v) % sides;
     x[v] = s->outline_x[at];
     y[v] = s->outline_y[at];

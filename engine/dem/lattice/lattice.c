@@ -1,3 +1,4 @@
+/* Points of the random lattice and the Voronoi cell of each. */
 #include "engine/dem/lattice/lattice.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* From cells cut one by one to one planar subdivision: corners that coincide become one, so that neighbours share their
- * vertices to the last bit and a body at rest has no overlap at all. */
+/* Joins cells that were cut one by one into one planar subdivision: corners that coincide become one, so that
+ * neighbours share their vertices to the last bit and a body at rest has no overlap. */
 #include "engine/dem/lattice/tessellation.h"
 
 #include <math.h>
@@ -24,7 +24,7 @@ static uint32_t *corner_list(struct corners *corners, double x, double y) {
   return &corners->head[(size_t)row * corners->columns + (size_t)column];
 }
 
-/* Index of the corner at p, made if there is none yet; UINT32_MAX when memory is out. */
+/* Index of the corner at p, which is added if it is new; UINT32_MAX: no memory. */
 static uint32_t corner_find(struct corners *corners, struct dem_point p) {
   uint32_t *seen[4] = {0};
   for (int k = 0; k < 4; k++) {
@@ -106,7 +106,7 @@ static bool grow(void **array, size_t *capacity, size_t need, size_t item) {
   return true;
 }
 
-/* Cut the cell of one lattice point and append it, if it belongs to the body. False: memory is out. */
+/* Cuts the cell of one lattice point and appends it if it belongs to the body. False: no memory. */
 static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   struct dem_tessellation *t = b->out;
   int64_t i = (int64_t)row * b->points.columns + column;
@@ -132,7 +132,7 @@ static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   if (!grow((void **)&t->vertex, &capacity, need, sizeof *t->vertex) ||
       !grow((void **)&b->across, &b->vertex_capacity, need, sizeof *b->across))
     return false;
-  for (int k = 0; k < cell.count; k++) /* a side whose ends are one corner is none */
+  for (int k = 0; k < cell.count; k++) /* leave out a side whose ends are the same corner */
     if (corner[k] != corner[k + 1 < cell.count ? k + 1 : 0]) {
       t->vertex[start + n] = world(b, b->corners.at[corner[k]]);
       b->across[start + n++] = cell.across[k];

@@ -1,3 +1,4 @@
+/* The rows of results that engine dem reports. */
 #include "engine/dem/observe/results.h"
 
 #include <math.h>

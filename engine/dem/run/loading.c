@@ -66,7 +66,7 @@ status dem_loading_start(struct dem_run *run, struct error *error) {
 
 void dem_loading_drive(struct dem_run *run) {
   double time = dem_system_time(run->system), ramp = run->inputs.loading.ramp;
-  /* the speed in the middle of the step: its integral is then exact for a linear rise */
+  /* the speed in the middle of the step: its sum is then exact for a linear rise */
   double share = ramp > 0 ? fmin((time + 0.5 * run->inputs.fidelity.time_step) / ramp, 1) : 1;
   double speed = 0.5 * sense(run) * run->inputs.loading.rate * run->gauge_length * share;
   for (size_t k = 0; k < run->lower_count; k++)
@@ -75,7 +75,8 @@ void dem_loading_drive(struct dem_run *run) {
     dem_system_drive(run->system, run->upper[k], 0, speed, 0);
 }
 
-static double strain_now(const struct dem_run *run) { /* all grains of a side keep their line: one of each tells */
+static double
+strain_now(const struct dem_run *run) { /* all grains of a side keep their line: one grain of each is enough */
   double upper = dem_system_grain(run->system, run->upper[0]).y - run->tessellation->centroid[run->upper[0]].y;
   double lower = dem_system_grain(run->system, run->lower[0]).y - run->tessellation->centroid[run->lower[0]].y;
   return (upper - lower) / run->gauge_length;

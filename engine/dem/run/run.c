@@ -1,3 +1,4 @@
+/* A run from its set-up to its end: steps, checks of energy and speed, stop rules. */
 #include "engine/dem/run/run.h"
 
 #include <math.h>
@@ -5,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CHECK_INTERVAL = 100 }; /* steps between looks at the energy ledger, which costs about a step */
+enum { CHECK_INTERVAL = 100 }; /* steps between checks of the energy ledger; a check costs about a step */
 
 double dem_run_closed(const struct dem_ledger *l) {
   return l->kinetic + l->beam + l->contact + l->broken_beam + l->damping + l->friction - l->external_work;
@@ -52,8 +53,8 @@ static void held_force(const struct dem_run *run, double force[2]) {
     }
 }
 
-/* Largest way of a grain in one step over the mean diameter: whoever goes farther than `largest_way` can pass through a
- * neighbour without ever being seen to overlap it, and no ledger would tell. */
+/* Largest distance that a grain may move in one step, in mean diameters. A faster grain can pass through a neighbour
+ * without a step in which they overlap, and the energy ledger would not show it. */
 static const double largest_way = 0.5;
 
 static double longest_way(const struct dem_run *run) {
@@ -146,7 +147,7 @@ static void check_energy(struct dem_run *run) {
     return;
   }
   double drift = fabs(closed - run->state.closed_start), bound = run->inputs.fidelity.energy_bound;
-  /* Under a load the work starts from nothing: judge once the sides move at their full speed. */
+  /* Under a load the work starts from zero: check once the sides move at their full speed. */
   if (dem_inputs_loaded(&run->inputs) && dem_system_time(run->system) < run->inputs.loading.ramp)
     return;
   if (!field_is_off(bound) && input > 0 && drift > bound * input)
@@ -160,7 +161,7 @@ static void check_stop(struct dem_run *run) {
   double time = dem_system_time(run->system), last = dem_system_last_break(run->system);
   double half_step = 0.5 * run->inputs.fidelity.time_step;
   if (dem_inputs_loaded(&run->inputs))
-    return; /* loading.c ends these */
+    return; /* loading.c ends these runs */
   const struct dem_break *log;
   bool broke = dem_system_breaks(run->system, &log) > 0;
   if (broke && time - last >= run->inputs.stop.quiet_time - half_step)

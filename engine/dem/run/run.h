@@ -1,4 +1,4 @@
-/* One run of engine `dem`: body, moving grains, protocol and what it has recorded so far. Inside this folder only. */
+/* One run of engine `dem`: body, moving grains, protocol and records so far. For engine/dem and its tests only. */
 #ifndef CLAST_ENGINE_DEM_RUN_RUN_H
 #define CLAST_ENGINE_DEM_RUN_RUN_H
 
@@ -13,7 +13,7 @@ struct dem_sample {
   uint64_t broken;
 };
 
-/* What changes during a run beside the system itself: a plain value, saved as it stands in a restart file. */
+/* What changes during a run besides the system. A plain value: restart files save it as it stands. */
 struct dem_state {
   int finished, stop, outcome_state;
   char message[FIELD_TEXT_SIZE];
@@ -52,7 +52,7 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps);
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
-/* End the run: the first reason given stays, but a fault stands above any other. */
+/* Ends the run. The first reason stays, but a fault replaces any other. */
 void dem_run_end(struct dem_run *run, int stop, int outcome_state, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 

@@ -1,4 +1,4 @@
-/* What a scene models and why, what it needs and how its numbers compare: text for `clast explain` and `plan`. */
+/* Text for `clast explain` and `clast plan`: what a scene models and why, and how its numbers compare. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "engine/dem/step/gear_start.h"
+/* Higher derivatives for the start of the Gear integrator, which needs five; a scene gives one. */
 
 #include <stdlib.h>
 
@@ -15,8 +15,8 @@ struct trial {
 static void accelerations(const struct dem_system *s, double *const a[3]) {
   const double *const force[3] = {s->c.fx, s->c.fy, s->c.torque};
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  for (int k = 0; k < 3; ++k)
-    for (size_t g = 0; g < s->padded; ++g)
+  for (int k = 0; k < 3; k++)
+    for (size_t g = 0; g < s->padded; g++)
       a[k][g] = force[k][g] * mobility[k][g];
 }
 
@@ -29,15 +29,15 @@ static bool runge_kutta(struct dem_system *s, const struct trial *t, double *con
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
   const double dt = s->in->fidelity.time_step;
   accelerations(s, a);
-  for (int k = 0; k < 3; ++k)
-    for (size_t g = 0; g < s->padded; ++g) {
+  for (int k = 0; k < 3; k++)
+    for (size_t g = 0; g < s->padded; g++) {
       t->x0[k][g] = position[k][g];
       t->v0[k][g] = velocity[k][g];
       t->dx[k][g] = t->dv[k][g] = 0.0;
     }
-  for (int stage = 0; stage < 4; ++stage) {
-    for (int k = 0; k < 3; ++k)
-      for (size_t g = 0; g < s->padded; ++g) {
+  for (int stage = 0; stage < 4; stage++) {
+    for (int k = 0; k < 3; k++)
+      for (size_t g = 0; g < s->padded; g++) {
         const double v = velocity[k][g], acceleration = force[k][g] * mobility[k][g];
         t->dx[k][g] += weight[stage] * dt * v;
         t->dv[k][g] += weight[stage] * dt * acceleration;
@@ -65,19 +65,19 @@ bool dem_gear_start(struct dem_system *s) {
   if (!done)
     goto cleanup;
   double *next = memory;
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; k++) {
     double **const columns[] = {&t.x0[k],   &t.v0[k],   &t.dx[k],   &t.dv[k],  &t.a[0][k],
                                 &t.a[1][k], &t.a[2][k], &t.a[3][k], &t.a[4][k]};
     for (size_t c = 0; c < sizeof columns / sizeof *columns; ++c, next += n)
       *columns[c] = next;
   }
   dem_system_state_save(s, state);
-  for (int step = 0; step < TRIAL_STEPS && done; ++step)
+  for (int step = 0; step < TRIAL_STEPS && done; step++)
     done = runge_kutta(s, &t, t.a[step]);
   accelerations(s, t.a[TRIAL_STEPS]);
   done = dem_system_state_load(s, state, size) && done;
-  for (int k = 0; k < 3 && done; ++k)
-    for (size_t g = 0; g < n; ++g) { /* one-sided differences of fourth, third and second order */
+  for (int k = 0; k < 3 && done; k++)
+    for (size_t g = 0; g < n; g++) { /* one-sided differences of fourth, third and second order */
       const double a0 = t.a[0][k][g], a1 = t.a[1][k][g], a2 = t.a[2][k][g], a3 = t.a[3][k][g], a4 = t.a[4][k][g];
       const double square = dt * dt;
       s->c.gear[k][2][g] = square / 2.0 * a0;

@@ -1,18 +1,17 @@
-/* The loops over whole ranges, compiled once per CPU class and chosen at run time.
- *
- * Which class, and what that means for bits, is said in engine/cpu_class.h. */
+/* The loops over whole ranges. They are compiled once per CPU class and chosen at run time; engine/cpu_class.h says
+ * what that means for bits. */
 #ifndef CLAST_ENGINE_DEM_STEP_KERNELS_H
 #define CLAST_ENGINE_DEM_STEP_KERNELS_H
 
-#include "engine/dem/contacts/overlap_types.h"
-#include "engine/dem/step/system_layout.h"
+#include "engine/cpu_class.h"
+#include "engine/dem/contacts/neighbours.h"
 
 struct dem_kernels {
-  const char *name; /* "baseline", "v3" (AVX2, FMA), "v4" (AVX-512): x86-64 microarchitecture levels */
-  void (*rest)(struct dem_system *system);    /* bond blocks: the positions now are the beams' rest state */
-  void (*forces)(struct dem_system *system);  /* bond blocks, near blocks, general overlaps into fx, fy, torque */
-  void (*measure)(struct dem_system *system); /* sums.beam, sums.contact, sums.overlaps; changes nothing else */
-  bool (*verlet_drift)(struct dem_system *system, bool *moved); /* false: not finite; moved: the list is worn out */
+  const char *name;                           /* of the CPU class */
+  void (*rest)(struct dem_system *system);    /* takes the positions now as the rest state of the beams */
+  void (*forces)(struct dem_system *system);  /* of beams and contacts, into fx, fy, torque */
+  void (*measure)(struct dem_system *system); /* fills sums.beam, sums.contact, sums.overlaps */
+  bool (*verlet_drift)(struct dem_system *system, bool *moved); /* false: not finite; moved: the lists end */
   void (*verlet_kick)(struct dem_system *system);
   bool (*gear_predict)(struct dem_system *system, bool *moved);
   void (*gear_correct)(struct dem_system *system);
@@ -26,6 +25,16 @@ extern const struct dem_kernels dem_kernels_baseline;
 extern const struct dem_kernels dem_kernels_v3, dem_kernels_v4;
 #endif
 
-const struct dem_kernels *dem_kernels_choose(void);
+/* The kernels of the CPU class that this run uses. */
+static inline const struct dem_kernels *dem_kernels_choose(void) {
+#ifdef __x86_64__
+  const enum cpu_class best = cpu_class_choose();
+  if (best == CPU_V4)
+    return &dem_kernels_v4;
+  if (best == CPU_V3)
+    return &dem_kernels_v3;
+#endif
+  return &dem_kernels_baseline;
+}
 
 #endif

@@ -42,7 +42,7 @@ LANES_INLINE lanes_d lanes_abs(lanes_d a) {
 
 LANES_INLINE bool lanes_any(lanes_i mask) {
   int64_t any = 0;
-  for (int lane = 0; lane < LANES; ++lane)
+  for (int lane = 0; lane < LANES; lane++)
     any |= mask[lane];
   return any != 0;
 }
@@ -79,7 +79,7 @@ LANES_INLINE lanes_d lanes_rounded(lanes_d value) {
 
 LANES_INLINE lanes_d lanes_sqrt(lanes_d a) {
   lanes_d root;
-  for (int lane = 0; lane < LANES; ++lane)
+  for (int lane = 0; lane < LANES; lane++)
     root[lane] = __builtin_sqrt(a[lane]);
   return root;
 }

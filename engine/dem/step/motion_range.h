@@ -43,7 +43,7 @@ LANES_INLINE bool motion_verlet_drift(struct dem_system *s, bool *moved_out) {
   double *const guess[3] = {c->guess_vx, c->guess_vy, c->guess_spin};
   lanes_i moved = {0}, lost = {0};
   for (size_t g = 0; g < s->padded; g += LANES) {
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; k++) {
       const lanes_d kick = half * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g));
       const lanes_d v = lanes_load(velocity[k] + g) + kick;
       lanes_store(velocity[k] + g, v);
@@ -63,7 +63,7 @@ LANES_INLINE void motion_verlet_kick(struct dem_system *s) {
   const double half = 0.5 * s->in->fidelity.time_step;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; k++)
     for (size_t g = 0; g < s->padded; g += LANES)
       lanes_store(velocity[k] + g,
                   lanes_load(velocity[k] + g) + half * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g)));
@@ -76,7 +76,7 @@ LANES_INLINE bool motion_gear_predict(struct dem_system *s, bool *moved_out) {
   double *const guess[3] = {c->guess_vx, c->guess_vy, c->guess_spin};
   lanes_i moved = {0}, lost = {0};
   for (size_t g = 0; g < s->padded; g += LANES) {
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; k++) {
       double *const *r = c->gear[k];
       const lanes_d r1 = dt * lanes_load(velocity[k] + g), r2 = lanes_load(r[2] + g), r3 = lanes_load(r[3] + g);
       const lanes_d r4 = lanes_load(r[4] + g), r5 = lanes_load(r[5] + g);
@@ -102,7 +102,7 @@ LANES_INLINE void motion_gear_correct(struct dem_system *s) {
   double *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};
   for (size_t g = 0; g < s->padded; g += LANES) {
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; k++) {
       double *const *r = c->gear[k];
       const lanes_d error = 0.5 * dt * dt * (lanes_load(force[k] + g) * lanes_load(mobility[k] + g)) -
                             lanes_load(r[2] + g);

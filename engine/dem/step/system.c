@@ -1,3 +1,4 @@
+/* The step of the moving grains, what may be done to them, and what can be read from them. */
 #include "engine/dem/step/system.h"
 
 #include <math.h>
@@ -7,7 +8,6 @@
 #include "engine/dem/beams/breaking.h"
 #include "engine/dem/contacts/neighbours.h"
 #include "engine/dem/lattice/assemble.h"
-#include "engine/dem/step/gear_start.h"
 #include "engine/dem/step/kernels.h"
 
 void dem_system_evaluate(struct dem_system *s, double dt) {
@@ -19,7 +19,7 @@ void dem_system_evaluate(struct dem_system *s, double dt) {
   s->kernels->forces(s);
   if (!s->velocities)
     return;
-  for (int lane = 0; lane < DEM_BLOCK; ++lane) {
+  for (int lane = 0; lane < DEM_BLOCK; lane++) {
     s->now.contact += dt * s->sums.contact[lane];
     s->now.damping += dt * s->sums.damping[lane];
     s->now.friction += dt * s->sums.friction[lane];
@@ -91,7 +91,7 @@ void dem_system_remove(struct dem_system *s, uint32_t grain) {
   if (!s->present[grain])
     return;
   s->present[grain] = 0;
-  for (uint32_t k = s->first_partner[grain]; k < s->first_partner[grain + 1]; ++k) {
+  for (uint32_t k = s->first_partner[grain]; k < s->first_partner[grain + 1]; k++) {
     const int32_t pair = (int32_t)s->partner_pair[k];
     dem_breaking_cut(s, pair);
   }
@@ -121,10 +121,10 @@ void dem_system_hold(struct dem_system *s, uint32_t grain, unsigned freedoms) {
     s->held[s->held_count++] = grain;
   s->freedoms[grain] |= (unsigned char)(freedoms & 7u);
   double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; k++)
     if (freedoms & 1u << k) {
       mobility[k][grain] = 0.0;
-      for (int order = 2; order < 6 && s->c.gear[k][2]; ++order)
+      for (int order = 2; order < 6 && s->c.gear[k][2]; order++)
         s->c.gear[k][order][grain] = 0.0;
     }
   prescribe(s, grain);
@@ -139,7 +139,7 @@ void dem_system_drive(struct dem_system *s, uint32_t grain, double vx, double vy
 
 /* Work of the holds over `dt`: what keeps a driven freedom at its velocity balances the force on it. */
 static void book_holds(struct dem_system *s, double dt) {
-  for (size_t k = 0; k < s->held_count; ++k) {
+  for (size_t k = 0; k < s->held_count; k++) {
     const uint32_t i = s->held[k];
     if (!s->present[i])
       continue;
@@ -196,12 +196,12 @@ struct dem_ledger dem_system_ledger(struct dem_system *s) {
   if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
     ledger.contact = 0.0;
   measure(s);
-  for (int lane = 0; lane < DEM_BLOCK; ++lane) {
+  for (int lane = 0; lane < DEM_BLOCK; lane++) {
     ledger.beam += s->sums.beam[lane];
     if (s->in->contact.law == DEM_CONTACT_CONSERVATIVE)
       ledger.contact += s->sums.contact[lane];
   }
-  for (uint32_t i = 0; i < s->count; ++i)
+  for (uint32_t i = 0; i < s->count; i++)
     if (s->present[i])
       ledger.kinetic += kinetic_of(s, i);
   return ledger;
@@ -257,7 +257,7 @@ double dem_system_last_break(const struct dem_system *s) {
 size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {
   struct dem_ring ring;
   dem_neighbours_ring(s, grain, s->c.x[grain], s->c.y[grain], &ring);
-  for (size_t v = 0; v < ring.count && v < capacity; ++v)
+  for (size_t v = 0; v < ring.count && v < capacity; v++)
     vertices[v] = (struct dem_point){ring.x[v], ring.y[v]};
   return ring.count;
 }

@@ -1,4 +1,5 @@
-/* The moving grains: beams, contacts, integration, breaking. K99 section 2; physics.md's corrections.
+/* The moving grains: beams, contacts, integration, breaking. K99 section 2 with the corrections in
+ * engine/dem/README.md.
  *
  * All arrays are allocated at set-up; nothing is allocated in the step loop. */
 #ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_H
@@ -32,7 +33,7 @@ void dem_system_free(struct dem_system *system); /* NULL is fine */
 
 /* Boundary conditions and loads, per grain. */
 void dem_system_set_velocity(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);
-void dem_system_remove(struct dem_system *system, uint32_t grain); /* the explosive: its beams and contacts are gone */
+void dem_system_remove(struct dem_system *system, uint32_t grain); /* the explosive: its beams and contacts vanish */
 /* Degrees of freedom held at a prescribed velocity (bit 1: x, 2: y, 4: rotation). The work they do is booked. */
 void dem_system_hold(struct dem_system *system, uint32_t grain, unsigned freedoms);
 void dem_system_drive(struct dem_system *system, uint32_t grain, double vx, double vy, double spin);

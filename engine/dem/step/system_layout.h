@@ -1,10 +1,10 @@
-/* How a system lies in memory; for engine/dem/ and its tests only.
+/* The memory layout of a system; for engine/dem/ and its tests only.
  *
- * Grains are columns (structure of arrays), padded to blocks of eight and followed by two ghosts that unused lanes
- * point at. A pair of the tessellation owns one lane of a bond block: its beam, and its contact as a *window*, the
- * common side of either grain with the side before and after it (bond.h says why this is exact). All other pairs
- * that are near each other lie in near blocks: a cached separating side each. What neither decides goes, pair by
- * pair, through the general overlap of two convex polygons (overlap.h). */
+ * Grains are columns (structure of arrays). Two ghost grains follow them, which unused lanes point at, and padding to
+ * blocks of eight. A pair of the tessellation owns one lane of a bond block: its beam, and its contact as a *window*,
+ * the common side of either grain with the side before and after it (bond_range.h says when this is exact). All other
+ * pairs near each other lie in near blocks, each with a cached separating side. The general overlap of two convex
+ * polygons (overlap.h) handles, pair by pair, those that neither decides. */
 #ifndef CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 #define CLAST_ENGINE_DEM_STEP_SYSTEM_LAYOUT_H
 
@@ -59,14 +59,14 @@ struct dem_near_pair {
 /* A pair for the general overlap: near list position, or bond lane with the high bit set. */
 #define DEM_FROM_BOND 0x80000000u
 
-/* What the forces add up along the way. */
+/* Sums that the force loops add up. */
 struct dem_sums {
   dem_lane contact, damping, friction; /* power, W/m; with `measure`: contact holds energy */
   dem_lane beam;                       /* with `measure`: energy */
   uint64_t overlaps;                   /* with `measure`: pairs with positive overlap area */
 };
 
-/* All that changes from step to step and is no array. */
+/* What changes from step to step and is no array. */
 struct dem_progress {
   double time, last_break;
   uint64_t steps, rebuilds;
@@ -79,16 +79,17 @@ struct dem_progress {
 struct dem_kernels; /* kernels.h */
 
 /* Columns: one double per grain, padded to blocks of eight; they lie in one arena. */
-#define DEM_COLUMNS(COLUMN)                                                                                            \
-  COLUMN(x)                                                                                                            \
-  COLUMN(y)                                                                                                            \
-  COLUMN(angle)                                                                                                        \
-  COLUMN(cosine) COLUMN(sine) COLUMN(vx) COLUMN(vy) COLUMN(spin) COLUMN(fx) COLUMN(fy) COLUMN(torque)                  \
-      COLUMN(mobility_x) COLUMN(mobility_y) COLUMN(mobility_angle) /* 1/mass, 1/moment; 0 = held or removed */         \
-      COLUMN(guess_vx) COLUMN(guess_vy) COLUMN(guess_spin)         /* velocities for the dissipative forces */         \
-      COLUMN(list_x) COLUMN(list_y) COLUMN(list_angle)             /* state when the neighbour list was made */        \
-      COLUMN(skin)                                                 /* distance over which the list holds */            \
-      COLUMN(radius)                                               /* distance of the farthest vertex */
+/* clang-format off */
+#define DEM_COLUMNS(COLUMN) \
+  COLUMN(x) COLUMN(y) COLUMN(angle) COLUMN(cosine) COLUMN(sine) \
+  COLUMN(vx) COLUMN(vy) COLUMN(spin) \
+  COLUMN(fx) COLUMN(fy) COLUMN(torque) \
+  COLUMN(mobility_x) COLUMN(mobility_y) COLUMN(mobility_angle) /* 1/mass, 1/moment; 0 = held or removed */ \
+  COLUMN(guess_vx) COLUMN(guess_vy) COLUMN(guess_spin)         /* velocities for the dissipative forces */ \
+  COLUMN(list_x) COLUMN(list_y) COLUMN(list_angle)             /* state when the neighbour list was made */ \
+  COLUMN(skin)                                                 /* distance over which the list holds */ \
+  COLUMN(radius)                                               /* distance of the farthest vertex */
+/* clang-format on */
 
 /* Arrays of a system: the element's type, the name, how many elements are allocated, and how many of them the next step
  * depends on (a restart file saves those). This is the only list: it declares, allocates, frees, counts and saves. */
@@ -172,6 +173,10 @@ bool dem_system_arrays_grow_near(struct dem_system *system, size_t pairs);
 /* Lists what the next step depends on, and returns how many blocks there are. */
 enum { DEM_SAVED_BLOCKS = 48 };
 size_t dem_system_arrays_saved(struct dem_system *system, struct restart_block blocks[DEM_SAVED_BLOCKS]);
+
+/* Fills the Gear derivatives r_2 .. r_5 from the accelerations along four trial steps of the classical Runge-Kutta
+ * method; the trial steps are undone. False: no memory, or the trial steps are not finite. */
+bool dem_gear_start(struct dem_system *system);
 
 /* Forces at the positions now, with the lists as they are. `dt` books the dissipated powers for a step's length. */
 void dem_system_evaluate(struct dem_system *system, double dt);

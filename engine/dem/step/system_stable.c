@@ -7,7 +7,13 @@
 
 #include "engine/dem/step/system_layout.h"
 
-/* Add K u of one beam (and its contact) to f: linearised forces at rest, u = (x, y, angle) of every grain. */
+static void add(double *f, uint32_t grain, double x, double y, double torque) {
+  f[3 * grain] += x;
+  f[3 * grain + 1] += y;
+  f[3 * grain + 2] += torque;
+}
+
+/* Adds K u of one beam (and its contact) to f: linearised forces at rest, u = (x, y, angle) of every grain. */
 static void add_bond(const struct dem_system *s, size_t slot, const double *u, double *f) {
   const struct dem_bond_block *b = &s->bond[slot / DEM_BLOCK];
   const size_t lane = slot % DEM_BLOCK;
@@ -20,8 +26,8 @@ static void add_bond(const struct dem_system *s, size_t slot, const double *u, d
   const double m2 = b->diagonal[lane] * (t2 - t1) + b->cross[lane] * t1;
   const double tension = b->axial[lane] * stretch, shear = -(m1 + m2) / l;
   const double fx = tension * ex - shear * ey, fy = tension * ey + shear * ex;
-  f[3 * i] -= fx, f[3 * i + 1] -= fy, f[3 * i + 2] += m1;
-  f[3 * j] += fx, f[3 * j + 1] += fy, f[3 * j + 2] += m2;
+  add(f, i, -fx, -fy, m1);
+  add(f, j, fx, fy, m2);
   if (!(b->stiffness[lane] > 0.0))
     return;
   /* A face-on overlap of depth d has area S d: kappa S^2 is the conservative law's spring, (Y/L_c) S the printed one's.
@@ -34,8 +40,8 @@ static void add_bond(const struct dem_system *s, size_t slot, const double *u, d
   const double gap = (dx - u[3 * j + 2] * r2y + u[3 * i + 2] * r1y) * nx +
                      (dy + u[3 * j + 2] * r2x - u[3 * i + 2] * r1x) * ny;
   const double push = k * gap;
-  f[3 * i] -= push * nx, f[3 * i + 1] -= push * ny, f[3 * i + 2] -= push * (r1x * ny - r1y * nx);
-  f[3 * j] += push * nx, f[3 * j + 1] += push * ny, f[3 * j + 2] += push * (r2x * ny - r2y * nx);
+  add(f, i, -push * nx, -push * ny, -push * (r1x * ny - r1y * nx));
+  add(f, j, push * nx, push * ny, push * (r2x * ny - r2y * nx));
 }
 
 double dem_system_stable_time_step(const struct dem_system *s) {
@@ -44,19 +50,19 @@ double dem_system_stable_time_step(const struct dem_system *s) {
   if (!u)
     return NAN;
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  for (size_t k = 0; k < 3 * (n + 2); ++k) /* any start with all modes in it */
+  for (size_t k = 0; k < 3 * (n + 2); k++) /* any start with all modes in it */
     u[k] = ((double)(k * 2654435761u >> 7 & 1023u) / 511.5 - 1.0) * (k % 3 == 2 ? 1.0 / s->mean_diameter : 1.0);
   u[3 * n] = u[3 * n + 1] = u[3 * n + 2] = u[3 * n + 3] = u[3 * n + 4] = u[3 * n + 5] = 0.0;
   double squared = 0.0;
-  for (int iteration = 0; iteration < 1000; ++iteration) {
+  for (int iteration = 0; iteration < 1000; iteration++) {
     memset(f, 0, 3 * (n + 2) * sizeof *f);
-    for (size_t slot = 0; slot < s->now.bond_blocks * DEM_BLOCK; ++slot)
+    for (size_t slot = 0; slot < s->now.bond_blocks * DEM_BLOCK; slot++)
       if (s->lane_pair[slot] != DEM_NO_PAIR)
         add_bond(s, slot, u, f);
     /* Rayleigh quotient u.K u / u.M u, then u <- M^-1 K u, scaled. */
     double top = 0.0, bottom = 0.0, largest = 0.0;
-    for (size_t i = 0; i < n; ++i)
-      for (size_t k = 0; k < 3; ++k) {
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < 3; k++) {
         const double per_mass = mobility[k][i], v = u[3 * i + k];
         if (!(per_mass > 0.0))
           continue;
@@ -69,8 +75,8 @@ double dem_system_stable_time_step(const struct dem_system *s) {
     squared = bottom > 0.0 ? top / bottom : 0.0;
     if (!(largest > 0.0) || (iteration > 20 && fabs(squared - before) < 1e-7 * squared))
       break;
-    for (size_t i = 0; i < n; ++i)
-      for (size_t k = 0; k < 3; ++k)
+    for (size_t i = 0; i < n; i++)
+      for (size_t k = 0; k < 3; k++)
         u[3 * i + k] = mobility[k][i] > 0.0 ? f[3 * i + k] / largest : 0.0;
   }
   free(u);
