@@ -7,8 +7,7 @@
 
 #include "engine/scene.h"
 #include "engine/sph/run/run.h"
-#include "engine/sph/step/system_list.h"
-#include "engine/sph/step/system_step.h"
+#include "engine/sph/step/system_layout.h"
 
 static _Noreturn void fail(const char *what, const struct error *error) {
   fprintf(stderr, "bench_sph: %s %s\n", what, error ? error->message : "");

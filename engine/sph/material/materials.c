@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "engine/builtin.h"
-#include "engine/sph/material/material_rows.h"
 #include "schemas/document.h"
 #include "schemas/text.h"
 

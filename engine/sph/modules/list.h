@@ -9,7 +9,7 @@
  *   the rest are options of the pair loop and have no loops here
  *
  * To add a module: NAME.c with its descriptor, NAME_loop.h with its loops, and a line in each of the two lists below.
- * Values that it needs of a material are rows of material/material_rows.h. */
+ * Values that it needs of a material are rows of material/material.h. */
 #ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/elastic_loop.h"

@@ -58,7 +58,10 @@ struct sph_module {
   const struct sph_column_need *columns; /* NULL: none */
   int bytes_in_pairs;                    /* per particle, of the pair loop's records */
   double cost;                           /* ns of one core per particle-step, where it is an option (bench_sph) */
-  /* All optional. `check` refuses what the rows of inputs and materials cannot: STATUS_CONTENT, without "body n: ". */
+  /* All optional. `check_material` refuses values of a material that do not go together, whether or not the module is
+   * on; STATUS_CONTENT, the message begins with the value's name. `check` refuses what the rows of inputs and materials
+   * cannot: STATUS_CONTENT, without "body n: ". */
+  status (*check_material)(const struct sph_material *material, struct error *error);
   status (*check)(const struct sph_body_physics *body, const struct sph_particles *particles, size_t first, size_t last,
                   struct error *error);
   /* The particles first .. last - 1 of a body that is set up at rest. */

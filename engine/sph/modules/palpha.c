@@ -18,6 +18,19 @@ static bool on(const struct sph_body_physics *body, const struct sph_inputs *inp
   return body->material.porosity.curve != SPH_CRUSH_NONE && body->material.porosity.distention != 1;
 }
 
+/* Distention and fraction agree (they do unless both were given), and the values make a crush curve. */
+static status check_material(const struct sph_material *m, struct error *error) {
+  const struct sph_palpha *p = &m->porosity;
+  struct sph_palpha_law law;
+  if (p->curve == SPH_CRUSH_NONE)
+    return STATUS_OK;
+  if (!(fabs(p->fraction - (1 - 1 / p->distention)) < 1e-9))
+    return status_fail(error, STATUS_CONTENT,
+                       "porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two",
+                       p->distention, 1 - 1 / p->distention, p->fraction);
+  return p->distention > 1 ? sph_palpha_prepare(p, m, &law, error) : STATUS_OK;
+}
+
 static bool with_strength(const struct sph_body_physics *body) {
   return body->strength;
 }
@@ -92,6 +105,7 @@ const struct sph_module sph_palpha_module = {
     .on = on,
     .sets = SPH_SETS_PRESSURE,
     .columns = columns,
+    .check_material = check_material,
     .check = check,
     .set_up = set_up,
     .prepare = prepare,

@@ -1,3 +1,4 @@
+/* The CPU class whose loops this process runs. */
 #include "engine/sph/modules/ranges.h"
 
 #include "engine/cpu_class.h"

@@ -7,7 +7,6 @@
 #include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
 #include "engine/sph/material/fracture.h"
-#include "engine/sph/material/material_rows.h"
 #include "engine/sph/pairs/pairs.h"
 
 static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};

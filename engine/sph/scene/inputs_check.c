@@ -5,9 +5,8 @@
 
 #include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
-#include "engine/sph/material/material_rows.h"
-#include "engine/sph/material/palpha.h"
 #include "engine/sph/material/plane_shock.h"
+#include "engine/sph/modules/modules.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 
@@ -36,21 +35,6 @@ static bool needed(size_t k, const struct sph_body_inputs *body) {
   if (values[k].need == TWO_POWER && body->material.porosity.curve != SPH_CRUSH_TWO_POWER)
     return false;
   return !values[k].may_be_off;
-}
-
-/* Distention and fraction agree (they do unless both were given), and the values make a crush curve. */
-static status check_porosity(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
-  const struct sph_palpha *p = &body->material.porosity;
-  struct sph_palpha_law law;
-  struct error why = {0};
-  if (p->curve == SPH_CRUSH_NONE)
-    return STATUS_OK;
-  if (!(fabs(p->fraction - (1 - 1 / p->distention)) < 1e-9))
-    REFUSE("%s.material.porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two",
-           body_name, p->distention, 1 - 1 / p->distention, p->fraction);
-  if (p->distention > 1 && sph_palpha_prepare(p, &body->material, &law, &why))
-    REFUSE("%s.material.%.3000s", body_name, why.message);
-  return STATUS_OK;
 }
 
 static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
@@ -87,7 +71,12 @@ static status check_material(const char *body_name, const struct sph_body_inputs
     REFUSE(
         "%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
         body_name, m_off ? "k" : "m", m_off ? "m" : "k");
-  return check_porosity(body_name, body, error);
+  for (size_t k = 0; k < SPH_MODULES; k++) {
+    struct error why = {0};
+    if (sph_modules_at(k)->check_material && sph_modules_at(k)->check_material(m, &why))
+      REFUSE("%s.material.%.3000s", body_name, why.message);
+  }
+  return STATUS_OK;
 }
 
 /* ---- sizes ---- */

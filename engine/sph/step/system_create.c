@@ -6,8 +6,6 @@
 
 #include "engine/sph/material/derived.h"
 #include "engine/sph/modules/ranges.h"
-#include "engine/sph/step/system_list.h"
-#include "engine/sph/step/system_step.h"
 
 static void add(sph_hook *hooks, size_t *count, sph_hook hook) {
   hooks[(*count)++] = hook;

@@ -153,4 +153,23 @@ double sph_system_columns_wrapped(double x, double length);
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
                         const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error);
 
+/* ---- system_step.c ---- */
+
+/* Sorts, lists and evaluates at the initial state. False (see failure): as sph_system_step. */
+bool sph_system_step_begin(struct sph_system *system);
+
+/* What the pair loop is given of the particles as they stand; the system's own columns. */
+struct sph_pair_fields sph_system_step_fields(const struct sph_system *system);
+
+/* ---- system_list.c: when a system sorts its particles and makes lists of neighbours ---- */
+
+/* New lists when the old ones may miss a pair (a block has no slack left); now and then the particles are sorted first,
+ * by the count of listings alone. False (see failure): as sph_system_step. */
+bool sph_system_list(struct sph_system *system);
+/* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */
+bool sph_system_list_again(struct sph_system *system);
+/* m: what h with its slack may be at most, so that no particle meets its own image in a thin periodic box; infinite in
+ * the open. */
+double sph_system_list_reach(const struct sph_domain *domain);
+
 #endif

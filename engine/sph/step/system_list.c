@@ -1,4 +1,4 @@
-#include "engine/sph/step/system_list.h"
+#include "engine/sph/step/system_layout.h"
 
 #include <math.h>
 #include <stdio.h>

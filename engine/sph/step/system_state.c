@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "engine/sph/step/system_list.h"
+#include "engine/sph/step/system_layout.h"
 
 struct section {
   void *data;

@@ -5,14 +5,11 @@
  *
  * Everything happens block by block, so that the columns of a block are read once from memory before the pair loop and
  * once in it: rates follow as soon as a block's sums are complete. */
-#include "engine/sph/step/system_step.h"
+#include "engine/sph/step/system_layout.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-#include "engine/sph/step/limits.h"
-#include "engine/sph/step/system_list.h"
 
 static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
 
@@ -159,11 +156,32 @@ bool sph_system_step_begin(struct sph_system *s) {
   return advance(s, 0);
 }
 
+/* The length of the next step, from what the blocks found at the last evaluation; not beyond `until`. */
+static double choose_step(const struct sph_system *s, double until, int *limiter) {
+  double inverse = 0;
+  *limiter = SPH_LIMIT_COURANT;
+  for (int k = 0; k < SPH_LIMITS; k++)
+    if (s->now.worst[k] > inverse) {
+      inverse = s->now.worst[k];
+      *limiter = k;
+    }
+  double dt = 1 / inverse;
+  if (dt > s->domain.largest_time_step) {
+    dt = s->domain.largest_time_step;
+    *limiter = SPH_LIMIT_GIVEN;
+  }
+  if (dt >= until - s->now.time) {
+    dt = until - s->now.time;
+    *limiter = SPH_LIMIT_END;
+  }
+  return dt;
+}
+
 bool sph_system_step(struct sph_system *s, double until) {
   int limiter;
   if (s->fault)
     return false;
-  const double dt = sph_limits_step(s, until, &limiter);
+  const double dt = choose_step(s, until, &limiter);
   if (!(dt > 0))
     return dt == 0; /* already there */
   const bool chosen = limiter != SPH_LIMIT_END && limiter != SPH_LIMIT_GIVEN;
