@@ -3,8 +3,9 @@
 #include <float.h>
 #include <math.h>
 
-/* G(y) = 1/y - 1/(e^y - 1): the mean of an exponential of rate y cut at 1; falls from 1 (y -> -inf) through 1/2 to 0.
- * Near zero the two terms cancel: series to y^7 there, error below 1e-15 for |y| < 0.3. */
+/* G(y) = 1/y - 1/(e^y - 1): the mean of an exponential distribution of rate y, cut at 1. It falls from 1 (y -> -inf)
+ * through 1/2 to 0. Near zero the two terms cancel; the series to y^7 used there has an error below 1e-15 for
+ * |y| < 0.3. */
 static double cut_mean(double y) {
   if (fabs(y) < 0.3) {
     double z = y * y;
@@ -13,7 +14,7 @@ static double cut_mean(double y) {
   return 1 / y - 1 / expm1(y);
 }
 
-/* -G'(y) = 1/y^2 - 1/(4 sinh^2(y/2)): the variance of the same. */
+/* -G'(y) = 1/y^2 - 1/(4 sinh^2(y/2)): the variance of that distribution. */
 static double cut_variance(double y) {
   if (fabs(y) < 0.3) {
     double z = y * y;
@@ -23,7 +24,7 @@ static double cut_variance(double y) {
   return 1 / (y * y) - 1 / (s * s);
 }
 
-/* Mean and variance of a group's statistic at y; with no upper bound S G(S y) -> 1/y and S^2 V(S y) -> 1/y^2. */
+/* Mean and variance of a group's statistic at y. Without an upper bound, S G(S y) -> 1/y and S^2 V(S y) -> 1/y^2. */
 static void expected(double y, double span, bool binned, double *mean, double *variance) {
   bool open = isinf(span);
   *mean = open ? 1 / y : span * cut_mean(span * y);
@@ -49,50 +50,66 @@ static double slope_of_likelihood(size_t count, const struct power_law_group *gr
   return slope;
 }
 
-/* ln of the integral of e^(-yu) over [0, span], or of the sum of e^(-yj) over j < span. */
-static double log_normalisation(double y, double span, bool binned) {
-  double reach;
-  if (isinf(span))
-    reach = -log(y);
-  else if (fabs(span * y) < 1e-8)
-    reach = log(span) - span * y / 2;
-  else
-    reach = y > 0 ? log(-expm1(-span * y) / y) : log(expm1(-span * y) / -y);
-  if (!binned)
-    return reach;
-  return reach - (fabs(y) < 1e-8 ? -y / 2 : y > 0 ? log(-expm1(-y) / y) : log(expm1(-y) / -y));
+/* ln of (1 - e^(-span y)) / y, the integral of e^(-yu) over [0, span]; span 1 serves the sum over bins. */
+static double log_integral(double y, double span) {
+  if (fabs(span * y) < 1e-8)
+    return log(span) - span * y / 2;
+  return y > 0 ? log(-expm1(-span * y) / y) : log(expm1(-span * y) / -y);
 }
 
-struct power_law power_law_fit(size_t count, const struct power_law_group *groups, double bin_width) {
-  const struct power_law none = {NAN, NAN, NAN};
-  bool binned = bin_width > 0, open = false, above = false, below = false;
-  double weight = 0, sum = 0, widest = 0;
-  for (size_t g = 0; g < count; g++) {
-    if (!(groups[g].weight > 0))
-      continue;
-    double top = binned ? groups[g].span - 1 : groups[g].span; /* the largest value the statistic can have */
-    if (!(groups[g].mean >= 0) || !(top > 0))
-      return none;
-    if (groups[g].mean > 0)
-      above = true;
-    if (groups[g].mean < top)
-      below = true;
-    if (isinf(groups[g].span))
-      open = true;
-    else
-      widest = fmax(widest, groups[g].span);
-    weight += groups[g].weight;
-    sum += groups[g].weight * groups[g].mean;
-  }
-  if (!above || !below)
-    return none; /* everything at one end of its window: beta would be infinite */
+/* ln of the integral of e^(-yu) over [0, span], or of the sum of e^(-yj) over j < span. */
+static double log_normalisation(double y, double span, bool binned) {
+  double whole = isinf(span) ? -log(y) : log_integral(y, span);
+  return binned ? whole - log_integral(y, 1) : whole;
+}
 
-  /* The root lies between low and high; with an open window y > 0. Start from the answer of open windows. */
-  double y = binned ? log1p(weight / sum) : weight / sum;
-  double low = open ? 0 : -HUGE_VAL, high = HUGE_VAL;
-  if (!open && y * widest < 4)
+/* What the search for the root needs to know of all groups. */
+struct totals {
+  double weight, sum; /* of the fragments, and of their statistic */
+  double widest;      /* largest finite span */
+  bool open;          /* a group has no upper bound */
+  bool solvable;      /* the values are not all at one end of their windows, where beta would be infinite */
+};
+
+static struct totals totals_of(size_t count, const struct power_law_group *groups, bool binned) {
+  struct totals totals = {0};
+  bool above = false, below = false;
+  for (size_t g = 0; g < count; g++) {
+    const struct power_law_group *group = &groups[g];
+    if (!(group->weight > 0))
+      continue;
+    double top = binned ? group->span - 1 : group->span; /* the largest value that the statistic can have */
+    if (!(group->mean >= 0) || !(top > 0))
+      return (struct totals){0};
+    above = above || group->mean > 0;
+    below = below || group->mean < top;
+    if (isinf(group->span))
+      totals.open = true;
+    else
+      totals.widest = fmax(totals.widest, group->span);
+    totals.weight += group->weight;
+    totals.sum += group->weight * group->mean;
+  }
+  totals.solvable = above && below;
+  return totals;
+}
+
+/* When Newton's step leaves the bracket: halve it, or widen it while one side is open. */
+static double step_inside(double low, double high, double widest) {
+  if (isinf(high))
+    return fmax(2 * low, low + 1 / fmax(widest, 1));
+  if (isinf(low))
+    return fmin(2 * high, high - 1 / fmax(widest, 1));
+  return (low + high) / 2;
+}
+
+/* The root of the slope of the likelihood, by Newton's method in a bracket; with an open window it is above 0. The
+ * start is the answer for open windows. */
+static double root(size_t count, const struct power_law_group *groups, bool binned, const struct totals *totals) {
+  double low = totals->open ? 0 : -HUGE_VAL, high = HUGE_VAL, information = 0;
+  double y = binned ? log1p(totals->weight / totals->sum) : totals->weight / totals->sum;
+  if (!totals->open && y * totals->widest < 4)
     y = 0;
-  double information = 0;
   for (int step = 0; step < 200; step++) {
     double slope = slope_of_likelihood(count, groups, binned, y, &information);
     if (slope > 0)
@@ -100,25 +117,26 @@ struct power_law power_law_fit(size_t count, const struct power_law_group *group
     else
       high = y;
     double next = y + slope / information;
-    if (!(next > low && next < high)) { /* Newton left the bracket: halve it, or widen while one side is open */
-      if (isinf(high))
-        next = fmax(2 * low, low + 1 / fmax(widest, 1));
-      else if (isinf(low))
-        next = fmin(2 * high, high - 1 / fmax(widest, 1));
-      else
-        next = (low + high) / 2;
-    }
-    if (fabs(next - y) <= 4 * DBL_EPSILON * (1 + fabs(y)) || next == low || next == high) {
-      y = next;
-      break;
-    }
+    if (!(next > low && next < high))
+      next = step_inside(low, high, totals->widest);
+    bool done = fabs(next - y) <= 4 * DBL_EPSILON * (1 + fabs(y)) || next == low || next == high;
     y = next;
+    if (done)
+      break;
   }
+  return y;
+}
+
+struct power_law power_law_fit(size_t count, const struct power_law_group *groups, double bin_width) {
+  const struct power_law none = {NAN, NAN, NAN};
+  const bool binned = bin_width > 0;
+  const struct totals totals = totals_of(count, groups, binned);
+  if (!totals.solvable)
+    return none;
+
+  double y = root(count, groups, binned, &totals), scale = binned ? bin_width : 1, information = 0;
   slope_of_likelihood(count, groups, binned, y, &information);
-  double scale = binned ? bin_width : 1;
-  struct power_law fit = {.beta = 1 + y / scale,
-                          .standard_error = 1 / (scale * sqrt(information)),
-                          .log_likelihood = 0};
+  struct power_law fit = {.beta = 1 + y / scale, .standard_error = 1 / (scale * sqrt(information))};
   for (size_t g = 0; g < count; g++)
     if (groups[g].weight > 0)
       fit.log_likelihood -= groups[g].weight * (y * groups[g].mean + log_normalisation(y, groups[g].span, binned));

@@ -1,27 +1,29 @@
 /* The pure power law f(m) ~ m^-beta on a window [a, b), by maximum likelihood, for any beta (also 1 and below when b is
  * finite: Hanel, Corominas-Murtra, Liu & Thurner 2017, doi 10.1371/journal.pone.0170920).
  *
- * With u = ln(m/a), L = ln(b/a) and k = beta - 1, u is exponential of rate k cut at L, and its mean says all. On bins
- * of equal width h in u (Virkar & Clauset 2014) the bin number is geometric, cut at J = L/h, and its mean says all.
- * Both likelihood equations are sum_g n_g [ mean_g - (S_g G(S_g y) - c G(y)) ] = 0,   G(y) = 1/y - 1/(e^y - 1) with S =
- * L, c = 0, y = k for masses and S = J, c = 1, y = kh for bins. The left side is monotone in y. Groups g are runs with
- * windows of their own: bounding a run at its largest fragment M_1 and leaving M_1 out is an exact conditional
- * likelihood (given the maximum, the others are independent draws from [a, M_1)). */
+ * With u = ln(m/a), L = ln(b/a) and k = beta - 1, u has an exponential distribution of rate k, cut at L. On bins of
+ * equal width h in u (Virkar & Clauset 2014) the bin number has a geometric distribution, cut at J = L/h. The mean is
+ * sufficient in both cases. Both likelihood equations are
+ *     sum_g n_g [ mean_g - (S_g G(S_g y) - c G(y)) ] = 0,   G(y) = 1/y - 1/(e^y - 1)
+ * with S = L, c = 0, y = k for masses and S = J, c = 1, y = kh for bins. The left side is monotone in y.
+ *
+ * Groups g are runs, each with its own window. A run's window ends at its largest fragment M_1, which is left out. This
+ * is an exact conditional likelihood: given the maximum, the others are independent draws from [a, M_1). */
 #ifndef CLAST_ANALYSIS_STATISTICS_POWER_LAW_H
 #define CLAST_ANALYSIS_STATISTICS_POWER_LAW_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* What one window's content comes to. weight is the number of fragments (times how often a resample drew the run). */
+/* The sufficient statistic of the fragments in one window. */
 struct power_law_group {
-  double weight;
-  double mean; /* of ln(m/a), or of the bin number from 0 */
-  double span; /* ln(b/a), or the number of bins; HUGE_VAL for no upper bound */
+  double weight; /* number of fragments */
+  double mean;   /* of ln(m/a), or of the bin number from 0 */
+  double span;   /* ln(b/a), or the number of bins; HUGE_VAL for no upper bound */
 };
 
 struct power_law {
-  double beta, standard_error; /* NaN when the groups cannot tell (empty, or all at one end) */
+  double beta, standard_error; /* NaN when the groups are empty or all at one end */
   double log_likelihood;       /* of u (masses) or of the bin numbers, natural log, per group weight 1 */
 };
 

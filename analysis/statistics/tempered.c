@@ -34,8 +34,8 @@ static double place_of_maximum(enum tempered_kind kind, double k, double s, doub
   return fmin(top, span);
 }
 
-/* Beyond this u the integrand is below e^-42 of its maximum and falls at least exponentially: nothing left for a
- * double. */
+/* The u beyond which the integrand is below e^-42 of its maximum and falls at least exponentially: a double sees
+ * nothing of the rest. */
 static double reach(enum tempered_kind kind, double k, double s, double span) {
   double top = place_of_maximum(kind, k, s, span);
   double low = top, peak = exponent_at(kind, k, s, top), step = 1;
@@ -58,7 +58,8 @@ static double reach(enum tempered_kind kind, double k, double s, double span) {
 double tempered_log_normalisation(enum tempered_kind kind, double k, double s, double span, double mean[2],
                                   double covariance[3]) {
   double end = reach(kind, k, s, span), peak = exponent_at(kind, k, s, place_of_maximum(kind, k, s, span));
-  /* Panels short against the scale of u (about 1/|k|, and 1 for e^u): 16 points then leave less than 1e-12 (tested). */
+  /* Panels are short against the scale of u (about 1/|k|, and 1 for e^u): the error of 16 points is then below 1e-12
+   * (tested). */
   double length = 2 / (1 + fabs(k) / 4);
   int panels = (int)fmin(fmax(ceil(end / length), 1), 400);
   length = end / panels;
@@ -99,7 +100,7 @@ struct tempered_group tempered_group(enum tempered_kind kind, size_t n, const do
   return group;
 }
 
-/* Cost, -lnL of all groups per fragment, with its slopes and curvatures in (k, s). */
+/* The cost -ln L of all groups per fragment, with its slopes and curvatures in (k, s). */
 struct cost {
   double value, slope_k, slope_s, kk, ks, ss;
 };
@@ -123,8 +124,8 @@ static struct cost cost_at(enum tempered_kind kind, size_t count, const struct t
   return cost;
 }
 
-/* Is s = 0 the maximum? Concave: yes when the likelihood falls into s > 0 there, that is when the samples' mean of h is
- * at least the pure law's. */
+/* Is s = 0 the maximum? The log-likelihood is concave, so s = 0 is the maximum when the likelihood falls from there
+ * towards s > 0: when the samples' mean of h is at least that of the pure law. */
 static bool pure_is_best(enum tempered_kind kind, size_t count, const struct tempered_group *groups, double k) {
   double excess = 0;
   for (size_t g = 0; g < count; g++) {
@@ -142,57 +143,72 @@ static bool pure_is_best(enum tempered_kind kind, size_t count, const struct tem
   return excess >= 0;
 }
 
-/* Newton's method on a convex cost, halving steps that leave s > 0 or do not lower it. */
-struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups) {
-  struct tempered fit = {NAN, NAN, NAN, NAN, NAN};
+/* The pure law fitted to the groups; NaN when memory ran out. *mean_h, *weight: mean of h and number of the fragments.
+ */
+static struct power_law fit_pure(size_t count, const struct tempered_group *groups, double *mean_h, double *weight) {
   struct power_law_group *plain = malloc((count ? count : 1) * sizeof *plain);
+  *weight = *mean_h = 0;
   if (!plain)
-    return fit;
-  double weight = 0, mean_h = 0;
+    return (struct power_law){NAN, NAN, NAN};
   for (size_t g = 0; g < count; g++) {
     plain[g] = (struct power_law_group){groups[g].weight, groups[g].mean_u, groups[g].span};
     if (!(groups[g].weight > 0))
       continue;
-    weight += groups[g].weight;
-    mean_h += groups[g].weight * groups[g].mean_h;
+    *weight += groups[g].weight;
+    *mean_h += groups[g].weight * groups[g].mean_h;
   }
   struct power_law pure = power_law_fit(count, plain, 0);
   free(plain);
-  mean_h /= weight;
-  if (!isfinite(pure.beta) || !isfinite(mean_h))
-    return fit;
-  double k = pure.beta - 1, s = 0.1 / mean_h;
-  if (pure_is_best(kind, count, groups, k))
-    return (struct tempered){pure.beta, pure.standard_error, 0, NAN, pure.log_likelihood};
+  *mean_h /= *weight;
+  return pure;
+}
 
-  struct cost here = cost_at(kind, count, groups, weight, k, s);
+/* Newton's method on a convex cost from (*k, *s); halves steps that leave s > 0 or do not lower the cost. */
+static struct cost minimise(enum tempered_kind kind, size_t count, const struct tempered_group *groups, double weight,
+                            double *k, double *s) {
+  struct cost here = cost_at(kind, count, groups, weight, *k, *s);
   for (int step = 0; step < 100; step++) {
     double determinant = here.kk * here.ss - here.ks * here.ks;
     if (!(determinant > 1e-14 * here.kk * here.ss))
       break;
     double dk = -(here.ss * here.slope_k - here.ks * here.slope_s) / determinant;
     double ds = -(here.kk * here.slope_s - here.ks * here.slope_k) / determinant;
-    double decrement = -(here.slope_k * dk + here.slope_s * ds); /* twice the gain to be had per fragment */
+    double decrement = -(here.slope_k * dk + here.slope_s * ds); /* twice the possible gain per fragment */
     if (!(decrement > 0))
       break;
-    double length = s + ds > 0 ? 1 : -0.9 * s / ds;
+
+    double length = *s + ds > 0 ? 1 : -0.9 * *s / ds;
     struct cost next = here;
     for (; length > 1e-9; length /= 2) {
-      next = cost_at(kind, count, groups, weight, k + length * dk, s + length * ds);
+      next = cost_at(kind, count, groups, weight, *k + length * dk, *s + length * ds);
       if (next.value < here.value + 1e-15 * fabs(here.value))
         break;
     }
     if (!(length > 1e-9))
       break;
-    k += length * dk;
-    s += length * ds;
+    *k += length * dk;
+    *s += length * ds;
     here = next;
     if (decrement < 1e-13)
       break; /* the next step would move beta by some 1e-7 of its standard error */
   }
+  return here;
+}
+
+struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups) {
+  const struct tempered none = {NAN, NAN, NAN, NAN, NAN};
+  double weight, mean_h;
+  struct power_law pure = fit_pure(count, groups, &mean_h, &weight);
+  if (!isfinite(pure.beta) || !isfinite(mean_h))
+    return none;
+  double k = pure.beta - 1, s = 0.1 / mean_h;
+  if (pure_is_best(kind, count, groups, k))
+    return (struct tempered){pure.beta, pure.standard_error, 0, NAN, pure.log_likelihood};
+
+  struct cost here = minimise(kind, count, groups, weight, &k, &s);
   double determinant = here.kk * here.ss - here.ks * here.ks;
   if (!(determinant > 0))
-    return fit;
+    return none;
   return (struct tempered){.beta = k + 1,
                            .standard_error = sqrt(here.ss / determinant / weight),
                            .rate = s,

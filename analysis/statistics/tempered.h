@@ -1,11 +1,13 @@
-/* The two rivals of the pure power law: with an exponential cut-off, and the lognormal. With u = ln(m/a) both are the
- * power law times one factor more, f(u) = exp(-k u - s h(u)) / Z,  0 <= u < L,  k = beta - 1,  s >= 0 cut-off: h = e^u
- * - 1 (s = a / cut-off mass);  lognormal: h = u^2 so that s = 0 is the power law itself and 2 x (difference of
- * log-likelihoods) is a likelihood ratio. Both are exponential families: the log-likelihood is concave and its
- * derivatives are means and covariances of u and h, so Newton's method needs no derivative-free search. Z and the
- * moments come from Gauss-Legendre panels in u: one formula for every beta, bounded or open window, where the closed
- * form Gamma(1 - beta, s) cancels or needs negative arguments (a test compares them). Clauset, Shalizi & Newman (2009),
- * doi 10.1137/070710111, tables 2.1 and 6. */
+/* The two rivals of the pure power law: a power law with an exponential cut-off at large masses, and the lognormal.
+ *
+ * With u = ln(m/a), both are the power law times one more factor: f(u) = exp(-k u - s h(u)) / Z, 0 <= u < L, with
+ * k = beta - 1 and s >= 0. Cut-off: h = e^u - 1, s = a / cut-off mass. Lognormal: h = u^2. So s = 0 is the power law
+ * itself, and twice the difference of the log-likelihoods is a likelihood ratio.
+ *
+ * Both are exponential families: the log-likelihood is concave, and its derivatives are means and covariances of u and
+ * h, so that Newton's method serves. Z and the moments come from Gauss-Legendre panels in u. This is one formula for
+ * every beta and any window, where the closed form Gamma(1 - beta, s) cancels or needs negative arguments (a test
+ * compares them). Clauset, Shalizi & Newman (2009), doi 10.1137/070710111, tables 2.1 and 6. */
 #ifndef CLAST_ANALYSIS_STATISTICS_TEMPERED_H
 #define CLAST_ANALYSIS_STATISTICS_TEMPERED_H
 
@@ -15,13 +17,13 @@
 enum tempered_kind { TEMPERED_CUTOFF, TEMPERED_LOGNORMAL };
 
 struct tempered {
-  double beta, standard_error; /* NaN when it cannot be told; for the lognormal, the local exponent at m = a */
+  double beta, standard_error; /* NaN when there is no fit; for the lognormal, the local exponent at m = a */
   double rate;                 /* s; 0 = the pure power law is the best of the family */
   double rate_error;           /* NaN at s = 0 */
   double log_likelihood;       /* of u, natural log */
 };
 
-/* One run's window: its fragments come down to two means. Runs may have windows of their own (power_law.h says why). */
+/* The sufficient statistics of the fragments in one run's window. Runs may have their own windows (power_law.h). */
 struct tempered_group {
   double weight, mean_u, mean_h;
   double span; /* ln(b/a), or HUGE_VAL */
@@ -30,9 +32,9 @@ struct tempered_group {
 struct tempered_group tempered_group(enum tempered_kind kind, size_t n, const double *u, double span);
 struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups);
 
-/* 2 (lnL - lnL of the pure law) and its p-value. s = 0 lies on the boundary, so under the pure law half of all samples
- * give 0 and the others chi-squared of one degree (Chernoff 1954): p = P(chi2 > ratio)/2; only approximate in samples
- * of less than some hundred. Small p rejects the pure law in favour of the factor. */
+/* 2 (lnL - lnL of the pure law) and its p-value. s = 0 lies on the boundary: under the pure law half of all samples
+ * give 0, and the others follow chi-squared of one degree (Chernoff 1954), so p = P(chi2 > ratio)/2. This is
+ * approximate below some hundred fragments. A small p rejects the pure law. */
 double tempered_ratio(const struct tempered *fit, double pure_log_likelihood);
 double tempered_p_value(double ratio);
 
