@@ -142,17 +142,17 @@ CREATE TABLE point_spectrum ( -- Running pooled spectrum of each point, kept in 
 CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they can be made again at any time.
   run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
   ordinal INTEGER NOT NULL, -- number among the estimates of the run
-  window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
+  window TEXT, -- Window of masses of the estimate. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
-  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.
-  lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
-  upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
+  headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
+  lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
+  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.
-  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.
+  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
-  log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
+  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
   PRIMARY KEY (run_id, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -160,17 +160,17 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
-  window TEXT, -- Window of masses the estimate was made in. One of: from_2, from_5, from_10
+  window TEXT, -- Window of masses of the estimate. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
-  headline INTEGER, -- The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.
-  lower REAL, -- [kg] Lower end of the window really used (2D: kg per metre of thickness).
-  upper REAL, -- [kg] Upper end, itself outside: the mass of the largest fragment, or a bin edge.
+  headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
+  lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
+  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.
-  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.
+  cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
-  log_likelihood REAL, -- [1] Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.
+  log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
   PRIMARY KEY (point_id, results_version, ordinal)
 ) STRICT, WITHOUT ROWID;
 
@@ -571,15 +571,15 @@ INSERT INTO column_doc VALUES ('column_doc', 'unit', NULL, 'SI unit; NULL where 
 
 INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'lower', 'kg', 'Lower end of the window really used (2D: kg per metre of thickness).', 1);
+INSERT INTO column_doc VALUES ('estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
 
@@ -589,25 +589,25 @@ INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the es
 
 INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 1);
+INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 1);
 
 INSERT INTO column_doc VALUES ('estimates', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'engine', NULL, 'name of the engine', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'lower', 'kg', 'lower edge, inside the bin', 0);
 
@@ -629,11 +629,11 @@ INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene th
 
 INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 0);
+INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 0);
 
 INSERT INTO column_doc VALUES ('fragment_mass', 'masses', 'kg', 'mass of every fragment, descending: little-endian float64, 8 bytes each', 0);
 
@@ -659,15 +659,15 @@ INSERT INTO column_doc VALUES ('point', 'scene_name', NULL, 'name of the scene t
 
 INSERT INTO column_doc VALUES ('point_estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, 'The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and more, the largest fragment left out.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'lower', 'kg', 'Lower end of the window really used (2D: kg per metre of thickness).', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'lower', 'kg', 'Lower end of the window used (2D: kg per metre of thickness).', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'method', NULL, 'How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff', 1);
 
@@ -679,11 +679,11 @@ INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too small by a third); pooled over a point from resampling its runs.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, itself outside: the mass of the largest fragment, or a bin edge.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses the estimate was made in. One of: from_2, from_5, from_10', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 1);
 
 INSERT INTO column_doc VALUES ('point_input', 'path', NULL, 'path of an active input in the scene', 0);
 

@@ -10,12 +10,12 @@ static const char *const window_docs =
     "fragments of 2 elements (grains or particles) and more (from 1.5 mean element masses), the largest left out\n"
     "of 5 elements and more (from 4.5 mean element masses), the largest left out\n"
     "of 10 elements and more (from 9.5 mean element masses), the largest left out";
-static const char
-    *const method_docs = "unweighted least squares of log density on non-empty log bins: the paper's way, biased low\n"
-                         "maximum likelihood on the stored bins\n"
-                         "maximum likelihood on masses in a bounded window\n"
-                         "the same, its lower end by Kolmogorov-Smirnov distance\n"
-                         "power law with exponential cut-off, maximum likelihood on masses";
+static const char *const method_docs =
+    "unweighted least squares of log density on non-empty log bins: the method of Kun & Herrmann (1999), biased low\n"
+    "maximum likelihood on the stored bins\n"
+    "maximum likelihood on masses in a bounded window\n"
+    "the same above the lower cut-off that fits best by Kolmogorov-Smirnov distance\n"
+    "power law with an exponential cut-off at large masses, maximum likelihood on masses";
 
 #define AT(member) offsetof(struct estimate, member)
 #define REAL(name, unit_, member, least, doc_, source_)                                                                \
@@ -31,7 +31,7 @@ static const struct field rows_of_table[] = {
      .choice_docs = window_docs,
      .minimum = 0,
      .maximum = ESTIMATES_WINDOWS - 1,
-     .doc = "Window of masses the estimate was made in."},
+     .doc = "Window of masses of the estimate."},
     {.path = "method",
      .kind = FIELD_CHOICE,
      .offset = AT(fit.method),
@@ -45,12 +45,11 @@ static const struct field rows_of_table[] = {
      .offset = AT(headline),
      .minimum = 0,
      .maximum = 1,
-     .doc = "The estimate that is called beta: maximum likelihood on masses of 5 elements (grains or particles) and "
-            "more, the "
-            "largest fragment left out."},
-    REAL("lower", "kg", fit.lower, 0, "Lower end of the window really used (2D: kg per metre of thickness).", NULL),
-    REAL("upper", "kg", fit.upper, 0, "Upper end, itself outside: the mass of the largest fragment, or a bin edge.",
-         NULL),
+     .doc = "1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or "
+            "particles), without the largest fragment."},
+    REAL("lower", "kg", fit.lower, 0, "Lower end of the window used (2D: kg per metre of thickness).", NULL),
+    REAL("upper", "kg", fit.upper, 0,
+         "Upper end, not part of the window: the mass of the largest fragment, or a bin edge.", NULL),
     {.path = "n",
      .kind = FIELD_INTEGER,
      .unit = "1",
@@ -60,20 +59,23 @@ static const struct field rows_of_table[] = {
      .doc = "Fragments in the window."},
     REAL("beta", "1", fit.beta, -HUGE_VAL,
          "Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off "
-         "when "
-         "there are too few fragments.",
+         "when there are too few fragments.",
          "Kun & Herrmann (1999) section 3.3"),
-    REAL("standard_error", "1", fit.standard_error, 0,
-         "Of beta: of one run with its fragments taken as independent (method ks: its lower end taken as given, too "
-         "small by a third); pooled over a point from resampling its runs.",
-         NULL),
+    REAL(
+        "standard_error", "1", fit.standard_error, 0,
+        "Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken "
+        "as known, so the error is too small by a third). Of a point: from resampling its runs.",
+        NULL),
     REAL("cutoff_mass", "kg", fit.cutoff_mass, 0,
-         "m_c of m^-beta exp(-m/m_c), method cutoff only. Off when the pure power law fitted best.", NULL),
+         "m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.", NULL),
     REAL("ks_distance", "1", fit.ks_distance, 0,
          "Largest distance between the distribution functions of sample and fit; methods masses and ks only.",
          "Clauset, Shalizi & Newman (2009)"),
     REAL("log_likelihood", "1", fit.log_likelihood, -HUGE_VAL,
-         "Natural logarithm, of ln(m) or (method binned) of the bin numbers; comparable within one window only.", NULL),
+         "Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one "
+         "window "
+         "only.",
+         NULL),
 };
 const struct field_table estimates_table = FIELD_TABLE(rows_of_table, struct estimate, "estimate",
                                                        "Exponents of fragment spectra, by method and window.");

@@ -1,5 +1,5 @@
-/* The standard set of exponent estimates that every run stores: methods x windows, so that no later comparison of
- * methods or windows needs a re-run. Pooled estimates of a point have rows of the same table (pooled.h). */
+/* The standard set of exponents that every run stores: several methods and windows, so that comparing them later needs
+ * no new run. Exponents of a point have rows of the same table (pooled.h). */
 #ifndef CLAST_ANALYSIS_STATISTICS_ESTIMATES_H
 #define CLAST_ANALYSIS_STATISTICS_ESTIMATES_H
 
@@ -7,10 +7,12 @@
 #include "engine/fragments.h"
 
 /* An element is a grain or a particle. Windows begin midway between N - 1 and N mean element masses, N = 2, 5, 10, and
- * end below the run's largest fragment M_1. Grains of nearly equal mass make small fragments nearly discrete: fitted as
- * continuous from one grain up, a true 2.0 reads 2.76. Equal grains from N - 1/2 give 1.96, 2.00, 2.00 (from N
- * itself 2.32, 2.11, 2.05); grains whose masses scatter by 30 % 1.92, 2.01, 2.00. From 2 is the paper's own choice (all
- * but single grains); 5 lies between and shows the trend. */
+ * end below the run's largest fragment M_1. From 2 is the choice of Kun & Herrmann (1999): all but single grains. From
+ * 5 lies between and shows the trend.
+ *
+ * The masses of small fragments of nearly equal grains are nearly discrete. A continuous fit from one grain reads 2.76
+ * for a true 2.0. With equal grains, windows from N - 1/2 read 1.96, 2.00, 2.00 (from N: 2.32, 2.11, 2.05); with grains
+ * whose masses scatter by 30 %, 1.92, 2.01, 2.00. */
 enum estimates_window { ESTIMATES_FROM_2, ESTIMATES_FROM_5, ESTIMATES_FROM_10, ESTIMATES_WINDOWS };
 extern const char *const estimates_window_names[];              /* "from_2"..., NULL-terminated */
 double estimates_window_elements(enum estimates_window window); /* lower end in mean element masses: 1.5, 4.5, 9.5 */
@@ -22,23 +24,23 @@ struct estimate {
 };
 extern const struct field_table estimates_table;
 
-/* The headline is maximum likelihood on masses of 5 elements and more up to M_1, itself left out: free of the bias of
- * least squares, of a giant remnant that belongs to no power law, and (the lowest window of which that is true) of
- * discreteness whatever the scatter of their masses. One run of 1100 grains has some 30 such fragments: expect a
- * standard error of 0.2 and, as for any ratio of small numbers, a bias of about (beta-1)/n; pool runs. */
+/* The headline is maximum likelihood on masses of at least 5 elements, without the largest fragment M_1. It has no bias
+ * of least squares, a giant remnant that belongs to no power law does not enter, and 5 elements is the lowest window
+ * without effects of discrete masses. A run of 1100 grains has some 30 such fragments: its standard error is about 0.2
+ * and its bias, as for any ratio of small numbers, about (beta - 1)/n. Pool runs. */
 enum {
   ESTIMATES_HEADLINE_METHOD = EXPONENT_MASSES,
   ESTIMATES_HEADLINE_WINDOW = ESTIMATES_FROM_5,
   ESTIMATES_COUNT = 3 * ESTIMATES_WINDOWS + 2, /* least_squares, binned, masses in each; ks from 2; cutoff from 5 */
 };
 
-/* Fragments by descending mass, dust included (the mean element mass is total mass over total count; fragments of one
- * element are then left out). Always fills all rows; a run without enough fragments has beta = NaN there. */
+/* Fragments by descending mass, with those of one element: they are part of the mean element mass (total mass over
+ * total count), but not of the windows. Fills all rows; too few fragments give beta = NaN. */
 status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
                       struct error *error);
 
-/* An exponent pooled over a point's runs, by name: "beta" is the headline, "beta_METHOD_WINDOW" ("beta_masses_from_2")
- * another of those that points have. *is = false for other names; STATUS_USAGE for one that only begins like them. */
+/* An exponent of a point by name: "beta" is the headline, "beta_METHOD_WINDOW" ("beta_masses_from_2") another one.
+ * *is = false for other names; STATUS_USAGE for an unknown name that begins with beta. */
 status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window,
                        struct error *error);
 

@@ -7,7 +7,7 @@
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 
-/* What resampling needs of each run, made once. */
+/* What resampling needs of each run: computed once. */
 struct prepared {
   enum exponent_method method;
   size_t runs;
@@ -17,13 +17,13 @@ struct prepared {
   int64_t *counts;
   const struct pooled_runs *all; /* KS */
   double lower;
-  double *masses; /* KS: room for a resample */
+  double *masses; /* KS: those of a resample */
   struct power_law_group *resampled_plain;
   struct tempered_group *resampled_tempered;
   struct spectrum_bin_row *rows;
 };
 
-/* Index behind the last fragment of run r that is at least `lower`; the window's fragments are (first[r], end). */
+/* Index behind the last fragment of run r whose mass is at least `lower`. */
 static size_t window_end(const struct pooled_runs *runs, size_t r, double lower) {
   size_t low = runs->first[r], high = runs->first[r + 1];
   while (low < high) {
@@ -36,7 +36,8 @@ static size_t window_end(const struct pooled_runs *runs, size_t r, double lower)
   return low;
 }
 
-/* The window of run r: fragments [*begin, *end), below its largest. Ties with M_1 are left out with it. */
+/* The window of run r: fragments [*begin, *end), below its largest, whose mass it returns. Fragments as large as the
+ * largest are left out with it. */
 static double window_of(const struct pooled_runs *runs, size_t r, double lower, size_t *begin, size_t *end) {
   *begin = runs->first[r];
   *end = window_end(runs, r, lower);
@@ -81,7 +82,7 @@ static struct power_law_group binned_group(const struct pooled_runs *runs, size_
     group.mean /= group.weight;
   group.span = (double)stop - first;
   if (group.span < 2)
-    group.weight = 0; /* one bin says nothing */
+    group.weight = 0; /* one bin has no slope */
   return group;
 }
 
@@ -183,61 +184,73 @@ static double total_weight(size_t n, const struct power_law_group *groups) {
   return weight;
 }
 
-/* The fit of one choice of runs; everything the choice leaves open is filled into *fit. */
-static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  struct power_law plain = {NAN, NAN, NAN};
-  fit->n = 0;
-  fit->beta = fit->standard_error = NAN;
-  if (p->method == EXPONENT_LEAST_SQUARES) {
-    size_t bins = (size_t)p->bins;
+static void fit_bins(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
+  size_t bins = (size_t)p->bins;
+  for (size_t j = 0; j < bins; j++)
+    p->rows[j] = (struct spectrum_bin_row){.bin = p->first_bin + (int)j};
+  for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < bins; j++)
-      p->rows[j] = (struct spectrum_bin_row){.bin = p->first_bin + (int)j};
-    for (size_t i = 0; i < n; i++)
-      for (size_t j = 0; j < bins; j++)
-        p->rows[j].count += p->counts[chosen[i] * bins + j];
-    exponent_fit_bins(p->method, bins, p->rows, (struct exponent_window){p->lower, HUGE_VAL}, fit, NULL);
+      p->rows[j].count += p->counts[chosen[i] * bins + j];
+  exponent_fit_bins(p->method, bins, p->rows, (struct exponent_window){p->lower, HUGE_VAL}, fit, NULL);
+}
+
+static void fit_upper_cutoff(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
+  double weight = 0;
+  for (size_t i = 0; i < n; i++) {
+    p->resampled_tempered[i] = p->tempered[chosen[i]];
+    weight += p->tempered[chosen[i]].weight;
+  }
+  fit->n = (int64_t)weight;
+  if (weight < EXPONENT_LEAST_FRAGMENTS)
     return;
+  struct tempered tempered = tempered_fit(TEMPERED_CUTOFF, n, p->resampled_tempered);
+  fit->beta = tempered.beta;
+  fit->standard_error = tempered.standard_error;
+  fit->log_likelihood = tempered.log_likelihood;
+  if (isfinite(tempered.beta))
+    fit->cutoff_mass = tempered.rate > 0 ? p->lower / tempered.rate : HUGE_VAL;
+}
+
+/* The groups of EXPONENT_KS: the lower cut-off is searched anew in all masses of the chosen runs. */
+static void group_above_lower_cutoff(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
+  size_t count = 0, begin, end;
+  for (size_t i = 0; i < n; i++) {
+    window_of(p->all, chosen[i], p->lower, &begin, &end);
+    for (size_t j = begin; j < end; j++)
+      p->masses[count++] = p->all->masses[j];
   }
-  if (p->method == EXPONENT_UPPER_CUTOFF) {
-    double weight = 0;
-    for (size_t i = 0; i < n; i++) {
-      p->resampled_tempered[i] = p->tempered[chosen[i]];
-      weight += p->tempered[chosen[i]].weight;
-    }
-    fit->n = (int64_t)weight;
-    if (weight < EXPONENT_LEAST_FRAGMENTS)
-      return;
-    struct tempered tempered = tempered_fit(TEMPERED_CUTOFF, n, p->resampled_tempered);
-    fit->beta = tempered.beta;
-    fit->standard_error = tempered.standard_error;
-    fit->log_likelihood = tempered.log_likelihood;
-    if (isfinite(tempered.beta))
-      fit->cutoff_mass = tempered.rate > 0 ? p->lower / tempered.rate : HUGE_VAL;
-    return;
-  }
-  if (p->method == EXPONENT_KS) {
-    size_t count = 0, begin, end;
-    for (size_t i = 0; i < n; i++) {
-      window_of(p->all, chosen[i], p->lower, &begin, &end);
-      for (size_t j = begin; j < end; j++)
-        p->masses[count++] = p->all->masses[j];
-    }
-    double lower = exponent_lower_cutoff(count, p->masses);
-    fit->lower = isfinite(lower) ? lower : p->lower;
-    for (size_t i = 0; i < n; i++)
-      p->resampled_plain[i] = plain_group(p->all, chosen[i], fit->lower);
-  } else {
-    for (size_t i = 0; i < n; i++)
-      p->resampled_plain[i] = p->plain[chosen[i]];
-  }
+  double lower = exponent_lower_cutoff(count, p->masses);
+  fit->lower = isfinite(lower) ? lower : p->lower;
+  for (size_t i = 0; i < n; i++)
+    p->resampled_plain[i] = plain_group(p->all, chosen[i], fit->lower);
+}
+
+static void fit_plain(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
+  if (p->method == EXPONENT_KS)
+    group_above_lower_cutoff(p, n, chosen, fit);
+  for (size_t i = 0; p->method != EXPONENT_KS && i < n; i++)
+    p->resampled_plain[i] = p->plain[chosen[i]];
   double weight = total_weight(n, p->resampled_plain);
   fit->n = (int64_t)weight;
   if (weight < EXPONENT_LEAST_FRAGMENTS)
     return;
-  plain = power_law_fit(n, p->resampled_plain, p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0);
+  struct power_law plain = power_law_fit(n, p->resampled_plain,
+                                         p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0);
   fit->beta = plain.beta;
   fit->standard_error = plain.standard_error;
   fit->log_likelihood = plain.log_likelihood;
+}
+
+/* Fits the chosen runs and fills in what follows from the choice. */
+static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
+  fit->n = 0;
+  fit->beta = fit->standard_error = NAN;
+  if (p->method == EXPONENT_LEAST_SQUARES)
+    fit_bins(p, n, chosen, fit);
+  else if (p->method == EXPONENT_UPPER_CUTOFF)
+    fit_upper_cutoff(p, n, chosen, fit);
+  else
+    fit_plain(p, n, chosen, fit);
 }
 
 static double beta_of(size_t n, const uint32_t *chosen, void *context) {

@@ -1,6 +1,6 @@
-/* A point's spectrum and exponents from all its runs together. Runs are the independent units: errors come from the
- * scatter between runs and from resampling runs, never from counting fragments. Each run's largest fragment M_1 bounds
- * its own window and is left out; what is given up is next to nothing, and a giant remnant cannot bend the fit. */
+/* A point's spectrum and exponents from all its runs together. Runs are independent, so errors come from the scatter
+ * between runs and from resampling runs, never from counting fragments. Each run's largest fragment M_1 bounds the
+ * run's window and is left out: this costs next to no information, and a giant remnant cannot bend the fit. */
 #ifndef CLAST_ANALYSIS_STATISTICS_POOLED_H
 #define CLAST_ANALYSIS_STATISTICS_POOLED_H
 
@@ -33,16 +33,16 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
                        size_t *count, struct error *error);
 
 struct pooled_exponent {
-  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest bound */
-  struct sample_interval interval; /* from resampling runs: this is the error to quote */
-  size_t runs;                     /* that had fragments in their window */
+  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest of the runs */
+  struct sample_interval interval; /* from resampling runs: the error to quote */
+  size_t runs;                     /* with fragments in their window */
 };
-/* lower: kg, the same for all runs of the point (so many mean element masses). resamples: 0 for no interval, 1000 for
- * final numbers; KS and CUTOFF cost milliseconds per resample, the others microseconds. */
+/* lower: kg, the same for all runs of the point (a number of mean element masses). resamples: 0 for no interval, 1000
+ * for final numbers. A resample costs milliseconds with KS and UPPER_CUTOFF, microseconds with the others. */
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
                        double level, uint64_t seed, struct pooled_exponent *out, struct error *error);
 
-/* Is the pure power law good enough? Likelihood ratios against its two rivals in the same windows. */
+/* Is the pure power law good enough? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
 struct pooled_rivals {
   int64_t n;
   double beta;                     /* pure */

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* 10^(j/10), and the powers of ten that a double holds exactly; a quotient of two exact numbers is correctly rounded.
- */
+/* 10^(j/10), and the powers of ten that a double represents exactly. A quotient of two exact numbers is correctly
+ * rounded. */
 static const double tenth[SPECTRUM_BINS_PER_DECADE] = {
     1.0,
     1.2589254117941673,
@@ -42,7 +42,7 @@ double spectrum_edge(int bin) {
 int spectrum_bin(double mass) {
   if (!(mass > 0) || !isfinite(mass))
     return SPECTRUM_NO_BIN;
-  /* The logarithm is right to a few units in the last place, so the guess is off by one bin at most, beside an edge. */
+  /* The logarithm is right to a few units in the last place, so the guess is at most one bin off, next to an edge. */
   int bin = (int)floor(log10(mass) * SPECTRUM_BINS_PER_DECADE);
   while (mass < spectrum_edge(bin))
     bin--;
@@ -51,7 +51,7 @@ int spectrum_bin(double mass) {
   return bin;
 }
 
-/* How many bins hold something, by stepping from bin to bin: slow, only for callers without enough room. */
+/* How many bins hold something, by stepping from bin to bin: slow, only for callers whose rows are too few. */
 static size_t count_bins(size_t n, const double *masses) {
   size_t count = 0;
   for (int last = SPECTRUM_NO_BIN, next;; last = next, count++) {
@@ -66,8 +66,8 @@ static size_t count_bins(size_t n, const double *masses) {
   }
 }
 
-/* Rows stay sorted while they fill. Fragments come by descending mass, so the row wanted is nearly always the one
- * touched last or a new one below it. */
+/* Rows stay sorted while they fill. Fragments come by descending mass, so a fragment nearly always belongs to the row
+ * of the last one or to a new row below it. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity) {
   size_t count = 0, at = 0;
   for (size_t i = 0; i < n; i++) {

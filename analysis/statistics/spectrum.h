@@ -24,8 +24,8 @@ struct spectrum_bin_row {
 };
 
 /* Non-empty bins in ascending order; masses in any order (descending is fastest), those without a bin are left out.
- * Returns how many there are; when that is more than `capacity`, the rows are not filled: call again with that much
- * room. The order of summation is the order of `masses`. */
+ * Returns how many there are. When that is more than `capacity`, the rows are not filled: call again with that many
+ * rows. The order of summation is the order of `masses`. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity);
 
 #endif
