@@ -1,3 +1,4 @@
+/* Switches off the error handlers of GSL and plfit. */
 #include "analysis/analysis.h"
 
 #include <gsl/gsl_errno.h>

@@ -1,3 +1,4 @@
+/* SQLite errors as statuses with remedies, and statements bound from tables of columns. */
 #include "db/sql.h"
 
 #include <errno.h>

@@ -13,11 +13,11 @@ CREATE TABLE column_doc ( -- Meaning and unit of every column.
   PRIMARY KEY (table_name, column_name)
 ) STRICT, WITHOUT ROWID;
 
-CREATE TABLE campaign ( -- What was asked for.
+CREATE TABLE campaign ( -- Campaigns, as their files were read.
   campaign_id INTEGER PRIMARY KEY, -- number of the campaign in this store
   name TEXT NOT NULL, -- its name
   document TEXT NOT NULL, -- the campaign file as it was read
-  plan TEXT, -- what it was resolved to, JSON
+  plan TEXT, -- the resolved plan, JSON
   added_at TEXT NOT NULL -- when it was first run, UTC, ISO 8601
 ) STRICT;
 
@@ -39,8 +39,8 @@ CREATE TABLE point ( -- Points: sets of input values. The resolved scene is the 
   scene TEXT NOT NULL CHECK (json_valid(scene)) -- the resolved scene, JSON, SI units: every active input, defaults too
 ) STRICT;
 
-CREATE TABLE campaign_point ( -- Which campaign asked for which point.
-  campaign_id INTEGER NOT NULL REFERENCES campaign (campaign_id), -- campaign that asked for the point
+CREATE TABLE campaign_point ( -- Which campaign has which point.
+  campaign_id INTEGER NOT NULL REFERENCES campaign (campaign_id), -- a campaign with this point
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- a point of it; campaigns may share points
   PRIMARY KEY (campaign_id, point_id)
 ) STRICT, WITHOUT ROWID;
@@ -188,7 +188,7 @@ CREATE TABLE attempt ( -- Attempts that failed: limits, crashes, lost workers.
   wall_time REAL NOT NULL, -- [s] elapsed time
   peak_memory INTEGER NOT NULL, -- [B] largest resident memory
   limited_to REAL NOT NULL, -- the limit that ended it: seconds or bytes, 0 for the other reasons
-  message TEXT NOT NULL, -- what it said
+  message TEXT NOT NULL, -- its message
   host TEXT, -- machine
   rank INTEGER NOT NULL, -- MPI rank
   failed_at REAL NOT NULL -- [s] when, seconds since 1970-01-01 UTC
@@ -198,10 +198,10 @@ CREATE INDEX attempt_identity ON attempt (identity);
 
 CREATE INDEX attempt_point ON attempt (point_id);
 
-CREATE TABLE holder ( -- Who holds the store for writing, so that a refusal can name them.
+CREATE TABLE holder ( -- The process that holds the store for writing, for the message of a refusal.
   holder_id INTEGER PRIMARY KEY CHECK (holder_id = 1), -- always 1
   host TEXT NOT NULL, -- machine of the process that last opened the store for writing
-  pid INTEGER NOT NULL, -- its process number; the row only names the holder, an OS lock is what holds
+  pid INTEGER NOT NULL, -- its process number; the row only names the holder, the store is held by an OS lock
   since TEXT NOT NULL -- when it did, UTC, ISO 8601
 ) STRICT;
 
@@ -509,7 +509,7 @@ INSERT INTO column_doc VALUES ('attempt', 'identity', NULL, 'identity of the run
 
 INSERT INTO column_doc VALUES ('attempt', 'limited_to', NULL, 'the limit that ended it: seconds or bytes, 0 for the other reasons', 0);
 
-INSERT INTO column_doc VALUES ('attempt', 'message', NULL, 'what it said', 0);
+INSERT INTO column_doc VALUES ('attempt', 'message', NULL, 'its message', 0);
 
 INSERT INTO column_doc VALUES ('attempt', 'number', NULL, 'which attempt, from 1', 0);
 
@@ -553,9 +553,9 @@ INSERT INTO column_doc VALUES ('campaign', 'document', NULL, 'the campaign file 
 
 INSERT INTO column_doc VALUES ('campaign', 'name', NULL, 'its name', 0);
 
-INSERT INTO column_doc VALUES ('campaign', 'plan', NULL, 'what it was resolved to, JSON', 0);
+INSERT INTO column_doc VALUES ('campaign', 'plan', NULL, 'the resolved plan, JSON', 0);
 
-INSERT INTO column_doc VALUES ('campaign_point', 'campaign_id', NULL, 'campaign that asked for the point', 0);
+INSERT INTO column_doc VALUES ('campaign_point', 'campaign_id', NULL, 'a campaign with this point', 0);
 
 INSERT INTO column_doc VALUES ('campaign_point', 'point_id', NULL, 'a point of it; campaigns may share points', 0);
 
@@ -643,7 +643,7 @@ INSERT INTO column_doc VALUES ('holder', 'holder_id', NULL, 'always 1', 0);
 
 INSERT INTO column_doc VALUES ('holder', 'host', NULL, 'machine of the process that last opened the store for writing', 0);
 
-INSERT INTO column_doc VALUES ('holder', 'pid', NULL, 'its process number; the row only names the holder, an OS lock is what holds', 0);
+INSERT INTO column_doc VALUES ('holder', 'pid', NULL, 'its process number; the row only names the holder, the store is held by an OS lock', 0);
 
 INSERT INTO column_doc VALUES ('holder', 'since', NULL, 'when it did, UTC, ISO 8601', 0);
 

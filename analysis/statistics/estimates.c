@@ -1,3 +1,4 @@
+/* The standard set of exponents of a run, and the table that describes a row of it. */
 #include "analysis/statistics/estimates.h"
 
 #include <math.h>

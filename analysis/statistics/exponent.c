@@ -1,3 +1,4 @@
+/* Exponents of one sample, by method. */
 #include "analysis/statistics/exponent.h"
 
 #include <math.h>

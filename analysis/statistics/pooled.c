@@ -1,3 +1,4 @@
+/* Exponents of a point from all its runs: one fit for a choice of runs, and the bootstrap over choices. */
 #include "analysis/statistics/pooled.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The likelihood equation of a power law and its root. */
 #include "analysis/statistics/power_law.h"
 
 #include <float.h>

@@ -1,3 +1,4 @@
+/* Means, scatters, intervals, the bootstrap and the stopping rule. */
 #include "analysis/statistics/sample.h"
 
 #include <gsl/gsl_cdf.h>

@@ -1,3 +1,4 @@
+/* Mass bins with exact edges. */
 #include "analysis/statistics/spectrum.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The rivals of the pure power law, fitted by Newton's method on quadrature. */
 #include "analysis/statistics/tempered.h"
 
 #include <math.h>

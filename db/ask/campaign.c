@@ -1,3 +1,4 @@
+/* The state of the campaigns of a store. */
 #include "db/ask/campaign.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Names and units of the columns of a store. */
 #include "db/ask/columns.h"
 
 #include <stdio.h>

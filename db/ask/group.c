@@ -108,7 +108,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     views_write_student(degrees, out);
     fprintf(out, ") AS \"%s_hw95\"", q);
   }
-  /* Ordered rows, so that the sums have the same bits whoever finished first. */
+  /* Ordered rows, so that the sums have the same bits for any order in which the runs finished. */
   fputs("\nFROM (SELECT ", out);
   for (size_t i = 0; i < axes->count; i++)
     fprintf(out, "\"%s\", ", axes->name[i]);

@@ -1,3 +1,4 @@
+/* Reads the fragments of one point and makes its exponents and its curve. */
 #include "db/ask/point.h"
 
 #include <math.h>
@@ -70,7 +71,7 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
                    "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
                    "results_version = :version AND counts = 1 ORDER BY replicate, seed",
                    2, parameters, 0, &sink, error);
-  /* Every run's window from_2 begins at so many of its mean element masses. */
+  /* The window from_2 of a run begins at a known number of its mean element masses. */
   if (!code)
     code = query_number(
         store,

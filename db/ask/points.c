@@ -1,3 +1,4 @@
+/* Lists of points, as typed questions. */
 #include "db/ask/points.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Runs one statement that only reads, with a time limit. */
 #include "db/ask/query.h"
 
 #include <ctype.h>
@@ -12,7 +13,7 @@
 
 enum { STEPS_BETWEEN_LOOKS = 10000 };
 
-struct watch {     /* what authorizer and progress handler know of a query */
+struct watch {     /* for the authorizer and the progress handler of a query */
   double deadline; /* s, monotonic; 0 = none */
   bool writes, late;
 };
@@ -23,7 +24,7 @@ static int look(void *context) {
   return watch->late;
 }
 
-/* Reading only: no change, no other file, no transaction, and of pragmas those that describe. */
+/* Allows reading only: no change, no other file, no transaction, and only pragmas that describe. */
 static int authorize(void *context, int action, const char *first, const char *second, const char *database,
                      const char *trigger) {
   static const char *const describing[] = {"table_info",     "table_xinfo",       "table_list",       "index_list",
@@ -81,7 +82,7 @@ static status prepare(struct store *store, const char *sql, struct watch *watch,
   int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
   if (code == SQLITE_AUTH || watch->writes || (code == SQLITE_OK && *statement && !sqlite3_stmt_readonly(*statement)))
     return status_fail(error, STATUS_USAGE,
-                       "A query may only read (SELECT): this statement would change something, or touch another file.");
+                       "A query may only read (SELECT): this statement would change something, or open another file.");
   if ((code & 0xff) == SQLITE_ERROR) {
     int offset = sqlite3_error_offset(store->db);
     if (offset >= 0 && (size_t)offset < strlen(sql))

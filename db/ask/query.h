@@ -1,7 +1,7 @@
-/* Asking a store: any SQL that only reads, canned queries by name, statistics grouped by any varied input.
+/* Reading from a store: any SQL that only reads, canned queries by name, statistics grouped by varied inputs.
  *
- * Rows go to a sink as they come, with names and types, so that commands print tables, CSV or JSON and nothing is held
- * in memory. The connection refuses whatever is not a reading statement. */
+ * Rows go to a sink one by one, with names and types; commands print them as tables, CSV or JSON, and nothing is kept
+ * in memory. The connection refuses every statement that does more than read. */
 #ifndef CLAST_DB_ASK_QUERY_H
 #define CLAST_DB_ASK_QUERY_H
 
@@ -15,7 +15,7 @@ enum query_kind { QUERY_NULL, QUERY_INTEGER, QUERY_REAL, QUERY_TEXT, QUERY_BLOB 
 struct query_value {
   enum query_kind kind;
   int64_t integer;  /* QUERY_INTEGER */
-  double real;      /* QUERY_REAL; the integer too, for whoever only wants a number. NaN for NULL */
+  double real;      /* QUERY_REAL; also the value of an integer. NaN for NULL */
   const char *text; /* QUERY_TEXT: NUL-terminated, borrowed for the call */
   const void *blob; /* QUERY_BLOB */
   size_t size;      /* bytes of text or blob */

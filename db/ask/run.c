@@ -1,3 +1,4 @@
+/* One stored run, and how long runs take. */
 #include "db/ask/run.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The pooled spectra of any choice of runs. */
 #include "db/ask/spectrum.h"
 
 #include <stdio.h>

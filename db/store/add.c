@@ -133,7 +133,7 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
 
 static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
 
-/* The engine's statement, its result table made when this store has met no such engine yet. */
+/* The statement of the run's engine. Creates the engine's result table when the store has none. */
 static status find_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
                         struct error *error) {
   for (size_t i = 0; i < store->kind_count; i++)
@@ -190,7 +190,7 @@ status store_add_point(struct store *store, int64_t campaign_id, const struct sc
   return store_end(store, result, 1, error);
 }
 
-/* A run as table run has it, but for its outcome. */
+/* The columns of table run that are not results. */
 struct run_row {
   struct store_run run;
   int results_version;

@@ -1,4 +1,4 @@
-/* Is the store what it says? Each check is a question whose answer must be none. */
+/* clast check: each check is a question that must have no rows. */
 #include <float.h>
 #include <math.h>
 #include <stdarg.h>
@@ -60,7 +60,7 @@ static const char *const questions[] = {
     "bin)",
 };
 
-/* Orphans of result tables, whatever engines there are. */
+/* Runs without a row in the table of their engine, for every engine in the store. */
 static status check_results(struct report *report, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result =
@@ -75,8 +75,8 @@ static status check_results(struct report *report, struct error *error) {
   return result;
 }
 
-/* `' column is value' || ...` over a table's columns that have a range, for each row's value that is not in it; false:
- * none has. Older stores lack columns. */
+/* Writes an SQL expression that names a table's values out of range, such as ' largest_fraction is 1.2'. False: no
+ * column of the table has a range. Older stores lack columns. */
 static bool range_columns(struct store *store, const char *table, const struct field_table *fields, FILE *sql) {
   bool any = false;
   for (size_t k = 0; k < fields->count; k++) {
@@ -95,7 +95,7 @@ static bool range_columns(struct store *store, const char *table, const struct f
   return any;
 }
 
-/* Results of runs that count, within the ranges of their rows: a share above 1 is an error of the sums. Those of
+/* Results of runs that count must be in the ranges of their rows; a share above 1 is an error of the sums. Results of
  * another results_version cannot be judged. */
 static status check_ranges(struct report *report, struct error *error) {
   status result = STATUS_OK;
@@ -143,7 +143,7 @@ static status check_files(struct report *report, struct error *error) {
   return result;
 }
 
-/* The spectrum rows of a run against its masses binned again: counts exactly, mass to its rounding (n additions). */
+/* Compares the spectrum of a run with its masses: counts exactly, mass within the rounding of n additions. */
 static void check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows) {
   struct spectrum_bin_row bins[512];
   size_t count = spectrum_fill(n, masses, bins, 512), i = 0;
@@ -196,7 +196,7 @@ static status check_masses(struct report *report, struct error *error) {
     }
     if (!descending)
       say(report, "run %lld: its masses are not in descending order", (long long)run_id);
-    /* The engine may have summed in another order: n roundings of the total, n below 1e6. */
+    /* The engine may have summed in another order: n roundings of the total, with n below 1e6. */
     double stored = sqlite3_column_double(runs, 2);
     if (sqlite3_column_int(runs, 3) && fabs(total - stored) > 1e-9 * stored)
       say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
@@ -209,8 +209,8 @@ static status check_masses(struct report *report, struct error *error) {
   return result;
 }
 
-/* A run's identity made again from its point's scene. Runs of another results_version, or of an engine that this
- * program lacks, cannot be judged. */
+/* A run's identity must follow from its point's scene and its seed. Runs of another results_version, or of an engine
+ * that this program lacks, cannot be judged. */
 static status check_identities(struct report *report, struct error *error) {
   sqlite3_stmt *points = NULL, *runs = NULL;
   status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,

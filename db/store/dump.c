@@ -1,10 +1,11 @@
-/* What two stores of the same campaign must have in common, as text: sorted by identity, doubles in hexadecimal. */
+/* The deterministic content of a store as text, to compare two stores of the same campaign: sorted by identity, doubles
+ * in hexadecimal. */
 #include <string.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 
-static const char doing[] = "writing what is deterministic";
+static const char doing[] = "writing the deterministic content";
 
 static void print_value(FILE *out, sqlite3_stmt *row, int column) {
   switch (sqlite3_column_type(row, column)) {

@@ -1,8 +1,7 @@
-/* What a run's fragments become: masses as a blob, spectrum rows, their share of the point's running sums. */
+/* The rows that follow from a run's fragments: masses, spectrum, and their part of the point's running sums. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/store/bins.h"
 #include "db/store/internal.h"
 
 static const char adding_run[] = "adding a run";
@@ -40,7 +39,7 @@ static status add_masses(struct store *store, int64_t run_id, const struct store
   return sql_run(store->masses, adding_run, error);
 }
 
-/* Bins of the run into store->bins; *masses is only read. */
+/* Fills store->bins with the bins of the run. */
 static status fill_bins(struct store *store, size_t *count, const struct store_run *run, struct error *error) {
   double *masses = malloc((run->fragment_count + 1) * sizeof *masses);
   if (!masses)
@@ -69,13 +68,13 @@ static status cover_bins(struct store *store, int lowest, int highest, struct er
     lowest = store->lowest_bin;
   if (!none && store->highest_bin > highest)
     highest = store->highest_bin;
-  status result = bins_cover(store->db, lowest, highest, error);
+  status result = sums_cover_bins(store->db, lowest, highest, error);
   store->lowest_bin = lowest;
   store->highest_bin = highest;
   return result;
 }
 
-enum { TOGETHER = 10 }; /* rows of one INSERT: starting a statement costs as much as inserting three rows */
+enum { TOGETHER = 10 }; /* rows per INSERT: starting a statement costs as much as inserting three rows */
 
 static void bind_bin(sqlite3_stmt *statement, int index, int64_t run_id, const struct spectrum_bin_row *bin) {
   sqlite3_bind_int64(statement, index, run_id);
@@ -104,7 +103,7 @@ static status insert_bins(struct store *store, int64_t run_id, size_t count, str
   return result;
 }
 
-/* What the run adds to its point's running sums. */
+/* Adds the run to its point's running sums. */
 static status add_sums(struct store *store, const struct store_run *run, size_t count, struct error *error) {
   bool counted = store_run_counts(run);
   int version = run->kind->results_version;

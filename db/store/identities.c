@@ -1,3 +1,4 @@
+/* The identities of a store in a hash table. */
 #include "db/store/identities.h"
 
 #include <stdlib.h>

@@ -13,7 +13,7 @@ struct identities { /* all zero: empty */
   struct identities_entry *table;
 };
 
-/* What the store has of an identity. */
+/* What is stored of an identity. */
 struct identities_state {
   uint32_t attempts; /* failed ones */
   bool stored;

@@ -1,4 +1,4 @@
-/* What an open store holds. For db/ only. */
+/* The state of an open store. For db/ only. */
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
@@ -23,7 +23,7 @@ struct store {
   char *path;
   int lock; /* descriptor, -1 for readers */
 
-  struct identities identities; /* a writer's at open, a reader's at the first question */
+  struct identities identities; /* read when a writer opens, and by a reader when they are first needed */
   bool identities_loaded;
   struct sums sums;
   int lowest_bin, highest_bin; /* covered by table bin; lowest > highest: none */
@@ -46,10 +46,10 @@ struct store {
   size_t bin_capacity;
 };
 
-/* Before the first row of a batch: refuses readers and stores that failed, begins the transaction. */
+/* Call before the first row of a batch: begins the transaction. Refuses readers and stores after a failed write. */
 status store_begin(struct store *store, struct error *error);
-/* After `rows` more rows: commits when the batch is large or old enough. On `result` not OK: takes the whole batch
- * back, and the store refuses from then on. Returns `result`, or what the commit gave. */
+/* Call after `rows` more rows: commits when the batch is large or old enough. When `result` is not OK, the whole batch
+ * is rolled back and the store refuses further writing. Returns `result`, or the status of the commit. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
 /* Is the run part of the statistics? schema_write_counts() writes the same condition in SQL. */
@@ -57,10 +57,10 @@ static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);
 }
 
-/* Masses, spectrum and running sums of a run whose row is there. Within the open batch. */
+/* Adds the masses, the spectrum and the running sums of a run whose row is written. Within the open batch. */
 status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
-/* Insert the estimates of a run that has none yet, within the open batch. */
+/* Inserts the estimates of a run that has none yet, within the open batch. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error);
 

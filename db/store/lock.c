@@ -1,3 +1,4 @@
+/* The writer's lock on the store. */
 #include "db/store/lock.h"
 
 #include <errno.h>
@@ -6,23 +7,26 @@
 #include <sys/vfs.h>
 #include <unistd.h>
 
-/* SQLite locks bytes 0x40000000 to 0x400001ff, whatever the size of the file. */
+/* SQLite locks bytes 0x40000000 to 0x400001ff, for any size of the file. */
 static const off_t LOCK_BYTE = (off_t)1 << 62;
+
+static const char *remedy_of(int code) {
+  switch (code) {
+  case ENOENT: return "Make its folder first.";
+  case EISDIR: return "It is a folder: name a file.";
+  case ENOTDIR: return "Part of the path is a file, not a folder.";
+  case ENOSPC: return "Free some space.";
+  case EROFS: return "The file system is read-only: copy the store elsewhere, or name another file.";
+  default: return "Give yourself write permission on the file and its folder, or name another file.";
+  }
+}
 
 status lock_take(const char *path, int *descriptor, bool *held, struct error *error) {
   *held = false;
   *descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (*descriptor < 0) {
-    const char *remedy = errno == ENOENT    ? "Make its folder first."
-                         : errno == EISDIR  ? "It is a folder: name a file."
-                         : errno == ENOTDIR ? "Part of the path is a file, not a folder."
-                         : errno == ENOSPC  ? "Free some space."
-                         : errno == EROFS
-                             ? "The file system is read-only: copy the store elsewhere, or name another file."
-                             : "Give yourself write permission on the file and its folder, or name another file.";
+  if (*descriptor < 0)
     return status_fail(error, STATUS_IO, "%s: cannot open the store for writing: %s. %s", path, strerror(errno),
-                       remedy);
-  }
+                       remedy_of(errno));
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
   if (fcntl(*descriptor, F_OFD_SETLK, &lock) == 0)
     return STATUS_OK;

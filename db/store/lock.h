@@ -1,6 +1,6 @@
-/* The writer's lock: an open-file-description lock (fcntl(2), F_OFD_SETLK) on a byte of the store far behind SQLite's
- * own. It goes when the process does, however that ends; no reader feels it; it leaves nothing behind. A traditional
- * record lock would not do: SQLite's own unlocking of the file drops all of the process's record locks on it. */
+/* The writer's lock: an open-file-description lock (fcntl(2), F_OFD_SETLK) on a byte of the store far beyond those that
+ * SQLite locks. It ends with the process, leaves no file, and does not affect readers. A traditional record lock would
+ * not serve: when SQLite unlocks the file, all record locks of the process on it are dropped. */
 #ifndef CLAST_DB_STORE_LOCK_H
 #define CLAST_DB_STORE_LOCK_H
 
@@ -9,12 +9,12 @@
 
 #include "schemas/status.h"
 
-/* The file (created when absent), locked: *descriptor to close when done, after SQLite has closed the file, since
- * closing any descriptor of a file drops SQLite's record locks on it. STATUS_IO; *held says that it is because another
- * holds it: the caller adds who that is. A child forked from here on shares the lock until it ends or executes another
- * program. */
+/* Opens the file (created when absent) and locks it. Close *descriptor after SQLite has closed the file: closing any
+ * descriptor of a file drops SQLite's record locks on it. STATUS_IO; *held: because another process holds the lock. A
+ * child that is forked later shares the lock until it ends or executes another program. */
 status lock_take(const char *path, int *descriptor, bool *held, struct error *error);
-/* Does it lie on a network file system, where locks and shared memory cannot be trusted? The name of it, or NULL. */
+/* The name of the network file system that the file is on, where locks and shared memory are not reliable; NULL: none.
+ */
 const char *lock_network_file_system(int descriptor);
 
 #endif

@@ -1,14 +1,14 @@
 /* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
 #include <string.h>
 
-#include "db/store/bins.h"
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
 
 static const char doing[] = "merging";
 
-/* Columns both stores have in a table, besides `but`, each with a comma before it; sqlite3_free() it. */
+/* The columns of a table that both stores have, without the column `but`, each with a comma before it. sqlite3_free()
+ * it. */
 static char *common_columns(sqlite3 *db, const char *table, const char *but) {
   sqlite3_stmt *statement = NULL;
   char *list = sqlite3_mprintf("");
@@ -30,8 +30,9 @@ static char *common_columns(sqlite3 *db, const char *table, const char *but) {
   return list;
 }
 
-/* What ids of `other` are called here: temporary tables. Sessions are the same when started by the same process at the
- * same time. */
+/* Adds the points, inputs, axes, campaigns and sessions that are missing. The temporary tables merge_point and
+ * merge_session map the other store's ids to the ids here. Sessions are the same when the same process started them at
+ * the same time. */
 static status map_parents(sqlite3 *db, struct error *error) {
   return sql_execute(
       db,
@@ -68,7 +69,7 @@ static status map_parents(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Runs that main lacks, numbered on from its last. */
+/* Copies the runs that are missing here, with numbers from the last one on. */
 static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
   char *columns = common_columns(db, "run", "");
   if (!columns)
@@ -122,7 +123,7 @@ static status copy_attempts(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Result tables of engines that this program has not got are made as theirs are. */
+/* Result tables of engines that this program lacks are copied from the other store. */
 static status make_tables(sqlite3 *db, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result =
@@ -164,10 +165,10 @@ static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   if (result == STATUS_OK)
     result = copy_attempts(db, error);
   if (result == STATUS_OK)
-    result = bins_cover_spectrum(db, error);
+    result = sums_cover_all_bins(db, error);
   if (result == STATUS_OK && *added > 0)
     result = sums_rebuild(db, 0, error);
-  /* Pooled estimates were of fewer runs. */
+  /* The pooled estimates are stale: they come from fewer runs. */
   if (result == STATUS_OK && *added > 0)
     result =
         sql_execute(db,
@@ -177,7 +178,7 @@ static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
-/* Runs of one identity must have the same bits: where they have not, another machine or a bug computed otherwise. */
+/* Runs of the same identity must have the same bits; otherwise another machine or a bug computed something else. */
 static status count_differing(sqlite3 *db, int64_t *differing, struct error *error) {
   return sql_integer(
       db,
@@ -190,7 +191,7 @@ static status count_differing(sqlite3 *db, int64_t *differing, struct error *err
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
   struct store *other = NULL;
   *added = *differing = 0;
-  status result = store_open_reader(source, &other, error); /* refuses what is missing, foreign, newer, older */
+  status result = store_open_reader(source, &other, error); /* refuses a missing, foreign, newer or older file */
   if (result == STATUS_OK)
     result = store_close(other, error);
   if (result == STATUS_OK)
@@ -215,7 +216,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other",
                NULL, NULL, NULL);
-  identities_clear(&store->identities); /* read again at the next question */
+  identities_clear(&store->identities); /* they are read again when they are needed */
   store->identities_loaded = false;
   return result;
 }

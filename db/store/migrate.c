@@ -1,8 +1,8 @@
+/* Inspects a file and brings an older store forward. */
 #include "db/store/migrate.h"
 
 #include <unistd.h>
 
-#include "db/store/bins.h"
 #include "db/store/schema.h"
 #include "db/store/sums.h"
 #include "db/store/views.h"
@@ -48,7 +48,7 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
 
 /* Version 0 had no running sums and no table of bin edges. */
 static status to_version_1(sqlite3 *db, struct error *error) {
-  status result = bins_cover_spectrum(db, error);
+  status result = sums_cover_all_bins(db, error);
   return result == STATUS_OK ? sums_rebuild(db, 0, error) : result;
 }
 

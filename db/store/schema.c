@@ -1,9 +1,8 @@
+/* Writes tables, columns and indexes from their rows, and completes those of an older store. */
 #include "db/store/schema.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#include "db/store/schema_tables.h"
 
 static const struct schema_column result_columns[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
@@ -19,13 +18,13 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
   return table;
 }
 
-/* The tables in the order in which they must be created: engines' results last. */
+/* The tables in the order of their creation: the engines' results come last. */
 static struct schema_table table_at(size_t index) {
   return index < schema_tables_count ? schema_tables[index]
                                      : schema_result_table(engine_at(index - schema_tables_count));
 }
 
-/* The field tables' rows carry the choices' names in their meaning, since a column is read without the program. */
+/* A column is read without the program, so its meaning names the choices. */
 static void write_meaning(const struct field *row, FILE *out) {
   for (const char *c = row->doc ? row->doc : ""; *c; c++)
     fputc(*c == '\n' ? ' ' : *c, out);

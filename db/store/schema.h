@@ -1,6 +1,6 @@
-/* The tables, as data: one row per column with its meaning and unit, from which CREATE statements (with a comment on
- * every column), the rows of column_doc and schemas/results.sql are made. Columns that are results come from the field
- * tables. */
+/* The tables as data: one row per column with its meaning and unit. The CREATE statements (with a comment on every
+ * column), the rows of column_doc and schemas/results.sql follow from them. Columns that are results come from the
+ * field tables. */
 #ifndef CLAST_DB_STORE_SCHEMA_H
 #define CLAST_DB_STORE_SCHEMA_H
 
@@ -29,19 +29,25 @@ struct schema_table {
   const char *options;              /* STRICT, perhaps WITHOUT ROWID */
 };
 
-struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
-
 struct schema_index {
   const char *table, *name, *columns;
   bool with_main_results; /* columns of the main results after the others */
 };
 
+/* The tables that are not results of one engine, in the order of their creation, and the indexes. */
+extern const struct schema_table schema_tables[];
+extern const size_t schema_tables_count;
+extern const struct schema_index schema_tables_indexes[];
+extern const size_t schema_tables_indexes_count;
+
+struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
+
 /* The condition that a row of table run is part of the statistics, as SQL: not surplus, a usable state, every main
  * result a number. `not_surplus`: "surplus = 0", or another expression for it. The same as store_run_counts(). */
 void schema_write_counts(const char *not_surplus, FILE *out);
 
-/* Create what the database lacks of this table: the table, or columns that its field table has gained (NULL in old
- * rows), and their docs. */
+/* Creates what is missing in the database: the table, or columns that its field table has gained (NULL in old rows),
+ * and their rows of column_doc. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);

@@ -1,5 +1,5 @@
-/* The rows of db/store/schema.h: tables that are not results of an engine. */
-#include "db/store/schema_tables.h"
+/* The tables of db/store/schema.h that are not results of one engine. */
+#include "db/store/schema.h"
 
 #include "analysis/statistics/estimates.h"
 #include "engine/outcome.h"
@@ -8,7 +8,7 @@ static const struct schema_column campaign[] = {
     {"campaign_id", "INTEGER PRIMARY KEY", NULL, "number of the campaign in this store"},
     {"name", "TEXT NOT NULL", NULL, "its name"},
     {"document", "TEXT NOT NULL", NULL, "the campaign file as it was read"},
-    {"plan", "TEXT", NULL, "what it was resolved to, JSON"},
+    {"plan", "TEXT", NULL, "the resolved plan, JSON"},
     {"added_at", "TEXT NOT NULL", NULL, "when it was first run, UTC, ISO 8601"},
 };
 
@@ -34,7 +34,7 @@ static const struct schema_column point[] = {
 };
 
 static const struct schema_column campaign_point[] = {
-    {"campaign_id", "INTEGER NOT NULL REFERENCES campaign (campaign_id)", NULL, "campaign that asked for the point"},
+    {"campaign_id", "INTEGER NOT NULL REFERENCES campaign (campaign_id)", NULL, "a campaign with this point"},
     {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "a point of it; campaigns may share points"},
 };
 
@@ -138,7 +138,7 @@ static const struct schema_column attempt[] = {
     {"wall_time", "REAL NOT NULL", "s", "elapsed time"},
     {"peak_memory", "INTEGER NOT NULL", "B", "largest resident memory"},
     {"limited_to", "REAL NOT NULL", NULL, "the limit that ended it: seconds or bytes, 0 for the other reasons"},
-    {"message", "TEXT NOT NULL", NULL, "what it said"},
+    {"message", "TEXT NOT NULL", NULL, "its message"},
     {"host", "TEXT", NULL, "machine"},
     {"rank", "INTEGER NOT NULL", NULL, "MPI rank"},
     {"failed_at", "REAL NOT NULL", "s", "when, seconds since 1970-01-01 UTC"},
@@ -147,7 +147,8 @@ static const struct schema_column attempt[] = {
 static const struct schema_column holder[] = {
     {"holder_id", "INTEGER PRIMARY KEY CHECK (holder_id = 1)", NULL, "always 1"},
     {"host", "TEXT NOT NULL", NULL, "machine of the process that last opened the store for writing"},
-    {"pid", "INTEGER NOT NULL", NULL, "its process number; the row only names the holder, an OS lock is what holds"},
+    {"pid", "INTEGER NOT NULL", NULL,
+     "its process number; the row only names the holder, the store is held by an OS lock"},
     {"since", "TEXT NOT NULL", NULL, "when it did, UTC, ISO 8601"},
 };
 
@@ -167,10 +168,10 @@ static const struct schema_column column_doc[] = {
 
 const struct schema_table schema_tables[] = {
     TABLE(column_doc, "Meaning and unit of every column.", CLUSTERED("table_name, column_name")),
-    TABLE(campaign, "What was asked for.", ROWID),
+    TABLE(campaign, "Campaigns, as their files were read.", ROWID),
     TABLE(session, "Provenance: one row per invocation that wrote to the store.", ROWID),
     TABLE(point, "Points: sets of input values. The resolved scene is the truth.", ROWID),
-    TABLE(campaign_point, "Which campaign asked for which point.", CLUSTERED("campaign_id, point_id")),
+    TABLE(campaign_point, "Which campaign has which point.", CLUSTERED("campaign_id, point_id")),
     TABLE(point_input, "Every active input of every point.", CLUSTERED("point_id, path")),
     TABLE(axis, "Inputs that some campaign varied: columns of the views.", .options = "STRICT, WITHOUT ROWID"),
     TABLE(run, "Runs: one simulation of a point with a seed, and what every engine reports of it.", ROWID,
@@ -187,12 +188,12 @@ const struct schema_table schema_tables[] = {
     TABLE(point_estimate, "Estimates pooled over the runs of a point that count.",
           CLUSTERED("point_id, results_version, ordinal"), .fields = &estimates_table),
     TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
-    TABLE(holder, "Who holds the store for writing, so that a refusal can name them.", ROWID),
+    TABLE(holder, "The process that holds the store for writing, for the message of a refusal.", ROWID),
 };
 const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0];
 
 /* run_statistics covers the means and scatters of the view `points`, in an order that does not depend on which run came
- * first, so that sums have the same bits whatever the number of workers. */
+ * first, so that sums have the same bits for any number of workers. */
 const struct schema_index schema_tables_indexes[] = {
     {"run", "run_statistics", "point_id, results_version, counts, replicate, seed, state", true},
     {"attempt", "attempt_identity", "identity", false},

@@ -1,4 +1,4 @@
-/* What may change after a run is stored: its estimates, and whether it is part of the statistics. */
+/* Changes after a run is stored: its estimates, its part in the statistics, its fields file. */
 #include <stdlib.h>
 
 #include "db/store/internal.h"
@@ -6,7 +6,7 @@
 
 static const char writing[] = "writing estimates";
 
-/* What an estimate belongs to. A run's estimates have no results_version of their own. */
+/* The key of an estimate. The estimates of a run have no results_version. */
 struct estimate_key {
   int64_t owner, ordinal;
   int results_version;

@@ -1,3 +1,4 @@
+/* Opening, closing, batches and sessions of a store. */
 #include "db/store/store.h"
 
 #include <stdlib.h>
@@ -39,7 +40,7 @@ static void release(struct store *store) {
   identities_clear(&store->identities);
   sqlite3_close(store->db);
   if (store->lock >= 0)
-    close(store->lock); /* after SQLite has closed the file: see db/store/lock.h */
+    close(store->lock); /* after SQLite has closed the file (db/store/lock.h) */
   free(store->blob);
   free(store->bins);
   free(store->path);
@@ -54,7 +55,7 @@ static status open_database(struct store *store, int flags, struct error *error)
   return STATUS_OK;
 }
 
-/* Who holds it: the row that the holder wrote, if it is there yet. */
+/* The refusal names the holder, when its row is written already. */
 static status refuse_held(const char *path, struct error *error) {
   struct store *store = NULL;
   sqlite3_stmt *statement = NULL;
@@ -68,33 +69,41 @@ static status refuse_held(const char *path, struct error *error) {
   store_close(store, NULL);
   return status_fail(
       error, STATUS_IO,
-      "%s: the store is being written by another clast%s. Wait until it ends, or stop it; or name another "
-      "store.",
-      path, holder);
+      "%s: the store is being written by another clast%s. Wait until it ends, or stop it; or name another store.", path,
+      holder);
+}
+
+static status take_identity(struct store *store, sqlite3_stmt *row, struct error *error) {
+  if (sqlite3_column_bytes(row, 0) != 16)
+    return status_fail(error, STATUS_CONTENT, "%s: an identity is damaged; `clast check` tells more", store->path);
+  struct identities_state *state = identities_add(&store->identities, sqlite3_column_blob(row, 0));
+  if (!state)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out while reading the stored identities", store->path);
+  if (sqlite3_column_int(row, 1))
+    state->stored = true;
+  else
+    state->attempts++;
+  return STATUS_OK;
 }
 
 static status load_identities(struct store *store, struct error *error) {
+  static const char doing[] = "reading the stored identities";
   sqlite3_stmt *statement = NULL;
   status result = sql_prepare(store->db, "SELECT identity, 1 FROM run UNION ALL SELECT identity, 0 FROM attempt",
-                              &statement, "reading what is there", error);
+                              &statement, doing, error);
+  if (result != STATUS_OK)
+    return result;
   int code = SQLITE_DONE;
-  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-    struct identities_state *entry = sqlite3_column_bytes(statement, 0) == 16
-                                         ? identities_add(&store->identities, sqlite3_column_blob(statement, 0))
-                                         : NULL;
-    if (!entry)
-      result = status_fail(error, STATUS_MEMORY, "%s: memory ran out while reading what is there", store->path);
-    else if (sqlite3_column_int(statement, 1))
-      entry->stored = true;
-    else
-      entry->attempts++;
-  }
+  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
+    result = take_identity(store, statement, error);
   if (result == STATUS_OK && code != SQLITE_DONE)
-    result = sql_fail(store->db, code, "reading what is there", error);
+    result = sql_fail(store->db, code, doing, error);
   sqlite3_finalize(statement);
+  if (result != STATUS_OK)
+    return result;
+
   int64_t lowest = 1, highest = 0;
-  if (result == STATUS_OK)
-    result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
+  result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
   if (result == STATUS_OK)
     result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
   store->lowest_bin = (int)lowest;
@@ -111,10 +120,31 @@ static status write_holder(struct store *store, struct error *error) {
                       host, (long long)getpid());
 }
 
+/* The file is locked: opens it, brings it forward and reads what a writer must know. */
+static status open_locked(struct store *store, struct error *error) {
+  int version = -1;
+  status result = open_database(store, SQLITE_OPEN_READWRITE, error);
+  if (result != STATUS_OK)
+    return result;
+  result = migrate_inspect(store->db, store->path, &version, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_execute(store->db,
+                       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
+                       "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                       "opening for writing", error);
+  if (result != STATUS_OK)
+    return result;
+  result = migrate_bring_forward(store->db, store->path, version, error);
+  if (result != STATUS_OK)
+    return result;
+  result = write_holder(store, error);
+  return result == STATUS_OK ? load_identities(store, error) : result;
+}
+
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
                          struct error *error) {
   bool held = false;
-  int version = -1;
   *out = NULL;
   if (warning_size)
     warning[0] = '\0';
@@ -128,32 +158,20 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     release(store);
     return held ? refuse_held(path, error) : result;
   }
+
   const char *network = lock_network_file_system(store->lock);
   if (network && warning_size)
     snprintf(
         warning, warning_size,
-        "%s lies on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
+        "%s is on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
         "local disk and copy the file when it is done.",
         path, network);
-  result = open_database(store, SQLITE_OPEN_READWRITE, error);
-  if (result == STATUS_OK)
-    result = migrate_inspect(store->db, path, &version, error);
-  if (result == STATUS_OK)
-    result = sql_execute(store->db,
-                         "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
-                         "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
-                         "opening for writing", error);
-  if (result == STATUS_OK)
-    result = migrate_bring_forward(store->db, path, version, error);
-  if (result == STATUS_OK)
-    result = write_holder(store, error);
-  if (result == STATUS_OK)
-    result = load_identities(store, error);
+  result = open_locked(store, error);
   if (result != STATUS_OK) {
     struct stat file;
     release(store);
     if (!existed && stat(path, &file) == 0 && file.st_size == 0)
-      unlink(path); /* ours, and nothing in it */
+      unlink(path); /* this call made it, and it is empty */
     return result;
   }
   *out = store;
@@ -201,7 +219,7 @@ status store_close(struct store *store, struct error *error) {
     result = store_flush(store, error);
     if (result == STATUS_OK)
       result = sql_execute(store->db, "DELETE FROM holder", "closing", error);
-    /* A reader in the middle of a query keeps the log in use: then the file stays in WAL mode, whole and readable. */
+    /* While a reader is in the middle of a query, the file stays in WAL mode, complete and readable. */
     sqlite3_busy_timeout(store->db, 1000);
     sqlite3_exec(store->db, "PRAGMA wal_checkpoint(TRUNCATE); PRAGMA journal_mode = DELETE", NULL, NULL, NULL);
   }
@@ -209,8 +227,9 @@ status store_close(struct store *store, struct error *error) {
   return result;
 }
 
-static void take_back(struct store *store) {
-  sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL); /* an error may have done it already */
+/* Undoes the open batch. */
+static void roll_back(struct store *store) {
+  sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL); /* SQLite may have done so already */
   for (size_t i = 0; i < store->batch_identity_count; i++) {
     struct identities_state *entry = identities_find(&store->identities, store->batch_identities[i]);
     if (entry)
@@ -248,7 +267,7 @@ status store_begin(struct store *store, struct error *error) {
 status store_end(struct store *store, status result, int rows, struct error *error) {
   if (result != STATUS_OK) {
     if (store->in_batch)
-      take_back(store);
+      roll_back(store);
     return result;
   }
   store->batch_rows += rows;
@@ -262,7 +281,7 @@ status store_flush(struct store *store, struct error *error) {
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", "committing", error);
   if (result != STATUS_OK) {
-    take_back(store);
+    roll_back(store);
     return result;
   }
   store->in_batch = false;
@@ -315,7 +334,7 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
     return 0;
   const struct identities_state *entry = identities_find(&store->identities, identity);
   if (!entry || entry->attempts == 0)
-    return 0; /* nearly always: no query */
+    return 0; /* the usual case needs no query */
   sqlite3_stmt *statement = NULL;
   int count = (int)entry->attempts;
   if (sql_prepare(store->db,
@@ -338,7 +357,7 @@ status store_export(struct store *store, const char *path, struct error *error) 
   status result = store_flush(store, error);
   if (result != STATUS_OK)
     return result;
-  /* query_only refuses VACUUM INTO, though it writes another file only. */
+  /* query_only refuses VACUUM INTO, although it writes another file. */
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
   result = sql_executef(store->db, "writing the hand-over file", error, "VACUUM INTO %Q", path);
   if (!store->writer)

@@ -1,10 +1,9 @@
-/* The store: every result of a campaign in one SQLite file that any tool can read (design: joint 5).
+/* The store: every result of a campaign in one SQLite file that any tool can read. db/README.md describes it for users.
  *
- * One writer under an OS lock that dies with it; many readers that never block it (WAL while running; a clean end
- * leaves journal_mode=DELETE). STRICT tables, foreign keys, application_id, user_version. The schema is in
- * schemas/results.sql, made from the field tables plus db/store/schema_tables.c; `point.scene` (resolved JSON) and
- * `point_input` are the truth, the views runs, points, spectra, estimates are regenerated when the set of varied paths
- * grows. */
+ * One process writes, under an OS lock that ends with the process; any number of readers never block it (WAL mode while
+ * writing; a clean end leaves journal_mode=DELETE). The tables follow from db/store/schema_tables.c and the field
+ * tables; schemas/results.sql is a copy of the schema. `point.scene` (resolved JSON) and `point_input` define a point.
+ * The views runs, points, spectra and estimates are made anew when campaigns vary more inputs. */
 #ifndef CLAST_DB_STORE_STORE_H
 #define CLAST_DB_STORE_STORE_H
 
@@ -17,16 +16,16 @@
 
 struct store;
 
-/* Open for writing: creates the file when absent, migrates an older one (after VACUUM INTO a backup), refuses a newer
- * or foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
+/* Opens for writing: creates the file when absent, brings an older one forward (and keeps a copy of it), refuses a
+ * newer or foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
  * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
  * system), or "". The lock dies with the process; a child forked while the store is open shares it until it ends or
  * executes another program. */
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
-/* Read-only (SQLITE_OPEN_READONLY + query_only): STATUS_MISSING when absent. Never blocks the writer. Questions are
- * asked through db/ask/query.h, which works on a writer too (and sees its open batch). */
+/* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. db/ask/query.h reads from a store; it
+ * works on a writer too, and then sees its open batch. */
 status store_open_reader(const char *path, struct store **out, struct error *error);
-/* Commits, checkpoints, back to journal_mode=DELETE when writing. NULL is fine. */
+/* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
 
 /* Provenance: one row per invocation of `clast run`. `facts` is a JSON object (version, commit, compiler, flags, cpu
@@ -45,7 +44,7 @@ struct store_run {
   int64_t replicate;
   uint64_t seed;
   uint8_t identity[16];
-  bool surplus; /* beyond a stopping prefix: kept, left out of statistics */
+  bool surplus; /* beyond the prefix of a stopping rule: kept, but left out of statistics */
   const struct engine_kind *kind;
   const struct outcome *outcome;
   const void *result;               /* kind->results->size bytes */
@@ -60,8 +59,9 @@ struct store_run {
   int rank;
   const char *fields_path; /* HDF5 file kept, or NULL */
 };
-/* Adds run, result_<engine>, masses, spectrum rows and the running point sums in one transaction with its batch (500
- * rows or 1 s, BEGIN IMMEDIATE). Adding an identity that is there already is STATUS_OK and changes nothing. */
+/* Adds the rows of run, result_<engine>, fragment_mass, spectrum and estimate and the point's running sums, in the
+ * transaction of its batch (500 rows or 1 s). A run whose identity is stored already is STATUS_OK and changes
+ * nothing. */
 status store_add_run(struct store *store, const struct store_run *run, struct error *error);
 
 struct store_attempt {
@@ -73,62 +73,64 @@ struct store_attempt {
   int exit_code, signal;
   double wall_s;
   int64_t peak_memory;
-  double limit; /* the limit that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
+  double limit; /* that ended it: s (time_limit) or bytes (memory_limit); 0 for the other reasons */
   const char *message, *host;
   int rank;
 };
 status store_add_attempt(struct store *store, const struct store_attempt *attempt, struct error *error);
 
-/* The estimates of a run (run_id > 0) or of a whole point (run_id = 0, pooled): replaces those of the same owner and
- * results_version. Joins the open batch. */
+/* Replaces the estimates of a run (run_id > 0), or those of a point for one results_version (run_id = 0). Joins the
+ * open batch. */
 status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id, int results_version, size_t count,
                            const struct estimate *rows, struct error *error);
-/* A stopping rule has spoken: the point's replicates below `prefix` are its statistics, the others are surplus. Running
- * sums follow. Joins the open batch. */
+/* After a decision of a stopping rule: the point's replicates below `prefix` are its statistics, the others are
+ * surplus. The running sums follow. Joins the open batch. */
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 status store_tick(struct store *store, struct error *error);  /* commit when the batch is older than 1 s */
 
-/* What is there already: is this identity stored (resume)? */
+/* Is a run of this identity stored? */
 bool store_has_run(struct store *store, const uint8_t identity[16]);
-/* Failed attempts so far of an identity that still count: those ended by a time or memory limit below the limits given
- * (s, bytes; 0 = no limit now) do not, so that raising a limit retries them. */
+/* Failed attempts of an identity. Those that ended at a lower time or memory limit than the one given (s, bytes; 0: no
+ * limit) are not counted, so that a raised limit tries again. */
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
 
-/* The stored runs of a point, for a driver that resumes and for stopping rules; in order of replicate. `row` names the
- * quantity wanted: of outcome_table, or else of the engine's results. Borrowed for the call. */
+/* A stored run of a point, for a driver that resumes and for stopping rules. */
 struct store_point_run {
   int64_t replicate;
   uint64_t seed;
   uint8_t identity[16];
   bool surplus;
   int state;    /* enum outcome_state */
-  double value; /* of `row`, NaN when NULL in the store */
+  double value; /* of the quantity; NaN when the store has none */
   double wall_s, cpu_s;
   int64_t peak_memory;
   const char *fields_path; /* NULL when none was kept */
 };
+/* Gives the runs of a point and of the engine's results_version, in order of replicate, each borrowed for the call.
+ * `row` is the quantity: a row of outcome_table (of_outcome), or else of the engine's results. */
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
                         bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
                         struct error *error);
-/* The HDF5 file kept of a stored run (written by a replay after the run, when a campaign asks for it later). */
+/* Notes the HDF5 file of a stored run: a replay may write it after the run. */
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
-/* Checks integrity, foreign keys, orphans, missing field files, running sums and spectra against the masses, masses
- * against the total mass, identities against the scenes; each problem as a line to `line`. STATUS_CONTENT when any. For
- * a reader or a writer. */
+/* Checks the file's integrity, foreign keys, rows without an owner, missing fields files, running sums and spectra
+ * against the masses, masses against the total mass, identities against the scenes. Each problem is one call of `line`.
+ * STATUS_CONTENT when there are any. For a reader or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);
-/* All of `source` that `store` (a writer) lacks, one transaction per source; *added counts the runs. Of a run that both
- * hold, ours stays. Merging twice adds nothing. */
-/* *differing: runs that both have with other masses or another state. Ours stay; whoever calls must say so. */
+/* Adds the runs of the store `source` that `store` (a writer) lacks, in one transaction. *added: how many. *differing:
+ * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
+ * them. Merging twice adds nothing. */
 status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error);
-/* One compact file for hand-over (VACUUM INTO); refuses to overwrite. */
+/* Writes a compact copy (VACUUM INTO); refuses to overwrite. */
 status store_export(struct store *store, const char *path, struct error *error);
 
-/* What a determinism test compares: every run by identity with all its deterministic values (%a), masses and spectrum;
- * no time, host or session, no surplus run. Same text whatever the number of workers. */
+/* Writes the deterministic content as text: every run that is not surplus, by identity, with its results, masses,
+ * spectrum and estimates, doubles in hexadecimal. No times, hosts or sessions. The same text for any number of
+ * workers. */
 status store_dump(struct store *store, FILE *out, struct error *error);
 
 #endif

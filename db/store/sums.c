@@ -1,3 +1,4 @@
+/* Running sums of points: gathered in a hash table, written with the batch, made anew from the rows. */
 #include "db/store/sums.h"
 
 #include <stdlib.h>
@@ -20,7 +21,7 @@ struct sums_entry {
   UT_hash_handle hh;
   struct sums_row row;
   bool is_added;
-  bool touched; /* in this batch */
+  bool changed; /* in this batch */
 };
 
 enum { BLOCK = 1024 };
@@ -58,7 +59,7 @@ struct sums_row *sums_at(struct sums *sums, int64_t point_id, int results_versio
       return NULL;
     sums->sorted = false;
   }
-  entry->touched = true;
+  entry->changed = true;
   return &entry->row;
 }
 
@@ -137,11 +138,11 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error) {
     HASH_SRT(hh, sums->table, by_key);
   sums->sorted = true;
   for (struct sums_entry *entry = sums->table; result == STATUS_OK && entry; entry = entry->hh.next) {
-    if (!entry->touched)
+    if (!entry->changed)
       continue;
     result = write_row(sums, &entry->row, error);
     entry->row = (struct sums_row){.key = entry->row.key};
-    entry->touched = false;
+    entry->changed = false;
   }
   if (result != STATUS_OK || HASH_COUNT(sums->table) > ROWS_KEPT)
     sums_forget(sums);
@@ -209,4 +210,27 @@ status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
   status result = sql_integer(db, sql, 0, count, error);
   sqlite3_free(sql);
   return result;
+}
+
+status sums_cover_bins(sqlite3 *db, int lowest, int highest, struct error *error) {
+  static const char doing[] = "adding bin edges";
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(db, "INSERT OR IGNORE INTO bin (bin, lower, upper) VALUES (?1, ?2, ?3)", &statement,
+                              doing, error);
+  for (int bin = lowest; result == STATUS_OK && bin <= highest; bin++) {
+    sqlite3_bind_int(statement, 1, bin);
+    sqlite3_bind_double(statement, 2, spectrum_edge(bin));
+    sqlite3_bind_double(statement, 3, spectrum_edge(bin + 1));
+    result = sql_run(statement, doing, error);
+  }
+  sqlite3_finalize(statement);
+  return result;
+}
+
+status sums_cover_all_bins(sqlite3 *db, struct error *error) {
+  int64_t lowest, highest;
+  status result = sql_integer(db, "SELECT min(bin) FROM spectrum", 0, &lowest, error);
+  if (result == STATUS_OK)
+    result = sql_integer(db, "SELECT max(bin) FROM spectrum", -1, &highest, error);
+  return result == STATUS_OK ? sums_cover_bins(db, (int)lowest, (int)highest, error) : result;
 }

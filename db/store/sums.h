@@ -1,6 +1,6 @@
-/* Running sums of points: point_total and point_spectrum; a point whose sums change loses its pooled estimates. A batch
- * gathers them in memory and writes each changed row once, in the transaction that adds the runs; rebuilding from the
- * rows gives the same. */
+/* Running sums of points: tables point_total and point_spectrum. A point whose sums change loses its pooled estimates.
+ * A batch gathers the sums in memory and writes each changed row once, in the transaction that adds the runs.
+ * Rebuilding them from the rows gives the same. */
 #ifndef CLAST_DB_STORE_SUMS_H
 #define CLAST_DB_STORE_SUMS_H
 
@@ -35,9 +35,15 @@ status sums_write(struct sums *sums, sqlite3 *db, struct error *error);
 void sums_forget(struct sums *sums); /* what was gathered, after a rollback */
 void sums_clear(struct sums *sums);  /* everything, statements too */
 
-/* Make the sums of one point (0: of all) anew from run, spectrum and fragment rows. Within the caller's transaction. */
+/* Makes the sums of one point (0: of all) anew from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
 /* Rows in which the running sums differ from the rows they sum (doubles: by more than their rounding). */
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
+
+/* Adds to table bin the edges of the bins lowest..highest that it lacks, so that spectra can be read without the
+ * program. Within the caller's transaction. */
+status sums_cover_bins(sqlite3 *db, int lowest, int highest, struct error *error);
+/* The same for all bins in table spectrum. */
+status sums_cover_all_bins(sqlite3 *db, struct error *error);
 
 #endif

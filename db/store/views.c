@@ -1,3 +1,4 @@
+/* Writes the views, and the plain SQL of their statistics. */
 #include "db/store/views.h"
 
 #include <stdlib.h>
@@ -59,7 +60,7 @@ static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
                       "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT IN "
                       "('run_id', 'point_id', 'replicate', 'seed', 'identity')",
                       write_text, out, error);
-  if (result == STATUS_OK) /* an engine's column that is called like one of ours gets the table's name before it */
+  if (result == STATUS_OK) /* an engine's column with the name of a column of run gets its table's name in front */
     result = each_row(db,
                       "SELECT format('  %w.\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
                       "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "

@@ -7,10 +7,10 @@
 
 #include "db/sql.h"
 
-/* Drop and create all four, and their rows in column_doc. Within the caller's transaction. */
+/* Drops and creates all four, and their rows in column_doc. Within the caller's transaction. */
 status views_regenerate(sqlite3 *db, struct error *error);
 
-/* The column of a new axis: its path with underscores, with "input_" before it when a view has such a column already.
+/* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already.
  */
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error);
 
