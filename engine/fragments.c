@@ -1,9 +1,10 @@
+/* Connected components, and what moves with them: mass, centre, velocity, spin. */
 #include "engine/fragments.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Root of i with path halving; roots are the lowest index of their set, so labels do not depend on the links' order. */
+/* Path halving. The root is the lowest index of its set, so labels do not depend on the order of the links. */
 uint32_t fragments_root(uint32_t *parent, uint32_t i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -42,7 +43,7 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     count += label[i] == i;
-  /* number[root] = fragment number; on exhausted memory the labels stay roots and the count is 0. */
+  /* number[root]: the number of its fragment. Without memory the labels stay roots and the count is 0. */
   struct component *components = malloc((count ? count : 1) * sizeof *components);
   uint32_t *number = malloc((n ? n : 1) * sizeof *number);
   if (!components || !number) {
@@ -62,8 +63,8 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   qsort(components, count, sizeof *components, by_descending_mass);
   for (size_t k = 0; k < count; k++)
     number[components[k].root] = (uint32_t)k;
-  /* A root is the lowest index of its set, so label[root] is read as a root before it is overwritten only if members
-   * come after it: go downwards. */
+  /* label[root] must be read as a root until all members of its set have their number. A root is the lowest index of
+   * its set, so the loop goes downwards. */
   for (size_t i = n; i-- > 0;)
     label[i] = number[fragments_root(label, (uint32_t)i)];
   free(components);
@@ -71,23 +72,24 @@ size_t fragments_label(size_t n, const double *mass, size_t link_count, const ui
   return count;
 }
 
-/* Labels, masses, centres of mass, velocities, kinetic energies, counts: what plane and space have in common. */
+static status no_memory(size_t n, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains or particles", n);
+}
+
+/* The part that plane and space share: labels, masses, centres of mass, velocities, kinetic energies, counts. */
 static status gather(size_t n, const struct fragment_member *members, size_t link_count, const uint32_t (*links)[2],
                      uint32_t *label, struct fragment **out, size_t *count, struct error *error) {
-  status code = STATUS_OK;
   double *mass = malloc(n * sizeof *mass);
-  struct fragment *fragments = NULL;
-  size_t found = 0;
-  if (mass) {
-    for (size_t i = 0; i < n; i++)
-      mass[i] = members[i].mass;
-    found = fragments_label(n, mass, link_count, links, label);
-  }
-  fragments = found ? calloc(found, sizeof *fragments) : NULL;
-  if (!fragments) {
-    code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
-    goto cleanup;
-  }
+  if (!mass)
+    return no_memory(n, error);
+  for (size_t i = 0; i < n; i++)
+    mass[i] = members[i].mass;
+  size_t found = fragments_label(n, mass, link_count, links, label);
+  free(mass);
+  struct fragment *fragments = found ? calloc(found, sizeof *fragments) : NULL;
+  if (!fragments)
+    return no_memory(n, error);
+
   for (size_t i = 0; i < n; i++) {
     struct fragment *f = &fragments[label[i]];
     const struct fragment_member *m = &members[i];
@@ -108,15 +110,13 @@ static status gather(size_t n, const struct fragment_member *members, size_t lin
     }
   *out = fragments;
   *count = found;
-cleanup:
-  free(mass);
-  return code;
+  return STATUS_OK;
 }
 
-/* Spin and moment about z. */
+/* Spin and moment of inertia about z. */
 static void turn_in_plane(size_t n, const struct fragment_member *members, const uint32_t *label, size_t count,
                           struct fragment *fragments) {
-  for (size_t i = 0; i < n; i++) { /* parallel axes: about the fragment's centre of mass */
+  for (size_t i = 0; i < n; i++) { /* parallel axes theorem: about the fragment's centre of mass */
     struct fragment *f = &fragments[label[i]];
     const struct fragment_member *m = &members[i];
     double x = m->position[0] - f->position[0], y = m->position[1] - f->position[1];
@@ -136,8 +136,9 @@ status fragments_find_plane(size_t n, const struct fragment_member *members, siz
   if (n == 0)
     return STATUS_OK;
   uint32_t *labels = label ? label : malloc(n * sizeof *labels);
-  status code = labels ? gather(n, members, link_count, links, labels, out, count, error)
-                       : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
+  if (!labels)
+    return no_memory(n, error);
+  status code = gather(n, members, link_count, links, labels, out, count, error);
   if (!code)
     turn_in_plane(n, members, labels, *count, *out);
   if (!label)
@@ -160,11 +161,18 @@ static void rotate(double a[3][3], double axis[3][3], int p, int q) {
     double left = a[p][k], right = a[q][k];
     a[p][k] = c * left - s * right;
     a[q][k] = s * left + c * right;
-    left = axis[p][k], right = axis[q][k];
+    left = axis[p][k];
+    right = axis[q][k];
     axis[p][k] = c * left - s * right;
     axis[q][k] = s * left + c * right;
   }
   a[p][q] = a[q][p] = 0;
+}
+
+static void swap(double *a, double *b) {
+  double v = *a;
+  *a = *b;
+  *b = v;
 }
 
 void fragments_principal(const double tensor[6], double value[3], double axis[3][3]) {
@@ -174,24 +182,19 @@ void fragments_principal(const double tensor[6], double value[3], double axis[3]
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       axis[i][j] = i == j;
-  for (int sweep = 0; sweep < 12; sweep++) { /* quadratic: five are enough in doubles */
+  for (int sweep = 0; sweep < 12; sweep++) { /* convergence is quadratic: five are enough in double precision */
     rotate(a, axis, 0, 1);
     rotate(a, axis, 0, 2);
     rotate(a, axis, 1, 2);
   }
   for (int i = 0; i < 3; i++)
     value[i] = a[i][i];
-  for (int pass = 0; pass < 2; pass++)
+  for (int pass = 0; pass < 2; pass++) /* ascending */
     for (int i = 0; i < 2 - pass; i++)
       if (value[i] > value[i + 1]) {
-        double v = value[i];
-        value[i] = value[i + 1];
-        value[i + 1] = v;
-        for (int k = 0; k < 3; k++) {
-          v = axis[i][k];
-          axis[i][k] = axis[i + 1][k];
-          axis[i + 1][k] = v;
-        }
+        swap(&value[i], &value[i + 1]);
+        for (int k = 0; k < 3; k++)
+          swap(&axis[i][k], &axis[i + 1][k]);
       }
 }
 
@@ -201,16 +204,54 @@ static void solve_spin(const double tensor[6], const double momentum[3], double 
   fragments_principal(tensor, value, axis);
   spin[0] = spin[1] = spin[2] = 0;
   for (int k = 0; k < 3; k++)
-    if (value[k] > 1e-12 * value[2]) { /* below: rounding of particles in a line */
+    if (value[k] > 1e-12 * value[2]) { /* smaller values are rounding errors of particles in a line */
       double along = (axis[k][0] * momentum[0] + axis[k][1] * momentum[1] + axis[k][2] * momentum[2]) / value[k];
       for (int d = 0; d < 3; d++)
         spin[d] += along * axis[k][d];
     }
 }
 
+/* Inertia tensor (xx xy xz yy yz zz) and angular momentum about a fragment's centre of mass. */
 struct turning {
   double inertia[6], momentum[3];
 };
+
+static void add_turning(struct turning *t, const struct fragment *f, const struct fragment_member *m) {
+  double r[3], v[3], own = m->moment_of_inertia;
+  for (int d = 0; d < 3; d++) {
+    r[d] = m->position[d] - f->position[d];
+    v[d] = m->velocity[d] - f->velocity[d];
+  }
+  double xx = m->mass * r[0] * r[0], yy = m->mass * r[1] * r[1], zz = m->mass * r[2] * r[2];
+  const double tensor[6] = {yy + zz + own, -m->mass * r[0] * r[1], -m->mass * r[0] * r[2],
+                            zz + xx + own, -m->mass * r[1] * r[2], xx + yy + own};
+  for (int k = 0; k < 6; k++)
+    t->inertia[k] += tensor[k];
+  t->momentum[0] += m->mass * (r[1] * v[2] - r[2] * v[1]);
+  t->momentum[1] += m->mass * (r[2] * v[0] - r[0] * v[2]);
+  t->momentum[2] += m->mass * (r[0] * v[1] - r[1] * v[0]) + own * m->spin;
+}
+
+static status turn_in_space(size_t n, const struct fragment_member *members, const uint32_t *label, size_t count,
+                            struct fragment *fragments, struct error *error) {
+  struct turning *turning = calloc(count, sizeof *turning);
+  if (!turning)
+    return no_memory(n, error);
+  for (size_t i = 0; i < n; i++) {
+    const struct fragment *f = &fragments[label[i]];
+    if (f->count == 1 && members[i].moment_of_inertia == 0)
+      continue; /* dust, most of a shattered body: it lies at its own centre */
+    add_turning(&turning[label[i]], f, &members[i]);
+  }
+  for (size_t k = 0; k < count; k++) {
+    const double *tensor = turning[k].inertia;
+    fragments[k].moment_of_inertia = (tensor[0] + tensor[3] + tensor[5]) / 3;
+    if (fragments[k].moment_of_inertia > 0)
+      solve_spin(tensor, turning[k].momentum, fragments[k].spin);
+  }
+  free(turning);
+  return STATUS_OK;
+}
 
 status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
@@ -220,48 +261,17 @@ status fragments_find_space(size_t n, const struct fragment_member *members, siz
   if (n == 0)
     return STATUS_OK;
   uint32_t *labels = label ? label : malloc(n * sizeof *labels);
-  struct turning *turning = NULL;
-  status code = labels ? gather(n, members, link_count, links, labels, out, count, error)
-                       : status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu particles", n);
-  if (code)
-    goto cleanup;
-  turning = calloc(*count, sizeof *turning);
-  if (!turning) {
-    free(*out);
-    *out = NULL;
-    *count = 0;
-    code = status_fail(error, STATUS_MEMORY, "no memory for the fragments of %zu particles", n);
-    goto cleanup;
-  }
-  for (size_t i = 0; i < n; i++) {
-    const struct fragment *f = &(*out)[labels[i]];
-    const struct fragment_member *m = &members[i];
-    struct turning *t = &turning[labels[i]];
-    if (f->count == 1 && m->moment_of_inertia == 0)
-      continue; /* dust, most of a shattered body: it stands in its own centre */
-    double r[3], v[3], own = m->moment_of_inertia;
-    for (int d = 0; d < 3; d++) {
-      r[d] = m->position[d] - f->position[d];
-      v[d] = m->velocity[d] - f->velocity[d];
-    }
-    double xx = m->mass * r[0] * r[0], yy = m->mass * r[1] * r[1], zz = m->mass * r[2] * r[2];
-    const double tensor[6] = {yy + zz + own, -m->mass * r[0] * r[1], -m->mass * r[0] * r[2],
-                              zz + xx + own, -m->mass * r[1] * r[2], xx + yy + own};
-    for (int k = 0; k < 6; k++)
-      t->inertia[k] += tensor[k];
-    t->momentum[0] += m->mass * (r[1] * v[2] - r[2] * v[1]);
-    t->momentum[1] += m->mass * (r[2] * v[0] - r[0] * v[2]);
-    t->momentum[2] += m->mass * (r[0] * v[1] - r[1] * v[0]) + own * m->spin;
-  }
-  for (size_t k = 0; k < *count; k++) {
-    const double *tensor = turning[k].inertia;
-    (*out)[k].moment_of_inertia = (tensor[0] + tensor[3] + tensor[5]) / 3;
-    if ((*out)[k].moment_of_inertia > 0)
-      solve_spin(tensor, turning[k].momentum, (*out)[k].spin);
-  }
-cleanup:
+  if (!labels)
+    return no_memory(n, error);
+  status code = gather(n, members, link_count, links, labels, out, count, error);
+  if (!code)
+    code = turn_in_space(n, members, labels, *count, *out, error);
   if (!label)
     free(labels);
-  free(turning);
+  if (!code)
+    return STATUS_OK;
+  free(*out);
+  *out = NULL;
+  *count = 0;
   return code;
 }

@@ -1,5 +1,5 @@
-/* Fragments: connected components over surviving links, as a public pure function (design: joint 6). An engine calls it
- * at the end of a run; analysis may call it again on a snapshot. */
+/* Fragments: connected components of grains or particles over links that hold. Public pure functions: an engine calls
+ * them at the end of a run, analysis may call them again on a snapshot. */
 #ifndef CLAST_ENGINE_FRAGMENTS_H
 #define CLAST_ENGINE_FRAGMENTS_H
 
@@ -10,12 +10,12 @@
 #include "schemas/status.h"
 
 struct fragment {
-  double mass;              /* kg (2D: kg per metre of thickness) */
-  double position[3];       /* m, centre of mass */
-  double velocity[3];       /* m/s, of the centre of mass */
-  double spin[3];           /* rad/s: angular momentum about the centre of mass over moment of inertia (2D: z only) */
+  double mass;        /* kg (2D: kg per metre of thickness) */
+  double position[3]; /* m, centre of mass */
+  double velocity[3]; /* m/s, of the centre of mass */
+  double spin[3]; /* rad/s: inverse moment of inertia times angular momentum, about the centre of mass (2D: z only) */
   double moment_of_inertia; /* kg m^2, about the centre of mass (2D: about z; 3D: trace/3 of the tensor) */
-  double kinetic_energy;    /* J, all of it: translation + rotation + internal relative motion */
+  double kinetic_energy;    /* J: translation, rotation and internal motion */
   uint32_t count;           /* grains or particles in it */
   uint32_t first;           /* its lowest member index */
 };
@@ -24,34 +24,34 @@ struct fragment {
  * mass, ties by lowest member index. Returns the number of fragments. `label` has n entries, owned by the caller. */
 size_t fragments_label(size_t n, const double *mass, size_t link_count, const uint32_t (*links)[2], uint32_t *label);
 
-/* What a fragment is made of: grains, or particles. */
+/* A grain or a particle. */
 struct fragment_member {
-  double mass;
-  double position[3], velocity[3];
-  double spin;              /* rad/s about z (particles: 0) */
-  double moment_of_inertia; /* kg m^2 about its own centre (particles: 0) */
+  double mass;                     /* kg (2D: kg per metre of thickness) */
+  double position[3], velocity[3]; /* m, m/s */
+  double spin;                     /* rad/s about z (particles: 0) */
+  double moment_of_inertia;        /* kg m^2 about its own centre (particles: 0) */
 };
 
-/* Label, then measure, in the plane: spin and moment of inertia are about z. *out has *count fragments by descending
- * mass (malloc'd, owned by the caller; NULL when n is 0); `label` (n entries) may be NULL. STATUS_MEMORY. */
+/* Finds and measures fragments in the plane: spin and moment of inertia are about z. *out has *count fragments by
+ * descending mass (malloc'd, owned by the caller; NULL when n is 0); `label` (n entries) may be NULL. STATUS_MEMORY. */
 status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
                             struct error *error);
 
-/* The same in space. Spin is I^-1 L with the whole inertia tensor I about the centre of mass, so that a rigidly turning
- * piece of any shape gives its own angular velocity; about axes without inertia (one particle, particles in a line) it
- * is 0. moment_of_inertia is trace(I)/3. Members' own moments count as spheres', their own spins about z. */
+/* The same in space. Spin is I^-1 L with the full inertia tensor I about the centre of mass: the angular velocity of a
+ * rigidly turning fragment of any shape. About an axis without inertia (one particle, particles in a line) it is 0.
+ * moment_of_inertia is trace(I)/3. A member's own moment is that of a sphere, its own spin is about z. */
 status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
                             const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
                             struct error *error);
 
 /* Principal axes of a symmetric tensor xx xy xz yy yz zz: values ascending, axis[k] the unit vector of value[k].
- * Jacobi's rotations: good to rounding for any tensor of finite numbers. */
+ * Jacobi's rotations: exact to rounding for every finite tensor. */
 void fragments_principal(const double tensor[6], double value[3], double axis[3][3]);
 
-/* Union-find by hand: parent[i] = i at first. The root is the lowest index of the set. */
+/* The parts of union-find: set parent[i] = i at first. The root is the lowest index of the set. */
 uint32_t fragments_root(uint32_t *parent, uint32_t i);
-/* True when a and b were apart until now. */
+/* Joins two sets. True when a and b were in different ones. */
 bool fragments_join(uint32_t *parent, uint32_t a, uint32_t b);
 
 #endif

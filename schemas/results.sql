@@ -241,72 +241,72 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
 CREATE TABLE result_sph ( -- What this engine reports beyond the columns of table run, one to one.
   run_id INTEGER PRIMARY KEY REFERENCES run (run_id), -- the run
   stop_reason TEXT, -- Why the run ended. One of: running, quiet, end-time, fault
-  particles INTEGER, -- [1] Particles of the target (of a collision: of both bodies).
-  projectile_particles INTEGER, -- [1] Particles of the projectile, or of the piston.
-  flaws INTEGER, -- [1] Explicit flaws in all bodies.
-  target_mass REAL, -- [kg] Mass of the target: M of all mass fractions, which leave the projectile out.
+  particles INTEGER, -- [1] Number of particles in the target (in both bodies of a collision).
+  projectile_particles INTEGER, -- [1] Number of particles in the projectile or piston.
+  flaws INTEGER, -- [1] Number of explicit flaws in all bodies.
+  target_mass REAL, -- [kg] Mass of the target. All mass fractions are shares of it, so they leave the projectile out.
   projectile_mass REAL, -- [kg] Mass of the projectile; off without one.
-  specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the target's mass; off without one.
-  fracture_ceased INTEGER, -- Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break.
-  first_damage REAL, -- [s] Time at which damage of a body with flaws began; off when there is none.
-  cease_time REAL, -- [s] Time since which damage has grown by less than stop.quiet_growth; off when it still grows.
-  mean_damage REAL, -- [1] Mean damage of the target at the end, by mass.
-  undamaged_fraction REAL, -- [1] Mass share of the target's particles below fragments.damage, before the static pass.
-  mean_distention REAL, -- [1] Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.
-  largest_bare_fraction REAL, -- [1] M_1/M with the static pass and without the veneer of damaged particles.
-  largest_veneer_fraction REAL, -- [1] M_1/M with the static pass and with the veneer.
-  largest_dynamic_fraction REAL, -- [1] M_1/M without the static pass, with the veneer.
-  largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid with the largest fragment's moments of inertia.
-  largest_axis_short REAL, -- [1] Shortest over longest axis of that ellipsoid: 1 is a sphere.
-  largest_speed REAL, -- [m/s] Speed of the largest fragment.
-  second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is none.
-  second_angle REAL, -- [rad] Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.
-  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target that leaves it faster than crater.ejection_speed.
-  ejecta_momentum REAL, -- [kg m/s] Impact: momentum of that mass, along the outward normal.
-  crater_depth REAL, -- [m] Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.
-  crater_radius REAL, -- [m] Impact: radius of a circle of the crater's area at the first surface.
-  crater_volume REAL, -- [m^3] Impact: volume between the first and the present surface of what is retained.
-  crater_compaction_share REAL, -- [1] Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by compaction alone. Off when there is neither.
-  compaction_mass_fraction REAL, -- [1] Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.
-  compaction_volume REAL, -- [m^3] Volume that the target's retained matter has lost by closing pores; off without pores.
-  compaction_depth REAL, -- [m] First depth of the deepest matter near the axis with distention below 1.01; off without pores.
-  compaction_reach REAL, -- [m] Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.
+  specific_energy REAL, -- [J/kg] Q: kinetic energy of the projectile over the mass of the target; off without a projectile.
+  fracture_ceased INTEGER, -- Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.
+  first_damage REAL, -- [s] Time when damage of a body with flaws began; off without damage.
+  cease_time REAL, -- [s] Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.
+  mean_damage REAL, -- [1] Mean damage D of the target at the end, weighted by mass.
+  undamaged_fraction REAL, -- [1] Mass share of the target's particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.
+  mean_distention REAL, -- [1] Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.
+  largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its veneer (its layer of broken particles) over the target's mass, with the static strength.
+  largest_veneer_fraction REAL, -- [1] M_1/M with the veneer: mass of the largest fragment over the target's mass, with the static strength.
+  largest_dynamic_fraction REAL, -- [1] M_1/M with the veneer and without the static strength.
+  largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.
+  largest_axis_short REAL, -- [1] Shortest over longest axis of the same ellipsoid. 1 is a sphere.
+  largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass.
+  second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
+  second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.
+  ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target that moves outwards faster than crater.ejection_speed.
+  ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
+  crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
+  crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
+  crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
+  crater_compaction_share REAL, -- [1] Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
+  compaction_mass_fraction REAL, -- [1] Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.
+  compaction_volume REAL, -- [m^3] Impact: volume that the retained matter lost as its pores closed; off without pores.
+  compaction_depth REAL, -- [m] Impact: depth at the start of the deepest compacted particle near the axis; off without pores.
+  compaction_reach REAL, -- [m] Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off without pores.
   energy_kinetic REAL, -- [J] Kinetic energy at the end.
   energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
-  energy_damped REAL, -- [J] Energy taken by damped sides.
+  energy_damped REAL, -- [J] Energy that damped sides removed.
   energy_work_of_held REAL, -- [J] Work done by grips.
-  energy_clamped REAL, -- [J] Energy put in where internal energy would have become negative.
-  energy_input REAL, -- [J] Energy put in: kinetic energy at the start, and the size of the grips' work.
-  clamped_share REAL, -- [1] energy.clamped over energy_input: booked apart, not credited in energy_error.
-  density_held_share REAL, -- [1] Particle-steps at the lowest density allowed, over all: clamps that put in no energy.
-  angular_momentum_error REAL, -- [1] Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats.
-  limited_courant REAL, -- [1] Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.
-  limited_force REAL, -- [1] Share of the steps whose length the acceleration set.
-  limited_damage REAL, -- [1] Share of the steps whose length the growth of damage set.
-  limited_distention REAL, -- [1] Share of the steps whose length the closing of pores set.
-  limited_energy REAL, -- [1] Share of the steps whose length the change of internal energy set.
-  limited_density REAL, -- [1] Share of the steps whose length the change of density set.
+  energy_clamped REAL, -- [J] Energy added where internal energy would have become negative.
+  energy_input REAL, -- [J] Energy put in: kinetic energy at the start plus the absolute work of grips.
+  clamped_share REAL, -- [1] energy.clamped over energy_input. energy_error does not subtract it.
+  density_held_share REAL, -- [1] Share of all particle steps that held the density at its lower limit. Such a step adds no energy.
+  angular_momentum_error REAL, -- [1] Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target's extent. Only axes count across which nothing is periodic.
+  limited_courant REAL, -- [1] Share of the steps limited by the speed of sound and viscosity, or by a damped side.
+  limited_force REAL, -- [1] Share of the steps limited by the acceleration.
+  limited_damage REAL, -- [1] Share of the steps limited by the growth of damage.
+  limited_distention REAL, -- [1] Share of the steps limited by the closing of pores.
+  limited_energy REAL, -- [1] Share of the steps limited by the change of internal energy.
+  limited_density REAL, -- [1] Share of the steps limited by the change of density.
   neighbours REAL, -- [1] Mean number of neighbours within 2h at the end.
   peak_stress REAL, -- [Pa] Stretch: largest mean axial stress between the grips.
-  peak_strain REAL, -- [1] Stretch: strain rate times time, then.
-  peak_time REAL, -- [s] Stretch: that time.
-  cracks REAL, -- [1] Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.
+  peak_strain REAL, -- [1] Stretch: strain (strain rate times time) at the largest stress.
+  peak_time REAL, -- [s] Stretch: time of the largest stress.
+  cracks REAL, -- [1] Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static strength and veneer. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
-  rebound REAL, -- [1] Collision: speed at which the bodies part over the speed of approach.
-  shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.
-  shock_speed_exact REAL, -- [m/s] Piston: what the jump conditions give for it.
-  shock_density REAL, -- [kg/m^3] Piston: mean density of the middle half from the piston to the shock.
-  shock_density_exact REAL, -- [kg/m^3] Piston: what the jump conditions give for it.
-  shock_pressure REAL, -- [Pa] Piston: mean pressure there.
-  shock_pressure_exact REAL, -- [Pa] Piston: what the jump conditions give for it.
-  shock_distention REAL, -- [1] Piston: mean distention there; off without pores.
-  shock_distention_exact REAL, -- [1] Piston: what the jump conditions and the crush curve give for it.
-  precursor_speed REAL, -- [m/s] Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.
-  precursor_speed_exact REAL, -- [m/s] Piston: what the jump conditions give for it.
-  precursor_pressure REAL, -- [Pa] Piston: mean pressure between the two fronts.
-  precursor_pressure_exact REAL, -- [Pa] Piston: what it should be: P_e, or less with a slow piston.
-  precursor_distention REAL, -- [1] Piston: mean distention there.
-  precursor_distention_exact REAL -- [1] Piston: what the elastic branch gives for it.
+  rebound REAL, -- [1] Collision: speed of separation of the bodies over their speed of approach.
+  shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.
+  shock_speed_exact REAL, -- [m/s] Piston: speed of the shock by the jump conditions.
+  shock_density REAL, -- [kg/m^3] Piston: mean density behind the shock, in the middle half between piston and shock.
+  shock_density_exact REAL, -- [kg/m^3] Piston: density behind the shock by the jump conditions.
+  shock_pressure REAL, -- [Pa] Piston: mean pressure behind the shock, in the same region.
+  shock_pressure_exact REAL, -- [Pa] Piston: pressure behind the shock by the jump conditions.
+  shock_distention REAL, -- [1] Piston: mean distention behind the shock, in the same region; off without pores.
+  shock_distention_exact REAL, -- [1] Piston: distention behind the shock by the jump conditions and the crush curve.
+  precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.
+  precursor_speed_exact REAL, -- [m/s] Piston: speed of the precursor by the jump conditions.
+  precursor_pressure REAL, -- [Pa] Piston: mean pressure between precursor and shock.
+  precursor_pressure_exact REAL, -- [Pa] Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.
+  precursor_distention REAL, -- [1] Piston: mean distention between precursor and shock.
+  precursor_distention_exact REAL -- [1] Piston: distention behind the precursor on the elastic branch.
 ) STRICT;
 
 CREATE VIEW runs AS -- every run with its varied inputs and all its results
@@ -839,41 +839,41 @@ INSERT INTO column_doc VALUES ('result_dem', 'upright_share', '1', 'Compression:
 
 INSERT INTO column_doc VALUES ('result_dem', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target''s reach; off with grips or damped sides. Only about axes across which nothing repeats.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time since which damage has grown by less than stop.quiet_growth; off when it still grows.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'clamped_share', '1', 'energy.clamped over energy_input. energy_error does not subtract it.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_depth', 'm', 'Impact: depth at the start of the deepest compacted particle near the axis; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_mass_fraction', '1', 'Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Volume that the target''s retained matter has lost by closing pores; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and veneer. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_radius', 'm', 'Impact: radius of a circle of the crater''s area at the first surface.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_radius', 'm', 'Impact: radius of a circle whose area is that of the crater at the surface.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: volume between the first and the present surface of what is retained.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_volume', 'm^3', 'Impact: volume of the crater, between the surface at the start and the surface of the retained matter.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that leaves it faster than crater.ejection_speed.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that moves outwards faster than crater.ejection_speed.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of that mass, along the outward normal.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy put in where internal energy would have become negative.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy taken by damped sides.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_damped', 'J', 'Energy that damped sides removed.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start, and the size of the grips'' work.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute work of grips.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_internal', 'J', 'Internal energy at the end, elastic energy included.', 1);
 
@@ -881,99 +881,99 @@ INSERT INTO column_doc VALUES ('result_sph', 'energy_kinetic', 'J', 'Kinetic ene
 
 INSERT INTO column_doc VALUES ('result_sph', 'energy_work_of_held', 'J', 'Work done by grips.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time at which damage of a body with flaws began; off when there is none.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Explicit flaws in all bodies.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'flaws', '1', 'Number of explicit flaws in all bodies.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Damage had ceased to grow by the scene''s rule (stop.quiet_time), or there is nothing that could break.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid with the largest fragment''s moments of inertia.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_short', '1', 'Shortest over longest axis of that ellipsoid: 1 is a sphere.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/M with the static pass and without the veneer of damaged particles.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its veneer (its layer of broken particles) over the target''s mass, with the static strength.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M without the static pass, with the veneer.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M with the veneer and without the static strength.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M with the static pass and with the veneer.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M with the veneer: mass of the largest fragment over the target''s mass, with the static strength.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps limited by the speed of sound and viscosity, or by a damped side.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_damage', '1', 'Share of the steps limited by the growth of damage.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_density', '1', 'Share of the steps whose length the change of density set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_density', '1', 'Share of the steps limited by the change of density.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_distention', '1', 'Share of the steps whose length the closing of pores set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_distention', '1', 'Share of the steps limited by the closing of pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_energy', '1', 'Share of the steps whose length the change of internal energy set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_energy', '1', 'Share of the steps limited by the change of internal energy.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'limited_force', '1', 'Share of the steps whose length the acceleration set.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'limited_force', '1', 'Share of the steps limited by the acceleration.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'mean_damage', '1', 'Mean damage D of the target at the end, weighted by mass.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'mean_distention', '1', 'Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'mean_distention', '1', 'Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'particles', '1', 'Particles of the target (of a collision: of both bodies).', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'particles', '1', 'Number of particles in the target (in both bodies of a collision).', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'peak_strain', '1', 'Stretch: strain rate times time, then.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'peak_strain', '1', 'Stretch: strain (strain rate times time) at the largest stress.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'peak_stress', 'Pa', 'Stretch: largest mean axial stress between the grips.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'peak_time', 's', 'Stretch: that time.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'peak_time', 's', 'Stretch: time of the largest stress.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention', '1', 'Piston: mean distention there.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention', '1', 'Piston: mean distention between precursor and shock.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention_exact', '1', 'Piston: what the elastic branch gives for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_distention_exact', '1', 'Piston: distention behind the precursor on the elastic branch.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston: mean pressure between the two fronts.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston: mean pressure between precursor and shock.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: what it should be: P_e, or less with a slow piston.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'projectile_particles', '1', 'Particles of the projectile, or of the piston.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'projectile_particles', '1', 'Number of particles in the projectile or piston.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed at which the bodies part over the speed of approach.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed of separation of the bodies over their speed of approach.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Angle at the target''s centre between the point of impact and the second largest fragment: pi is opposite.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is none.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is only one.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_density', 'kg/m^3', 'Piston: mean density of the middle half from the piston to the shock.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_density', 'kg/m^3', 'Piston: mean density behind the shock, in the middle half between piston and shock.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_density_exact', 'kg/m^3', 'Piston: what the jump conditions give for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_density_exact', 'kg/m^3', 'Piston: density behind the shock by the jump conditions.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_distention', '1', 'Piston: mean distention there; off without pores.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_distention', '1', 'Piston: mean distention behind the shock, in the same region; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_distention_exact', '1', 'Piston: what the jump conditions and the crush curve give for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_distention_exact', '1', 'Piston: distention behind the shock by the jump conditions and the crush curve.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure', 'Pa', 'Piston: mean pressure there.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure', 'Pa', 'Piston: mean pressure behind the shock, in the same region.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure_exact', 'Pa', 'Piston: what the jump conditions give for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the target''s mass; off without one.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the mass of the target; off without a projectile.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, fault', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'target_mass', 'kg', 'Mass of the target: M of all mass fractions, which leave the projectile out.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass share of the target''s particles below fragments.damage, before the static pass.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass share of the target''s particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
@@ -1041,7 +1041,7 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start and end) times the target''s reach; off with grips or damped sides. Only about axes across which nothing repeats.', 0);
+INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
@@ -1055,39 +1055,39 @@ INSERT INTO column_doc VALUES ('runs', 'broken_share', '1', 'Broken beams over a
 
 INSERT INTO column_doc VALUES ('runs', 'broken_stretch', '1', 'Beams broken with the stretching term of the breaking rule the larger one.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time since which damage has grown by less than stop.quiet_growth; off when it still grows.', 0);
+INSERT INTO column_doc VALUES ('runs', 'cease_time', 's', 'Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over energy_input: booked apart, not credited in energy_error.', 0);
+INSERT INTO column_doc VALUES ('runs', 'clamped_share', '1', 'energy.clamped over energy_input. energy_error does not subtract it.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'First depth of the deepest matter near the axis with distention below 1.01; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_depth', 'm', 'Impact: depth at the start of the deepest compacted particle near the axis; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_mass_fraction', '1', 'Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Volume that the target''s retained matter has lost by closing pores; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that overlap, with bridges of broken rock between them, part nothing, although the rod bears no load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and veneer. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over that and the ejecta''s first volume: 1 is a crater made by compaction alone. Off when there is neither.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 below one.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_radius', 'm', 'Impact: radius of a circle of the crater''s area at the first surface.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_radius', 'm', 'Impact: radius of a circle whose area is that of the crater at the surface.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_volume', 'm^3', 'Impact: volume between the first and the present surface of what is retained.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_volume', 'm^3', 'Impact: volume of the crater, between the surface at the start and the surface of the retained matter.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Particle-steps at the lowest density allowed, over all: clamps that put in no energy.', 0);
+INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of single grains.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that leaves it faster than crater.ejection_speed.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that moves outwards faster than crater.ejection_speed.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of that mass, along the outward normal.', 0);
+INSERT INTO column_doc VALUES ('runs', 'ejecta_momentum', 'kg m/s', 'Impact: momentum of the ejecta along the outward normal.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'end_triangle_share', '1', 'Compression: share of beams broken inside the two 45-degree triangles on the confined ends, over the same share outside them, up to the largest stress. 0 is intact triangles, 1 no pattern.', 0);
 
@@ -1095,11 +1095,11 @@ INSERT INTO column_doc VALUES ('runs', 'energy_beam', 'J/m', 'Energy stored in b
 
 INSERT INTO column_doc VALUES ('runs', 'energy_broken_beam', 'J/m', 'Energy that broken beams held: what the new surfaces cost. With contact.bonded off, less what contacts store that begin with a break.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy put in where internal energy would have become negative.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_clamped', 'J', 'Energy added where internal energy would have become negative.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_contact', 'J/m', 'Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy taken by damped sides.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that damped sides removed.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
@@ -1125,11 +1125,11 @@ INSERT INTO column_doc VALUES ('runs', 'finished_at', 's', 'when it was stored, 
 
 INSERT INTO column_doc VALUES ('runs', 'first_break', 's', 'Time of the first break; off when none broke.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time at which damage of a body with flaws began; off when there is none.', 0);
+INSERT INTO column_doc VALUES ('runs', 'first_damage', 's', 'Time when damage of a body with flaws began; off without damage.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Explicit flaws in all bodies.', 0);
+INSERT INTO column_doc VALUES ('runs', 'flaws', '1', 'Number of explicit flaws in all bodies.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'fracture_ceased', NULL, 'Damage had ceased to grow by the scene''s rule (stop.quiet_time), or there is nothing that could break.', 0);
+INSERT INTO column_doc VALUES ('runs', 'fracture_ceased', NULL, 'Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'fragment_count', '1', 'Fragments of any size, single grains (dust) included.', 0);
 
@@ -1143,37 +1143,37 @@ INSERT INTO column_doc VALUES ('runs', 'identity', NULL, '128-bit hash of engine
 
 INSERT INTO column_doc VALUES ('runs', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid with the largest fragment''s moments of inertia.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_axis_short', '1', 'Shortest over longest axis of that ellipsoid: 1 is a sphere.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M with the static pass and without the veneer of damaged particles.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its veneer (its layer of broken particles) over the target''s mass, with the static strength.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M without the static pass, with the veneer.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M with the veneer and without the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M with the static pass and with the veneer.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M with the veneer: mass of the largest fragment over the target''s mass, with the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps whose length the speed of sound and the viscosity, or a damped side, set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps limited by the speed of sound and viscosity, or by a damped side.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_damage', '1', 'Share of the steps whose length the growth of damage set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_damage', '1', 'Share of the steps limited by the growth of damage.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_density', '1', 'Share of the steps whose length the change of density set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_density', '1', 'Share of the steps limited by the change of density.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_distention', '1', 'Share of the steps whose length the closing of pores set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_distention', '1', 'Share of the steps limited by the closing of pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_energy', '1', 'Share of the steps whose length the change of internal energy set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_energy', '1', 'Share of the steps limited by the change of internal energy.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'limited_force', '1', 'Share of the steps whose length the acceleration set.', 0);
+INSERT INTO column_doc VALUES ('runs', 'limited_force', '1', 'Share of the steps limited by the acceleration.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage of the target at the end, by mass.', 0);
+INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage D of the target at the end, weighted by mass.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
@@ -1187,39 +1187,39 @@ INSERT INTO column_doc VALUES ('runs', 'neighbours', '1', 'Mean number of neighb
 
 INSERT INTO column_doc VALUES ('runs', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'particles', '1', 'Particles of the target (of a collision: of both bodies).', 0);
+INSERT INTO column_doc VALUES ('runs', 'particles', '1', 'Number of particles in the target (in both bodies of a collision).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'peak_strain', '1', 'Stretch: strain rate times time, then.', 0);
+INSERT INTO column_doc VALUES ('runs', 'peak_strain', '1', 'Stretch: strain (strain rate times time) at the largest stress.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'peak_stress', 'Pa', 'Stretch: largest mean axial stress between the grips.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'peak_time', 's', 'Stretch: that time.', 0);
+INSERT INTO column_doc VALUES ('runs', 'peak_time', 's', 'Stretch: time of the largest stress.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'point_id', NULL, 'number of the point: one set of input values', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_distention', '1', 'Piston: mean distention there.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_distention', '1', 'Piston: mean distention between precursor and shock.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_distention_exact', '1', 'Piston: what the elastic branch gives for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_distention_exact', '1', 'Piston: distention behind the precursor on the elastic branch.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean pressure between the two fronts.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean pressure between precursor and shock.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: what it should be: P_e, or less with a slow piston.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when the shock is faster.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'projectile_mass', 'kg', 'Mass of the projectile; off without one.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'projectile_particles', '1', 'Particles of the projectile, or of the piston.', 0);
+INSERT INTO column_doc VALUES ('runs', 'projectile_particles', '1', 'Number of particles in the projectile or piston.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'rank', NULL, 'MPI rank that computed it', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'rebound', '1', 'Collision: speed at which the bodies part over the speed of approach.', 0);
+INSERT INTO column_doc VALUES ('runs', 'rebound', '1', 'Collision: speed of separation of the bodies over their speed of approach.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'replicate', NULL, 'which seed of the point, from 0', 0);
 
@@ -1229,7 +1229,7 @@ INSERT INTO column_doc VALUES ('runs', 'result_dem_energy_kinetic', 'J/m', 'Kine
 
 INSERT INTO column_doc VALUES ('runs', 'result_dem_stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start, and the size of the grips'' work.', 0);
+INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_input', 'J', 'Energy put in: kinetic energy at the start plus the absolute work of grips.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'result_sph_energy_kinetic', 'J', 'Kinetic energy at the end.', 0);
 
@@ -1241,31 +1241,31 @@ INSERT INTO column_doc VALUES ('runs', 'run_id', NULL, 'number of the run in thi
 
 INSERT INTO column_doc VALUES ('runs', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Angle at the target''s centre between the point of impact and the second largest fragment: pi is opposite.', 0);
+INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is none.', 0);
+INSERT INTO column_doc VALUES ('runs', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is only one.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'session_id', NULL, 'the session that computed it', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_density', 'kg/m^3', 'Piston: mean density of the middle half from the piston to the shock.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_density', 'kg/m^3', 'Piston: mean density behind the shock, in the middle half between piston and shock.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_density_exact', 'kg/m^3', 'Piston: what the jump conditions give for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_density_exact', 'kg/m^3', 'Piston: density behind the shock by the jump conditions.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_distention', '1', 'Piston: mean distention there; off without pores.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_distention', '1', 'Piston: mean distention behind the shock, in the same region; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_distention_exact', '1', 'Piston: what the jump conditions and the crush curve give for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_distention_exact', '1', 'Piston: distention behind the shock by the jump conditions and the crush curve.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_pressure', 'Pa', 'Piston: mean pressure there.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_pressure', 'Pa', 'Piston: mean pressure behind the shock, in the same region.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_pressure_exact', 'Pa', 'Piston: what the jump conditions give for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the run; where density passes half way. Off when the piston is too slow for one.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_speed_exact', 'm/s', 'Piston: what the jump conditions give for it.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'single_count', '1', 'Fragments of one grain or particle: below the model''s resolution.', 0);
 
@@ -1273,7 +1273,7 @@ INSERT INTO column_doc VALUES ('runs', 'sound_speed_compression', 'm/s', 'Estima
 
 INSERT INTO column_doc VALUES ('runs', 'sound_speed_extension', 'm/s', 'Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice''s value).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the target''s mass; off without one.', 0);
+INSERT INTO column_doc VALUES ('runs', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the mass of the target; off without a projectile.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 0);
 
@@ -1285,7 +1285,7 @@ INSERT INTO column_doc VALUES ('runs', 'strength', 'Pa', 'Largest stress under l
 
 INSERT INTO column_doc VALUES ('runs', 'surplus', NULL, '1: beyond the prefix a stopping rule decided on; left out of statistics', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target: M of all mass fractions, which leave the projectile out.', 0);
+INSERT INTO column_doc VALUES ('runs', 'target_mass', 'kg', 'Mass of the target. All mass fractions are shares of it, so they leave the projectile out.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'threshold_energy', 'J/m', 'Energy that would bring every beam to the stretching threshold.', 0);
 
@@ -1295,7 +1295,7 @@ INSERT INTO column_doc VALUES ('runs', 'time_step', 's', 'The smallest time step
 
 INSERT INTO column_doc VALUES ('runs', 'total_mass', 'kg', 'Mass of the body at the end (two dimensions: per metre of thickness).', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'undamaged_fraction', '1', 'Mass share of the target''s particles below fragments.damage, before the static pass.', 0);
+INSERT INTO column_doc VALUES ('runs', 'undamaged_fraction', '1', 'Mass share of the target''s particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broken beams whose crack (the common side) lies within 30 degrees of the load''s direction, over all broken beams, up to the largest stress. Of isotropic sides it would be 1/3.', 0);
 

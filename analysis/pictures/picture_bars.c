@@ -1,3 +1,4 @@
+/* Colour ramps and bars. */
 #include "analysis/pictures/picture_bars.h"
 
 #include <math.h>
@@ -45,16 +46,12 @@ void picture_bars_colours(cairo_t *cairo, enum picture_ramp ramp, double x, doub
     cairo_stroke(cairo);
     picture_canvas_text(cairo, x + width + 0.6 * font, place + 0.35 * font, 0.9 * font, PICTURE_LEFT, false, text);
   }
-  cairo_save(cairo);
-  cairo_translate(cairo, x + width + 5 * font, y + height / 2);
-  cairo_rotate(cairo, -M_PI / 2);
-  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, quantity);
-  cairo_restore(cairo);
+  picture_canvas_text_upright(cairo, x + width + 5 * font, y + height / 2, 1.05 * font, quantity);
 }
 
-void picture_bars_length(cairo_t *cairo, double x, double y, double points_per_metre, double room, double font) {
+void picture_bars_length(cairo_t *cairo, double x, double y, double points_per_metre, double available, double font) {
   char text[32];
-  double metres = picture_canvas_round_length(0.24 * room / points_per_metre), length = metres * points_per_metre;
+  double metres = picture_canvas_round_length(0.24 * available / points_per_metre), length = metres * points_per_metre;
   picture_canvas_length_text(metres, text, sizeof text);
   cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
   cairo_rectangle(cairo, x, y - 0.28 * font, length, 0.28 * font);

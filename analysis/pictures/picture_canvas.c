@@ -1,3 +1,4 @@
+/* The page, text and colours of pictures. */
 #include "analysis/pictures/picture_canvas.h"
 
 #include <cairo-svg.h>
@@ -84,11 +85,42 @@ double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const c
   return extents.x_advance;
 }
 
+/* How far text of this width begins before its place. */
+static double offset(enum picture_align align, double width) {
+  const double share[] = {[PICTURE_LEFT] = 0, [PICTURE_CENTRE] = 0.5, [PICTURE_RIGHT] = 1};
+  return share[align] * width;
+}
+
 void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
                          const char *text) {
-  double width = picture_canvas_text_width(cairo, size, bold, text);
-  cairo_move_to(cairo, x - (align == PICTURE_CENTRE ? width / 2 : align == PICTURE_RIGHT ? width : 0), y);
+  cairo_move_to(cairo, x - offset(align, picture_canvas_text_width(cairo, size, bold, text)), y);
   cairo_show_text(cairo, text);
+}
+
+void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text) {
+  cairo_save(cairo);
+  cairo_translate(cairo, x, y);
+  cairo_rotate(cairo, -M_PI / 2);
+  picture_canvas_text(cairo, 0, 0, size, PICTURE_CENTRE, false, text);
+  cairo_restore(cairo);
+}
+
+void picture_canvas_title(cairo_t *cairo, double x, double font, const char *title) {
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  if (title)
+    picture_canvas_text(cairo, x, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
+}
+
+void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle) {
+  double line = 1.9 * font;
+  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
+  if (title) {
+    picture_canvas_text(cairo, x, line, 1.35 * font, PICTURE_LEFT, true, title);
+    line += 1.6 * font;
+  }
+  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
+  if (subtitle)
+    picture_canvas_text(cairo, x, line, small, PICTURE_LEFT, false, subtitle);
 }
 
 static double companded(double linear) {
@@ -101,7 +133,9 @@ void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, doub
   double a = chroma * cos(hue * M_PI / 180), b = chroma * sin(hue * M_PI / 180);
   double l = lightness + 0.3963377774 * a + 0.2158037573 * b, m = lightness - 0.1055613458 * a - 0.0638541728 * b;
   double s = lightness - 0.0894841775 * a - 1.2914855480 * b;
-  l *= l * l, m *= m * m, s *= s * s;
+  l *= l * l;
+  m *= m * m;
+  s *= s * s;
   cairo_set_source_rgba(cairo, companded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
                         companded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
                         companded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), alpha);
@@ -115,7 +149,9 @@ void picture_canvas_series(cairo_t *cairo, size_t series, double alpha) {
 double picture_canvas_round_length(double length) {
   double decade = pow(10, floor(log10(length)));
   double part = length / decade;
-  return decade * (part >= 5 ? 5 : part >= 2 ? 2 : 1);
+  if (part >= 5)
+    return 5 * decade;
+  return part >= 2 ? 2 * decade : decade;
 }
 
 void picture_canvas_length_text(double metres, char *text, size_t size) {
@@ -136,7 +172,7 @@ void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum
   snprintf(text, sizeof text, exponent < 0 ? "\xe2\x88\x92%d" : "%d", exponent < 0 ? -exponent : exponent);
   double base = picture_canvas_text_width(cairo, size, false, "10"),
          raised = picture_canvas_text_width(cairo, 0.72 * size, false, text);
-  double left = x - (align == PICTURE_CENTRE ? (base + raised) / 2 : align == PICTURE_RIGHT ? base + raised : 0);
+  double left = x - offset(align, base + raised);
   picture_canvas_text(cairo, left, y, size, PICTURE_LEFT, false, "10");
   picture_canvas_text(cairo, left + base, y - 0.38 * size, 0.72 * size, PICTURE_LEFT, false, text);
 }

@@ -1,4 +1,4 @@
-/* What all pictures share: the file, text, colours, ticks. For the picture_*.c files only. */
+/* What all pictures share: the file, text, colours, round lengths. For the picture_*.c files only. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_CANVAS_H
 
@@ -19,23 +19,29 @@ struct picture_canvas {
 status picture_canvas_named(const char *path, struct error *error);
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error);
-/* Writes and renames when code is STATUS_OK, else removes what was begun; returns code or what went wrong. */
+/* Writes the file and renames it when code is STATUS_OK, else removes it. Returns code, or the error of writing. */
 status picture_canvas_close(struct picture_canvas *canvas, status code, struct error *error);
 
 enum picture_align { PICTURE_LEFT, PICTURE_CENTRE, PICTURE_RIGHT };
 void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
                          const char *text);
+/* Text centred at (x, y) that reads upwards. */
+void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text);
+/* The title over a plot whose frame begins at x; NULL: none. Sets the colour of the text in any case. */
+void picture_canvas_title(cairo_t *cairo, double x, double font, const char *title);
+/* Title and subtitle at the head of a picture of a body; NULL: none. */
+void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle);
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
-/* Of one of several series, told apart by hue. */
+/* The colour of one of several series: each has its hue. */
 enum { PICTURE_CANVAS_SERIES = 8 };
 void picture_canvas_series(cairo_t *cairo, size_t series, double alpha);
-/* The next of 1, 2, 5 x 10^n at or below. */
+/* The largest of 1, 2, 5 x 10^n that is at most `length`. */
 double picture_canvas_round_length(double length);
 /* "5 cm", "2 m", "500 µm". */
 void picture_canvas_length_text(double metres, char *text, size_t size);
-/* 10 with a raised exponent, centred at x (or ending there). */
+/* 10 with a raised exponent. */
 void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent);
 
 #endif

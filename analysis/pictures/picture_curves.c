@@ -6,12 +6,12 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_frame.h"
 
-enum { LOG_FROM = 20 }; /* a factor between the ends of x */
+enum { LOG_FROM = 20 }; /* x is logarithmic from this factor between its ends */
 
-static bool there(const struct picture_mean *m) {
+static bool is_finite(const struct picture_mean *m) {
   return isfinite(m->x) && isfinite(m->y);
 }
-static bool barred(const struct picture_mean *m) {
+static bool has_bar(const struct picture_mean *m) {
   return isfinite(m->low) && isfinite(m->high) && m->low < m->high;
 }
 
@@ -21,12 +21,14 @@ static bool choose_ranges(size_t count, const struct picture_curve *curve, struc
   for (size_t c = 0; c < count; c++)
     for (size_t i = 0; i < curve[c].count; i++) {
       const struct picture_mean *m = &curve[c].mean[i];
-      if (!there(m))
+      if (!is_finite(m))
         continue;
-      f->x[0] = fmin(f->x[0], m->x), f->x[1] = fmax(f->x[1], m->x);
-      f->y[0] = fmin(f->y[0], m->y), f->y[1] = fmax(f->y[1], m->y);
-      if (barred(m))
-        f->y[0] = fmin(f->y[0], m->low), f->y[1] = fmax(f->y[1], m->high);
+      picture_frame_extend(f->x, m->x);
+      picture_frame_extend(f->y, m->y);
+      if (has_bar(m)) {
+        picture_frame_extend(f->y, m->low);
+        picture_frame_extend(f->y, m->high);
+      }
     }
   if (!(f->x[1] >= f->x[0]))
     return false;
@@ -38,39 +40,43 @@ static bool choose_ranges(size_t count, const struct picture_curve *curve, struc
   return true;
 }
 
-static void draw(const struct picture_frame *f, const struct picture_curve *curve, size_t index) {
-  cairo_t *cairo = f->cairo;
-  const double radius = 0.32 * f->font;
+static void draw_line(const struct picture_frame *f, const struct picture_curve *curve, size_t index) {
   bool begun = false;
-  picture_canvas_series(cairo, index, 0.6);
-  cairo_set_line_width(cairo, 0.12 * f->font);
-  for (size_t i = 0; i < curve->count; i++) { /* a value that is no number is a gap */
+  picture_canvas_series(f->cairo, index, 0.6);
+  cairo_set_line_width(f->cairo, 0.12 * f->font);
+  for (size_t i = 0; i < curve->count; i++) { /* a mean that is not finite leaves a gap */
     const struct picture_mean *m = &curve->mean[i];
-    if (there(m) && begun)
-      cairo_line_to(cairo, picture_frame_across(f, m->x), picture_frame_up(f, m->y));
-    else if (there(m))
-      cairo_move_to(cairo, picture_frame_across(f, m->x), picture_frame_up(f, m->y));
-    begun = there(m);
+    bool finite = is_finite(m);
+    if (finite && begun)
+      cairo_line_to(f->cairo, picture_frame_across(f, m->x), picture_frame_up(f, m->y));
+    else if (finite)
+      cairo_move_to(f->cairo, picture_frame_across(f, m->x), picture_frame_up(f, m->y));
+    begun = finite;
   }
-  cairo_stroke(cairo);
-  for (size_t i = 0; i < curve->count; i++) {
-    const struct picture_mean *m = &curve->mean[i];
-    if (!there(m))
-      continue;
-    const double x = picture_frame_across(f, m->x),
-                 ends[2] = {picture_frame_up(f, m->low), picture_frame_up(f, m->high)};
-    picture_canvas_series(cairo, index, 1);
-    cairo_set_line_width(cairo, 0.1 * f->font);
-    for (int k = 0; k < 2 && barred(m); k++) {
-      cairo_move_to(cairo, x, ends[0]);
-      cairo_line_to(cairo, x, ends[1]);
-      cairo_move_to(cairo, x - radius, ends[k]);
-      cairo_rel_line_to(cairo, 2 * radius, 0);
-    }
-    cairo_stroke(cairo);
-    cairo_arc(cairo, x, picture_frame_up(f, m->y), radius, 0, 2 * M_PI);
-    cairo_fill(cairo);
+  cairo_stroke(f->cairo);
+}
+
+static void draw_dot(const struct picture_frame *f, const struct picture_mean *m, size_t index) {
+  const double radius = 0.32 * f->font, x = picture_frame_across(f, m->x);
+  const double ends[2] = {picture_frame_up(f, m->low), picture_frame_up(f, m->high)};
+  picture_canvas_series(f->cairo, index, 1);
+  cairo_set_line_width(f->cairo, 0.1 * f->font);
+  for (int k = 0; k < 2 && has_bar(m); k++) {
+    cairo_move_to(f->cairo, x, ends[0]);
+    cairo_line_to(f->cairo, x, ends[1]);
+    cairo_move_to(f->cairo, x - radius, ends[k]);
+    cairo_rel_line_to(f->cairo, 2 * radius, 0);
   }
+  cairo_stroke(f->cairo);
+  cairo_arc(f->cairo, x, picture_frame_up(f, m->y), radius, 0, 2 * M_PI);
+  cairo_fill(f->cairo);
+}
+
+static void draw(const struct picture_frame *f, const struct picture_curve *curve, size_t index) {
+  draw_line(f, curve, index);
+  for (size_t i = 0; i < curve->count; i++)
+    if (is_finite(&curve->mean[i]))
+      draw_dot(f, &curve->mean[i], index);
 }
 
 static double legend_width(cairo_t *cairo, double font, size_t count, const struct picture_curve *curve) {
@@ -94,7 +100,7 @@ static void legend(const struct picture_frame *f, size_t count, const struct pic
   }
 }
 
-/* Room for the legend must be known before there is a page: measured on one that is thrown away. */
+/* The width of the legend, which must be known before the page exists: measured on a page that is thrown away. */
 static double measure_legend(double font, size_t count, const struct picture_curve *curve) {
   cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1);
   cairo_t *cairo = cairo_create(surface);
@@ -118,15 +124,15 @@ status picture_curves(const char *path, double width, const char *title, const c
   if (code)
     return code;
   f.cairo = canvas.cairo;
-  f.left = 7.5 * f.font, f.wide = width - f.left - f.font;
-  f.top = (title ? 3 : 1) * f.font, f.tall = height - f.top - 4 * f.font;
+  f.left = 7.5 * f.font;
+  f.wide = width - f.left - f.font;
+  f.top = (title ? 3 : 1) * f.font;
+  f.tall = height - f.top - 4 * f.font;
   picture_frame_draw(&f, true, y_label);
   for (size_t c = 0; c < count; c++)
     draw(&f, &curve[c], c);
   legend(&f, count, curve);
-  cairo_set_source_rgb(f.cairo, 0.1, 0.1, 0.1);
-  if (title)
-    picture_canvas_text(f.cairo, f.left, 2 * f.font, 1.2 * f.font, PICTURE_LEFT, true, title);
+  picture_canvas_title(f.cairo, f.left, f.font, title);
   picture_canvas_text(f.cairo, f.left + f.wide / 2, height - 0.9 * f.font, 1.05 * f.font, PICTURE_CENTRE, false,
                       x_label);
   return picture_canvas_close(&canvas, STATUS_OK, error);

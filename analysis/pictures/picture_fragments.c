@@ -1,4 +1,4 @@
-/* A body in pieces: one hue per large fragment, pale tints for small ones, light grey for dust, a dark outline round
+/* A broken body: one hue per large fragment, pale tints for small ones, light grey for dust, a dark outline round
  * every fragment, cracks inside them. */
 #include <math.h>
 #include <stdio.h>
@@ -10,7 +10,7 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
 
-enum { LARGE = 10 }; /* cells: below, a fragment is hardly resolved and gets a pale tint */
+enum { LARGE = 10 }; /* cells: a smaller fragment is hardly resolved and gets a pale tint */
 
 /* Cells sorted by fragment: cells of fragment f are order[start[f]] ... order[start[f + 1] - 1]. */
 struct grouping {
@@ -29,7 +29,7 @@ static status group(const struct picture_body *body, struct grouping *out) {
     if (body->fragment[i] >= out->fragments)
       out->fragments = (size_t)body->fragment[i] + 1;
   if (out->fragments > body->cells)
-    return STATUS_USAGE; /* labels are numbers of fragments, each with a cell */
+    return STATUS_USAGE; /* each fragment has a cell */
   out->start = calloc(out->fragments + 2, sizeof *out->start);
   out->order = calloc(body->cells + 1, sizeof *out->order);
   if (!out->start || !out->order)
@@ -59,7 +59,7 @@ static void cover(double view[4], const double point[2]) {
   }
 }
 
-/* Everything, unless far-flung bits would shrink the picture: then all large fragments and 96 % of the cells. */
+/* All cells; but if distant ones would shrink the picture much, all large fragments and 96 % of the cells. */
 static status choose_view(const struct picture_body *body, double view[4]) {
   double *along = malloc((body->cells + 1) * sizeof *along);
   struct grouping grouping;
@@ -104,13 +104,13 @@ static status choose_view(const struct picture_body *body, double view[4]) {
 }
 
 static void path_of(cairo_t *cairo, const struct picture_body *body, uint32_t cell) {
-  cairo_new_sub_path(cairo); /* else a line would join it to the cell before */
+  cairo_new_sub_path(cairo); /* else a line joins it to the cell before */
   for (uint32_t v = body->first_vertex[cell]; v < body->first_vertex[cell + 1]; v++)
     cairo_line_to(cairo, body->vertex[v][0], body->vertex[v][1]);
   cairo_close_path(cairo);
 }
 
-/* Golden-angle steps of hue: neighbours in rank, which often lie side by side, are far apart in colour. */
+/* Golden-angle steps of hue: fragments of successive numbers often lie side by side and get very different colours. */
 static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker, double alpha) {
   double hue = fmod(252 + 137.50776 * (double)fragment, 360), wave = 0.045 * ((double)(fragment % 3) - 1);
   if (cells == 1)
@@ -121,8 +121,8 @@ static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker,
     picture_canvas_colour(cairo, 0.70 + wave - darker, 0.125, hue, alpha);
 }
 
-/* All cells of a fragment: a wide dark stroke first, the fill and a thin stroke of its own colour over it. What is left
- * of the dark is the outline of the whole, and no background shines through between cells. */
+/* All cells of a fragment: first a wide dark stroke, then the fill and a thin stroke in the fragment's colour. The rest
+ * of the dark stroke is the fragment's outline, and no background shows between cells. */
 static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const struct grouping *g, size_t f,
                           double cell) {
   size_t count = g->start[f + 1] - g->start[f];
@@ -149,7 +149,7 @@ static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const
   cairo_stroke(cairo);
 }
 
-/* The side of `cell` that faces `other`: the one whose middle lies nearest to the other's centre. */
+/* The side of `cell` whose middle is nearest to the centre of `other`. */
 static void draw_crack(cairo_t *cairo, const struct picture_body *body, uint32_t cell, uint32_t other) {
   double centre[2], best = HUGE_VAL;
   centre_of(body, other, centre);
@@ -248,6 +248,17 @@ static status fail(const char *path, status code, struct error *error) {
                                            : "fragment numbers beyond the number of cells");
 }
 
+/* The part of the body that a panel shows. */
+static status frame_panel(const char *path, const struct picture_panel *panel, double view[4], struct error *error) {
+  if (panel->body.cells == 0)
+    return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
+  memcpy(view, panel->view, 4 * sizeof *view);
+  if (view[2] > view[0])
+    return STATUS_OK;
+  status code = choose_view(&panel->body, view);
+  return code ? fail(path, code, error) : STATUS_OK;
+}
+
 status picture_fragments(const char *path, double width, const char *title, const char *subtitle, size_t panels,
                          const struct picture_panel *panel, struct error *error) {
   double view[3][4], tallest = 0, font = width / (panels > 1 ? 62 : 46);
@@ -255,13 +266,9 @@ status picture_fragments(const char *path, double width, const char *title, cons
     return status_fail(error, STATUS_USAGE, "%s: one to three panels, not %zu", path, panels);
   double gap = 0.03 * width, each = (width - gap * (double)(panels + 1)) / (double)panels;
   for (size_t p = 0; p < panels; p++) {
-    const struct picture_body *body = &panel[p].body;
-    if (body->cells == 0)
-      return status_fail(error, STATUS_USAGE, "%s: there is no cell to draw", path);
-    memcpy(view[p], panel[p].view, sizeof view[p]);
-    status code = view[p][2] > view[p][0] ? STATUS_OK : choose_view(body, view[p]);
+    status code = frame_panel(path, &panel[p], view[p], error);
     if (code)
-      return fail(path, code, error);
+      return code;
     double tall = each * (view[p][3] - view[p][1]) / (view[p][2] - view[p][0]);
     if (!isfinite(tall))
       return status_fail(error, STATUS_USAGE, "%s: positions of the cells are not finite", path);
@@ -273,15 +280,7 @@ status picture_fragments(const char *path, double width, const char *title, cons
   status code = picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error);
   if (code)
     return code;
-  cairo_set_source_rgb(canvas.cairo, 0.1, 0.1, 0.1);
-  double line = 1.9 * font;
-  if (title)
-    picture_canvas_text(canvas.cairo, gap, line, 1.35 * font, PICTURE_LEFT, true, title);
-  if (title)
-    line += 1.6 * font;
-  cairo_set_source_rgb(canvas.cairo, 0.35, 0.35, 0.35);
-  if (subtitle)
-    picture_canvas_text(canvas.cairo, gap, line, font, PICTURE_LEFT, false, subtitle);
+  picture_canvas_head(canvas.cairo, gap, font, title, font, subtitle);
   for (size_t p = 0; p < panels && !code; p++) {
     code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
     if (code)

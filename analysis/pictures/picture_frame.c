@@ -1,3 +1,4 @@
+/* A frame with axes. */
 #include "analysis/pictures/picture_frame.h"
 
 #include <math.h>
@@ -6,17 +7,25 @@
 #include "analysis/pictures/picture_canvas.h"
 
 void picture_frame_range(size_t n, const double *values, double range[2]) {
-  range[0] = HUGE_VAL, range[1] = -HUGE_VAL;
+  range[0] = HUGE_VAL;
+  range[1] = -HUGE_VAL;
   for (size_t i = 0; i < n; i++)
-    if (isfinite(values[i]))
-      range[0] = fmin(range[0], values[i]), range[1] = fmax(range[1], values[i]);
+    picture_frame_extend(range, values[i]);
+}
+
+void picture_frame_extend(double range[2], double value) {
+  if (!isfinite(value))
+    return;
+  range[0] = fmin(range[0], value);
+  range[1] = fmax(range[1], value);
 }
 
 void picture_frame_widen(double range[2], double share) {
-  double room = share * (range[1] - range[0]);
-  if (!(room > 0))
-    room = range[1] != 0 ? 0.05 * fabs(range[1]) : 1;
-  range[0] -= room, range[1] += room;
+  double margin = share * (range[1] - range[0]);
+  if (!(margin > 0))
+    margin = range[1] != 0 ? 0.05 * fabs(range[1]) : 1;
+  range[0] -= margin;
+  range[1] += margin;
 }
 
 double picture_frame_across(const struct picture_frame *f, double x) {
@@ -38,7 +47,7 @@ static void number_below(const struct picture_frame *f, double x, const char *te
                       PICTURE_CENTRE, false, text);
 }
 
-/* Whole steps of 1, 2 or 5 within a range. */
+/* Ticks at multiples of 1, 2 or 5 x 10^n. */
 static void linear_ticks(const struct picture_frame *f, bool upright) {
   const double *range = upright ? f->y : f->x,
                step = picture_canvas_round_length((range[1] - range[0]) / (upright ? 4 : 6));
@@ -60,7 +69,8 @@ static void linear_ticks(const struct picture_frame *f, bool upright) {
   }
 }
 
-/* A tick at 1 to 9 of every decade; numbers at 1, 2, 5 of a few decades, else at powers of ten as there is room. */
+/* A tick at 1 to 9 of every decade. Numbers stand at 1, 2, 5 when there are few decades, else at as many powers of ten
+ * as fit. */
 static void decade_ticks(const struct picture_frame *f) {
   double span = f->x[1] - f->x[0];
   int every = (int)fmax(ceil(3.2 * f->font * span / f->wide), 1);
@@ -90,9 +100,5 @@ void picture_frame_draw(const struct picture_frame *f, bool below, const char *y
     decade_ticks(f);
   else if (below)
     linear_ticks(f, false);
-  cairo_save(f->cairo);
-  cairo_translate(f->cairo, 1.7 * f->font, f->top + f->tall / 2);
-  cairo_rotate(f->cairo, -M_PI / 2);
-  picture_canvas_text(f->cairo, 0, 0, 1.05 * f->font, PICTURE_CENTRE, false, y_label);
-  cairo_restore(f->cairo);
+  picture_canvas_text_upright(f->cairo, 1.7 * f->font, f->top + f->tall / 2, 1.05 * f->font, y_label);
 }

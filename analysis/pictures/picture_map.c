@@ -1,4 +1,4 @@
-/* A quantity over two axes of a sweep: one tile per point, a colour bar, the number in the tile where it fits. */
+/* A quantity over two axes: one tile per point, the value in the tile where it fits, and a colour bar. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,15 +6,93 @@
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/pictures/picture_frame.h"
 #include "analysis/statistics/sample.h"
 
+/* Where things stand on the page. */
+struct layout {
+  cairo_t *cairo;
+  double font, left, top, wide, tall; /* of the frame */
+  double tile_x, tile_y;
+  double low, high; /* range of the values */
+};
+
 static bool bad_axis(const struct picture_axis *axis) {
-  if (axis->count == 0)
-    return true;
   for (size_t i = 0; i < axis->count; i++)
-    if (!isfinite(axis->values[i]) || (axis->log && axis->values[i] <= 0))
+    if (!isfinite(axis->values[i]))
       return true;
-  return false;
+  return axis->count == 0;
+}
+
+static void tick_text(double value, char text[64]) {
+  snprintf(text, 64, "%.4g", value);
+}
+
+/* The widest of an axis' numbers. */
+static double tick_width(cairo_t *cairo, double font, const struct picture_axis *axis) {
+  double widest = 0;
+  for (size_t j = 0; j < axis->count; j++) {
+    char text[64];
+    tick_text(axis->values[j], text);
+    widest = fmax(widest, picture_canvas_text_width(cairo, 0.95 * font, false, text));
+  }
+  return widest;
+}
+
+/* A tile without a value is crossed. */
+static void draw_cross(const struct layout *l, double x, double y) {
+  cairo_set_source_rgb(l->cairo, 0.75, 0.75, 0.75);
+  cairo_set_line_width(l->cairo, 0.06 * l->font);
+  cairo_move_to(l->cairo, x, y);
+  cairo_rel_line_to(l->cairo, l->tile_x, l->tile_y);
+  cairo_move_to(l->cairo, x + l->tile_x, y);
+  cairo_rel_line_to(l->cairo, -l->tile_x, l->tile_y);
+  cairo_stroke(l->cairo);
+}
+
+static void draw_tile(const struct layout *l, double x, double y, double value) {
+  if (!isfinite(value)) {
+    draw_cross(l, x, y);
+    return;
+  }
+  double share = l->high > l->low ? (value - l->low) / (l->high - l->low) : 0.5;
+  picture_bars_colour(l->cairo, PICTURE_RAMP_RISING, share);
+  cairo_rectangle(l->cairo, x, y, l->tile_x + 0.4, l->tile_y + 0.4);
+  cairo_fill(l->cairo);
+
+  double digits = fmin(0.85 * l->font, 0.24 * l->tile_x);
+  if (digits < 0.4 * l->font || l->tile_y < 1.3 * digits)
+    return;
+  char text[64];
+  snprintf(text, sizeof text, "%.3g", value);
+  if (share > 0.55)
+    cairo_set_source_rgb(l->cairo, 0.1, 0.1, 0.1);
+  else
+    cairo_set_source_rgb(l->cairo, 1, 1, 1);
+  picture_canvas_text(l->cairo, x + l->tile_x / 2, y + l->tile_y / 2 + 0.35 * digits, digits, PICTURE_CENTRE, false,
+                      text);
+}
+
+/* The frame and as many numbers beside it as fit. */
+static void draw_axes(const struct layout *l, const struct picture_axis *x, const struct picture_axis *y) {
+  cairo_set_source_rgb(l->cairo, 0.2, 0.2, 0.2);
+  cairo_set_line_width(l->cairo, 0.08 * l->font);
+  cairo_rectangle(l->cairo, l->left, l->top, l->wide, l->tall);
+  cairo_stroke(l->cairo);
+  char text[64];
+  size_t every_x = (size_t)fmax(ceil(3.4 * l->font / l->tile_x), 1);
+  size_t every_y = (size_t)fmax(ceil(1.3 * l->font / l->tile_y), 1);
+  for (size_t i = 0; i < x->count; i += every_x) {
+    tick_text(x->values[i], text);
+    picture_canvas_text(l->cairo, l->left + l->tile_x * ((double)i + 0.5), l->top + l->tall + 1.4 * l->font,
+                        0.95 * l->font, PICTURE_CENTRE, false, text);
+  }
+  for (size_t j = 0; j < y->count; j += every_y) {
+    tick_text(y->values[j], text);
+    picture_canvas_text(l->cairo, l->left - 0.5 * l->font,
+                        l->top + l->tall - l->tile_y * ((double)j + 0.5) + 0.35 * l->font, 0.95 * l->font,
+                        PICTURE_RIGHT, false, text);
+  }
 }
 
 status picture_map(const char *path, double width, const char *title, const char *quantity,
@@ -22,84 +100,34 @@ status picture_map(const char *path, double width, const char *title, const char
                    struct error *error) {
   if (bad_axis(x) || bad_axis(y))
     return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", path);
-  double font = width / 46, height = 0.72 * width, low = HUGE_VAL, high = -HUGE_VAL;
-  double top = (title ? 3 : 1) * font, tall = height - top - 3.8 * font;
-  size_t columns = x->count, lines = y->count;
-  for (size_t i = 0; i < columns * lines; i++) {
-    if (!isfinite(value[i]))
-      continue;
-    low = fmin(low, value[i]);
-    high = fmax(high, value[i]);
-  }
-  if (!(high >= low))
+  double range[2];
+  picture_frame_range(x->count * y->count, value, range);
+  if (!(range[1] >= range[0]))
     return status_fail(error, STATUS_USAGE, "%s: there is no value to draw", path);
+
+  double font = width / 46, height = 0.72 * width;
   struct picture_canvas canvas;
   status code = picture_canvas_open(&canvas, path, width, height, error);
   if (code)
     return code;
-  cairo_t *cairo = canvas.cairo;
-  char text[64];
-  double labels = 0; /* the widest of the tick labels on the left */
-  for (size_t j = 0; j < lines; j++) {
-    snprintf(text, sizeof text, "%.4g", y->values[j]);
-    labels = fmax(labels, picture_canvas_text_width(cairo, 0.95 * font, false, text));
-  }
-  double left = labels + 3 * font, wide = width - left - 8 * font;
-  double tile_x = wide / (double)columns, tile_y = tall / (double)lines, digits = fmin(0.85 * font, 0.24 * tile_x);
-  for (size_t j = 0; j < lines; j++) {
-    for (size_t i = 0; i < columns; i++) {
-      double v = value[j * columns + i], at_x = left + tile_x * (double)i, at_y = top + tall - tile_y * (double)(j + 1);
-      if (!isfinite(v)) {
-        cairo_set_source_rgb(cairo, 0.75, 0.75, 0.75);
-        cairo_set_line_width(cairo, 0.06 * font);
-        cairo_move_to(cairo, at_x, at_y);
-        cairo_rel_line_to(cairo, tile_x, tile_y);
-        cairo_move_to(cairo, at_x + tile_x, at_y);
-        cairo_rel_line_to(cairo, -tile_x, tile_y);
-        cairo_stroke(cairo);
-        continue;
-      }
-      double share = high > low ? (v - low) / (high - low) : 0.5;
-      picture_bars_colour(cairo, PICTURE_RAMP_RISING, share);
-      cairo_rectangle(cairo, at_x, at_y, tile_x + 0.4, tile_y + 0.4);
-      cairo_fill(cairo);
-      if (digits < 0.4 * font || tile_y < 1.3 * digits)
-        continue;
-      snprintf(text, sizeof text, "%.3g", v);
-      if (share > 0.55)
-        cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-      else
-        cairo_set_source_rgb(cairo, 1, 1, 1);
-      picture_canvas_text(cairo, at_x + tile_x / 2, at_y + tile_y / 2 + 0.35 * digits, digits, PICTURE_CENTRE, false,
-                          text);
-    }
-  }
-  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-  cairo_set_line_width(cairo, 0.08 * font);
-  cairo_rectangle(cairo, left, top, wide, tall);
-  cairo_stroke(cairo);
-  size_t every_x = (size_t)fmax(ceil(3.4 * font / tile_x), 1), every_y = (size_t)fmax(ceil(1.3 * font / tile_y), 1);
-  for (size_t i = 0; i < columns; i += every_x) {
-    snprintf(text, sizeof text, "%.4g", x->values[i]);
-    picture_canvas_text(cairo, left + tile_x * ((double)i + 0.5), top + tall + 1.4 * font, 0.95 * font, PICTURE_CENTRE,
-                        false, text);
-  }
-  for (size_t j = 0; j < lines; j += every_y) {
-    snprintf(text, sizeof text, "%.4g", y->values[j]);
-    picture_canvas_text(cairo, left - 0.5 * font, top + tall - tile_y * ((double)j + 0.5) + 0.35 * font, 0.95 * font,
-                        PICTURE_RIGHT, false, text);
-  }
-  picture_bars_colours(cairo, PICTURE_RAMP_RISING, left + wide + 1.2 * font, top, 1.1 * font, tall, font, low, high,
-                       quantity);
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  if (title)
-    picture_canvas_text(cairo, left, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
-  picture_canvas_text(cairo, left + wide / 2, height - 0.8 * font, 1.05 * font, PICTURE_CENTRE, false, x->label);
-  cairo_save(cairo);
-  cairo_translate(cairo, 1.5 * font, top + tall / 2);
-  cairo_rotate(cairo, -M_PI / 2);
-  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, y->label);
-  cairo_restore(cairo);
+  struct layout l = {.cairo = canvas.cairo, .font = font, .low = range[0], .high = range[1]};
+  l.left = tick_width(canvas.cairo, font, y) + 3 * font;
+  l.top = (title ? 3 : 1) * font;
+  l.wide = width - l.left - 8 * font;
+  l.tall = height - l.top - 3.8 * font;
+  l.tile_x = l.wide / (double)x->count;
+  l.tile_y = l.tall / (double)y->count;
+
+  for (size_t j = 0; j < y->count; j++)
+    for (size_t i = 0; i < x->count; i++)
+      draw_tile(&l, l.left + l.tile_x * (double)i, l.top + l.tall - l.tile_y * (double)(j + 1),
+                value[j * x->count + i]);
+  draw_axes(&l, x, y);
+  picture_bars_colours(l.cairo, PICTURE_RAMP_RISING, l.left + l.wide + 1.2 * font, l.top, 1.1 * font, l.tall, font,
+                       l.low, l.high, quantity);
+  picture_canvas_title(l.cairo, l.left, font, title);
+  picture_canvas_text(l.cairo, l.left + l.wide / 2, height - 0.8 * font, 1.05 * font, PICTURE_CENTRE, false, x->label);
+  picture_canvas_text_upright(l.cairo, 1.5 * font, l.top + l.tall / 2, 1.05 * font, y->label);
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }
 
@@ -116,7 +144,7 @@ static size_t distinct(size_t count, const double (*points)[3], int coordinate, 
 
 static size_t place(size_t count, const double *values, double value) {
   const double *found = bsearch(&value, values, count, sizeof *values, sample_ascending);
-  return (size_t)(found - values); /* every value is there: the axis was made from them */
+  return (size_t)(found - values); /* every value is on the axis, which was made from them */
 }
 
 status picture_map_points(const char *path, double width, const char *title, const char *quantity, const char *x_label,
@@ -129,8 +157,8 @@ status picture_map_points(const char *path, double width, const char *title, con
       code = status_fail(error, STATUS_USAGE, "%s: a point of the map has no place on its axes", path);
   if (code)
     goto cleanup;
-  struct picture_axis x = {x_label, distinct(count, points, 0, xs), xs, false},
-                      y = {y_label, distinct(count, points, 1, ys), ys, false};
+  struct picture_axis x = {x_label, distinct(count, points, 0, xs), xs},
+                      y = {y_label, distinct(count, points, 1, ys), ys};
   if (x.count * y.count > MOST_TILES) {
     code = status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
                        path, x.count, y.count);

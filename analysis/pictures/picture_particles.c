@@ -1,4 +1,4 @@
-/* Particles as discs: cuts, views from outside, fragments drawn apart. */
+/* Particles drawn as discs: a cut, a view from outside, or the fragments apart. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,13 +9,13 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
 
-enum { RESOLVED = 10 }; /* particles: below, a fragment is hardly resolved and gets a pale tint */
+enum { RESOLVED = 10 }; /* particles: a smaller fragment is hardly resolved and gets a pale tint */
 
-static const double REACH = 0.80;  /* disc radius over size: a little more than touching, so that a cut has no holes */
+static const double REACH = 0.80;  /* disc radius over size: discs overlap a little, so that a cut has no holes */
 static const double SPREAD = 0.75; /* apart: fragments' distances from the middle grow by this share */
 
 struct disc {
-  double x, y, radius, depth; /* m; larger depth is drawn later */
+  double x, y, radius, depth; /* m; discs are drawn by ascending depth */
   uint32_t id;
 };
 
@@ -34,11 +34,21 @@ struct scene {
   enum picture_ramp ramp;
 };
 
-/* ---- fragments ---- */
+static void free_scene(struct scene *s) {
+  free(s->count);
+  free(s->mass);
+  free(s->centre);
+  free(s->disc);
+}
 
+static void add_weighted(double sum[3], double mass, const double position[3]) {
+  for (int d = 0; d < 3; d++)
+    sum[d] += mass * position[d];
+}
+
+/* Mass, centre and number of particles of each fragment, and the middle of the picture. */
 static status gather(struct scene *s) {
   const struct picture_cloud *c = s->cloud;
-  double total = 0, all[3] = {0, 0, 0};
   for (size_t i = 0; i < c->n; i++)
     if (c->fragment[i] >= (int64_t)s->fragments)
       s->fragments = (size_t)c->fragment[i] + 1;
@@ -48,24 +58,24 @@ static status gather(struct scene *s) {
   s->disc = malloc((c->n + 1) * sizeof *s->disc);
   if (!s->count || !s->mass || !s->centre || !s->disc)
     return STATUS_MEMORY;
+
+  double total = 0, all[3] = {0, 0, 0};
   for (size_t i = 0; i < c->n; i++) {
     total += c->mass[i];
-    for (int d = 0; d < 3; d++)
-      all[d] += c->mass[i] * c->position[i][d];
+    add_weighted(all, c->mass[i], c->position[i]);
     if (c->fragment[i] < 0)
       continue;
     size_t f = (size_t)c->fragment[i];
     s->count[f]++;
     s->mass[f] += c->mass[i];
-    for (int d = 0; d < 3; d++)
-      s->centre[f][d] += c->mass[i] * c->position[i][d];
+    add_weighted(s->centre[f], c->mass[i], c->position[i]);
   }
   for (size_t f = 0; f < s->fragments; f++)
     for (int d = 0; d < 3; d++)
       s->centre[f][d] /= s->count[f] ? s->mass[f] : 1;
-  bool core = s->fragments > 0 && s->count[0] >= RESOLVED;
+  bool large = s->fragments > 0 && s->count[0] >= RESOLVED;
   for (int d = 0; d < 3; d++)
-    s->middle[d] = core ? s->centre[0][d] : all[d] / total;
+    s->middle[d] = large ? s->centre[0][d] : all[d] / total;
   return STATUS_OK;
 }
 
@@ -73,36 +83,38 @@ static bool resolved(const struct scene *s, size_t i) {
   return s->cloud->fragment[i] >= 0 && s->count[s->cloud->fragment[i]] >= RESOLVED;
 }
 
-void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size) {
-  struct scene s = {.cloud = cloud};
-  double total = 0, dust = 0;
-  size_t searched = 0, pieces = 0;
-  text[0] = 0;
-  if (cloud->n && gather(&s) == STATUS_OK) {
-    for (size_t i = 0; i < cloud->n; i++) {
-      if (cloud->part[i] == PICTURE_LEFT_OUT)
-        continue;
-      searched++;
-      total += cloud->mass[i];
-      if (cloud->part[i] == PICTURE_DUST)
-        dust += cloud->mass[i];
-    }
-    for (size_t f = 0; f < s.fragments; f++)
-      pieces += s.count[f] > 1;
-    if (total > 0)
-      snprintf(
-          text, size,
-          "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% dust",
-          searched, pieces, pieces == 1 ? "" : "s", s.fragments ? 100 * s.mass[0] / total : 0,
-          s.fragments > 1 && s.count[1] > 1 ? 100 * s.mass[1] / total : 0, 100 * dust / total);
+/* Mass of the particles that were searched for fragments, and of the dust in it, kg. Returns how many they are. */
+static size_t sum_masses(const struct picture_cloud *cloud, double *total, double *dust) {
+  size_t searched = 0;
+  *total = *dust = 0;
+  for (size_t i = 0; i < cloud->n; i++) {
+    if (cloud->part[i] == PICTURE_LEFT_OUT)
+      continue;
+    searched++;
+    *total += cloud->mass[i];
+    if (cloud->part[i] == PICTURE_DUST)
+      *dust += cloud->mass[i];
   }
-  free(s.count);
-  free(s.mass);
-  free(s.centre);
-  free(s.disc);
+  return searched;
 }
 
-/* ---- what is seen ---- */
+void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size) {
+  struct scene s = {.cloud = cloud};
+  double total, dust;
+  size_t searched = sum_masses(cloud, &total, &dust), fragments = 0;
+  text[0] = 0;
+  if (total > 0 && gather(&s) == STATUS_OK) {
+    for (size_t f = 0; f < s.fragments; f++)
+      fragments += s.count[f] > 1;
+    double largest = s.fragments ? s.mass[0] : 0, second = s.fragments > 1 && s.count[1] > 1 ? s.mass[1] : 0;
+    snprintf(
+        text, size,
+        "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% dust",
+        searched, fragments, fragments == 1 ? "" : "s", 100 * largest / total, 100 * second / total,
+        100 * dust / total);
+  }
+  free_scene(&s);
+}
 
 static int by_depth(const void *a, const void *b) {
   const struct disc *p = a, *q = b;
@@ -146,7 +158,7 @@ static void cover(double view[4], double x, double y, double radius) {
   view[3] = fmax(view[3], y + radius);
 }
 
-/* All fragments that are resolved and nine tenths of the rest, so that jets do not shrink the body. */
+/* All resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. */
 static status choose_view(struct scene *s) {
   double *sorted = malloc((s->discs + 1) * sizeof *sorted), all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   double *view = s->view;
@@ -176,56 +188,73 @@ static status choose_view(struct scene *s) {
   return STATUS_OK;
 }
 
-/* Pa: MPa or GPa and so on by the size of what is shown. */
+/* The unit gets a prefix by the largest value shown: Pa becomes GPa. Not so shares, lengths and masses. */
 static void choose_unit(struct scene *s, double largest) {
   static const struct {
     double factor;
     const char *letter;
   } prefix[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}};
   const char *unit = s->look->unit ? s->look->unit : "1", *letter = "";
+  bool prefixed = strcmp(unit, "1") != 0 && strcmp(unit, "m") != 0 && strncmp(unit, "kg", 2) != 0;
   s->scale = 1;
-  for (size_t k = 0;
-       k < 3 && strcmp(unit, "1") != 0 && strcmp(unit, "m") != 0 && strncmp(unit, "kg", 2) != 0 && s->scale == 1; k++)
+  for (size_t k = 0; k < 3 && prefixed; k++)
     if (largest >= prefix[k].factor) {
       s->scale = prefix[k].factor;
       letter = prefix[k].letter;
+      break;
     }
   snprintf(s->label, sizeof s->label, strcmp(unit, "1") == 0 ? "%s" : "%s (%s%s)",
            s->look->quantity ? s->look->quantity : "", letter, unit);
 }
 
-static status choose_colours(struct scene *s) {
-  const double *value = s->cloud->value;
+/* The finite values drawn, of the particles searched for fragments only if `searched`: a hot and dense projectile does
+ * not set the range of the body. */
+static size_t collect_values(const struct scene *s, bool searched, double *values) {
   size_t count = 0;
-  if (!value)
-    return STATUS_OK;
-  double *sorted = malloc((s->discs + 1) * sizeof *sorted);
-  if (!sorted)
-    return STATUS_MEMORY;
-  for (int all = 0; all < 2 && count == 0; all++) /* a projectile, hot and dense, does not set the range for the body */
-    for (size_t k = 0; k < s->discs; k++)
-      if (isfinite(value[s->disc[k].id]) && (all || s->cloud->part[s->disc[k].id] != PICTURE_LEFT_OUT))
-        sorted[count++] = value[s->disc[k].id];
-  qsort(sorted, count, sizeof *sorted, sample_ascending);
+  for (size_t k = 0; k < s->discs; k++) {
+    uint32_t i = s->disc[k].id;
+    if (isfinite(s->cloud->value[i]) && !(searched && s->cloud->part[i] == PICTURE_LEFT_OUT))
+      values[count++] = s->cloud->value[i];
+  }
+  return count;
+}
+
+/* Range and ramp for ascending values. */
+static void choose_range(struct scene *s, const double *sorted, size_t count) {
   double least = count ? sorted[0] : 0, most = count ? sorted[count - 1] : 1;
-  bool share = s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1;
-  s->low = share ? 0 : count ? sorted[count / 100] : 0;
-  s->high = share ? 1 : count ? sorted[count - 1 - count / 100] : 1;
-  s->ramp = share && s->look->quantity && strcmp(s->look->quantity, "damage") == 0 ? PICTURE_RAMP_DAMAGE
-                                                                                   : PICTURE_RAMP_RISING;
+  s->low = count ? sorted[count / 100] : 0;
+  s->high = count ? sorted[count - 1 - count / 100] : 1;
+  s->ramp = PICTURE_RAMP_RISING;
+  if (s->look->unit && strcmp(s->look->unit, "1") == 0 && least >= 0 && most <= 1) {
+    s->low = 0;
+    s->high = 1;
+    if (s->look->quantity && strcmp(s->look->quantity, "damage") == 0)
+      s->ramp = PICTURE_RAMP_DAMAGE;
+  }
   if (s->low < 0 && s->high > 0) {
     s->ramp = PICTURE_RAMP_SIGNED;
     s->high = fmax(s->high, -s->low);
     s->low = -s->high;
   }
+}
+
+static status choose_colours(struct scene *s) {
+  if (!s->cloud->value)
+    return STATUS_OK;
+  double *sorted = malloc((s->discs + 1) * sizeof *sorted);
+  if (!sorted)
+    return STATUS_MEMORY;
+  size_t count = collect_values(s, true, sorted);
+  if (count == 0)
+    count = collect_values(s, false, sorted);
+  qsort(sorted, count, sizeof *sorted, sample_ascending);
+  choose_range(s, sorted, count);
   free(sorted);
   choose_unit(s, fmax(fabs(s->low), fabs(s->high)));
   return STATUS_OK;
 }
 
-/* ---- ink ---- */
-
-/* Golden-angle steps of hue, as for bodies of grains; `light` from -1 (far) to 1 (near). */
+/* Golden-angle steps of hue, as for bodies of grains. light: from -1 (far) to 1 (near). */
 static void fragment_colour(cairo_t *cairo, const struct scene *s, size_t i, double light) {
   int64_t f = s->cloud->fragment[i], part = s->cloud->part[i];
   if (part == PICTURE_LEFT_OUT || f < 0)
@@ -247,7 +276,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
   for (size_t k = 0; k < s->discs; k++) {
     const struct disc *d = &s->disc[k];
     double light = cut || !(near > far) ? 0 : fmin(fmax(2 * (d->depth - far) / (near - far) - 1, -1), 1);
-    if (!cut) { /* a dark rim round what stands before other things */
+    if (!cut) { /* a dark rim sets a disc off from those behind it */
       cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
       cairo_set_source_rgba(cairo, 0.1, 0.1, 0.12, 0.22);
       cairo_fill(cairo);
@@ -265,7 +294,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
   }
 }
 
-/* Which way is which: two short arrows in the lower left corner. */
+/* The directions: two short arrows in the lower left corner. */
 static void axes(cairo_t *cairo, int along, double x, double y, double font) {
   static const char *const names[] = {"x", "y", "z"};
   const char *right = names[along == 0 ? 1 : 0], *up = names[along == 2 ? 1 : 2];
@@ -286,46 +315,46 @@ static void axes(cairo_t *cairo, int along, double x, double y, double font) {
   picture_canvas_text(cairo, x, y - length - 0.4 * font, 0.95 * font, PICTURE_CENTRE, false, up);
 }
 
-/* The heaviest fragments with their shares of the mass. */
+static void legend_line(cairo_t *cairo, double x, double y, double font, const char *text) {
+  cairo_rectangle(cairo, x, y, font, font);
+  cairo_fill(cairo);
+  cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
+  picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
+}
+
+/* A particle of a fragment's core; n: there is none. */
+static size_t core_particle(const struct picture_cloud *cloud, size_t fragment) {
+  size_t i = 0;
+  while (i < cloud->n && !(cloud->fragment[i] == (int64_t)fragment && cloud->part[i] == PICTURE_CORE))
+    i++;
+  return i;
+}
+
+/* The heaviest fragments and the dust with their shares of the mass. */
 static void legend(cairo_t *cairo, const struct scene *s, double x, double y, double font) {
   enum { MOST = 8 };
-  double total = 0, dust = 0;
-  size_t sample = 0;
-  for (size_t i = 0; i < s->cloud->n; i++) {
-    if (s->cloud->part[i] != 3)
-      total += s->cloud->mass[i];
-    if (s->cloud->part[i] == PICTURE_DUST)
-      dust += s->cloud->mass[i];
-  }
+  char text[48];
+  double total, dust;
+  sum_masses(s->cloud, &total, &dust);
   for (size_t f = 0; f < MOST && f < s->fragments && s->count[f] >= RESOLVED; f++, y += 1.6 * font) {
-    char text[48];
-    for (sample = 0;
-         sample < s->cloud->n && !(s->cloud->fragment[sample] == (int64_t)f && s->cloud->part[sample] == PICTURE_CORE);)
-      sample++;
+    size_t sample = core_particle(s->cloud, f);
     if (sample == s->cloud->n)
       continue;
     fragment_colour(cairo, s, sample, 0);
-    cairo_rectangle(cairo, x, y, font, font);
-    cairo_fill(cairo);
     snprintf(text, sizeof text, "%.3g %%", 100 * s->mass[f] / total);
-    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-    picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
+    legend_line(cairo, x, y, font, text);
   }
-  if (dust > 0 && total > 0) {
-    char text[48];
-    picture_canvas_colour(cairo, 0.90, 0.004, 250, 1);
-    cairo_rectangle(cairo, x, y, font, font);
-    cairo_fill(cairo);
-    snprintf(text, sizeof text, "%.3g %% dust", 100 * dust / total);
-    cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-    picture_canvas_text(cairo, x + 1.5 * font, y + 0.85 * font, 0.95 * font, PICTURE_LEFT, false, text);
-  }
+  if (!(dust > 0 && total > 0))
+    return;
+  picture_canvas_colour(cairo, 0.90, 0.004, 250, 1);
+  snprintf(text, sizeof text, "%.3g %% dust", 100 * dust / total);
+  legend_line(cairo, x, y, font, text);
 }
 
 static status draw(const char *path, double width, struct scene *s, struct error *error) {
   const struct picture_look *look = s->look;
-  double font = width / 52, gap = 1.5 * font,
-         wide = width - 2 * gap - 9 * font; /* the bar or the legend on the right */
+  double font = width / 52, gap = 1.5 * font;
+  double wide = width - 2 * gap - 9 * font; /* the colour bar or the legend is on the right */
   double tall = wide * (s->view[3] - s->view[1]) / (s->view[2] - s->view[0]);
   if (!isfinite(tall))
     return status_fail(error, STATUS_USAGE, "%s: the particles have no extent to draw", path);
@@ -345,15 +374,7 @@ static status draw(const char *path, double width, struct scene *s, struct error
   cairo_translate(cairo, -(s->view[0] + s->view[2]) / 2, -(s->view[1] + s->view[3]) / 2);
   draw_discs(cairo, s);
   cairo_restore(cairo);
-  double line = 1.9 * font;
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  if (look->title)
-    picture_canvas_text(cairo, gap, line, 1.35 * font, PICTURE_LEFT, true, look->title);
-  if (look->title)
-    line += 1.6 * font;
-  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
-  if (look->subtitle)
-    picture_canvas_text(cairo, gap, line, 0.95 * font, PICTURE_LEFT, false, look->subtitle);
+  picture_canvas_head(cairo, gap, font, look->title, 0.95 * font, look->subtitle);
   axes(cairo, look->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
   picture_bars_length(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
   if (s->cloud->value)
@@ -364,37 +385,35 @@ static status draw(const char *path, double width, struct scene *s, struct error
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }
 
+/* Gathers, chooses and draws. Sets *error itself unless the code is STATUS_MEMORY. */
+static status compose(const char *path, double width, struct scene *s, struct error *error) {
+  if (s->cloud->n) {
+    if (gather(s))
+      return STATUS_MEMORY;
+    choose_discs(s);
+  }
+  if (s->discs == 0)
+    return status_fail(error, STATUS_USAGE,
+                       s->look->view == PICTURE_CUT ? "%s: the plane meets no particle"
+                                                    : "%s: there is no particle to draw",
+                       path);
+  if (choose_view(s) || choose_colours(s))
+    return STATUS_MEMORY;
+  return draw(path, width, s, error);
+}
+
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error) {
-  struct scene s = {.cloud = cloud, .look = look};
-  status code = STATUS_OK;
   if (look->axis < 0 || look->axis > 2)
     return status_fail(error, STATUS_USAGE, "%s: there is no axis %d", path, look->axis);
   for (size_t i = 0; i < cloud->n; i++)
     if (cloud->fragment[i] >= (int64_t)cloud->n)
       return status_fail(error, STATUS_USAGE, "%s: fragment numbers beyond the number of particles", path);
-  if (cloud->n && (code = gather(&s)))
-    goto cleanup;
-  if (cloud->n)
-    choose_discs(&s);
-  if (s.discs == 0) {
-    code = status_fail(error, STATUS_USAGE,
-                       look->view == PICTURE_CUT ? "%s: the plane meets no particle"
-                                                 : "%s: there is no particle to draw",
-                       path);
-    goto done;
-  }
-  if ((code = choose_view(&s)) || (code = choose_colours(&s)))
-    goto cleanup;
-  code = draw(path, width, &s, error);
-  goto done;
-cleanup:
-  if (code)
+
+  struct scene s = {.cloud = cloud, .look = look};
+  status code = compose(path, width, &s, error);
+  if (code == STATUS_MEMORY)
     status_fail(error, code, "%s: no memory for the picture", path);
-done:
-  free(s.count);
-  free(s.mass);
-  free(s.centre);
-  free(s.disc);
+  free_scene(&s);
   return code;
 }

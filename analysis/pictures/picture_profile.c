@@ -5,7 +5,7 @@
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_frame.h"
 
-/* A line through all points that are numbers, and a dot at each when they are few. */
+/* A line through the finite points, and a dot at each when they are few. */
 static void line(const struct picture_frame *f, size_t count, const double *x, const double *y, double hue) {
   enum { FEW = 120 };
   cairo_t *cairo = f->cairo;
@@ -44,20 +44,22 @@ status picture_profile(const char *path, double width, const char *title, const 
   if (code)
     return code;
   f.cairo = canvas.cairo;
-  f.left = 7.5 * f.font, f.wide = width - f.left - 1.5 * f.font;
+  f.left = 7.5 * f.font;
+  f.wide = width - f.left - 1.5 * f.font;
   for (size_t k = 0; k < panels; k++) {
     f.top = head + (double)k * (f.tall + gap);
     picture_frame_range(count, panel[k].y, f.y);
-    if (!(f.y[1] >= f.y[0]))
-      f.y[0] = 0, f.y[1] = 1; /* no number at all: an empty frame */
-    f.y[0] = fmin(f.y[0], panel[k].at_least[0]), f.y[1] = fmax(f.y[1], panel[k].at_least[1]);
+    if (!(f.y[1] >= f.y[0])) { /* no finite value: an empty frame */
+      f.y[0] = 0;
+      f.y[1] = 1;
+    }
+    f.y[0] = fmin(f.y[0], panel[k].at_least[0]);
+    f.y[1] = fmax(f.y[1], panel[k].at_least[1]);
     picture_frame_widen(f.y, 0.06);
     picture_frame_draw(&f, k + 1 == panels, panel[k].label);
     line(&f, count, x, panel[k].y, hues[k % 3]);
   }
-  cairo_set_source_rgb(canvas.cairo, 0.1, 0.1, 0.1);
-  if (title)
-    picture_canvas_text(canvas.cairo, f.left, 2 * f.font, 1.2 * f.font, PICTURE_LEFT, true, title);
+  picture_canvas_title(canvas.cairo, f.left, f.font, title);
   picture_canvas_text(canvas.cairo, f.left + f.wide / 2, f.top + f.tall + 3.1 * f.font, 1.05 * f.font, PICTURE_CENTRE,
                       false, x_label);
   return picture_canvas_close(&canvas, STATUS_OK, error);

@@ -1,4 +1,4 @@
-/* Log-log spectra with error bars and fit lines; axes with a tick per decade and its minor ones. */
+/* Log-log spectra with error bars and fitted lines. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -23,7 +23,7 @@ static double middle(const struct pooled_bin *bin) {
   return (log10(bin->lower) + log10(bin->upper)) / 2;
 }
 
-/* Ranges that hold every point, widened to whole decades when that is near, else by a margin. */
+/* Ranges that hold every point, with a margin. */
 static bool choose_range(size_t count, const struct picture_series *series, struct frame *f) {
   f->x0 = f->y0 = HUGE_VAL;
   f->x1 = f->y1 = -HUGE_VAL;
@@ -41,69 +41,99 @@ static bool choose_range(size_t count, const struct picture_series *series, stru
   if (!(f->x1 > f->x0))
     return false;
   double margin_x = 0.04 * (f->x1 - f->x0), margin_y = 0.08 * (f->y1 - f->y0) + 0.1;
-  f->x0 -= margin_x, f->x1 += margin_x, f->y0 -= margin_y, f->y1 += margin_y;
+  f->x0 -= margin_x;
+  f->x1 += margin_x;
+  f->y0 -= margin_y;
+  f->y1 += margin_y;
   return true;
 }
 
-static void axis(const struct frame *f, bool horizontal) {
-  cairo_t *cairo = f->cairo;
-  double from = horizontal ? f->x0 : f->y0, to = horizontal ? f->x1 : f->y1, room = horizontal ? f->width : f->height;
-  int step = (int)fmax(ceil(3.2 * f->font * (to - from) / room), 1); /* label every decade, or every so many */
-  for (int decade = (int)floor(from); decade <= (int)ceil(to); decade++) {
-    for (int digit = 1; digit < 10; digit++) {
-      double value = decade + log10(digit);
-      if (value < from || value > to || (digit > 1 && to - from > 12))
-        continue;
-      double length = digit == 1 ? 0.55 * f->font : 0.28 * f->font;
-      double place = horizontal ? at_x(f, value) : at_y(f, value);
-      if (digit == 1) { /* grid line */
-        cairo_set_source_rgb(cairo, 0.91, 0.91, 0.91);
-        cairo_set_line_width(cairo, 0.05 * f->font);
-        cairo_move_to(cairo, horizontal ? place : f->left, horizontal ? f->top : place);
-        cairo_line_to(cairo, horizontal ? place : f->left + f->width, horizontal ? f->top + f->height : place);
-        cairo_stroke(cairo);
-      }
-      cairo_set_source_rgb(cairo, 0.2, 0.2, 0.2);
-      cairo_set_line_width(cairo, 0.07 * f->font);
-      cairo_move_to(cairo, horizontal ? place : f->left, horizontal ? f->top + f->height : place);
-      cairo_rel_line_to(cairo, horizontal ? 0 : length, horizontal ? -length : 0);
-      cairo_stroke(cairo);
-      if (digit > 1 || decade % step != 0)
-        continue;
-      if (horizontal)
-        picture_canvas_decade(cairo, place, f->top + f->height + 1.5 * f->font, f->font, PICTURE_CENTRE, decade);
-      else
-        picture_canvas_decade(cairo, f->left - 0.5 * f->font, place + 0.35 * f->font, f->font, PICTURE_RIGHT, decade);
+static void stroke_line(cairo_t *cairo, double x, double y, double along_x, double along_y) {
+  cairo_move_to(cairo, x, y);
+  cairo_rel_line_to(cairo, along_x, along_y);
+  cairo_stroke(cairo);
+}
+
+/* One tick at log10 `value`; with `grid` a line across the frame, too. */
+static void tick(const struct frame *f, bool horizontal, double value, bool grid) {
+  double length = (grid ? 0.55 : 0.28) * f->font, bottom = f->top + f->height;
+  double place = horizontal ? at_x(f, value) : at_y(f, value);
+  if (grid) {
+    cairo_set_source_rgb(f->cairo, 0.91, 0.91, 0.91);
+    cairo_set_line_width(f->cairo, 0.05 * f->font);
+    if (horizontal) {
+      cairo_move_to(f->cairo, place, f->top);
+      cairo_line_to(f->cairo, place, bottom);
+    } else {
+      cairo_move_to(f->cairo, f->left, place);
+      cairo_line_to(f->cairo, f->left + f->width, place);
     }
+    cairo_stroke(f->cairo);
   }
+  cairo_set_source_rgb(f->cairo, 0.2, 0.2, 0.2);
+  cairo_set_line_width(f->cairo, 0.07 * f->font);
+  if (horizontal)
+    stroke_line(f->cairo, place, bottom, 0, -length);
+  else
+    stroke_line(f->cairo, f->left, place, length, 0);
+}
+
+static void tick_number(const struct frame *f, bool horizontal, int decade) {
+  if (horizontal)
+    picture_canvas_decade(f->cairo, at_x(f, decade), f->top + f->height + 1.5 * f->font, f->font, PICTURE_CENTRE,
+                          decade);
+  else
+    picture_canvas_decade(f->cairo, f->left - 0.5 * f->font, at_y(f, decade) + 0.35 * f->font, f->font, PICTURE_RIGHT,
+                          decade);
+}
+
+/* Ticks at 1 to 9 of every decade, numbers at as many powers of ten as fit. */
+static void axis(const struct frame *f, bool horizontal) {
+  double from = horizontal ? f->x0 : f->y0, to = horizontal ? f->x1 : f->y1;
+  double length = horizontal ? f->width : f->height;
+  int every = (int)fmax(ceil(3.2 * f->font * (to - from) / length), 1), digits = to - from > 12 ? 1 : 9;
+  for (int decade = (int)floor(from); decade <= (int)ceil(to); decade++)
+    for (int digit = 1; digit <= digits; digit++) {
+      double value = decade + log10(digit);
+      if (value < from || value > to)
+        continue;
+      tick(f, horizontal, value, digit == 1);
+      if (digit == 1 && decade % every == 0)
+        tick_number(f, horizontal, decade);
+    }
+}
+
+/* One standard error to both sides. A bar that reaches down to zero is faint, so that it does not rule the picture. */
+static void error_bar(const struct frame *f, const struct pooled_bin *bin, double x, double cap, size_t index) {
+  cairo_t *cairo = f->cairo;
+  double low = bin->density - bin->standard_error, bottom = f->top + f->height;
+  if (low > 0)
+    bottom = fmin(at_y(f, log10(low)), bottom);
+  double top = fmax(at_y(f, log10(bin->density + bin->standard_error)), f->top);
+  picture_canvas_series(cairo, index, low > 0 ? 0.75 : 0.3);
+  cairo_move_to(cairo, x, bottom);
+  cairo_line_to(cairo, x, top);
+  cairo_move_to(cairo, x - cap, top);
+  cairo_rel_line_to(cairo, 2 * cap, 0);
+  if (low > 0) {
+    cairo_move_to(cairo, x - cap, bottom);
+    cairo_rel_line_to(cairo, 2 * cap, 0);
+  }
+  cairo_stroke(cairo);
 }
 
 static void points(const struct frame *f, const struct picture_series *series, size_t index) {
   cairo_t *cairo = f->cairo;
-  double radius = 0.27 * f->font, floor_y = f->top + f->height;
+  double radius = 0.27 * f->font;
   for (size_t b = 0; b < series->count; b++) {
     const struct pooled_bin *bin = &series->bins[b];
     if (!(bin->density > 0))
       continue;
-    double x = at_x(f, middle(bin)), y = at_y(f, log10(bin->density));
+    double x = at_x(f, middle(bin));
     cairo_set_line_width(cairo, 0.09 * f->font);
-    if (bin->standard_error > 0) {
-      double low = bin->density - bin->standard_error;
-      picture_canvas_series(cairo, index,
-                            low > 0 ? 0.75 : 0.3); /* reaches down to zero: faint, or it would rule the picture */
-      double bottom = low > 0 ? fmin(at_y(f, log10(low)), floor_y) : floor_y;
-      double top = fmax(at_y(f, log10(bin->density + bin->standard_error)), f->top);
-      cairo_move_to(cairo, x, bottom);
-      cairo_line_to(cairo, x, top);
-      cairo_move_to(cairo, x - 0.7 * radius, top);
-      cairo_rel_line_to(cairo, 1.4 * radius, 0);
-      if (low > 0) {
-        cairo_move_to(cairo, x - 0.7 * radius, bottom);
-        cairo_rel_line_to(cairo, 1.4 * radius, 0);
-      }
-      cairo_stroke(cairo);
-    }
-    cairo_arc(cairo, x, y, radius, 0, 2 * M_PI);
+    if (bin->standard_error > 0)
+      error_bar(f, bin, x, 0.7 * radius, index);
+    cairo_arc(cairo, x, at_y(f, log10(bin->density)), radius, 0, 2 * M_PI);
     picture_canvas_series(cairo, index, 1);
     cairo_fill_preserve(cairo);
     cairo_set_source_rgb(cairo, 1, 1, 1);
@@ -112,7 +142,15 @@ static void points(const struct frame *f, const struct picture_series *series, s
   }
 }
 
-/* Amplitude of A m^-beta that holds n fragments in [a, b). */
+/* The dashes tell the fits of one series apart; the first is a full line. */
+static void set_dash(const struct frame *f, size_t fit) {
+  const double dashes[3][2] = {{1, 0}, {0.9, 0.5}, {0.25, 0.4}};
+  double dash[2] = {dashes[fit % 3][0] * f->font, dashes[fit % 3][1] * f->font};
+  if (fit % 3)
+    cairo_set_dash(f->cairo, dash, 2, 0);
+}
+
+/* Amplitude A of A m^-beta with as many fragments in [lower, upper) as the fit was made from. */
 static double amplitude(const struct picture_fit *fit, double upper) {
   double k = fit->beta - 1, a = fit->lower, span = log(upper / a);
   double integral = fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k;
@@ -128,10 +166,7 @@ static void fit_line(const struct frame *f, const struct picture_fit *fit, size_
   cairo_save(cairo);
   cairo_rectangle(cairo, f->left, f->top, f->width, f->height);
   cairo_clip(cairo);
-  const double dashes[3][2] = {{1, 0}, {0.9, 0.5}, {0.25, 0.4}};
-  double dash[2] = {dashes[number % 3][0] * f->font, dashes[number % 3][1] * f->font};
-  if (number % 3)
-    cairo_set_dash(cairo, dash, 2, 0);
+  set_dash(f, number);
   picture_canvas_series(cairo, index, 0.95);
   cairo_set_line_width(cairo, 0.14 * f->font);
   cairo_move_to(cairo, at_x(f, log10(fit->lower)), at_y(f, level - fit->beta * log10(fit->lower)));
@@ -140,44 +175,51 @@ static void fit_line(const struct frame *f, const struct picture_fit *fit, size_
   cairo_restore(cairo);
 }
 
-/* Beside the frame: labels that name the inputs are long. Room for it, from the longest text (0.58 em a letter, bold).
- */
+/* Line 0 of a series' legend is its label, the others are those of its fits. NULL: no line. */
+static const char *legend_text(const struct picture_series *series, size_t line) {
+  return line == 0 ? series->label : series->fit[line - 1].label;
+}
+
+/* The legend stands beside the frame, because labels that name the inputs are long. Its width follows from the longest
+ * text (0.58 em a letter, bold). */
 static double legend_width(double font, size_t count, const struct picture_series *series) {
   size_t longest = 0;
   for (size_t s = 0; s < count; s++)
     for (size_t line = 0; line <= series[s].fits; line++) {
-      const char *text = line == 0 ? series[s].label : series[s].fit[line - 1].label;
+      const char *text = legend_text(&series[s], line);
       if (text && strlen(text) > longest)
         longest = strlen(text);
     }
   return longest ? (4 + 0.58 * (double)longest) * font : 0;
 }
 
-static void legend(const struct frame *f, size_t count, const struct picture_series *series) {
+/* A dot for a series, a line for a fit. */
+static void legend_mark(const struct frame *f, double x, double y, size_t line) {
   cairo_t *cairo = f->cairo;
-  double y = f->top + f->font, mark = f->left + f->width + f->font, left = mark + 2.6 * f->font;
+  if (line == 0) {
+    cairo_arc(cairo, x + f->font, y - 0.33 * f->font, 0.3 * f->font, 0, 2 * M_PI);
+    cairo_fill(cairo);
+    return;
+  }
+  set_dash(f, line - 1);
+  cairo_set_line_width(cairo, 0.14 * f->font);
+  cairo_move_to(cairo, x, y - 0.33 * f->font);
+  cairo_rel_line_to(cairo, 2 * f->font, 0);
+  cairo_stroke(cairo);
+  cairo_set_dash(cairo, NULL, 0, 0);
+}
+
+static void legend(const struct frame *f, size_t count, const struct picture_series *series) {
+  double y = f->top + f->font, x = f->left + f->width + f->font;
   for (size_t s = 0; s < count; s++) {
     for (size_t line = 0; line <= series[s].fits; line++) {
-      const char *text = line == 0 ? series[s].label : series[s].fit[line - 1].label;
+      const char *text = legend_text(&series[s], line);
       if (!text)
         continue;
-      cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
-      picture_canvas_text(cairo, left, y, 0.95 * f->font, PICTURE_LEFT, line == 0, text);
-      picture_canvas_series(cairo, s, 1);
-      if (line == 0) {
-        cairo_arc(cairo, mark + f->font, y - 0.33 * f->font, 0.3 * f->font, 0, 2 * M_PI);
-        cairo_fill(cairo);
-      } else {
-        const double dashes[3][2] = {{1, 0}, {0.9, 0.5}, {0.25, 0.4}};
-        double dash[2] = {dashes[(line - 1) % 3][0] * f->font, dashes[(line - 1) % 3][1] * f->font};
-        if ((line - 1) % 3)
-          cairo_set_dash(cairo, dash, 2, 0);
-        cairo_set_line_width(cairo, 0.14 * f->font);
-        cairo_move_to(cairo, mark, y - 0.33 * f->font);
-        cairo_rel_line_to(cairo, 2 * f->font, 0);
-        cairo_stroke(cairo);
-        cairo_set_dash(cairo, NULL, 0, 0);
-      }
+      cairo_set_source_rgb(f->cairo, 0.15, 0.15, 0.15);
+      picture_canvas_text(f->cairo, x + 2.6 * f->font, y, 0.95 * f->font, PICTURE_LEFT, line == 0, text);
+      picture_canvas_series(f->cairo, s, 1);
+      legend_mark(f, x, y, line);
       y += 1.45 * f->font;
     }
     y += 0.4 * f->font;
@@ -212,17 +254,11 @@ status picture_spectrum(const char *path, double width, const char *title, const
   for (size_t s = 0; s < count; s++)
     points(&f, &series[s], s);
   legend(&f, count, series);
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  if (title)
-    picture_canvas_text(cairo, f.left, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
+  picture_canvas_title(cairo, f.left, font, title);
   char text[128];
   snprintf(text, sizeof text, "fragment mass m (%s)", mass_unit);
   picture_canvas_text(cairo, f.left + f.width / 2, height - 0.7 * font, 1.05 * font, PICTURE_CENTRE, false, text);
   snprintf(text, sizeof text, "F(m), fragments per run and %s", mass_unit);
-  cairo_save(cairo);
-  cairo_translate(cairo, 1.4 * font, f.top + f.height / 2);
-  cairo_rotate(cairo, -M_PI / 2);
-  picture_canvas_text(cairo, 0, 0, 1.05 * font, PICTURE_CENTRE, false, text);
-  cairo_restore(cairo);
+  picture_canvas_text_upright(cairo, 1.4 * font, f.top + f.height / 2, 1.05 * font, text);
   return picture_canvas_close(&canvas, STATUS_OK, error);
 }

@@ -1,3 +1,4 @@
+/* Spectra as text. */
 #include "analysis/pictures/text_plot.h"
 
 #include <math.h>
@@ -22,10 +23,13 @@ struct scale {
 static int place(const struct scale *scale, double log_density) {
   double share = (log_density - scale->low) / (scale->high - scale->low);
   int at = (int)lround(share * (scale->columns - 1));
-  return at < 0 ? 0 : at >= scale->columns ? scale->columns - 1 : at;
+  if (at < 0)
+    return 0;
+  return at < scale->columns ? at : scale->columns - 1;
 }
 
-/* log10 of the fit's density at a mass, normalised to the fragments it was made from; NaN outside its window. */
+/* log10 of a fit's density at a mass. The fit holds as many fragments in its window as it was made from. NaN outside of
+ * the window. */
 static double fit_at(const struct picture_fit *fit, double mass) {
   if (!isfinite(fit->beta) || mass < fit->lower || mass >= fit->upper || !(fit->fragments_per_run > 0))
     return NAN;
@@ -59,7 +63,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
     fprintf(out, " %4.0f%%  ", 100 * bin->standard_error / bin->density);
   else
     fprintf(out, " %5s  ", "-");
-  int end = scale->columns; /* no blanks at the end of a line */
+  int end = scale->columns; /* a line has no trailing blanks */
   while (end > 0 && line[end - 1] == BLANK)
     end--;
   for (int i = 0; i < end; i++)
@@ -67,7 +71,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   fputc('\n', out);
 }
 
-/* The decades over the grid lines, as many as fit. */
+/* The decades stand over the grid lines, as many as fit. */
 static void heading(FILE *out, const struct scale *scale, const char *mass_unit) {
   char unit[32], line[MOST_PLOT + 16];
   snprintf(unit, sizeof unit, "from %s", mass_unit);
@@ -88,15 +92,18 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit)
   fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-", line);
 }
 
-/* The two signs that labels use, spelt out where only ASCII may be printed. */
+/* Without unicode, beta and plus-minus are spelt out. */
 static void write_label(FILE *out, const char *label, bool unicode) {
   for (const char *c = label; *c; c++) {
-    if (!unicode && strncmp(c, "\xce\xb2", 2) == 0)
-      fputs("beta", out), c++;
-    else if (!unicode && strncmp(c, "\xc2\xb1", 2) == 0)
-      fputs("+-", out), c++;
-    else if (unicode || (unsigned char)*c < 0x80)
+    if (!unicode && strncmp(c, "\xce\xb2", 2) == 0) {
+      fputs("beta", out);
+      c++;
+    } else if (!unicode && strncmp(c, "\xc2\xb1", 2) == 0) {
+      fputs("+-", out);
+      c++;
+    } else if (unicode || (unsigned char)*c < 0x80) {
       fputc(*c, out);
+    }
   }
 }
 
@@ -111,7 +118,7 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_u
   }
   if (!(scale.high >= scale.low))
     return;
-  scale.low -= 0.3; /* room for an error bar of a factor two */
+  scale.low -= 0.3; /* space for an error bar of a factor two */
   scale.high += 0.1;
   if (columns < LEAST_COLUMNS)
     columns = LEAST_COLUMNS;
@@ -125,24 +132,4 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_u
   fprintf(out, "%s ", glyph(FIT, unicode));
   write_label(out, series->fit[0].label, unicode);
   fputc('\n', out);
-}
-
-void text_plot_sparkline(size_t n, const double *values, double low, double high, bool unicode, char *text) {
-  size_t at = 0;
-  for (size_t i = 0; i < n; i++) {
-    if (!isfinite(values[i])) {
-      text[at++] = ' ';
-      continue;
-    }
-    double share = high > low ? (values[i] - low) / (high - low) : 0.5;
-    int eighth = (int)floor(fmin(fmax(share, 0), 1) * 7.999);
-    if (unicode) { /* U+2581 .. U+2588 */
-      text[at++] = '\xe2';
-      text[at++] = '\x96';
-      text[at++] = (char)(0x81 + eighth);
-    } else {
-      text[at++] = (char)('0' + eighth);
-    }
-  }
-  text[at] = 0;
 }

@@ -207,7 +207,7 @@ static void maps_are_drawn(void **state) {
   for (int i = 0; i < 24; i++)
     value[i] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
   value[7] = NAN;
-  struct picture_axis x = {"threshold.strain", 6, xs, false}, y = {"beam.threshold.angle (deg)", 4, ys, false};
+  struct picture_axis x = {"threshold.strain", 6, xs}, y = {"beam.threshold.angle (deg)", 4, ys};
   assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", &x, &y, value, NULL),
                    STATUS_OK);
   double dark, coloured;

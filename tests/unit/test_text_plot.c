@@ -61,17 +61,7 @@ static void rows_and_columns(void **state) {
   free(text);
 }
 
-static void sparklines(void **state) {
-  (void)state;
-  const double values[5] = {0, 0.5, 1, NAN, 7};
-  char text[3 * 5 + 1];
-  text_plot_sparkline(5, values, 0, 1, false, text);
-  assert_string_equal(text, "037 7");
-  text_plot_sparkline(5, values, 0, 1, true, text);
-  assert_string_equal(text, "\xe2\x96\x81\xe2\x96\x84\xe2\x96\x88 \xe2\x96\x88");
-}
-
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(rows_and_columns), cmocka_unit_test(sparklines)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rows_and_columns)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,126 +17,144 @@ static const char *const reasons[] = {"running", "quiet", "end-time", "fault", N
 static const struct field rows[] = {
     ROW(stop_reason, FIELD_CHOICE, NULL, .choices = reasons,
         .choice_docs = "the run has not ended\n"
-                       "damage had ceased to grow by the scene's rule\n"
-                       "the hard end came\n"
-                       "a numerical fault: the outcome's state says which",
+                       "fracture ceased by the rule of stop.quiet_time\n"
+                       "the run reached stop.end_time\n"
+                       "a numerical fault: the state of the outcome names it",
         .doc = "Why the run ended."),
-    COUNT(particles, "Particles of the target (of a collision: of both bodies)."),
-    COUNT(projectile_particles, "Particles of the projectile, or of the piston."),
-    COUNT(flaws, "Explicit flaws in all bodies."),
-    REAL(target_mass, "kg", 0, .doc = "Mass of the target: M of all mass fractions, which leave the projectile out."),
+    COUNT(particles, "Number of particles in the target (in both bodies of a collision)."),
+    COUNT(projectile_particles, "Number of particles in the projectile or piston."),
+    COUNT(flaws, "Number of explicit flaws in all bodies."),
+    REAL(target_mass, "kg", 0,
+         .doc = "Mass of the target. All mass fractions are shares of it, so they leave the projectile out."),
     REAL(projectile_mass, "kg", 0, .doc = "Mass of the projectile; off without one."),
     REAL(specific_energy, "J/kg", 0,
-         .doc = "Q: kinetic energy of the projectile over the target's mass; off without one."),
+         .doc = "Q: kinetic energy of the projectile over the mass of the target; off without a projectile."),
     ROW(fracture_ceased, FIELD_BOOLEAN, NULL, .maximum = 1,
-        .doc =
-            "Damage had ceased to grow by the scene's rule (stop.quiet_time), or there is nothing that could break."),
-    REAL(first_damage, "s", 0, .doc = "Time at which damage of a body with flaws began; off when there is none."),
+        .doc = "Fracture ceased by the rule of stop.quiet_time, or no damage began before stop.end_time."),
+    REAL(first_damage, "s", 0, .doc = "Time when damage of a body with flaws began; off without damage."),
     REAL(cease_time, "s", 0,
-         .doc = "Time since which damage has grown by less than stop.quiet_growth; off when it still grows."),
-    SHARE(mean_damage, .doc = "Mean damage of the target at the end, by mass.", .source = "BA95 eq. 14"),
+         .doc =
+             "Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has "
+             "not ceased."),
+    SHARE(mean_damage, .doc = "Mean damage D of the target at the end, weighted by mass.", .source = "BA95 eq. 14"),
     SHARE(undamaged_fraction,
-          .doc = "Mass share of the target's particles below fragments.damage, before the static pass."),
+          .doc =
+              "Mass share of the target's particles with damage below fragments.damage. Particles that only the static "
+              "strength breaks count as undamaged."),
     REAL(mean_distention, "1", 1,
-         .doc = "Mean distention of the target at the end, by mass, at rest (P = 0): 1 is solid; off without pores.",
+         .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without "
+                "pores.",
          .source = "Jutzi, Benz & Michel 2008"),
-    SHARE(largest.bare_fraction, .doc = "M_1/M with the static pass and without the veneer of damaged particles.",
+    SHARE(largest.bare_fraction,
+          .doc =
+              "M_1/M of the core: mass of the largest fragment without its veneer (its layer of broken particles) over "
+              "the target's mass, with the static strength.",
           .source = "BA95 section 4.4"),
-    SHARE(largest.veneer_fraction, .doc = "M_1/M with the static pass and with the veneer.",
+    SHARE(largest.veneer_fraction,
+          .doc =
+              "M_1/M with the veneer: mass of the largest fragment over the target's mass, with the static strength.",
           .source = "BA95 section 4.4"),
-    SHARE(largest.dynamic_fraction, .doc = "M_1/M without the static pass, with the veneer."),
+    SHARE(largest.dynamic_fraction, .doc = "M_1/M with the veneer and without the static strength."),
     SHARE(largest.axis_middle,
-          .doc = "Middle over longest axis of the ellipsoid with the largest fragment's moments of inertia."),
-    SHARE(largest.axis_short, .doc = "Shortest over longest axis of that ellipsoid: 1 is a sphere."),
-    REAL(largest.speed, "m/s", 0, .doc = "Speed of the largest fragment."),
-    REAL(second.mass, "kg", 0, .doc = "Mass of the second largest fragment; off when there is none."),
-    REAL(
-        second.angle, "rad", 0,
-        .doc =
-            "Angle at the target's centre between the point of impact and the second largest fragment: pi is opposite.",
-        .source = "BA95 section 5.2"),
+          .doc = "Middle over longest axis of the ellipsoid that has the moments of inertia of the "
+                 "largest fragment."),
+    SHARE(largest.axis_short, .doc = "Shortest over longest axis of the same ellipsoid. 1 is a sphere."),
+    REAL(largest.speed, "m/s", 0, .doc = "Speed of the largest fragment's centre of mass."),
+    REAL(second.mass, "kg", 0, .doc = "Mass of the second largest fragment; off when there is only one."),
+    REAL(second.angle, "rad", 0,
+         .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
+                "largest fragment. pi is the antipode.",
+         .source = "BA95 section 5.2"),
     SHARE(ejecta.mass_fraction,
-          .doc = "Impact: mass share of the target that leaves it faster than crater.ejection_speed.",
+          .doc = "Impact: mass share of the target that moves outwards faster than crater.ejection_speed.",
           .source = "Jutzi & Benz, section 3"),
-    REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of that mass, along the outward normal."),
+    REAL(ejecta.momentum, "kg m/s", 0, .doc = "Impact: momentum of the ejecta along the outward normal."),
     REAL(crater.depth, "m", 0,
-         .doc = "Impact: depth of the crater in what is retained, below the first surface; in steps of a spacing, 0 "
-                "below one."),
-    REAL(crater.radius, "m", 0, .doc = "Impact: radius of a circle of the crater's area at the first surface."),
+         .doc =
+             "Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing "
+             "of the particles."),
+    REAL(crater.radius, "m", 0, .doc = "Impact: radius of a circle whose area is that of the crater at the surface."),
     REAL(crater.volume, "m^3", 0,
-         .doc = "Impact: volume between the first and the present surface of what is retained."),
+         .doc =
+             "Impact: volume of the crater, between the surface at the start and the surface of the retained matter."),
     SHARE(crater.compaction_share,
-          .doc = "Impact: volume of closed pores over that and the ejecta's first volume: 1 is a crater made by "
-                 "compaction alone. Off when "
-                 "there is neither.",
+          .doc =
+              "Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a "
+              "crater made by compaction alone. Off when both volumes are 0.",
           .source = "Jutzi & Benz, section 3.1"),
     SHARE(compaction.mass_fraction,
           .doc =
-              "Mass share of the target with distention (at rest) below 1.01 that had 1.01 or more; off without pores.",
+              "Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or "
+              "more to below 1.01. Off without pores.",
           .source = "Jutzi & Benz, figure 2"),
     REAL(compaction.volume, "m^3", 0,
-         .doc = "Volume that the target's retained matter has lost by closing pores; off without pores."),
+         .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
     REAL(compaction.depth, "m", 0,
-         .doc = "First depth of the deepest matter near the axis with distention below 1.01; off without pores."),
+         .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores."),
     REAL(compaction.reach, "m", 0,
-         .doc = "Distance from the point of impact of the farthest matter that lost a hundredth of its pores; off "
+         .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off "
                 "without pores."),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
-    REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy taken by damped sides."),
+    REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy that damped sides removed."),
     REAL(energy.work_of_held, "J", -HUGE_VAL, .doc = "Work done by grips."),
-    REAL(energy.clamped, "J", -HUGE_VAL, .doc = "Energy put in where internal energy would have become negative."),
-    REAL(energy_input, "J", 0, .doc = "Energy put in: kinetic energy at the start, and the size of the grips' work."),
-    REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input: booked apart, not credited in energy_error."),
+    REAL(energy.clamped, "J", -HUGE_VAL, .doc = "Energy added where internal energy would have become negative."),
+    REAL(energy_input, "J", 0, .doc = "Energy put in: kinetic energy at the start plus the absolute work of grips."),
+    REAL(clamped_share, "1", 0, .doc = "energy.clamped over energy_input. energy_error does not subtract it."),
     SHARE(density_held_share,
-          .doc = "Particle-steps at the lowest density allowed, over all: clamps that put in no energy."),
+          .doc = "Share of all particle steps that held the density at its lower limit. Such a step adds no energy."),
     REAL(angular_momentum_error, "1", 0,
-         .doc =
-             "Change of angular momentum over the larger of its first size and the sum of momenta (the larger of start "
-             "and end) "
-             "times the target's reach; off with grips or damped sides. Only about axes across which nothing repeats."),
+         .doc = "Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the "
+                "angular momentum at the start and the sum of momenta (the larger of start and end) times the target's "
+                "extent. Only axes count across which nothing is periodic."),
     SHARE(limited.courant,
-          .doc = "Share of the steps whose length the speed of sound and the viscosity, or a damped side, set."),
-    SHARE(limited.force, .doc = "Share of the steps whose length the acceleration set."),
-    SHARE(limited.damage, .doc = "Share of the steps whose length the growth of damage set."),
-    SHARE(limited.distention, .doc = "Share of the steps whose length the closing of pores set."),
-    SHARE(limited.energy, .doc = "Share of the steps whose length the change of internal energy set."),
-    SHARE(limited.density, .doc = "Share of the steps whose length the change of density set."),
+          .doc = "Share of the steps limited by the speed of sound and viscosity, or by a damped side."),
+    SHARE(limited.force, .doc = "Share of the steps limited by the acceleration."),
+    SHARE(limited.damage, .doc = "Share of the steps limited by the growth of damage."),
+    SHARE(limited.distention, .doc = "Share of the steps limited by the closing of pores."),
+    SHARE(limited.energy, .doc = "Share of the steps limited by the change of internal energy."),
+    SHARE(limited.density, .doc = "Share of the steps limited by the change of density."),
     REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
     REAL(peak.stress, "Pa", -HUGE_VAL, .doc = "Stretch: largest mean axial stress between the grips."),
-    REAL(peak.strain, "1", 0, .doc = "Stretch: strain rate times time, then."),
-    REAL(peak.time, "s", 0, .doc = "Stretch: that time."),
+    REAL(peak.strain, "1", 0, .doc = "Stretch: strain (strain rate times time) at the largest stress."),
+    REAL(peak.time, "s", 0, .doc = "Stretch: time of the largest stress."),
     REAL(cracks, "1", 0,
-         .doc = "Stretch: pieces of more than 1 % of the rod, less one (without static pass and veneer). Cracks that "
-                "overlap, with "
-                "bridges of broken rock between them, part nothing, although the rod bears no load."),
+         .doc =
+             "Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static "
+             "strength and veneer. Overlapping cracks joined by broken rock do not count, even if the rod no longer "
+             "carries load."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
-    REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed at which the bodies part over the speed of approach."),
+    REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed of separation of the bodies over their speed of approach."),
     REAL(shock.speed, "m/s", 0,
-         .doc = "Piston: speed of the shock (with pores: of the front that crushes them) over the second half of the "
-                "run; where density "
-                "passes half way. Off when the piston is too slow for one.",
+         .doc =
+             "Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The "
+             "front is where density passes the mean of the values ahead and behind. Off when the piston is too slow "
+             "for a shock.",
          .source = "Jutzi, Benz & Michel 2008"),
-    REAL(shock.speed_exact, "m/s", 0, .doc = "Piston: what the jump conditions give for it.",
+    REAL(shock.speed_exact, "m/s", 0, .doc = "Piston: speed of the shock by the jump conditions.",
          .source = "Rankine; Hugoniot"),
-    REAL(shock.density, "kg/m^3", 0, .doc = "Piston: mean density of the middle half from the piston to the shock."),
-    REAL(shock.density_exact, "kg/m^3", 0, .doc = "Piston: what the jump conditions give for it."),
-    REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure there."),
-    REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: what the jump conditions give for it."),
-    REAL(shock.distention, "1", 1, .doc = "Piston: mean distention there; off without pores."),
-    REAL(shock.distention_exact, "1", 1, .doc = "Piston: what the jump conditions and the crush curve give for it."),
+    REAL(shock.density, "kg/m^3", 0,
+         .doc = "Piston: mean density behind the shock, in the middle half between piston and shock."),
+    REAL(shock.density_exact, "kg/m^3", 0, .doc = "Piston: density behind the shock by the jump conditions."),
+    REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure behind the shock, in the same region."),
+    REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: pressure behind the shock by the jump conditions."),
+    REAL(shock.distention, "1", 1,
+         .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
+    REAL(shock.distention_exact, "1", 1,
+         .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
     REAL(precursor.speed, "m/s", 0,
-         .doc = "Piston: speed of the elastic front that runs ahead of the crushing one; off without pores, and when "
-                "the shock is faster."),
-    REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: what the jump conditions give for it."),
-    REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between the two fronts."),
-    REAL(precursor.pressure_exact, "Pa", 0, .doc = "Piston: what it should be: P_e, or less with a slow piston."),
-    REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention there."),
-    REAL(precursor.distention_exact, "1", 1, .doc = "Piston: what the elastic branch gives for it."),
+         .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and "
+                "when the shock is faster."),
+    REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: speed of the precursor by the jump conditions."),
+    REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
+    REAL(precursor.pressure_exact, "Pa", 0,
+         .doc = "Piston: exact pressure behind the precursor: P_e, or less when the piston is slow."),
+    REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention between precursor and shock."),
+    REAL(precursor.distention_exact, "1", 1, .doc = "Piston: distention behind the precursor on the elastic branch."),
 };
 
 const struct field_table sph_results = FIELD_TABLE(rows, struct sph_results, "sph results",
-                                                   "What engine sph reports beyond the common outcome.");
+                                                   "Results of engine sph beside the common outcome.");
 
 double sph_results_finite(double value) {
   return isfinite(value) ? value : (double)NAN;
