@@ -67,7 +67,7 @@ struct sph_pair_source {
   double scale[PAIR_WIDE];                /* from SI to the records' units; powers of two */
   const double *stress_factor, *pressure; /* factor of the deviator; added to XX, YY, ZZ, in their units */
   const double *correction[6];            /* B, a factor of the stress; NULL without the correction */
-  double per_quantum[3];                  /* 1/m, inverse unit of float records' positions */
+  double per_unit[3];                     /* 1/m, inverse unit of float records' positions */
   bool volume_weights;                    /* the stress is sigma, not sigma/rho^2 */
 };
 
@@ -92,7 +92,7 @@ struct sph_pair_correction {
 struct sph_pair_constants {
   double alpha, twice_beta;
   double periodic[3], per_period[3]; /* m, length of a periodic axis and its inverse; NaN: open (double records only) */
-  double quantum[3];                 /* unit of float records' positions over their unit of h; used if wrapped */
+  double unit[3];                    /* unit of float records' positions over their unit of h; used if wrapped */
   double norm;                       /* of W'/r */
   double spline_at_spacing;          /* W(spacing)/norm, for the artificial stress */
   bool strength, volume_weights, wrapped;

@@ -2,15 +2,15 @@
  * particles at a time are transposed in a block; columns are of double, so the block is filled by AT_ONCE particles, as
  * many as a register of doubles holds. */
 
-#define vec_part       TYPED(vec_part)
-#define column_load    TYPED(column_load)
-#define column_quanta  TYPED(column_quanta)
-#define column_store   TYPED(column_store)
-#define pack_columns   TYPED(pack_columns)
-#define unpack_columns TYPED(unpack_columns)
-#define pack_records   TYPED(pack_records)
-#define unpack_records TYPED(unpack_records)
-#define record_kernels TYPED(record_kernels)
+#define vec_part        TYPED(vec_part)
+#define column_load     TYPED(column_load)
+#define column_position TYPED(column_position)
+#define column_store    TYPED(column_store)
+#define pack_columns    TYPED(pack_columns)
+#define unpack_columns  TYPED(unpack_columns)
+#define pack_records    TYPED(pack_records)
+#define unpack_records  TYPED(unpack_records)
+#define record_kernels  TYPED(record_kernels)
 
 typedef REAL vec_part __attribute__((vector_size(WIDTH / sizeof(double) * sizeof(REAL))));
 
@@ -33,19 +33,19 @@ INLINE vec_double column_load(const double *from, double scale, size_t first, co
   return v * scale;
 }
 
-/* Positions as float records hold them: in units of 1/per_quantum, rounded towards zero, modulo 2^32. */
-INLINE vec_part column_quanta(vec_double x, double per_quantum) {
+/* Positions as float records hold them: in units of 1/per_unit, rounded towards zero, modulo 2^32. */
+INLINE vec_part column_position(vec_double x, double per_unit) {
   vec_part to = {0};
 #if SINGLE
   int32_t at[AT_ONCE];
   for (size_t lane = 0; lane < AT_ONCE; lane++) {
-    const double t = x[lane] * per_quantum;
+    const double t = x[lane] * per_unit;
     const int64_t whole = t > -9e18 && t < 9e18 ? (int64_t)t : 0; /* any value does for NaN: the step fails elsewhere */
     at[lane] = (int32_t)(uint32_t)(uint64_t)whole;
   }
   memcpy(&to, at, sizeof at);
 #else
-  (void)x, (void)per_quantum;
+  (void)x, (void)per_unit;
 #endif
   return to;
 }
@@ -102,7 +102,7 @@ INLINE void pack_columns(const struct sph_pair_source *source, size_t first, con
   UNROLL
   for (size_t c = 0; c < PAIR_NARROW; c++) {
     if (SINGLE && c <= PAIR_Z)
-      *(vec_part *)(void *)(block[c] + part) = column_quanta(its[c], source->per_quantum[c]);
+      *(vec_part *)(void *)(block[c] + part) = column_position(its[c], source->per_unit[c]);
     else
       column_store(block, c, part, its[c]);
   }

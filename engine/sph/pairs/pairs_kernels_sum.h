@@ -78,7 +78,7 @@ INLINE vec pair_along(REAL mine, vec its, int axis, const struct sph_pair_consta
   typedef uint32_t whole __attribute__((vector_size(WIDTH)));
   whole difference = (whole)its - (uint32_t)at.integer;
   const vec d = __builtin_convertvector((vec_int)difference, vec);
-  return k->wrapped ? d * (REAL)k->quantum[axis] : d;
+  return k->wrapped ? d * (REAL)k->unit[axis] : d;
 #else
   vec d = its - mine;
   if (k->wrapped && k->per_period[axis] > 0) {                /* the nearest image */
