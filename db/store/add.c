@@ -15,35 +15,50 @@ static double wall_clock(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
+static const char adding_campaign[] = "adding a campaign";
+
+/* *campaign_id: 0 when the campaign is not stored yet. */
+static status find_campaign(struct store *store, const char *name, const char *document_text, int64_t *campaign_id,
+                            struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2",
+                              &statement, adding_campaign, error);
+  if (result != STATUS_OK)
+    return result;
+  sql_bind_text(statement, 1, name);
+  sql_bind_text(statement, 2, document_text);
+  *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
+  sqlite3_finalize(statement);
+  return STATUS_OK;
+}
+
+static status find_or_add_campaign(struct store *store, const char *name, const char *document_text,
+                                   const char *plan_json, int64_t *campaign_id, struct error *error) {
+  status result = find_campaign(store, name, document_text, campaign_id, error);
+  if (result != STATUS_OK || *campaign_id != 0)
+    return result;
+  sqlite3_stmt *statement = NULL;
+  result = sql_prepare(store->db,
+                       "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
+                       "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
+                       &statement, adding_campaign, error);
+  if (result != STATUS_OK)
+    return result;
+  sql_bind_text(statement, 1, name);
+  sql_bind_text(statement, 2, document_text);
+  sql_bind_text(statement, 3, plan_json);
+  result = sql_run(statement, adding_campaign, error);
+  *campaign_id = sqlite3_last_insert_rowid(store->db);
+  sqlite3_finalize(statement);
+  return result;
+}
+
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error) {
-  sqlite3_stmt *statement = NULL;
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2", &statement,
-                       "adding a campaign", error);
-  if (result == STATUS_OK) {
-    sql_bind_text(statement, 1, name);
-    sql_bind_text(statement, 2, document_text);
-    *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
-    sqlite3_finalize(statement);
-    statement = NULL;
-  }
-  if (result == STATUS_OK && *campaign_id == 0) {
-    result = sql_prepare(store->db,
-                         "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
-                         "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
-                         &statement, "adding a campaign", error);
-    if (result == STATUS_OK) {
-      sql_bind_text(statement, 1, name);
-      sql_bind_text(statement, 2, document_text);
-      sql_bind_text(statement, 3, plan_json);
-      result = sql_run(statement, "adding a campaign", error);
-      *campaign_id = sqlite3_last_insert_rowid(store->db);
-    }
-    sqlite3_finalize(statement);
-  }
+  result = find_or_add_campaign(store, name, document_text, plan_json, campaign_id, error);
   return store_end(store, result, 1, error);
 }
 
@@ -73,29 +88,35 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
   return result;
 }
 
-static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
-                                struct error *error) {
-  uint8_t hash[16];
-  char *json = NULL;
-  point_hash(scene, hash);
+/* *point_id: 0 when the point is not stored yet. */
+static status find_point(struct store *store, const uint8_t hash[16], int64_t *point_id, struct error *error) {
   status result = sql_prepare_once(store->db, &store->point_find, "SELECT point_id FROM point WHERE hash = ?1",
                                    adding_point, error);
-  if (result == STATUS_OK)
-    result = sql_prepare_once(store->db, &store->point,
-                              "INSERT INTO point (hash, engine, scene_name, scene) VALUES (?1, ?2, ?3, ?4)",
-                              adding_point, error);
   if (result != STATUS_OK)
     return result;
   sqlite3_bind_blob(store->point_find, 1, hash, 16, SQLITE_STATIC);
   int code = sqlite3_step(store->point_find);
   *point_id = code == SQLITE_ROW ? sqlite3_column_int64(store->point_find, 0) : 0;
   sqlite3_reset(store->point_find);
-  if (code == SQLITE_ROW)
-    return STATUS_OK;
-  if (code != SQLITE_DONE)
-    return sql_fail(store->db, code, adding_point, error);
-  if (!(json = scene_json(scene)))
+  return code == SQLITE_ROW || code == SQLITE_DONE ? STATUS_OK : sql_fail(store->db, code, adding_point, error);
+}
+
+static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
+                                struct error *error) {
+  uint8_t hash[16];
+  point_hash(scene, hash);
+  status result = find_point(store, hash, point_id, error);
+  if (result != STATUS_OK || *point_id != 0)
+    return result;
+  result = sql_prepare_once(store->db, &store->point,
+                            "INSERT INTO point (hash, engine, scene_name, scene) VALUES (?1, ?2, ?3, ?4)", adding_point,
+                            error);
+  if (result != STATUS_OK)
+    return result;
+  char *json = scene_json(scene);
+  if (!json)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
+
   sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
   sql_bind_text(store->point, 2, scene->kind->name);
   sql_bind_text(store->point, 3, scene->name);
@@ -123,12 +144,12 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
     return STATUS_OK;
   char name[SCHEMA_NAME_SIZE];
   result = views_axis_column(store->db, row->path, name, sizeof name, error);
-  if (result == STATUS_OK)
-    result = sql_executef(store->db, adding_point, error,
-                          "INSERT INTO axis (path, column_name, unit, meaning) VALUES (%Q, %Q, %Q, %Q)", row->path,
-                          name, row->unit, row->doc ? row->doc : "");
+  if (result != STATUS_OK)
+    return result;
   *grown = true;
-  return result;
+  return sql_executef(store->db, adding_point, error,
+                      "INSERT INTO axis (path, column_name, unit, meaning) VALUES (%Q, %Q, %Q, %Q)", row->path, name,
+                      row->unit, row->doc ? row->doc : "");
 }
 
 static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
@@ -147,13 +168,16 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
   struct store_kind *entry = &store->kinds[store->kind_count];
   int64_t before = 0, after = 0;
   status result = sql_integer(store->db, "PRAGMA schema_version", 0, &before, error);
-  if (result == STATUS_OK)
-    result = schema_complete(store->db, &table, error);
-  if (result == STATUS_OK)
-    result = sql_integer(store->db, "PRAGMA schema_version", 0, &after, error);
-  if (result == STATUS_OK)
-    result = sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
-                                error);
+  if (result != STATUS_OK)
+    return result;
+  result = schema_complete(store->db, &table, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_integer(store->db, "PRAGMA schema_version", 0, &after, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
+                              error);
   if (result != STATUS_OK)
     return result;
   *grown = *grown || before != after;
@@ -163,30 +187,38 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
   return STATUS_OK;
 }
 
-status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
-                       const char *const *varied_paths, int64_t *point_id, struct error *error) {
+static status add_to_campaign(struct store *store, int64_t campaign_id, int64_t point_id, struct error *error) {
+  status result = sql_prepare_once(store->db, &store->campaign_point,
+                                   "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)",
+                                   adding_point, error);
+  if (result != STATUS_OK)
+    return result;
+  sqlite3_bind_int64(store->campaign_point, 1, campaign_id);
+  sqlite3_bind_int64(store->campaign_point, 2, point_id);
+  return sql_run(store->campaign_point, adding_point, error);
+}
+
+static status add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
+                        const char *const *varied_paths, int64_t *point_id, struct error *error) {
   bool grown = false;
   struct store_kind *kind = NULL;
+  status result = find_kind(store, scene->kind, &kind, &grown, error);
+  if (result != STATUS_OK)
+    return result;
+  result = find_or_add_point(store, scene, point_id, error);
+  if (result == STATUS_OK && campaign_id > 0)
+    result = add_to_campaign(store, campaign_id, *point_id, error);
+  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++)
+    result = add_axis(store, scene, varied_paths[i], &grown, error);
+  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+}
+
+status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
+                       const char *const *varied_paths, int64_t *point_id, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  result = find_kind(store, scene->kind, &kind, &grown, error);
-  if (result == STATUS_OK)
-    result = find_or_add_point(store, scene, point_id, error);
-  if (result == STATUS_OK && campaign_id > 0) {
-    result = sql_prepare_once(store->db, &store->campaign_point,
-                              "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)",
-                              adding_point, error);
-    if (result == STATUS_OK) {
-      sqlite3_bind_int64(store->campaign_point, 1, campaign_id);
-      sqlite3_bind_int64(store->campaign_point, 2, *point_id);
-      result = sql_run(store->campaign_point, adding_point, error);
-    }
-  }
-  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++)
-    result = add_axis(store, scene, varied_paths[i], &grown, error);
-  if (result == STATUS_OK && grown)
-    result = views_regenerate(store->db, error);
+  result = add_point(store, campaign_id, scene, varied_count, varied_paths, point_id, error);
   return store_end(store, result, 1, error);
 }
 
@@ -238,34 +270,41 @@ static status add_result(const struct store_kind *kind, int64_t run_id, const vo
   return sql_run(kind->insert.statement, adding_run, error);
 }
 
-status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
-  if (store_has_run(store, run->identity))
-    return STATUS_OK;
+static status add_run(struct store *store, const struct store_run *run, struct error *error) {
   bool grown = false;
   int64_t run_id = 0;
   struct store_kind *kind = NULL;
-  struct identities_state *entry = NULL;
+  status result = find_kind(store, run->kind, &kind, &grown, error);
+  if (result == STATUS_OK && grown)
+    result = views_regenerate(store->db, error);
+  if (result != STATUS_OK)
+    return result;
+  result = add_row(store, run, &run_id, error);
+  if (result == STATUS_OK && run->result)
+    result = add_result(kind, run_id, run->result, error);
+  if (result != STATUS_OK)
+    return result;
+  result = store_fragments_add(store, run_id, run, error);
+  if (result == STATUS_OK && run->estimate_count)
+    result = store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error);
+  if (result != STATUS_OK)
+    return result;
+
+  struct identities_state *state = identities_add(&store->identities, run->identity);
+  if (!state)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  state->stored = true;
+  memcpy(store->batch_identities[store->batch_identity_count++], run->identity, 16);
+  return STATUS_OK;
+}
+
+status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
+  if (store_has_run(store, run->identity))
+    return STATUS_OK;
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  result = find_kind(store, run->kind, &kind, &grown, error);
-  if (result == STATUS_OK && grown)
-    result = views_regenerate(store->db, error);
-  if (result == STATUS_OK)
-    result = add_row(store, run, &run_id, error);
-  if (result == STATUS_OK && run->result)
-    result = add_result(kind, run_id, run->result, error);
-  if (result == STATUS_OK)
-    result = store_fragments_add(store, run_id, run, error);
-  if (result == STATUS_OK && run->estimate_count)
-    result = store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error);
-  if (result == STATUS_OK && !(entry = identities_add(&store->identities, run->identity)))
-    result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  if (result == STATUS_OK) {
-    entry->stored = true;
-    memcpy(store->batch_identities[store->batch_identity_count++], run->identity, 16);
-  }
-  return store_end(store, result, 1, error);
+  return store_end(store, add_run(store, run, error), 1, error);
 }
 
 struct attempt_row {

@@ -160,52 +160,63 @@ static void check_spectrum(struct report *report, int64_t run_id, size_t n, cons
     say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
 }
 
+/* Little-endian float64 from a blob. */
+static double mass_at(const unsigned char *bytes, size_t i) {
+  uint64_t bits = 0;
+  double mass;
+  for (size_t k = 8; k-- > 0;)
+    bits = bits << 8 | bytes[8 * i + k];
+  memcpy(&mass, &bits, sizeof mass);
+  return mass;
+}
+
+/* `run` is a row of run_id, masses, total mass, counts. `masses` has enough members for it. */
+static void check_run(struct report *report, sqlite3_stmt *run, double *masses, sqlite3_stmt *spectrum) {
+  int64_t run_id = sqlite3_column_int64(run, 0);
+  const unsigned char *bytes = sqlite3_column_blob(run, 1);
+  size_t n = (size_t)sqlite3_column_bytes(run, 1) / 8;
+  double total = 0, stored = sqlite3_column_double(run, 2);
+  bool descending = true;
+  for (size_t i = 0; i < n; i++) {
+    masses[i] = mass_at(bytes, i);
+    total += masses[i];
+    descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
+  }
+  if (!descending)
+    say(report, "run %lld: its masses are not in descending order", (long long)run_id);
+  /* The engine may have summed in another order: n roundings of the total, with n below 1e6. */
+  if (sqlite3_column_int(run, 3) && fabs(total - stored) > 1e-9 * stored)
+    say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
+        stored);
+  check_spectrum(report, run_id, n, masses, spectrum);
+}
+
 static status check_masses(struct report *report, struct error *error) {
-  sqlite3_stmt *runs = NULL, *rows = NULL;
+  sqlite3_stmt *runs = NULL, *spectrum = NULL;
   double *masses = NULL;
-  size_t capacity = 0;
-  status result = sql_prepare(report->store->db,
-                              "SELECT run_id, masses, total_mass, counts FROM fragment_mass JOIN run USING "
-                              "(run_id)",
-                              &runs, "checking", error);
+  int64_t largest = 0;
+  status result = sql_integer(report->store->db, "SELECT max(length(masses)) FROM fragment_mass", 0, &largest, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_prepare(report->store->db,
+                       "SELECT run_id, masses, total_mass, counts FROM fragment_mass JOIN run USING (run_id)", &runs,
+                       "checking", error);
   if (result == STATUS_OK)
     result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
-                         &rows, "checking", error);
-  while (result == STATUS_OK && sqlite3_step(runs) == SQLITE_ROW) {
-    int64_t run_id = sqlite3_column_int64(runs, 0);
-    const unsigned char *bytes = sqlite3_column_blob(runs, 1);
-    size_t n = (size_t)sqlite3_column_bytes(runs, 1) / 8;
-    if (n > capacity) {
-      double *grown = realloc(masses, 2 * n * sizeof *grown);
-      if (!grown) {
-        result = status_fail(error, STATUS_MEMORY, "checking: memory ran out");
-        break;
-      }
-      masses = grown;
-      capacity = 2 * n;
-    }
-    double total = 0;
-    bool descending = true;
-    for (size_t i = 0; i < n; i++) {
-      uint64_t bits = 0;
-      for (size_t k = 8; k-- > 0;)
-        bits = bits << 8 | bytes[8 * i + k];
-      memcpy(&masses[i], &bits, sizeof bits);
-      total += masses[i];
-      descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
-    }
-    if (!descending)
-      say(report, "run %lld: its masses are not in descending order", (long long)run_id);
-    /* The engine may have summed in another order: n roundings of the total, with n below 1e6. */
-    double stored = sqlite3_column_double(runs, 2);
-    if (sqlite3_column_int(runs, 3) && fabs(total - stored) > 1e-9 * stored)
-      say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
-          stored);
-    check_spectrum(report, run_id, n, masses, rows);
+                         &spectrum, "checking", error);
+  if (result != STATUS_OK)
+    goto cleanup;
+  masses = malloc((size_t)largest + sizeof *masses);
+  if (!masses) {
+    result = status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    goto cleanup;
   }
+  while (sqlite3_step(runs) == SQLITE_ROW)
+    check_run(report, runs, masses, spectrum);
+cleanup:
   free(masses);
   sqlite3_finalize(runs);
-  sqlite3_finalize(rows);
+  sqlite3_finalize(spectrum);
   return result;
 }
 
@@ -247,29 +258,32 @@ static status check_identities(struct report *report, struct error *error) {
   return result;
 }
 
+static status check_questions(struct report *report, struct error *error) {
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < sizeof questions / sizeof questions[0]; i++)
+    result = no_rows(report, questions[i], error);
+  return result;
+}
+
+static status check_sums(struct report *report, struct error *error) {
+  int64_t wrong = 0;
+  status result = sums_mismatches(report->store->db, &wrong, error);
+  if (result == STATUS_OK && wrong > 0)
+    say(report, "running sums: %lld rows of point_total and point_spectrum differ from the runs they sum",
+        (long long)wrong);
+  return result;
+}
+
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
+  static status (*const checks[])(struct report *, struct error *) = {check_questions, check_results, check_ranges,
+                                                                      check_files,     check_sums,    check_masses,
+                                                                      check_identities};
   struct report report = {.store = store, .line = line, .context = context};
-  int64_t wrong = 0;
   status result = store_flush(store, error);
-  for (size_t i = 0; result == STATUS_OK && i < sizeof questions / sizeof questions[0]; i++)
-    result = no_rows(&report, questions[i], error);
-  if (result == STATUS_OK)
-    result = check_results(&report, error);
-  if (result == STATUS_OK)
-    result = check_ranges(&report, error);
-  if (result == STATUS_OK)
-    result = check_files(&report, error);
-  if (result == STATUS_OK)
-    result = sums_mismatches(store->db, &wrong, error);
-  if (result == STATUS_OK && wrong > 0)
-    say(&report, "running sums: %lld rows of point_total and point_spectrum differ from the runs they sum",
-        (long long)wrong);
-  if (result == STATUS_OK)
-    result = check_masses(&report, error);
-  if (result == STATUS_OK)
-    result = check_identities(&report, error);
-  if (result == STATUS_OK && report.problems > 0)
-    result = status_fail(error, STATUS_CONTENT, "%s: %lld problems found", store->path, (long long)report.problems);
-  return result;
+  for (size_t i = 0; result == STATUS_OK && i < sizeof checks / sizeof checks[0]; i++)
+    result = checks[i](&report, error);
+  if (result != STATUS_OK || report.problems == 0)
+    return result;
+  return status_fail(error, STATUS_CONTENT, "%s: %lld problems found", store->path, (long long)report.problems);
 }

@@ -69,7 +69,9 @@ static status print_columns(sqlite3 *db, const char *table, const char *before, 
   char *columns = list_columns(db, table);
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
-  const char *list = *before ? columns : *columns ? columns + 2 : "NULL";
+  const char *list = columns; /* begins with a comma */
+  if (!*before)
+    list = *columns ? columns + 2 : "NULL";
   char *sql = sqlite3_mprintf("SELECT %s%s FROM \"%w\" %s", before, list, table, after);
   sqlite3_free(columns);
   if (!sql)
@@ -87,27 +89,31 @@ static status print_run(sqlite3 *db, int64_t run_id, const char *engine, FILE *o
                     "hex(identity) AS identity, (SELECT hex(hash) FROM point p WHERE p.point_id = run.point_id) "
                     "AS point, replicate, seed, results_version",
                     "WHERE run_id = ?1", run_id, "run", out, error);
-  if (result == STATUS_OK)
-    result = print_columns(db, table, "", "WHERE run_id = ?1", run_id, " result", out, error);
-  if (result == STATUS_OK)
-    result = print_rows(db, "SELECT masses FROM fragment_mass WHERE run_id = ?1", run_id, " fragments", out, error);
-  if (result == STATUS_OK)
-    result = print_rows(db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin", run_id, " spectrum",
-                        out, error);
-  if (result == STATUS_OK)
-    result = print_columns(db, "estimate", "ordinal", "WHERE run_id = ?1 ORDER BY ordinal", run_id, " estimate", out,
-                           error);
-  return result;
+  if (result != STATUS_OK)
+    return result;
+  result = print_columns(db, table, "", "WHERE run_id = ?1", run_id, " result", out, error);
+  if (result != STATUS_OK)
+    return result;
+  result = print_rows(db, "SELECT masses FROM fragment_mass WHERE run_id = ?1", run_id, " fragments", out, error);
+  if (result != STATUS_OK)
+    return result;
+  result = print_rows(db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin", run_id, " spectrum",
+                      out, error);
+  if (result != STATUS_OK)
+    return result;
+  return print_columns(db, "estimate", "ordinal", "WHERE run_id = ?1 ORDER BY ordinal", run_id, " estimate", out,
+                       error);
 }
 
 status store_dump(struct store *store, FILE *out, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = print_rows(store->db, "SELECT hex(hash) AS hash, engine, scene FROM point ORDER BY hash", 0, "point",
                              out, error);
-  if (result == STATUS_OK)
-    result = sql_prepare(
-        store->db, "SELECT run_id, engine FROM run JOIN point USING (point_id) WHERE surplus = 0 ORDER BY identity",
-        &statement, doing, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_prepare(store->db,
+                       "SELECT run_id, engine FROM run JOIN point USING (point_id) WHERE surplus = 0 ORDER BY identity",
+                       &statement, doing, error);
   int code = SQLITE_DONE;
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
     result = print_run(store->db, sqlite3_column_int64(statement, 0), (const char *)sqlite3_column_text(statement, 1),

@@ -154,27 +154,28 @@ static status copy_results(sqlite3 *db, struct error *error) {
   return result;
 }
 
-static status merge(sqlite3 *db, int64_t *added, struct error *error) {
+/* Tables, then rows in the order of their references. */
+static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
   status result = make_tables(db, error);
-  if (result == STATUS_OK)
-    result = map_parents(db, error);
-  if (result == STATUS_OK)
-    result = copy_runs(db, added, error);
-  if (result == STATUS_OK)
-    result = copy_results(db, error);
-  if (result == STATUS_OK)
-    result = copy_attempts(db, error);
-  if (result == STATUS_OK)
-    result = sums_cover_all_bins(db, error);
+  if (result != STATUS_OK)
+    return result;
+  result = map_parents(db, error);
+  if (result != STATUS_OK)
+    return result;
+  result = copy_runs(db, added, error);
+  if (result != STATUS_OK)
+    return result;
+  result = copy_results(db, error);
+  return result == STATUS_OK ? copy_attempts(db, error) : result;
+}
+
+static status merge(sqlite3 *db, int64_t *added, struct error *error) {
+  status result = copy_all(db, added, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sums_cover_all_bins(db, error);
   if (result == STATUS_OK && *added > 0)
-    result = sums_rebuild(db, 0, error);
-  /* The pooled estimates are stale: they come from fewer runs. */
-  if (result == STATUS_OK && *added > 0)
-    result =
-        sql_execute(db,
-                    "DELETE FROM main.point_estimate WHERE point_id IN (SELECT point_id FROM main.run WHERE run_id IN "
-                    "(SELECT ours FROM merge_run))",
-                    doing, error);
+    result = sums_rebuild(db, 0, error); /* deletes the pooled estimates, too: they came from fewer runs */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
@@ -188,30 +189,39 @@ static status count_differing(sqlite3 *db, int64_t *differing, struct error *err
       0, differing, error);
 }
 
-status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
-  struct store *other = NULL;
-  *added = *differing = 0;
-  status result = store_open_reader(source, &other, error); /* refuses a missing, foreign, newer or older file */
-  if (result == STATUS_OK)
-    result = store_close(other, error);
-  if (result == STATUS_OK)
-    result = store_flush(store, error);
-  if (result == STATUS_OK)
-    result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
+static status merge_attached(struct store *store, int64_t *added, int64_t *differing, struct error *error) {
+  status result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
   if (result != STATUS_OK)
     return result;
-  result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
-  if (result == STATUS_OK) {
-    result = count_differing(store->db, differing, error);
-    if (result == STATUS_OK)
-      result = merge(store->db, added, error);
-    if (result == STATUS_OK)
-      result = sql_execute(store->db, "COMMIT", doing, error);
-    if (result != STATUS_OK) {
-      sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
-      *added = 0;
-    }
-  }
+  result = count_differing(store->db, differing, error);
+  if (result == STATUS_OK)
+    result = merge(store->db, added, error);
+  if (result == STATUS_OK)
+    result = sql_execute(store->db, "COMMIT", doing, error);
+  if (result == STATUS_OK)
+    return STATUS_OK;
+  sqlite3_exec(store->db, "ROLLBACK", NULL, NULL, NULL);
+  *added = 0;
+  return result;
+}
+
+status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
+  struct store *other = NULL;
+  *added = 0;
+  *differing = 0;
+  status result = store_open_reader(source, &other, error); /* refuses a missing, foreign, newer or older file */
+  if (result != STATUS_OK)
+    return result;
+  result = store_close(other, error);
+  if (result != STATUS_OK)
+    return result;
+  result = store_flush(store, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
+  if (result != STATUS_OK)
+    return result;
+  result = merge_attached(store, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other",
