@@ -213,7 +213,7 @@ static void stop_rules(void **state) {
                 sph_derived_wave_speed(&inputs.target);
   assert_true(ran.outcome.time - ran.results.sph.cease_time >= inputs.stop.quiet_time);
   assert_true(ran.outcome.time - ran.results.sph.cease_time < inputs.stop.quiet_time + 9 * step);
-  assert_true(ran.outcome.energy_error < 5e-3);    /* the bound for this scene, clamps not credited */
+  assert_true(ran.outcome.energy_error < 5e-3);    /* the bound for this scene, clamps not credited */
   assert_true(ran.outcome.momentum_error < 1e-12); /* pair forces cancel to rounding */
   assert_true(ran.results.sph.largest.bare_fraction <= ran.results.sph.largest.veneer_fraction);
   assert_true(ran.results.sph.largest.veneer_fraction <= ran.results.sph.largest.dynamic_fraction + 0.05);

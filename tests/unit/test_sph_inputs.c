@@ -114,7 +114,7 @@ static void every_material_is_sound(void **state) {
   assert_int_equal(sph_materials_load("gabbro", &gabbro, NULL), STATUS_OK);
   assert_true(basalt.density == 2700 && basalt.tillotson.E0 == 4.87e8 && basalt.weibull.m == 8.5 &&
               basalt.weibull.k == 5e34);
-  /* physics notes T1: E 53.06 GPa, c_g 1837 m/s of basalt; granite would have nu 0 without a bulk modulus of its own */
+  /* Basalt: E 53.06 GPa, c_g 1837 m/s (Benz & Asphaug 1994). Granite has nu 0 without a bulk modulus of its own. */
   assert_true(fabs(sph_derived_young_modulus(&basalt) / 53.06e9 - 1) < 1e-4);
   assert_true(fabs(sph_derived_crack_speed(&basalt) / 1837 - 1) < 1e-3);
   assert_true(sph_derived_poisson_ratio(&granite) > 0.2);

@@ -54,7 +54,7 @@ static void near(double got, double want, double tolerance, const char *what) {
     fail_msg("%s: got %.17g, expected %.17g +- %g", what, got, want, tolerance);
 }
 
-/* The values are those of the physics notes, to the digits printed there. */
+/* The known values, to the digits given (sph_palpha.md). */
 static void printed_values(void **state) {
   (void)state;
   struct sph_palpha_law al = law_of(&porous_aluminium, &aluminium), p = law_of(&pumice, &pumice_matrix);
@@ -170,7 +170,7 @@ static void derivatives(void **state) {
       fail_msg("branch %d was tried only %d times", b, seen[b]);
 }
 
-/* The papers' rate, JBM08 eq. 13 as in the physics notes, over a path rho(t) by fine Heun steps; branch by branch. */
+/* The papers' rate, JBM08 eq. 13, over a path rho(t) by fine Heun steps; branch by branch. */
 static double rate(const struct sph_palpha_law *law, double alpha, double rho, double u, double slope_crush,
                    double by_rho, double by_u) {
   struct sph_pressure s = sph_tillotson(&law->solid, law->solid_density, alpha * rho, u);

@@ -16,7 +16,7 @@ static void conserved(void **state) {
   assert_true(sph_system_damage(s, NULL) > 0.2); /* it does break: at the large one's end of the energy, most of it */
   for (int k = 0; k < 3; k++) /* pair forces are opposite to the last bit: what remains is rounding of the sums */
     assert_true(fabs(last.momentum[k] - first.momentum[k]) < 1e-12 * last.momentum_scale);
-  /* the bound for a whole impact run, before the booked clamps are credited */
+  /* the bound for a whole impact run, before the booked clamps are credited */
   assert_true(fabs(case_total(last) - case_total(first)) < 5e-3 * case_total(first));
   assert_true(last.clamped <= 1e-3 * case_total(first));
   sph_system_free(s);

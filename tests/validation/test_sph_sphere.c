@@ -77,7 +77,7 @@ static struct sphere run_sphere(const struct sph_inputs *inputs, uint64_t seed) 
   return s;
 }
 
-/* Bounds of one run. Energy: the 0.5 %, measured 2e-5. */
+/* Bounds of one run. Energy: the criterion is 0.5 %, measured 2e-5. */
 static void sound(const struct sphere *s) {
   assert_true(s->outcome.state == OUTCOME_COMPLETED || s->outcome.state == OUTCOME_END_TIME);
   assert_true(s->outcome.energy_error < 0.005);

@@ -177,7 +177,7 @@ static void cantilever(void **state) {
   /* 1 dyn per cm of thickness is 1e-3 N/m: cm per dyn is 100 x 1e-3 times m per (N/m). */
   const double deflection = gsl_vector_get(u, n - 2) * 0.1;
   const double l = 20.0, e = 5e9, exact = l * l * l / (3.0 * e / 12.0) + l / (0.5 * e);
-  fixture_near(exact, 6.408e-6, 0.0005e-6, "the physics notes' number");
+  fixture_near(exact, 6.408e-6, 0.0005e-6, "the known deflection");
   fixture_near(deflection, exact, 1e-4 * exact, "cantilever"); /* differences' 1e-9 times the condition number, 1e5 */
   gsl_permutation_free(order);
   gsl_vector_free(u);

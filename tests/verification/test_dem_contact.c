@@ -57,7 +57,7 @@ static void conservative_law(void **state) {
   const struct impact i = collide(in, 0.5);
   fixture_near(i.push / i.deepest, 1.454e9, 0.0005e9, "stiffness");
   fixture_near(i.duration, 41.2e-6, 0.05e-6, "duration");
-  fixture_near(i.restitution, 1.0, 3e-4, "restitution"); /* the physics notes' bound */
+  fixture_near(i.restitution, 1.0, 3e-4, "restitution"); /* the criterion of dem_contact.md */
 }
 
 /* gamma_N = 2.566e4/s: a damped oscillator that may not pull, restitution 0.550. */

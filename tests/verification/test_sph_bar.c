@@ -2,8 +2,8 @@
  * thin bar has f = sqrt(E/rho0)/(2L) = 55.4 kHz. The bar starts undeformed with v_z = V sin(pi z/L) about its middle,
  * and the sides' share of it.
  *
- * A bar of finite thickness rings lower by Rayleigh's 1 - (nu pi R/L)^2/4 = 0.996, which the issue's 2 % about 55.4 kHz
- * includes. With the gradient correction every bar meets it. Without, the free sides are softer by their missing
+ * A bar of finite thickness rings lower by Rayleigh's 1 - (nu pi R/L)^2/4 = 0.996, which the criterion's 2 % about 55.4
+ * kHz includes. With the gradient correction every bar meets it. Without, the free sides are softer by their missing
  * neighbours (0.37 h/R of the speed: test_sph_waves.c): 96 000 particles are still 3.3 % low, and the frequency is
  * extrapolated from two sizes with the first order that a skin has, 12 000 and 1500, CLAST_FULL=1: 96 000 and 12 000.
  */
@@ -71,9 +71,9 @@ static void free_free_bar(void **state) {
           "correction %s, n %6zu: %.2f kHz (%+.2f %% of 55.41), amplitude lost in a period %.3f, energy error %.1e\n",
           correction ? "on " : "off", r[k].n, r[k].frequency / 1e3, 100 * (r[k].frequency / exact - 1), r[k].decay,
           r[k].energy_error);
-      assert_true(fabs(r[k].energy_error) < 0.005); /* the bound for impacts */
+      assert_true(fabs(r[k].energy_error) < 0.005); /* the criterion for impacts */
       if (correction)
-        assert_true(fabs(r[k].frequency / exact - 1) < 0.02); /* the issue's */
+        assert_true(fabs(r[k].frequency / exact - 1) < 0.02); /* the criterion */
     }
     if (count < 2)
       continue;

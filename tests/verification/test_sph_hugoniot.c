@@ -155,10 +155,10 @@ static void shocks(void **state) {
                     k ? "basalt" : "aluminium", forms[f].name, s.n, (unsigned long long)s.steps, s.velocity, s.speed,
                     100 * speed, s.plateau.pressure / 1e9, 100 * pressure, 100 * s.scatter, s.plateau.density,
                     100 * density, s.plateau.energy, 100 * energy, s.energy_error);
-      assert_true(fabs(s.energy_error) < 0.005); /* the bound for impacts */
+      assert_true(fabs(s.energy_error) < 0.005); /* the criterion for impacts */
       if (forms[f].full || SOLID_SLOW)
         continue;
-      assert_true(fabs(speed) < (forms[f].correction ? 0.005 : 0.01)); /* 1 % is the issue's */
+      assert_true(fabs(speed) < (forms[f].correction ? 0.005 : 0.01)); /* 1 % is the criterion */
       assert_true(fabs(pressure) < 0.01);
       assert_true(fabs(density) < 0.01);
       assert_true(fabs(energy) < 0.01);
@@ -200,7 +200,7 @@ static double line_slope(const struct line *l) {
 }
 
 /* Everyone starts at v = -rate x, so that no waves arise, and the ends are held at their speeds. Yield stress 1/100 of
- * basalt's: at strains of 1e-3 what is not linear (B, and heat from plastic work) is 0.3 % each, and the issue's bound
+ * basalt's: at strains of 1e-3 what is not linear (B, and heat from plastic work) is 0.3 % each, and the criterion
  * is 1 %. Without the gradient correction every rate has the lattice's factor (bodies.h): +0.6 % along x; printed, not
  * asked. */
 static void ramp(bool correction) {

@@ -155,7 +155,7 @@ static void rotation(void **state) {
                 "surface, %.1e "
                 "inside\n",
                 coarse, fine, turned(false, 2000, true), turned(false, 2000, false));
-  assert_true(fine < 1e-3);       /* the bound, at every particle */
+  assert_true(fine < 1e-3);       /* the criterion, at every particle */
   assert_true(coarse / fine > 3); /* second order */
 }
 
@@ -256,7 +256,7 @@ static void shear(void **state) {
   sph_particles_free(p);
 }
 
-/* ---- damage of a homogeneous stretch: physics notes, T1 ---- */
+/* ---- damage of a homogeneous stretch: the particle form of Grady and Kipp's law ---- */
 
 static double strain_of(const struct sph_particles *p, size_t i,
                         double young) { /* as BA95 eq. 21, from what is read back */

@@ -1,4 +1,4 @@
-/* The jump-condition solver gives the plateaus of the physics notes (T5), and the engine's (alpha, P) lies on them. */
+/* The jump-condition solver gives the known plateaus (sph_palpha_jump.md), and the engine's (alpha, P) lies on them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -100,7 +100,7 @@ static struct sph_results run(int points, double piston) {
                 r.precursor.speed, r.precursor.speed_exact, r.precursor.pressure / 1e6, ran.outcome.energy_error,
                 (long long)ran.outcome.steps);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
-  assert_true(ran.outcome.energy_error < 0.005); /* of the work done: the bound */
+  assert_true(ran.outcome.energy_error < 0.005); /* of the work done: the criterion */
   assert_int_equal(r.particles, points * 25);
   struct exact_front precursor, shock;
   exact_piston(&exact_porous_aluminium, piston, &precursor, &shock);
@@ -110,7 +110,7 @@ static struct sph_results run(int points, double piston) {
   return r;
 }
 
-/* The issue's bounds at 400 points and more: Us 1 %, plateau 1 %, alpha 0.005, precursor 2 %. Of 200 points only 24 lie
+/* Bounds at 400 points and more: Us 1 %, plateau 1 %, alpha 0.005, precursor 0.5 %. Of 200 points only 24 lie
  * between piston and weak shock, which viscosity spreads over about ten, and P follows rho with K/P = 38 times its
  * error. */
 static void check(const struct sph_results *r, int points) {

@@ -145,7 +145,7 @@ static void crack_speed(void **state) {
                   forms[k].name, f.n, f.speed, 100 * (f.speed / cg - 1), f.late, f.tilt, f.thickness);
     if (k > 1 || SOLID_SLOW)
       continue;                                 /* reported */
-    assert_true(fabs(f.speed / cg - 1) < 0.05); /* the paper's and the issue's */
+    assert_true(fabs(f.speed / cg - 1) < 0.05); /* the criterion */
     assert_true(f.late < 2650); /* the Rayleigh wave of basalt, nu = 0.169: 0.904 of 2900 m/s, which no crack outruns */
     assert_true(f.tilt < 5);    /* across the load */
     assert_true(f.thickness < 1.5); /* one layer, two or three particles thick */

@@ -86,7 +86,7 @@ static void stress_turns_with_the_body(void **state) {
   double angle;
   const double on = turn(true, false, &angle);
   print_message("turned by %.2f degrees: stress off by %.1e at worst with the gradient correction", angle, on);
-  assert_true(on < 1e-3); /* the issue's */
+  assert_true(on < 1e-3); /* the criterion */
   const double inside = turn(false, true, &angle), everywhere = turn(false, false, &angle);
   print_message("; without: %.1e inside, %.2f at the surface\n", inside, everywhere);
 }
@@ -130,7 +130,7 @@ static void spinning_sphere(void **state) {
                     "%.1e (%.1e by u >= 0)\n",
                     turns, correction ? "on" : "off", kept, energy_error, clamped);
       if (correction)
-        assert_true(fabs(kept - 1) < 0.01);              /* the issue's */
+        assert_true(fabs(kept - 1) < 0.01);              /* the criterion */
       assert_true(fabs(energy_error - clamped) < 0.005); /* booked, or not there */
       if (SOLID_SLOW)
         break;

@@ -96,7 +96,7 @@ static void plane_waves(void **state) {
           }
           const double order = solid_order(w[levels - 3].speed, w[levels - 2].speed, w[levels - 1].speed, 2);
           print_message("  order %.2f, decay %.3f\n", order, w[levels - 1].decay);
-          /* 1 % is the issue's. A kernel sum is of second order in the smooth interior: 2 but for the next even term
+          /* 1 % is the criterion. A kernel sum is of second order in the smooth interior: 2 but for the next even term
            * (and the time step's error, of second order, too), which at 24 spacings is some per cent of the first */
           assert_true(fabs(w[levels - 1].speed / exact[kind] - 1) < 0.01);
           assert_true(order > 1.8 && order < 2.2);
@@ -213,7 +213,7 @@ static void bar_wave(void **state) {
     const double limit = w[levels - 1].speed + (w[levels - 1].speed - w[levels - 2].speed) / (pow(2, order) - 1);
     print_message("  order %.2f; extrapolated with it %.1f m/s (%+.2f %%)\n", order, limit, 100 * (limit / exact - 1));
     /* The sums of a particle at a free side miss what would be outside: a soft skin of about h, hence first order, of
-     * whose limit the issue's 1 % is asked. With the correction a side is as stiff as the inside: second order up to
+     * whose limit the criterion of 1 % holds. With the correction a side is as stiff as the inside: second order up to
      * the surface, to which the skin's rest at R/h = 2.5 adds a little, and 1 % of the finest run itself. */
     if (correction)
       assert_true(order > 1.8 && order < 2.4 && fabs(w[levels - 1].speed / exact - 1) < 0.01);
