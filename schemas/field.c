@@ -43,10 +43,39 @@ void field_column_name(const char *path, char *name, size_t size) {
     *at = '_';
 }
 
+/* The paths that end in a suffix, as "'a.x', 'b.x'". */
+static void list_paths(const struct field_table *table, const char *suffix, char *names, size_t size) {
+  size_t used = 0;
+  *names = 0;
+  for (size_t i = 0; i < table->count && used < size; i++) {
+    if (!ends_with(table->rows[i].path, suffix))
+      continue;
+    int n = snprintf(names + used, size - used, "%s'%s'", used ? ", " : "", table->rows[i].path);
+    used += n > 0 ? (size_t)n : 0;
+  }
+}
+
+static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {
+  const size_t length = strlen(path);
+  for (size_t i = 0; i < table->count; i++) {
+    const char *known = table->rows[i].path;
+    if (strncmp(known, path, length) != 0 || known[length] != '.')
+      continue;
+    status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path,
+                table->name, known);
+    return;
+  }
+  const char *near = field_nearest(table, path);
+  if (near)
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);
+  else
+    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; 'clast explain' lists what it has", table->name, QUOTE,
+                path);
+}
+
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error) {
   const struct field *found = NULL;
-  size_t candidates = 0, used = 0;
-  char names[600] = "";
+  size_t candidates = 0;
   for (size_t i = 0; i < table->count; i++) {
     if (strcmp(table->rows[i].path, path) == 0)
       return &table->rows[i];
@@ -54,31 +83,16 @@ const struct field *field_find(const struct field_table *table, const char *path
       continue;
     found = &table->rows[i];
     candidates++;
-    int n = snprintf(names + used, sizeof names - used, "%s'%s'", candidates > 1 ? ", " : "", found->path);
-    if (n > 0 && (size_t)n < sizeof names - used)
-      used += (size_t)n;
-    else
-      names[used] = 0;
   }
   if (candidates == 1)
     return found;
-  if (candidates > 1) {
-    status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
+  if (candidates == 0) {
+    fail_unknown(table, path, error);
     return NULL;
   }
-  const size_t length = strlen(path);
-  for (size_t i = 0; i < table->count; i++)
-    if (strncmp(table->rows[i].path, path, length) == 0 && table->rows[i].path[length] == '.') {
-      status_fail(error, STATUS_CONTENT, "'%.*s' is a section of the %s; name what is in it, such as '%s'", QUOTE, path,
-                  table->name, table->rows[i].path);
-      return NULL;
-    }
-  const char *near = field_nearest(table, path);
-  if (near)
-    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; did you mean '%s'?", table->name, QUOTE, path, near);
-  else
-    status_fail(error, STATUS_CONTENT, "the %s has no '%.*s'; 'clast explain' lists what it has", table->name, QUOTE,
-                path);
+  char names[600];
+  list_paths(table, path, names, sizeof names);
+  status_fail(error, STATUS_CONTENT, "'%.*s' is ambiguous in the %s: it may be %s", QUOTE, path, table->name, names);
   return NULL;
 }
 

@@ -23,6 +23,21 @@ static void write_text(const char *text, FILE *out) {
   }
 }
 
+static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
+  switch (row->kind) {
+  case FIELD_REAL:
+    if (isnan(value->number))
+      fputs("off", out);
+    else
+      fprintf(out, "%a", value->number + 0.0);
+    break;
+  case FIELD_INTEGER: fprintf(out, "%" PRId64, value->integer); break;
+  case FIELD_BOOLEAN: fputs(value->number != 0 ? "true" : "false", out); break;
+  case FIELD_CHOICE:
+  case FIELD_TEXT: write_text(value->text, out); break;
+  }
+}
+
 char *field_identity(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0, count = 0;
@@ -36,22 +51,12 @@ char *field_identity(const struct field_table *table, const void *object) {
     if (field_is_active(table, &table->rows[i], object))
       rows[count++] = &table->rows[i];
   qsort(rows, count, sizeof *rows, by_path);
+
   for (size_t i = 0; i < count; i++) {
     struct field_value value;
     field_get(rows[i], object, &value);
     fprintf(out, "%s=", rows[i]->path);
-    switch (rows[i]->kind) {
-    case FIELD_REAL:
-      if (isnan(value.number))
-        fputs("off", out);
-      else
-        fprintf(out, "%a", value.number + 0.0);
-      break;
-    case FIELD_INTEGER: fprintf(out, "%" PRId64, value.integer); break;
-    case FIELD_BOOLEAN: fputs(value.number != 0 ? "true" : "false", out); break;
-    case FIELD_CHOICE:
-    case FIELD_TEXT: write_text(value.text, out); break;
-    }
+    write_value(rows[i], &value, out);
     fputc('\n', out);
   }
   free(rows);

@@ -43,7 +43,7 @@ static struct query_canned queries[] = {
      "|| exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
      ""},
     {"censored", "Runs that ended at their time: fragments may still have been breaking.",
-     "SELECT point_id, run_id, replicate, seed, time, largest_fraction FROM run WHERE state = 'end-time' ORDER BY "
+     "SELECT point_id, run_id, replicate, seed, time, " OUTCOME_DEFAULT " FROM run WHERE state = 'end-time' ORDER BY "
      "point_id, "
      "replicate",
      ""},
