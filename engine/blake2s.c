@@ -1,3 +1,4 @@
+/* The compression function and the padding of BLAKE2s. */
 #include "engine/blake2s.h"
 
 #include <string.h>

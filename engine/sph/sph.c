@@ -1,3 +1,4 @@
+/* The descriptor of engine `sph`: its hooks call the run and its reports. */
 #include "engine/sph/sph.h"
 
 #include <math.h>

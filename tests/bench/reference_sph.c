@@ -1,3 +1,4 @@
+/* A plain solid step, never changed: bench_sph compares with it, and unit tests use it as their oracle. */
 #include "tests/bench/reference_sph.h"
 
 #include <math.h>

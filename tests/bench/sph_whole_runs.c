@@ -1,3 +1,4 @@
+/* Whole runs as bench_sph times them. */
 #include "tests/bench/sph_whole_runs.h"
 
 #include <math.h>

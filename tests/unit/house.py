@@ -185,7 +185,7 @@ def check_names():
 # ---- words ----
 
 # Private words of this house that have no legitimate use in it.
-HOUSE_WORDS = ("mourn", "mourned", "bury", "buried", "dearest", "veneer", "so much of it as", "what stands there", "say goodbye")
+HOUSE_WORDS = ("mourn", "mourned", "bury", "buried", "dearest", "of the latter", "therein", "whereby", "so much of it as", "what stands there", "say goodbye")
 
 
 def check_words():

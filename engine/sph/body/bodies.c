@@ -1,3 +1,4 @@
+/* Placing, moving, stretching, holding and damping the bodies of a scene. */
 #include "engine/sph/body/bodies.h"
 
 #include <math.h>

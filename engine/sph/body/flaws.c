@@ -1,3 +1,4 @@
+/* Flaws are drawn until every particle has one. */
 #include "engine/sph/body/flaws.h"
 
 #include <math.h>

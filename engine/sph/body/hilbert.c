@@ -1,3 +1,4 @@
+/* Hilbert's curve through the cube around the particles, and the sort along it. */
 #include "engine/sph/body/hilbert.h"
 
 #include <math.h>

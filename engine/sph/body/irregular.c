@@ -1,3 +1,4 @@
+/* Filling a shape with irregular points: uniform, or in shells around a point. */
 #include "engine/sph/body/irregular.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Building the tree, and searching it. */
 #include "engine/sph/body/kd_tree.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Fitting boxes, cutting other shapes out of a lattice, and searching for the wanted number of particles. */
 #include "engine/sph/body/lattice.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Allocation of the particles' columns. */
 #include "engine/sph/body/particles.h"
 
 #include <stdbool.h>

@@ -1,3 +1,4 @@
+/* Spheres, cylinders, boxes: volume, distance, surface, random points, gaps. */
 #include "engine/sph/body/shape.h"
 
 #include <math.h>

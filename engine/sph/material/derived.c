@@ -1,3 +1,4 @@
+/* Elastic constants, wave speeds and crack speeds that follow from a material. */
 #include "engine/sph/material/derived.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The largest principal tension, the growth rate of damage and its cap. */
 #include "engine/sph/material/fracture.h"
 
 #include <math.h>

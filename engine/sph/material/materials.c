@@ -1,3 +1,4 @@
+/* Finding and reading the named materials. */
 #include "engine/sph/material/materials.h"
 
 #include <math.h>

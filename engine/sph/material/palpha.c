@@ -1,3 +1,4 @@
+/* Crush curves, the elastic branch, and the update of one particle. */
 #include "engine/sph/material/palpha.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* One or two fronts ahead of a piston, by bisection on the jump conditions. */
 #include "engine/sph/material/plane_shock.h"
 
 #include <math.h>

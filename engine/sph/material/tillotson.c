@@ -1,3 +1,4 @@
+/* Pressure and sound speed of one particle. */
 #include "engine/sph/material/tillotson.h"
 
 #include <math.h>

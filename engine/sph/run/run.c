@@ -1,3 +1,4 @@
+/* Making a run, advancing it step by step, and judging when it ends. */
 #include "engine/sph/run/run.h"
 
 #include <math.h>

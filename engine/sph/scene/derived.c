@@ -1,3 +1,4 @@
+/* What follows from the inputs of a scene alone. */
 #include "engine/sph/scene/derived.h"
 
 #include <math.h>

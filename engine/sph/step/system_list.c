@@ -1,3 +1,4 @@
+/* Sorting particles and making new neighbour lists. */
 #include "engine/sph/step/system_layout.h"
 
 #include <math.h>
