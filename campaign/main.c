@@ -10,7 +10,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/help.h"
+#include "campaign/commands/help.h"
 #include "campaign/terminal/table.h"
 #include "engine/cpu_class.h"
 

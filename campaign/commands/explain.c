@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
+#include "campaign/document/campaign.h"
 #include "campaign/terminal/table.h"
 #include "engine/scene.h"
 

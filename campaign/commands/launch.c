@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 #include "campaign/commands/estimates.h"
-#include "campaign/driver.h"
-#include "campaign/provenance.h"
-#include "campaign/run.h"
+#include "campaign/driver/driver.h"
+#include "campaign/driver/provenance.h"
+#include "campaign/driver/run.h"
 #include "schemas/clock.h"
 
 enum {

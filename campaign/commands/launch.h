@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
 #define CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
 
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 #include "campaign/terminal/option.h"
 #include "campaign/terminal/table.h"
 

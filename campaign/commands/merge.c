@@ -2,7 +2,7 @@
 #include <inttypes.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/pooling.h"
+#include "campaign/driver/pooling.h"
 #include "db/store/store.h"
 
 static status run(const struct command_line *line, struct error *error) {

@@ -1,5 +1,4 @@
 /* `clast picture FIELDS PICTURE`: draws a body in pieces, whichever engine wrote the file. */
-#include "campaign/commands/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -153,7 +152,7 @@ static status draw(const char *fields, const char *picture, const struct options
   return draw_grains(fields, picture, options->caption, error);
 }
 
-status picture_draw(const char *fields, const char *picture, const char *caption, struct error *error) {
+status commands_picture(const char *fields, const char *picture, const char *caption, struct error *error) {
   return draw(fields, picture, &(struct options){.caption = caption}, error);
 }
 

@@ -3,7 +3,7 @@
 #include <unistd.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/plan.h"
+#include "campaign/driver/plan.h"
 
 struct options {
   const char *store;
@@ -11,8 +11,8 @@ struct options {
   bool no_trial, json;
 };
 
-status plan_command_print(const char *path, const char *store, int64_t slots, bool no_trial, bool json,
-                          struct error *error) {
+status commands_plan(const char *path, const char *store, int64_t slots, bool no_trial, bool json,
+                     struct error *error) {
   struct campaign *campaign = NULL;
   struct plan plan = {0};
   long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -41,8 +41,7 @@ status plan_command_print(const char *path, const char *store, int64_t slots, bo
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return plan_command_print(line->arguments[0], options->store, options->slots, options->no_trial, options->json,
-                            error);
+  return commands_plan(line->arguments[0], options->store, options->slots, options->no_trial, options->json, error);
 }
 
 static const struct option_row rows[] = {

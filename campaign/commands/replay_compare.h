@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_REPLAY_COMPARE_H
 #define CLAST_CAMPAIGN_COMMANDS_REPLAY_COMPARE_H
 
-#include "campaign/run.h"
+#include "campaign/driver/run.h"
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"
 

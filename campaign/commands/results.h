@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_RESULTS_H
 #define CLAST_CAMPAIGN_COMMANDS_RESULTS_H
 
-#include "campaign/run.h"
+#include "campaign/driver/run.h"
 #include "campaign/terminal/table.h"
 
 /* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */

@@ -5,7 +5,6 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
-#include "campaign/commands/plan.h"
 #include "campaign/terminal/table.h"
 
 struct options {
@@ -22,7 +21,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   if (options->dry_run)
-    return plan_command_print(path, options->store, options->launch.slots, false, options->launch.table.json, error);
+    return commands_plan(path, options->store, options->launch.slots, false, options->launch.table.json, error);
   struct campaign *campaign = NULL;
   code = campaign_load(path, &campaign, error);
   if (!code)

@@ -1,8 +1,8 @@
 /* `clast schema scene|campaign`: JSON Schemas, for editors that complete and check YAML. */
 #include <string.h>
 
-#include "campaign/campaign_schema.h"
 #include "campaign/commands/commands.h"
+#include "campaign/document/campaign_schema.h"
 #include "engine/scene.h"
 
 struct options {

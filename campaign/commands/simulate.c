@@ -6,14 +6,13 @@
 
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/estimates.h"
-#include "campaign/campaign.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
-#include "campaign/commands/picture.h"
 #include "campaign/commands/results.h"
 #include "campaign/commands/resume.h"
 #include "campaign/commands/snapshots.h"
-#include "campaign/run.h"
+#include "campaign/document/campaign.h"
+#include "campaign/driver/run.h"
 #include "engine/atomic_file.h"
 
 enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for a million particles */
@@ -89,7 +88,7 @@ static status simulate(const struct scene *scene, const struct options *options,
       result.outcome.state != OUTCOME_INVALID) { /* which has no body, and writes no fields */
     char caption[FIELD_TEXT_SIZE + 64];
     snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
-    code = picture_draw(fields, options->picture, caption, error);
+    code = commands_picture(fields, options->picture, caption, error);
   }
   if (*temporary)
     remove(temporary);

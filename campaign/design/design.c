@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/random.h"
+
 struct design {
   enum design_kind kind;
   const struct design_axis *axes;
@@ -132,6 +134,12 @@ static void sample(struct design *design, uint64_t i) {
     else if (design->kind == DESIGN_LATIN_HYPERCUBE)
       design->coordinates[d] = design_latin_coordinate(design->seed, design->points, i, d);
   }
+}
+
+/* Counter-based random numbers: point i is the same whatever the number of points, and a longer design contains the
+ * shorter one. */
+double design_random_coordinate(uint64_t seed, uint64_t i, size_t dimension) {
+  return random_draw(seed, RANDOM_DESIGN, i, dimension);
 }
 
 bool design_next(struct design *design, struct field_value *values) {

@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/driver.h"
-#include "campaign/run.h"
+#include "campaign/driver/driver.h"
+#include "campaign/driver/run.h"
 #include "engine/dem/observe/results.h"
 #include "engine/dem/scene/inputs.h"
 #include "engine/random.h"

@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 #include "campaign/design/design.h"
-#include "campaign/plan.h"
+#include "campaign/driver/plan.h"
 
 #define HEAD "name: t\nscene: disc-explosion\n"
 

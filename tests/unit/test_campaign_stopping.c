@@ -10,9 +10,9 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "campaign/cost.h"
+#include "campaign/driver/cost.h"
 #include "campaign/design/stopping.h"
-#include "campaign/point.h"
+#include "campaign/driver/point.h"
 #include "engine/random.h"
 
 static double normal(uint64_t seed, uint64_t item, uint64_t draw) {

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 #include "engine/scene.h"
 
 /* The engine behind "scene-<engine>"; NULL for "campaign". */

@@ -1,4 +1,4 @@
-#include "campaign/pooling.h"
+#include "campaign/driver/pooling.h"
 
 #include <stdlib.h>
 

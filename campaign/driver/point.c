@@ -1,4 +1,4 @@
-#include "campaign/point.h"
+#include "campaign/driver/point.h"
 
 #include <math.h>
 #include <stdlib.h>

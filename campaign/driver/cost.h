@@ -1,8 +1,8 @@
 /* What a run will cost, learnt from those that finished: the engine's a-priori work times a fitted rate, corrected by
  * the point's own mean. Orders the runs (dearest first, against stragglers) and gives the time left. Never part of a
  * result. */
-#ifndef CLAST_CAMPAIGN_COST_H
-#define CLAST_CAMPAIGN_COST_H
+#ifndef CLAST_CAMPAIGN_DRIVER_COST_H
+#define CLAST_CAMPAIGN_DRIVER_COST_H
 
 #include <stdint.h>
 

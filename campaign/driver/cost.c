@@ -1,4 +1,4 @@
-#include "campaign/cost.h"
+#include "campaign/driver/cost.h"
 
 void cost_learn(struct cost_model *model, struct cost_point *point, double wall_s) {
   if (!(wall_s >= 0))

@@ -1,4 +1,4 @@
-#include "campaign/provenance.h"
+#include "campaign/driver/provenance.h"
 
 #include <stdio.h>
 #include <stdlib.h>

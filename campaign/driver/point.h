@@ -1,11 +1,11 @@
 /* One point of a campaign under way: which of its replicates are wanted, out, done; its prefix; what it costs. For the
  * driver only. */
-#ifndef CLAST_CAMPAIGN_POINT_H
-#define CLAST_CAMPAIGN_POINT_H
+#ifndef CLAST_CAMPAIGN_DRIVER_POINT_H
+#define CLAST_CAMPAIGN_DRIVER_POINT_H
 
-#include "campaign/campaign.h"
-#include "campaign/cost.h"
 #include "campaign/design/stopping.h"
+#include "campaign/document/campaign.h"
+#include "campaign/driver/cost.h"
 
 enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED };
 

@@ -1,13 +1,12 @@
 /* The manual page from the command tables: every command, option, example and exit code as --help has them. Its own
  * words are only those that no table holds: NAME, ENVIRONMENT, FILES. */
-#include "campaign/terminal/manual.h"
+#include "campaign/commands/help.h"
 
 #include <ctype.h>
 #include <string.h>
 
 #include "campaign/build_facts.h"
 #include "campaign/commands/commands.h"
-#include "campaign/terminal/help.h"
 
 struct entry {
   const char *name, *meaning;

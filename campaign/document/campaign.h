@@ -1,6 +1,6 @@
 /* A campaign: many runs of one scene. The document (`clast run campaign.yaml`) is read here into a plain struct; the
  * plain keys are rows of campaign_table, the few keys that are unions (vary, set, design, keep) are read by hand and
- * their JSON Schema fragments are in campaign_schema.c.
+ * their part of the JSON Schema is campaign.schema.in.json.
  *
  *     name: thresholds
  *     scene: disc-explosion             # built-in name, or a file relative to the campaign's folder
@@ -13,8 +13,8 @@
  *     keep: {fields: none}              # none | all | extremes | first N
  *     limits: {time: 10 min, memory: 2 GiB, attempts: 2, failures: 20}
  *     store: thresholds.db              # relative to the current folder */
-#ifndef CLAST_CAMPAIGN_CAMPAIGN_H
-#define CLAST_CAMPAIGN_CAMPAIGN_H
+#ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
+#define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 
 #include "campaign/design/axis.h"
 #include "engine/scene.h"

@@ -1,4 +1,4 @@
-#include "campaign/run.h"
+#include "campaign/driver/run.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* What the driver's files share: its state, and the window of points under way. For driver*.c only. */
+/* What the driver's files share: its state, and the window of points under way. For driver.c, window.c, send.c and
+ * receive.c only. */
 #ifndef CLAST_CAMPAIGN_DRIVER_PRIVATE_H
 #define CLAST_CAMPAIGN_DRIVER_PRIVATE_H
 
@@ -6,13 +7,14 @@
 
 #include "analysis/statistics/sample.h"
 #include "campaign/design/design.h"
-#include "campaign/driver.h"
-#include "campaign/point.h"
+#include "campaign/driver/driver.h"
+#include "campaign/driver/point.h"
 
 #define DRIVER_NOTHING ((double)NAN)
 
-/* Points looked at together: "dearest first" is exact for campaigns of up to this many points, and a window for larger
- * ones, whose points are made as they are needed. Filling it may take this long before the first run starts. */
+/* Points considered together. Runs start in order of cost, most expensive first, exactly for campaigns of up to this
+ * many points; a larger campaign makes its points as they are needed. Filling the window may delay the first run by
+ * DRIVER_FILL_S. */
 enum { DRIVER_WINDOW = 1024 };
 #define DRIVER_FILL_S 0.05
 
@@ -28,7 +30,8 @@ struct flight {        /* a task on a slot */
 struct driver {
   const struct campaign *campaign;
   struct store *store;
-  struct driver_options options;
+  struct driver_options options;   /* with a store_path */
+  double time_limit, memory_limit; /* of an attempt: s and bytes, 0 = none */
   struct driver_summary summary;
   struct design *design;
   struct field_value *values; /* of one design point */
@@ -40,9 +43,8 @@ struct driver {
   uint64_t expanded; /* design points taken */
   struct flight *flights;
   size_t flight_count;
-  int64_t *seen; /* ids of points met: open addressing, 0 = free */
-  size_t seen_size, seen_count;
-  uint8_t *task; /* bytes of the last task given out */
+  struct driver_seen *seen; /* ids of the points met: a hash table of window.c */
+  uint8_t *task;            /* bytes of the last task given out */
   struct cost_model cost;
   struct sample_moments moments;    /* of the main quantity */
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
@@ -53,8 +55,19 @@ struct driver {
 };
 
 void driver_note(struct driver *driver, const char *text);
+/* The run has used up its attempts. */
+void driver_give_up(struct driver *driver, struct point *point, int64_t replicate);
+/* Does this run write its fields at once? Extremes are known only afterwards and are replayed. */
+bool driver_writes_fields(const struct driver *driver, const struct flight *flight);
+/* Path of a run's fields: "results.db" gives "results-fields/<identity>.h5". It is relative to the store's folder, or
+ * with `folder` begins with that folder. */
+void driver_fields_path(const struct driver *driver, const uint8_t identity[16], bool folder, char *path, size_t size);
 
-/* ---- the window: driver_window.c ---- */
+bool driver_send(void *context, struct farm_task *task); /* send.c: farm_manager's next */
+/* receive.c: farm_manager's report */
+status driver_receive(void *context, const struct farm_report *report, struct error *error);
+
+/* ---- the window: window.c ---- */
 
 /* Takes the next design point into the window, with what the store has of it. False: the window is full, the design has
  * no more, or an error (see *code). */
@@ -62,5 +75,6 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
 /* Judges the point's prefixes; moves the store's; marks the fields it wants once it is decided. */
 status driver_window_judge(struct driver *driver, struct point *point, struct error *error);
 void driver_window_drop(struct driver *driver, struct point *point); /* frees it */
+void driver_window_forget(struct driver *driver);                    /* frees the ids of the points met */
 
 #endif

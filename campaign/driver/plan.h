@@ -1,9 +1,9 @@
 /* What a campaign would do and cost; stores nothing. From a timed trial run of up to 5 s of steps at the dearest point
  * looked at, unless told not to. */
-#ifndef CLAST_CAMPAIGN_PLAN_H
-#define CLAST_CAMPAIGN_PLAN_H
+#ifndef CLAST_CAMPAIGN_DRIVER_PLAN_H
+#define CLAST_CAMPAIGN_DRIVER_PLAN_H
 
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 
 struct plan_options {
   const char *store_path; /* NULL: the campaign's */

@@ -1,11 +1,11 @@
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/campaign_vary.h"
 #include "campaign/design/design.h"
+#include "campaign/document/campaign_vary.h"
 #include "engine/random.h"
 #include "schemas/document.h"
 

@@ -1,4 +1,4 @@
-#include "campaign/campaign_vary.h"
+#include "campaign/document/campaign_vary.h"
 
 #include <math.h>
 #include <stdlib.h>

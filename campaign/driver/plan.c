@@ -1,4 +1,4 @@
-#include "campaign/plan.h"
+#include "campaign/driver/plan.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "campaign/design/design.h"
-#include "campaign/run.h"
+#include "campaign/driver/run.h"
 #include "campaign/terminal/progress.h"
 #include "db/ask/run.h"
 #include "db/store/store.h"

@@ -11,10 +11,10 @@
  * batch and the decision looks at complete prefixes only, never at "the first n that finished" (which is biased towards
  * quick runs). Slots that would idle compute ahead; such runs are stored with surplus = 1 and counted only if the
  * prefix comes to cover them. */
-#ifndef CLAST_CAMPAIGN_DRIVER_H
-#define CLAST_CAMPAIGN_DRIVER_H
+#ifndef CLAST_CAMPAIGN_DRIVER_DRIVER_H
+#define CLAST_CAMPAIGN_DRIVER_DRIVER_H
 
-#include "campaign/campaign.h"
+#include "campaign/document/campaign.h"
 #include "campaign/farm/farm.h"
 #include "campaign/terminal/progress.h"
 #include "db/store/store.h"

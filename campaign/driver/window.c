@@ -1,32 +1,39 @@
-#include "campaign/driver_private.h"
+/* The window of points under way: points enter it in the order of the design, with what the store has of them, and
+ * leave it when they are over. */
+#include "campaign/driver/private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* True when the id was not there. */
+#define HASH_NONFATAL_OOM         1
+#define uthash_nonfatal_oom(seen) free(seen)
+#include <uthash.h>
+
+struct driver_seen {
+  int64_t id;
+  UT_hash_handle hh;
+};
+
+/* True when the id was not there. Without memory a duplicate is looked at twice, which does no harm. */
 static bool remember(struct driver *driver, int64_t id) {
-  if (2 * (driver->seen_count + 1) > driver->seen_size) {
-    int64_t *larger = calloc(2 * driver->seen_size, sizeof *larger);
-    if (!larger)
-      return true; /* at worst a duplicate is looked at twice */
-    for (size_t i = 0; i < driver->seen_size; i++)
-      if (driver->seen[i]) {
-        size_t at = (size_t)driver->seen[i] * 0x9E3779B97F4A7C15u % (2 * driver->seen_size);
-        while (larger[at])
-          at = (at + 1) % (2 * driver->seen_size);
-        larger[at] = driver->seen[i];
-      }
-    free(driver->seen);
-    driver->seen = larger;
-    driver->seen_size *= 2;
+  struct driver_seen *seen = NULL;
+  HASH_FIND(hh, driver->seen, &id, sizeof id, seen);
+  if (seen)
+    return false;
+  seen = calloc(1, sizeof *seen);
+  if (!seen)
+    return true;
+  seen->id = id;
+  HASH_ADD(hh, driver->seen, id, sizeof seen->id, seen);
+  return true;
+}
+
+void driver_window_forget(struct driver *driver) {
+  struct driver_seen *seen, *next;
+  HASH_ITER(hh, driver->seen, seen, next) {
+    HASH_DEL(driver->seen, seen);
+    free(seen);
   }
-  size_t at = (size_t)id * 0x9E3779B97F4A7C15u % driver->seen_size;
-  while (driver->seen[at] && driver->seen[at] != id)
-    at = (at + 1) % driver->seen_size;
-  bool fresh = driver->seen[at] != id;
-  driver->seen[at] = id;
-  driver->seen_count += fresh;
-  return fresh;
 }
 
 struct resuming {
@@ -98,6 +105,31 @@ status driver_window_judge(struct driver *driver, struct point *point, struct er
   return admit(driver, point, error);
 }
 
+/* Values that cannot be run together: counted, the first few told. */
+static void skip_invalid(struct driver *driver, const struct error *why) {
+  if (++driver->summary.points_invalid > 5)
+    return;
+  char text[sizeof why->message + 80];
+  snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
+           why->message);
+  driver_note(driver, text);
+}
+
+/* What the store has of the point, and what follows from it. */
+static status resume(struct driver *driver, struct point *point, struct error *error) {
+  struct resuming resuming = {driver, point, false};
+  status code = store_point_runs(driver->store, point->id, point->scene->kind, driver->row, driver->row_of_outcome,
+                                 take_stored, &resuming, error);
+  if (code != STATUS_OK)
+    return code;
+  if (resuming.out_of_memory)
+    return status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
+  code = driver_window_judge(driver, point, error);
+  if (code != STATUS_OK)
+    return code;
+  return admit(driver, point, error); /* a fixed number may cover what an older rule left out */
+}
+
 bool driver_window_expand(struct driver *driver, status *code, struct error *error) {
   if (driver->point_count == DRIVER_WINDOW || !design_next(driver->design, driver->values))
     return false;
@@ -105,14 +137,10 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
   struct error why = {0};
   struct scene *scene = campaign_point_scene(driver->campaign, driver->values, &why);
   if (!scene) {
-    if (++driver->summary.points_invalid <= 5) {
-      char text[sizeof why.message + 80];
-      snprintf(text, sizeof text, "point %llu of the design cannot be run: %s", (unsigned long long)driver->expanded,
-               why.message);
-      driver_note(driver, text);
-    }
+    skip_invalid(driver, &why);
     return true;
   }
+
   int64_t id = 0;
   *code = store_add_point(driver->store, driver->summary.campaign_id, scene, driver->campaign->axis_count,
                           driver->paths, &id, error);
@@ -125,18 +153,11 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
     *code = status_fail(error, STATUS_MEMORY, "no memory for a point");
     return false;
   }
+
   point->id = id;
   driver->summary.points++;
   driver->wanted += point->prefix;
-  struct resuming resuming = {driver, point, false};
-  *code = store_point_runs(driver->store, id, point->scene->kind, driver->row, driver->row_of_outcome, take_stored,
-                           &resuming, error);
-  if (*code == STATUS_OK && resuming.out_of_memory)
-    *code = status_fail(error, STATUS_MEMORY, "no memory for a point's runs");
-  if (*code == STATUS_OK)
-    *code = driver_window_judge(driver, point, error);
-  if (*code == STATUS_OK)
-    *code = admit(driver, point, error); /* a fixed number may cover what an older rule left out */
+  *code = resume(driver, point, error);
   if (*code != STATUS_OK || point_over(point)) {
     point_free(point);
     return *code == STATUS_OK;

@@ -1,8 +1,8 @@
 /* One run from bytes to bytes: what a slot of the farm does with a task, the same code in process, in children, over
  * MPI and in `clast simulate`. A task names the engine, its encoded inputs, the seed and what to keep; the answer is
  * one versioned encoding of outcome, engine results, fragments and estimates, made from the field tables. */
-#ifndef CLAST_CAMPAIGN_RUN_H
-#define CLAST_CAMPAIGN_RUN_H
+#ifndef CLAST_CAMPAIGN_DRIVER_RUN_H
+#define CLAST_CAMPAIGN_DRIVER_RUN_H
 
 #include "analysis/statistics/estimates.h"
 #include "engine/scene.h"

@@ -1,0 +1,173 @@
+/* Results in: stores what a run or an attempt gave, and updates its point. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "campaign/driver/private.h"
+#include "campaign/driver/run.h"
+
+static status store_result(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                           const struct run_result *result, struct error *error) {
+  struct point *point = flight->point;
+  struct point_replicate *replicate = &point->replicates[flight->replicate];
+  char path[4096] = "";
+  if (driver_writes_fields(driver, flight) && result->outcome.state != OUTCOME_INVALID)
+    driver_fields_path(driver, flight->identity, false, path, sizeof path);
+  replicate->surplus = flight->replicate >= point->prefix;
+  replicate->fields = path[0] != '\0' || result->outcome.state == OUTCOME_INVALID;
+  driver->summary.fields_written += path[0] != '\0';
+  driver->summary.runs_surplus += replicate->surplus;
+  struct store_run run = {
+      .point_id = point->id,
+      .session_id = driver->summary.session_id,
+      .replicate = flight->replicate,
+      .seed = flight->seed,
+      .surplus = replicate->surplus,
+      .kind = point->scene->kind,
+      .outcome = &result->outcome,
+      .result = result->result,
+      .fragments = result->fragments,
+      .fragment_count = result->fragment_count,
+      .estimates = result->estimate_count ? result->estimates : NULL,
+      .estimate_count = result->estimate_count,
+      .wall_s = report->wall_s,
+      .cpu_s = report->cpu_s,
+      .peak_memory = report->peak_memory,
+      .attempt = flight->attempt,
+      .host = report->host,
+      .rank = report->rank,
+      .fields_path = path[0] ? path : NULL,
+  };
+  memcpy(run.identity, flight->identity, sizeof run.identity);
+  return store_add_run(driver->store, &run, error);
+}
+
+static status store_failure(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                            struct error *error) {
+  static const char *const reasons[] = {[FARM_DONE] = "exit",
+                                        [FARM_FAILED] = "exit",
+                                        [FARM_TIME_LIMIT] = "time_limit",
+                                        [FARM_MEMORY_LIMIT] = "memory_limit",
+                                        [FARM_CRASHED] = "crash",
+                                        [FARM_LOST] = "lost"};
+  const double limits[] =
+      {[FARM_LOST] = 0, [FARM_TIME_LIMIT] = driver->time_limit, [FARM_MEMORY_LIMIT] = driver->memory_limit};
+  struct store_attempt attempt = {
+      .point_id = flight->point->id,
+      .replicate = flight->replicate,
+      .session_id = driver->summary.session_id,
+      .seed = flight->seed,
+      .attempt = flight->attempt,
+      .reason = reasons[report->ending],
+      .exit_code = report->exit_code,
+      .signal = report->signal,
+      .wall_s = report->wall_s,
+      .peak_memory = report->peak_memory,
+      .limit = limits[report->ending],
+      .message = report->message,
+      .host = report->host,
+      .rank = report->rank,
+  };
+  memcpy(attempt.identity, flight->identity, sizeof attempt.identity);
+  driver->summary.attempts_failed++;
+  return store_add_attempt(driver->store, &attempt, error);
+}
+
+/* Twenty failures among the first fifty mean that something is wrong with the campaign, not with chance. */
+static status judge_failures(struct driver *driver, bool failed, struct error *error) {
+  if (driver->first_done >= CAMPAIGN_FIRST_RUNS)
+    return STATUS_OK;
+  driver->first_done++;
+  driver->first_failed += failed;
+  if (driver->campaign->failures == 0 || driver->first_failed < driver->campaign->failures)
+    return STATUS_OK;
+  return status_fail(
+      error, STATUS_FAILED_RUNS,
+      "stopped: %lld of the first %lld runs failed. What happened is in the store: clast query %s --named failures. "
+      "Mend the campaign, or set limits.failures: 0 to go on regardless",
+      (long long)driver->first_failed, (long long)driver->first_done, driver->options.store_path);
+}
+
+/* An attempt that gave no result: the run is tried again, or given up when its attempts are used up. */
+static status finish_attempt(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                             struct error *error) {
+  status code = store_failure(driver, flight, report, error);
+  if (code != STATUS_OK)
+    return code;
+  if (flight->attempt < driver->campaign->attempts) {
+    point_want_again(flight->point, flight->replicate);
+    return STATUS_OK;
+  }
+  driver_give_up(driver, flight->point, flight->replicate);
+  return judge_failures(driver, true, error);
+}
+
+static status finish_run(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                         struct error *error) {
+  if (report->ending != FARM_DONE)
+    return finish_attempt(driver, flight, report, error);
+
+  struct point *point = flight->point;
+  struct run_result result;
+  status code = run_decode_result(point->scene->kind, report->bytes, report->size, &result, error);
+  if (code != STATUS_OK)
+    return code;
+  code = store_result(driver, flight, report, &result, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+
+  const bool usable = campaign_usable(&result.outcome);
+  const double value = campaign_value(driver->row, driver->row_of_outcome, &result.outcome, result.result);
+  point_finish_replicate(point, flight->replicate, POINT_DONE, value);
+  cost_learn(&driver->cost, &point->cost, report->wall_s);
+  sample_add(&driver->moments, value);
+  driver->summary.runs_done++;
+  driver->summary.runs_failed += !usable;
+  driver->summary.runs_censored += result.outcome.state == OUTCOME_END_TIME;
+  driver->summary.cpu_s += report->cpu_s;
+  code = judge_failures(driver, !usable, error);
+cleanup:
+  run_result_clear(&result);
+  return code;
+}
+
+static status finish_replay(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                            struct error *error) {
+  struct point_replicate *replicate = &flight->point->replicates[flight->replicate];
+  char path[4096], text[4400];
+  replicate->replaying = false;
+  driver_fields_path(driver, flight->identity, false, path, sizeof path);
+  if (report->ending != FARM_DONE) {
+    snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)flight->seed,
+             path, report->message && report->message[0] ? report->message : "the replay did not end well");
+    driver_note(driver, text);
+    return STATUS_OK;
+  }
+  replicate->fields = true;
+  driver->summary.fields_written++;
+  return store_set_fields(driver->store, flight->identity, path, error);
+}
+
+status driver_receive(void *context, const struct farm_report *report, struct error *error) {
+  struct driver *driver = context;
+  if (report->id >= driver->flight_count || !driver->flights[report->id].point)
+    return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
+  const struct flight flight = driver->flights[report->id];
+  driver->flights[report->id].point = NULL;
+  flight.point->out--;
+
+  status code = STATUS_OK;
+  if (flight.replay) {
+    code = finish_replay(driver, &flight, report, error);
+  } else {
+    code = finish_run(driver, &flight, report, error);
+    driver->started_done++;
+  }
+  if (code == STATUS_OK)
+    code = driver_window_judge(driver, flight.point, error);
+  else if (code == STATUS_FAILED_RUNS)
+    (void)driver_window_judge(driver, flight.point, NULL); /* the stop keeps its own message */
+  if (point_over(flight.point))
+    driver_window_drop(driver, flight.point);
+  return code;
+}
