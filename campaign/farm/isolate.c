@@ -180,17 +180,88 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
   return in_time;
 }
 
+/* The frame of a run without a result: why, in words. */
+static bool append_failure(struct farm_bytes *out, uint64_t handle, const struct farm_result *head, const char *text) {
+  return farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2,
+                           (struct iovec[]){{(void *)head, sizeof *head}, {(void *)text, strlen(text)}});
+}
+
+struct answer { /* the child's, borrowed from the pipe's buffer */
+  bool there;
+  int64_t verdict;
+  struct iovec bytes; /* the result, or with a verdict other than STATUS_OK the message */
+};
+
+static struct answer read_answer(struct farm_isolate *isolate, uint64_t handle, int ended) {
+  struct farm_frame frame;
+  const uint8_t *payload = NULL;
+  struct answer answer = {0};
+  const int got = farm_frame_next(&isolate->in, &frame, &payload);
+  if (got != 1 || frame.kind != FARM_FRAME_ANSWER || frame.handle != handle || frame.size < sizeof answer.verdict ||
+      !WIFEXITED(ended) || WEXITSTATUS(ended) != 0)
+    return answer;
+  answer.there = true;
+  memcpy(&answer.verdict, payload, sizeof answer.verdict);
+  answer.bytes = (struct iovec){(void *)(payload + sizeof answer.verdict), frame.size - sizeof answer.verdict};
+  return answer;
+}
+
+static enum farm_ending ending_of(int64_t verdict, bool limited) {
+  if (verdict == STATUS_OK)
+    return FARM_DONE;
+  return verdict == STATUS_MEMORY && limited ? FARM_MEMORY_LIMIT : FARM_FAILED;
+}
+
+/* The child ended without an answer: why. */
+static void judge_end(struct farm_result *head, bool in_time, int ended, double limit_s, char *text, size_t size) {
+  if (!in_time) {
+    head->ending = FARM_TIME_LIMIT;
+    snprintf(text, size, "ended at its time limit of %g s", limit_s);
+    return;
+  }
+  if (!WIFSIGNALED(ended)) {
+    head->ending = FARM_CRASHED;
+    snprintf(text, size, "the run's process exited with code %d and no result", head->exit_code);
+    return;
+  }
+  /* These signals come from outside, to the whole process group, and say nothing about the run. */
+  const bool outside = head->signal == SIGTERM || head->signal == SIGINT || head->signal == SIGHUP;
+  head->ending = outside ? FARM_LOST : FARM_CRASHED;
+  snprintf(text, size, "killed by signal %d (%s)%s", head->signal, strsignal(head->signal),
+           head->signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
+}
+
+static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_result *head,
+                          const struct answer *answer, bool limited) {
+  const struct iovec nothing = {NULL, 0};
+  const bool done = answer->verdict == STATUS_OK;
+  head->exit_code = (int)answer->verdict;
+  head->ending = ending_of(answer->verdict, limited);
+  head->size = done ? answer->bytes.iov_len : 0;
+  const struct iovec part[3] = {{head, sizeof *head}, done ? answer->bytes : nothing, done ? nothing : answer->bytes};
+  if (farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 3, part))
+    return true;
+  if (!done)
+    return false;
+
+  /* The result is too large, or there is no memory for a copy of it here. */
+  char text[96];
+  snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", answer->bytes.iov_len);
+  head->ending = FARM_FAILED;
+  head->exit_code = STATUS_MEMORY;
+  head->size = 0;
+  return append_failure(out, handle, head, text);
+}
+
 bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup *setup, int slot, uint64_t handle,
                       const uint8_t *task, size_t size, struct farm_bytes *out) {
+  char text[256];
   const pid_t self = getpid();
   const int64_t start = clock_ns();
   const pid_t child = fork();
   if (child < 0) {
-    struct farm_result head = {.ending = FARM_LOST, .slot = slot};
-    char text[160];
-    const int n = snprintf(text, sizeof text, "the system refused a process for the run: %s", strerror(errno));
-    return farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2,
-                             (struct iovec[]){{&head, sizeof head}, {text, (size_t)n}});
+    snprintf(text, sizeof text, "the system refused a process for the run: %s", strerror(errno));
+    return append_failure(out, handle, &(struct farm_result){.ending = FARM_LOST, .slot = slot}, text);
   }
   if (child == 0)
     compute(isolate, setup, handle, task, size, self);
@@ -205,55 +276,19 @@ bool farm_isolate_run(struct farm_isolate *isolate, const struct farm_slot_setup
                              .cpu_s = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                                       1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec),
                              .peak_memory = (int64_t)usage.ru_maxrss * 1024};
-  struct farm_frame frame;
-  const uint8_t *payload = NULL;
-  const int got = farm_frame_next(&isolate->in, &frame, &payload);
-  const bool answered = got == 1 && frame.kind == FARM_FRAME_ANSWER && frame.handle == handle &&
-                        frame.size >= sizeof(int64_t) && WIFEXITED(ended) && WEXITSTATUS(ended) == 0;
-  const bool clean = answered && isolate->in.begin == isolate->in.end;
-  struct iovec part[3] = {{&head, sizeof head}, {NULL, 0}, {NULL, 0}};
-  char text[256] = "";
-  if (answered) {
-    int64_t verdict;
-    memcpy(&verdict, payload, sizeof verdict);
-    const struct iovec rest = {(void *)(payload + sizeof verdict), frame.size - sizeof verdict};
-    head.exit_code = (int)verdict;
-    head.ending = verdict == STATUS_OK                                      ? FARM_DONE
-                  : verdict == STATUS_MEMORY && setup->options.memory_limit ? FARM_MEMORY_LIMIT
-                                                                            : FARM_FAILED;
-    if (verdict == STATUS_OK) {
-      part[1] = rest;
-      head.size = rest.iov_len;
-    } else {
-      part[2] = rest;
-    }
-  } else if (!in_time) {
-    head.ending = FARM_TIME_LIMIT;
-    snprintf(text, sizeof text, "ended at its time limit of %g s", setup->options.time_limit_s);
-  } else if (WIFSIGNALED(ended)) {
-    /* These come from outside, to the whole process group, and say nothing about the run. */
-    const bool outside = head.signal == SIGTERM || head.signal == SIGINT || head.signal == SIGHUP;
-    head.ending = outside ? FARM_LOST : FARM_CRASHED;
-    snprintf(text, sizeof text, "killed by signal %d (%s)%s", head.signal, strsignal(head.signal),
-             head.signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
+  const struct answer answer = read_answer(isolate, handle, ended);
+  const bool clean = answer.there && isolate->in.begin == isolate->in.end;
+  bool written;
+  if (answer.there) {
+    written = append_answer(out, handle, &head, &answer, setup->options.memory_limit > 0);
   } else {
-    head.ending = FARM_CRASHED;
-    snprintf(text, sizeof text, "the run's process exited with code %d and no result", head.exit_code);
+    judge_end(&head, in_time, ended, setup->options.time_limit_s, text, sizeof text);
+    written = append_failure(out, handle, &head, text);
   }
-  if (text[0])
-    part[2] = (struct iovec){text, strlen(text)};
-  bool written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 3, part);
-  if (!written && head.ending == FARM_DONE) { /* too large, or no memory for a copy here */
-    head.ending = FARM_FAILED;
-    head.exit_code = STATUS_MEMORY;
-    head.size = 0;
-    const int n = snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", part[1].iov_len);
-    written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2,
-                                (struct iovec[]){{&head, sizeof head}, {text, (size_t)n}});
-  }
-  if (clean) {
-    farm_frame_trim(&isolate->in);
-    return written;
-  }
-  return renew_pipe(isolate) && written;
+
+  /* After half an answer, or more than one, the pipe is renewed. */
+  if (!clean)
+    return renew_pipe(isolate) && written;
+  farm_frame_trim(&isolate->in);
+  return written;
 }

@@ -58,58 +58,43 @@ void farm_job_clear(struct farm_job_queue *queue) {
     free(job);
 }
 
-static bool grow(struct farm_job_table *table) {
-  const size_t capacity = table->capacity ? table->capacity * 2 : 64;
-  struct farm_job **job = realloc(table->job, capacity * sizeof *job);
-  if (job)
-    table->job = job;
-  uint32_t *use = realloc(table->use, capacity * sizeof *use);
-  if (use)
-    table->use = use;
-  uint32_t *vacant = realloc(table->vacant, capacity * sizeof *vacant);
-  if (vacant)
-    table->vacant = vacant;
-  if (!job || !use || !vacant)
-    return false;
-  for (size_t i = capacity; i-- > table->capacity;) {
-    job[i] = NULL;
-    use[i] = 0;
-    vacant[table->vacant_count++] = (uint32_t)i;
-  }
-  table->capacity = capacity;
-  return true;
-}
-
 bool farm_job_table_add(struct farm_job_table *table, struct farm_job *job) {
-  if (table->vacant_count == 0 && !grow(table))
+  struct farm_job *jobs = table->jobs;
+  job->handle = ++table->last_handle;
+  HASH_ADD(hh, jobs, handle, sizeof job->handle, job);
+  table->jobs = jobs;
+  if (!farm_job_table_find(table, job->handle))
     return false;
-  const uint32_t place = table->vacant[--table->vacant_count];
-  table->use[place]++; /* from 1: no handle is 0, which means "none" in a slot's record */
-  table->job[place] = job;
   table->count++;
-  job->handle = (uint64_t)table->use[place] << 32 | place;
   return true;
 }
 
 struct farm_job *farm_job_table_find(const struct farm_job_table *table, uint64_t handle) {
-  const size_t place = (uint32_t)handle;
-  struct farm_job *job = place < table->capacity ? table->job[place] : NULL;
-  return job && job->handle == handle ? job : NULL;
+  struct farm_job *job = NULL;
+  HASH_FIND(hh, table->jobs, &handle, sizeof handle, job);
+  return job;
 }
 
 void farm_job_table_remove(struct farm_job_table *table, uint64_t handle) {
-  if (!farm_job_table_find(table, handle))
+  struct farm_job *job = farm_job_table_find(table, handle);
+  if (!job)
     return;
-  table->job[(uint32_t)handle] = NULL;
-  table->vacant[table->vacant_count++] = (uint32_t)handle;
+  HASH_DELETE(hh, table->jobs, job);
   table->count--;
 }
 
+struct farm_job *farm_job_table_oldest(const struct farm_job_table *table, int rank) {
+  for (struct farm_job *job = table->jobs; job; job = job->hh.next)
+    if (job->rank == rank)
+      return job;
+  return NULL;
+}
+
 void farm_job_table_free(struct farm_job_table *table) {
-  for (size_t i = 0; i < table->capacity; i++)
-    free(table->job[i]);
-  free(table->job);
-  free(table->use);
-  free(table->vacant);
+  struct farm_job *job, *next;
+  HASH_ITER(hh, table->jobs, job, next) {
+    HASH_DELETE(hh, table->jobs, job);
+    free(job);
+  }
   *table = (struct farm_job_table){0};
 }

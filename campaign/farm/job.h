@@ -6,12 +6,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define HASH_NONFATAL_OOM 1
+#include <uthash.h>
+
 struct farm_job {
   struct farm_job *next; /* in whatever queue it stands */
   uint64_t handle;       /* the farm's, never used twice */
   uint64_t id;           /* the caller's */
   int rank;              /* where it was sent (manager only) */
   uint16_t ticket;       /* while it is in a slot */
+  UT_hash_handle hh;     /* in the manager's table */
   size_t size;
   _Alignas(16) uint8_t bytes[];
 };
@@ -30,15 +34,17 @@ struct farm_job *farm_job_pop(struct farm_job_queue *queue); /* NULL when empty 
 struct farm_job *farm_job_take(struct farm_job_queue *queue, uint64_t handle);
 void farm_job_clear(struct farm_job_queue *queue);
 
-/* The manager's table of what is out: handle -> job in O(1); a handle's low half is a place, its high half the use. */
+/* The manager's table of the jobs that are out, by handle. */
 struct farm_job_table {
-  struct farm_job **job;
-  uint32_t *use, *vacant;
-  size_t capacity, vacant_count, count;
+  struct farm_job *jobs; /* uthash, in order of addition */
+  size_t count;
+  uint64_t last_handle; /* handles count from 1: no handle is 0, which means "none" in a slot's record */
 };
 bool farm_job_table_add(struct farm_job_table *table, struct farm_job *job); /* sets job->handle; false: no memory */
 struct farm_job *farm_job_table_find(const struct farm_job_table *table, uint64_t handle);
 void farm_job_table_remove(struct farm_job_table *table, uint64_t handle); /* does not free the job */
-void farm_job_table_free(struct farm_job_table *table);                    /* frees the jobs too */
+/* The oldest job that was sent to this rank, or NULL. */
+struct farm_job *farm_job_table_oldest(const struct farm_job_table *table, int rank);
+void farm_job_table_free(struct farm_job_table *table); /* frees the jobs too */
 
 #endif

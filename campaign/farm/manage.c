@@ -1,4 +1,5 @@
-/* Rank 0: asks for tasks, spreads them, reports what came back; never computes, never blocks but in poll(). */
+/* Rank 0: takes tasks from the caller, spreads them over the ranks and reports their results. It never computes, and
+ * never blocks but in poll(). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,29 +7,37 @@
 #include "campaign/farm/private.h"
 #include "schemas/clock.h"
 
-#define TICK_NS (100 * CLOCK_MS)
-#define SECOND_SIGNAL_NS                                                                                               \
-  (100 * CLOCK_MS) /* closer ones are copies: `timeout` and shells signal child and group                              \
-                    */
-#define BYE_NS            (10 * CLOCK_S)
-#define REMOTE_AHEAD_S    0.010 /* work sent ahead to a rank: twice the longest sleep of a main process */
+#define TICK_NS           (100 * CLOCK_MS)
+#define SECOND_SIGNAL_NS  (100 * CLOCK_MS) /* a closer one is a copy: `timeout` and shells signal child and group */
+#define LAST_ANSWER_NS    (10 * CLOCK_S)   /* for the other ranks' last answer */
+#define REMOTE_AHEAD_S    0.010            /* work sent ahead to a rank: twice the longest sleep of a main process */
 #define REMOTE_AHEAD_MOST 256
 
 struct manager {
   struct farm *farm;
   const struct farm_manager *calls;
-  struct error *error;
-  struct farm_job_table table;    /* all that was taken and not reported */
-  struct farm_job_queue returned; /* taken from the caller, at no rank now */
-  bool dry;                       /* next() had none */
-  bool draining, dropping, silent;
+  struct error *error;            /* of the first reason to end */
+  struct error later;             /* errors after that one */
+  struct farm_job_table table;    /* all jobs that were taken and not reported */
+  struct farm_job_queue returned; /* jobs that came back from their rank and wait for another */
+  bool dry;                       /* the caller had no task when asked last */
+  bool draining;                  /* no more tasks go out */
+  bool dropping;                  /* what still computes is killed */
+  bool silent;                    /* nothing more is reported to the caller */
   status final;
-  int64_t drop_ns, signal_ns, first_ns, last_ns;
+  int64_t drop_ns;           /* draining becomes dropping */
+  int64_t signal_ns;         /* the first stop signal; 0: none came */
+  int64_t first_ns, last_ns; /* of tasks sent and results taken */
+  int64_t ticked_ns, looped_ns, sleep_ns;
   struct farm_usage usage;
 };
 
-/* The first reason to end stays. */
-static void end_with(struct manager *m, status reason, double grace_s) {
+/* Where an error is written: only the first reason to end is kept. */
+static struct error *error_of(struct manager *m) {
+  return m->final == STATUS_OK ? m->error : &m->later;
+}
+
+static void drain(struct manager *m, status reason, double grace_s) {
   if (m->final == STATUS_OK)
     m->final = reason;
   const int64_t drop_ns = clock_ns() + clock_from_s(grace_s);
@@ -41,35 +50,39 @@ static void fail(struct manager *m, status reason) {
   if (reason == STATUS_OK)
     return;
   m->silent = m->dropping = true;
-  end_with(m, reason, 0);
+  drain(m, reason, 0);
 }
 
-static void tell(struct manager *m, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
+static void send(struct manager *m, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
                  const struct iovec *part) {
-  struct error ignored;
-  fail(m, farm_link_send(m->farm->link, rank, kind, handle, parts, part, m->final == STATUS_OK ? m->error : &ignored));
+  fail(m, farm_link_send(m->farm->link, rank, kind, handle, parts, part, error_of(m)));
 }
 
 /* ---- tasks out ---- */
 
-static size_t room(const struct manager *m, int rank) {
+/* Jobs that a rank takes in all: those that it computes, and as many ahead that it never waits. */
+static size_t capacity(const struct manager *m, int rank) {
   const struct farm_peer *peer = &m->farm->peers[rank];
   if (peer->lost || peer->slots <= 0)
     return 0;
   if (rank == 0)
-    return farm_pool_room(m->farm->pool);
-  const double ahead = REMOTE_AHEAD_S / (peer->mean_wall_s + 1e-9);
-  const size_t each = ahead < 1 ? 1 : ahead > REMOTE_AHEAD_MOST ? REMOTE_AHEAD_MOST : (size_t)ahead;
-  return (size_t)peer->slots * (1 + each);
+    return farm_pool_capacity(m->farm->pool);
+  const double wanted = REMOTE_AHEAD_S / (peer->mean_wall_s + 1e-9);
+  size_t ahead = 1;
+  if (wanted >= 1)
+    ahead = wanted > REMOTE_AHEAD_MOST ? REMOTE_AHEAD_MOST : (size_t)wanted;
+  return (size_t)peer->slots * (1 + ahead);
 }
 
-/* The rank with room whose slots have least to do: everybody gets a first task before anybody a second. */
-static int emptiest(const struct manager *m) {
+/* The rank below its capacity with the fewest jobs per slot: every slot gets a first job before any gets a second. -1:
+ * all are full. */
+static int least_loaded(const struct manager *m) {
   int best = -1;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
-    const struct farm_peer *peer = &m->farm->peers[rank], *other = best < 0 ? NULL : &m->farm->peers[best];
-    if (peer->out >= room(m, rank))
+    const struct farm_peer *peer = &m->farm->peers[rank];
+    if (peer->out >= capacity(m, rank))
       continue;
+    const struct farm_peer *other = best < 0 ? NULL : &m->farm->peers[best];
     if (!other || peer->out * (size_t)other->slots < other->out * (size_t)peer->slots)
       best = rank;
   }
@@ -84,38 +97,50 @@ static void assign(struct manager *m, int rank, struct farm_job *job) {
   if (rank == 0)
     farm_pool_submit(m->farm->pool, job);
   else
-    tell(m, rank, FARM_FRAME_TASK, job->handle, 1, &(struct iovec){job->bytes, job->size});
+    send(m, rank, FARM_FRAME_TASK, job->handle, 1, &(struct iovec){job->bytes, job->size});
 }
 
-static void fill(struct manager *m) {
-  for (int rank; !m->draining && (rank = emptiest(m)) >= 0;) {
-    struct farm_job *job = farm_job_pop(&m->returned);
-    struct farm_task task = {0};
-    if (!job) {
-      if (m->dry || !m->calls->next(m->calls->context, &task)) {
-        m->dry = true;
-        return;
-      }
-      if (task.size > FARM_FRAME_LARGEST / 2) {
-        fail(m,
-             status_fail(m->error, STATUS_INTERNAL, "a task of %zu bytes is larger than a message may be", task.size));
-        return;
-      }
-      job = farm_job_new(0, task.bytes, task.size);
-      if (!job || !farm_job_table_add(&m->table, job)) {
-        free(job);
-        fail(m, status_fail(m->error, STATUS_MEMORY, "no memory for a task of %zu bytes", task.size));
-        return;
-      }
-      job->id = task.id;
-    }
+/* The next task as a job: one that came back, or a new one of the caller. NULL: there is none, or an error. */
+static struct farm_job *next_job(struct manager *m) {
+  struct farm_job *job = farm_job_pop(&m->returned);
+  struct farm_task task = {0};
+  if (job)
+    return job;
+  if (m->dry || !m->calls->next(m->calls->context, &task)) {
+    m->dry = true;
+    return NULL;
+  }
+  if (task.size > FARM_FRAME_LARGEST / 2) {
+    fail(m, status_fail(m->error, STATUS_INTERNAL, "a task of %zu bytes is larger than a message may be", task.size));
+    return NULL;
+  }
+
+  job = farm_job_new(0, task.bytes, task.size);
+  if (!job || !farm_job_table_add(&m->table, job)) {
+    free(job);
+    fail(m, status_fail(m->error, STATUS_MEMORY, "no memory for a task of %zu bytes", task.size));
+    return NULL;
+  }
+  job->id = task.id;
+  return job;
+}
+
+static void send_tasks(struct manager *m) {
+  while (!m->draining) {
+    const int rank = least_loaded(m);
+    if (rank < 0)
+      return;
+    struct farm_job *job = next_job(m);
+    if (!job)
+      return;
     assign(m, rank, job);
   }
 }
 
 /* ---- taking back: for idle slots at the end, and when the farm stops ---- */
 
-static void come_back(struct manager *m, struct farm_job *job) {
+/* The job is at no rank now: it waits for another one, or is dropped when nothing more goes out. */
+static void take_back(struct manager *m, struct farm_job *job) {
   if (m->farm->peers[job->rank].out > 0)
     m->farm->peers[job->rank].out--;
   job->rank = -1;
@@ -127,51 +152,84 @@ static void come_back(struct manager *m, struct farm_job *job) {
   free(job);
 }
 
+/* Asks a rank for up to `most` jobs that it has not begun. */
 static void recall(struct manager *m, int rank, size_t most) {
   struct farm_peer *peer = &m->farm->peers[rank];
   if (rank > 0) {
     if (peer->recalling || peer->lost)
       return;
     peer->recalling = true;
-    tell(m, rank, FARM_FRAME_RECALL, most, 0, NULL);
+    send(m, rank, FARM_FRAME_RECALL, most, 0, NULL);
     return;
   }
   struct farm_job_queue back = {0};
   farm_pool_withdraw(m->farm->pool, most, &back);
   for (struct farm_job *job; (job = farm_job_pop(&back));)
-    come_back(m, job);
+    take_back(m, job);
 }
 
+static void drop_returned(struct manager *m) {
+  for (struct farm_job *job; (job = farm_job_pop(&m->returned)); free(job))
+    farm_job_table_remove(&m->table, job->handle);
+}
+
+/* The rank with the most waiting jobs per slot, or -1. Very short jobs are not worth the messages. */
+static int most_loaded(const struct manager *m) {
+  int best = -1;
+  for (int rank = 0; rank < m->farm->ranks; rank++) {
+    const struct farm_peer *peer = &m->farm->peers[rank];
+    if (peer->lost || peer->slots <= 0 || peer->out <= (size_t)peer->slots || peer->recalling ||
+        peer->mean_wall_s <= 1e-3)
+      continue;
+    const struct farm_peer *other = best < 0 ? NULL : &m->farm->peers[best];
+    if (!other || peer->out * (size_t)other->slots > other->out * (size_t)peer->slots)
+      best = rank;
+  }
+  return best;
+}
+
+static size_t idle_slots(const struct manager *m) {
+  size_t idle = 0;
+  for (int rank = 0; rank < m->farm->ranks; rank++) {
+    const struct farm_peer *peer = &m->farm->peers[rank];
+    if (!peer->lost && peer->slots > 0 && peer->out < (size_t)peer->slots)
+      idle += (size_t)peer->slots - peer->out;
+  }
+  return idle;
+}
+
+/* At the end of a campaign: jobs that wait at one rank go to idle slots of another. */
 static void balance(struct manager *m) {
   if (m->draining) {
-    for (struct farm_job *job; (job = farm_job_pop(&m->returned)); free(job))
-      farm_job_table_remove(&m->table, job->handle);
+    drop_returned(m);
     return;
   }
   if (!m->dry || m->returned.first || m->farm->ranks == 1)
     return;
-  size_t idle = 0;
-  int loaded = -1;
-  for (int rank = 0; rank < m->farm->ranks; rank++) {
-    const struct farm_peer *peer = &m->farm->peers[rank];
-    if (peer->lost || peer->slots <= 0)
-      continue;
-    const size_t slots = (size_t)peer->slots;
-    if (peer->out < slots)
-      idle += slots - peer->out;
-    if (peer->out > slots && !peer->recalling && peer->mean_wall_s > 1e-3 &&
-        (loaded < 0 || peer->out * (size_t)m->farm->peers[loaded].slots > m->farm->peers[loaded].out * slots))
-      loaded = rank;
-  }
+  const size_t idle = idle_slots(m);
+  const int loaded = most_loaded(m);
   if (idle == 0 || loaded < 0)
     return;
-  const size_t over = m->farm->peers[loaded].out - (size_t)m->farm->peers[loaded].slots;
-  recall(m, loaded, over < idle ? over : idle);
+  const struct farm_peer *peer = &m->farm->peers[loaded];
+  const size_t waiting = peer->out - (size_t)peer->slots;
+  recall(m, loaded, waiting < idle ? waiting : idle);
 }
 
-static void take_all_back(struct manager *m) {
+static void recall_all(struct manager *m) {
   for (int rank = 0; rank < m->farm->ranks; rank++)
     recall(m, rank, SIZE_MAX >> 1);
+}
+
+/* What a call of the caller returned: STATUS_STOPPED drains the farm, another error ends it at once. */
+static void obey(struct manager *m, status said) {
+  if (said != STATUS_STOPPED) {
+    fail(m, said);
+    return;
+  }
+  if (m->draining)
+    return;
+  drain(m, said, m->farm->options.drain_s);
+  recall_all(m);
 }
 
 /* ---- results in ---- */
@@ -203,16 +261,8 @@ static void report(struct manager *m, struct farm_job *job, const struct farm_re
   m->last_ns = clock_ns();
   m->dry = false;
   farm_job_table_remove(&m->table, job->handle);
-  if (!m->silent) {
-    struct error later;
-    const status said = m->calls->report(m->calls->context, &it, m->final == STATUS_OK ? m->error : &later);
-    if (said == STATUS_STOPPED && !m->draining) {
-      end_with(m, said, m->farm->options.drain_s);
-      take_all_back(m);
-    } else if (said != STATUS_OK && said != STATUS_STOPPED) {
-      fail(m, said);
-    }
-  }
+  if (!m->silent)
+    obey(m, m->calls->report(m->calls->context, &it, error_of(m)));
   m->last_ns = clock_ns();
   free(job);
 }
@@ -222,22 +272,72 @@ static void local_ended(void *context, struct farm_job *job, const struct farm_r
   report(context, job, result, bytes, message, message_size);
 }
 
-/* Who was computing is not known: the oldest as many as there are slots. They are reported, the rest goes elsewhere. */
-static void lose(struct manager *m, int rank, const char *why) {
+/* The rank does not answer any more. Which of its jobs it was computing is not known: as many as it has slots, the
+ * oldest, are reported as lost, the others go elsewhere. */
+static void rank_lost(struct manager *m, int rank) {
   struct farm_peer *const peer = &m->farm->peers[rank];
   const struct farm_result lost = {.ending = FARM_LOST};
-  int blamed = 0;
-  for (size_t place = 0; place < m->table.capacity; place++) {
-    struct farm_job *job = m->table.job[place];
-    if (!job || job->rank != rank || peer->out == 0)
-      continue;
-    if (blamed++ < peer->slots)
+  char why[160];
+  snprintf(why, sizeof why, "rank %d on %s has said nothing for %g s: frozen or gone", rank, peer->host,
+           m->farm->options.lost_after_s);
+  peer->lost = m->farm->broken = true;
+  if (m->calls->stopping)
+    m->calls->stopping(m->calls->context, 0);
+
+  struct farm_job *job;
+  for (int reported = 0; peer->out > 0 && (job = farm_job_table_oldest(&m->table, rank));) {
+    if (reported++ < peer->slots)
       report(m, job, &lost, NULL, why, strlen(why));
     else
-      come_back(m, job);
+      take_back(m, job);
   }
   peer->slots = 0;
   peer->out = 0;
+}
+
+static status take_result(struct manager *m, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                          struct error *error) {
+  struct farm_result result;
+  if (frame->size < sizeof result)
+    return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+  memcpy(&result, payload, sizeof result);
+  const size_t left = frame->size - sizeof result;
+  if (result.size > left)
+    return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+
+  const uint8_t *bytes = payload + sizeof result;
+  struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
+  if (job && job->rank == rank)
+    report(m, job, &result, bytes, (const char *)bytes + result.size, left - result.size);
+  return STATUS_OK;
+}
+
+/* The rank tells how many slots it has left. */
+static void take_alive(struct manager *m, int rank, int slots) {
+  struct farm_peer *const peer = &m->farm->peers[rank];
+  if (slots >= peer->slots)
+    return;
+  if (slots == 0)
+    recall(m, rank, SIZE_MAX >> 1);
+  peer->slots = slots;
+}
+
+static void stop_by_signal(struct manager *m, int number) {
+  const struct farm_options *options = &m->farm->options;
+  m->signal_ns = clock_ns();
+  drain(m, STATUS_STOPPED, number == SIGUSR1 ? options->drain_s : options->grace_s);
+  recall_all(m);
+}
+
+/* A signal of another rank alone, or of the whole group: then this rank gets it as well. */
+static void take_signal(struct manager *m, int rank, int number) {
+  if (m->draining)
+    return;
+  if (m->calls->stopping)
+    m->calls->stopping(m->calls->context, number);
+  status_fail(m->error, STATUS_STOPPED, "rank %d got signal %d (%s): stopped; the same command resumes", rank, number,
+              strsignal(number));
+  stop_by_signal(m, number);
 }
 
 static status take(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
@@ -247,46 +347,17 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   peer->heard_ns = clock_ns();
   if (peer->lost)
     return STATUS_OK;
-  struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
   switch (frame->kind) {
-  case FARM_FRAME_RESULT: {
-    struct farm_result result;
-    if (frame->size < sizeof result)
-      return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
-    memcpy(&result, payload, sizeof result);
-    if (result.size > frame->size - sizeof result)
-      return status_fail(error, STATUS_INTERNAL, "rank %d sent a torn result", rank);
+  case FARM_FRAME_RESULT: return take_result(m, rank, frame, payload, error);
+  case FARM_FRAME_RETURNED: {
+    struct farm_job *job = farm_job_table_find(&m->table, frame->handle);
     if (job && job->rank == rank)
-      report(m, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
-             frame->size - sizeof result - result.size);
+      take_back(m, job);
     return STATUS_OK;
   }
-  case FARM_FRAME_RETURNED:
-    if (job && job->rank == rank)
-      come_back(m, job);
-    return STATUS_OK;
   case FARM_FRAME_RECALLED: peer->recalling = false; return STATUS_OK;
-  case FARM_FRAME_ALIVE:
-    if ((int)frame->handle < peer->slots) {
-      if (frame->handle == 0) {
-        recall(m, rank, SIZE_MAX >> 1);
-        peer->slots = 0;
-      } else {
-        peer->slots = (int)frame->handle;
-      }
-    }
-    return STATUS_OK;
-  case FARM_FRAME_SIGNAL: /* of this rank alone, or of the whole group: then ours comes too */
-    if (!m->draining) {
-      if (m->calls->stopping)
-        m->calls->stopping(m->calls->context, (int)frame->handle);
-      status_fail(m->error, STATUS_STOPPED, "rank %d got signal %d (%s): stopped; the same command resumes", rank,
-                  (int)frame->handle, strsignal((int)frame->handle));
-      end_with(m, STATUS_STOPPED, frame->handle == SIGUSR1 ? m->farm->options.drain_s : m->farm->options.grace_s);
-      m->signal_ns = clock_ns();
-      take_all_back(m);
-    }
-    return STATUS_OK;
+  case FARM_FRAME_ALIVE: take_alive(m, rank, (int)frame->handle); return STATUS_OK;
+  case FARM_FRAME_SIGNAL: take_signal(m, rank, (int)frame->handle); return STATUS_OK;
   case FARM_FRAME_BYE:
     peer->bye = true;
     if (frame->size == sizeof peer->cpu_s)
@@ -298,106 +369,107 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
 
 /* ---- the loop ---- */
 
-static void mind_signals(struct manager *m) {
+static void take_own_signals(struct manager *m) {
   for (int number; (number = farm_signal(m->farm));) {
-    const int64_t now = clock_ns();
-    if (m->signal_ns && now - m->signal_ns > SECOND_SIGNAL_NS) {
-      m->dropping = true;
-    } else if (!m->signal_ns) {
-      m->signal_ns = now;
-      if (m->calls->stopping)
-        m->calls->stopping(m->calls->context, number);
-      if (m->final == STATUS_OK) {
-        if (m->farm->launcher == 0 && m->farm->link)
-          status_fail(m->error, STATUS_STOPPED, "mpirun has died: stopped; the same command resumes");
-        else
-          status_fail(m->error, STATUS_STOPPED, "stopped by signal %d (%s); the same command resumes", number,
-                      strsignal(number));
-      }
-      end_with(m, STATUS_STOPPED, number == SIGUSR1 ? m->farm->options.drain_s : m->farm->options.grace_s);
-      take_all_back(m);
+    if (m->signal_ns) {
+      if (clock_ns() - m->signal_ns > SECOND_SIGNAL_NS)
+        m->dropping = true;
+      continue;
     }
+    if (m->calls->stopping)
+      m->calls->stopping(m->calls->context, number);
+    if (m->farm->launcher == 0 && m->farm->link)
+      status_fail(error_of(m), STATUS_STOPPED, "mpirun has died: stopped; the same command resumes");
+    else
+      status_fail(error_of(m), STATUS_STOPPED, "stopped by signal %d (%s); the same command resumes", number,
+                  strsignal(number));
+    stop_by_signal(m, number);
   }
 }
 
-static void mind_ranks(struct manager *m, int64_t now, int64_t late_ns) {
+/* Finds ranks that are lost, and the end of the farm when no slot is left. `late_ns` is how long this rank itself did
+ * not listen. */
+static void watch_ranks(struct manager *m, int64_t now, int64_t late_ns) {
   const int64_t limit = clock_from_s(m->farm->options.lost_after_s);
-  int alive = 0;
-  if (m->farm->peers[0].slots != farm_pool_slots(m->farm->pool)) {
-    m->farm->peers[0].slots = farm_pool_slots(m->farm->pool);
-    if (m->farm->peers[0].slots == 0)
+  struct farm_peer *peers = m->farm->peers;
+  const int own = farm_pool_slots(m->farm->pool);
+  if (peers[0].slots != own) {
+    peers[0].slots = own;
+    if (own == 0)
       recall(m, 0, SIZE_MAX >> 1);
   }
+
+  int alive = 0;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
-    struct farm_peer *const peer = &m->farm->peers[rank];
-    if (rank > 0 && !peer->lost) {
+    if (rank > 0 && !peers[rank].lost) {
       if (late_ns > CLOCK_S)
-        peer->heard_ns += late_ns; /* it was us who did not listen */
-      if (now - peer->heard_ns > limit) {
-        char why[160];
-        snprintf(why, sizeof why, "rank %d on %s has said nothing for %g s: frozen or gone", rank, peer->host,
-                 m->farm->options.lost_after_s);
-        peer->lost = m->farm->broken = true;
-        if (m->calls->stopping)
-          m->calls->stopping(m->calls->context, 0);
-        lose(m, rank, why);
-      }
+        peers[rank].heard_ns += late_ns;
+      if (now - peers[rank].heard_ns > limit)
+        rank_lost(m, rank);
     }
-    alive += peer->lost ? 0 : peer->slots;
+    alive += peers[rank].lost ? 0 : peers[rank].slots;
   }
-  if (alive == 0 && !m->draining) {
+  if (alive == 0 && !m->draining)
     fail(m, status_fail(m->error, STATUS_STOPPED,
                         "no slot is left: the processes that compute were killed or could "
                         "not be made; the same command resumes"));
-  }
 }
 
 static bool finished(const struct manager *m) {
   if (m->dropping)
     return true;
-  size_t out = 0;
-  bool recalling = false;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
-    out += m->farm->peers[rank].lost ? 0 : m->farm->peers[rank].out;
-    recalling |= m->farm->peers[rank].recalling && !m->farm->peers[rank].lost;
+    const struct farm_peer *peer = &m->farm->peers[rank];
+    if (!peer->lost && (peer->out > 0 || peer->recalling))
+      return false;
   }
-  return out == 0 && !m->returned.first && (m->draining || m->dry) && !recalling;
+  return !m->returned.first && (m->draining || m->dry);
 }
 
-/* All ranks are told, and answer; who does not within the time makes MPI_Finalize impossible. */
-static void say_goodbye(struct manager *m) {
+/* Ends the own pool with all that it computes. Its jobs are its own to free. */
+static void drop_pool(struct manager *m) {
+  for (struct farm_job *job; (job = farm_job_table_oldest(&m->table, 0));)
+    farm_job_table_remove(&m->table, job->handle);
+  farm_pool_end(m->farm->pool);
+  m->farm->pool = NULL;
+}
+
+static void send_end(struct manager *m) {
   struct farm *const farm = m->farm;
-  struct error ignored;
   const struct farm_end end = {m->final, m->dropping};
-  const char *text = m->final != STATUS_OK && m->error ? m->error->message : "";
-  if (m->dropping) {
-    for (size_t place = 0; place < m->table.capacity; place++) /* these are the pool's to free */
-      if (m->table.job[place] && m->table.job[place]->rank == 0)
-        m->table.job[place] = NULL;
-    farm_pool_end(farm->pool);
-    farm->pool = NULL;
-  }
+  const char *text = m->final != STATUS_OK ? m->error->message : "";
+  struct error ignored;
   for (int rank = 1; rank < farm->ranks; rank++) {
+    const struct iovec part[] = {{(void *)&end, sizeof end}, {(void *)text, strlen(text)}};
     farm->peers[rank].bye = false;
-    if (farm_link_send(farm->link, rank, FARM_FRAME_END, 0, 2,
-                       (struct iovec[]){{(void *)&end, sizeof end}, {(void *)text, strlen(text)}},
-                       &ignored) != STATUS_OK)
+    if (farm_link_send(farm->link, rank, FARM_FRAME_END, 0, 2, part, &ignored) != STATUS_OK)
       farm->broken = true;
   }
-  if (!farm->link)
-    return;
   if (farm_link_flush(farm->link, &ignored) != STATUS_OK)
     farm->broken = true;
-  const int64_t until = clock_ns() + (m->signal_ns ? CLOCK_S / 2 : BYE_NS);
-  for (int missing = 1; missing > 0 && clock_ns() < until;) {
-    int count;
-    if (farm_link_drain(farm->link, take, m, &count, &ignored) != STATUS_OK)
+}
+
+static int unanswered(const struct farm *farm) {
+  int count = 0;
+  for (int rank = 1; rank < farm->ranks; rank++)
+    count += !farm->peers[rank].bye && !farm->peers[rank].lost;
+  return count;
+}
+
+/* Tells all ranks that the farm ends and waits for their answer. A rank that does not answer in time makes MPI_Finalize
+ * impossible. */
+static void end_ranks(struct manager *m) {
+  struct farm *const farm = m->farm;
+  if (!farm->link)
+    return;
+  send_end(m);
+  const int64_t until = clock_ns() + (m->signal_ns ? CLOCK_S / 2 : LAST_ANSWER_NS);
+  struct error ignored;
+  int count;
+  while (clock_ns() < until) {
+    if (farm_link_drain(farm->link, take, m, &count, &ignored) != STATUS_OK || unanswered(farm) == 0)
       break;
-    missing = 0;
-    for (int rank = 1; rank < farm->ranks; rank++)
-      missing += !farm->peers[rank].bye && !farm->peers[rank].lost;
-    if (missing)
-      nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
+    nanosleep(&(struct timespec){.tv_nsec = FARM_SLEEP_LEAST_NS}, NULL);
   }
   for (int rank = 1; rank < farm->ranks; rank++) {
     if (!farm->peers[rank].bye)
@@ -406,61 +478,76 @@ static void say_goodbye(struct manager *m) {
   }
 }
 
+static void begin(struct manager *m) {
+  m->ticked_ns = m->looped_ns = clock_ns();
+  m->sleep_ns = FARM_SLEEP_LEAST_NS;
+  for (int rank = 0; rank < m->farm->ranks; rank++) {
+    m->farm->peers[rank].heard_ns = m->ticked_ns;
+    m->farm->peers[rank].out = 0;
+    m->farm->peers[rank].recalling = false;
+  }
+}
+
+/* Everything that goes out. */
+static void send_all(struct manager *m) {
+  take_own_signals(m);
+  send_tasks(m);
+  balance(m);
+  farm_pool_dispatch(m->farm->pool);
+  if (m->farm->link)
+    fail(m, farm_link_flush(m->farm->link, m->error));
+  if (m->draining && clock_ns() >= m->drop_ns)
+    m->dropping = true;
+}
+
+/* Sleeps until the next tick, or until something comes in, and takes it in. Nobody can wake a sleeper under MPI: with
+ * other ranks the sleep is short, and longer only in a longer silence. */
+static void receive_all(struct manager *m) {
+  struct farm *const farm = m->farm;
+  int64_t timeout_ns = m->ticked_ns + TICK_NS - clock_ns();
+  if (farm->ranks > 1 && m->sleep_ns < timeout_ns)
+    timeout_ns = m->sleep_ns;
+  const bool heard = farm_pool_wait(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
+  int count = 0;
+  if (farm->ranks > 1)
+    fail(m, farm_link_drain(farm->link, take, m, &count, error_of(m)));
+  m->sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(m->sleep_ns);
+}
+
+/* Ten times a second the caller is asked whether all is well, and for tasks again if it had none. */
+static void tick(struct manager *m, int64_t now) {
+  if (now - m->ticked_ns < TICK_NS)
+    return;
+  m->ticked_ns = now;
+  if (!m->draining)
+    m->dry = false;
+  if (!m->calls->tick || m->silent)
+    return;
+  const size_t slots = (size_t)farm_slots_total(m->farm);
+  const size_t running = m->table.count < slots ? m->table.count : slots;
+  obey(m, m->calls->tick(m->calls->context, (int)running, error_of(m)));
+}
+
 status farm_manage(struct farm *farm, const struct farm_manager *calls, struct error *error) {
   struct error own = {0};
   struct manager m = {.farm = farm, .calls = calls, .error = error ? error : &own};
   const double cpu = clock_cpu_s();
-  int64_t sleep_ns = FARM_SLEEP_LEAST_NS, ticked_ns = clock_ns(), looped_ns = ticked_ns;
   farm_pool_sink_to(farm->pool, (struct farm_pool_sink){&m, local_ended});
-  for (int rank = 0; rank < farm->ranks; rank++) {
-    farm->peers[rank].heard_ns = ticked_ns;
-    farm->peers[rank].out = 0;
-    farm->peers[rank].recalling = false;
-  }
+  begin(&m);
   for (;;) {
-    int count = 0;
-    mind_signals(&m);
-    fill(&m);
-    balance(&m);
-    farm_pool_dispatch(farm->pool);
-    if (farm->link)
-      fail(&m, farm_link_flush(farm->link, m.error));
-    const int64_t now = clock_ns();
-    if (m.draining && now >= m.drop_ns)
-      m.dropping = true;
+    send_all(&m);
     if (finished(&m))
       break;
-    int64_t timeout_ns = ticked_ns + TICK_NS - now;
-    if (farm->ranks > 1 && sleep_ns < timeout_ns)
-      timeout_ns = sleep_ns;
-    const bool heard = farm_pool_wait(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
-    if (farm->ranks > 1) {
-      struct error later;
-      fail(&m, farm_link_drain(farm->link, take, &m, &count, m.final == STATUS_OK ? m.error : &later));
-    }
-    sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(sleep_ns);
-    const int64_t after = clock_ns();
-    mind_ranks(&m, after, after - looped_ns);
-    looped_ns = after;
-    if (after - ticked_ns >= TICK_NS) {
-      ticked_ns = after;
-      if (!m.draining)
-        m.dry = false;
-      struct error later;
-      if (calls->tick && !m.silent) {
-        const size_t slots = (size_t)farm_slots_total(farm), taken = m.table.count;
-        const status said = calls->tick(calls->context, (int)(taken < slots ? taken : slots),
-                                        m.final == STATUS_OK ? m.error : &later);
-        if (said == STATUS_STOPPED && !m.draining) {
-          end_with(&m, said, farm->options.drain_s);
-          take_all_back(&m);
-        } else if (said != STATUS_OK && said != STATUS_STOPPED) {
-          fail(&m, said);
-        }
-      }
-    }
+    receive_all(&m);
+    const int64_t now = clock_ns();
+    watch_ranks(&m, now, now - m.looped_ns);
+    m.looped_ns = now;
+    tick(&m, now);
   }
-  say_goodbye(&m);
+  if (m.dropping)
+    drop_pool(&m);
+  end_ranks(&m);
+
   m.usage.wall_s = 1e-9 * (double)(m.last_ns - m.first_ns);
   m.usage.manager_cpu_s = clock_cpu_s() - cpu;
   m.usage.start_up_s = farm->usage.start_up_s;

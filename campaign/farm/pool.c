@@ -16,14 +16,14 @@
 #include "schemas/clock.h"
 
 /* Tasks shorter than this are sent ahead in numbers, so that a slot never starves while the manager handles a batch. */
-#define AHEAD_NS    (500 * CLOCK_MS / 1000)
-#define IDLE_DEATHS 5 /* of a slot in a row, without a task: give it up */
+#define AHEAD_NS  (500 * CLOCK_MS / 1000)
+#define IDLE_ENDS 5 /* of a slot in a row without a task: it is given up */
 
 struct slot {
   int channel; /* -1: none now */
   pid_t pid;
   bool given_up;
-  int idle_deaths;
+  int idle_ends;
   uint64_t killed;   /* handle of the task it was killed for */
   uint64_t forgiven; /* handle whose deadline was moved, and by how much */
   int64_t forgiven_ns;
@@ -43,7 +43,6 @@ struct farm_pool {
   size_t count;
   double mean_wall_s; /* of recent tasks */
   int64_t looked_ns;
-  char why_lost[160];
 };
 
 status farm_pool_start(const struct farm_options *options, farm_work work, struct farm_pool **out,
@@ -95,12 +94,15 @@ int farm_pool_slots(const struct farm_pool *pool) {
   return alive;
 }
 
+/* Jobs per slot: the one that it computes and those sent ahead. */
 static size_t depth(const struct farm_pool *pool) {
   const double ahead = 1e-9 * (double)AHEAD_NS / (pool->mean_wall_s + 1e-9);
-  return ahead < 1 ? 2 : ahead > FARM_SLOT_TICKETS - 1 ? FARM_SLOT_TICKETS : 1 + (size_t)ahead;
+  if (ahead < 1)
+    return 2;
+  return ahead > FARM_SLOT_TICKETS - 1 ? FARM_SLOT_TICKETS : 1 + (size_t)ahead;
 }
 
-size_t farm_pool_room(const struct farm_pool *pool) {
+size_t farm_pool_capacity(const struct farm_pool *pool) {
   return (size_t)farm_pool_slots(pool) * depth(pool);
 }
 
@@ -216,56 +218,83 @@ static void ended(struct farm_pool *pool, struct farm_job *job, const struct far
   pool->sink.ended(pool->sink.context, job, result, bytes, message, message_size);
 }
 
-/* Reads what the slot has written; false: its channel is closed or speaks nonsense. */
-static bool listen_to(struct farm_pool *pool, struct slot *slot) {
-  bool open = true;
+/* Reads what the slot has written, as far as it has come. False: its channel is closed. */
+static bool read_slot(struct slot *slot) {
   for (;;) {
-    const size_t want = farm_frame_missing(&slot->in, 16384);
-    if (!farm_frame_reserve(&slot->in, want))
+    if (!farm_frame_reserve(&slot->in, farm_frame_missing(&slot->in, 16384)))
       return false;
     const size_t space = slot->in.capacity - slot->in.end;
     const ssize_t n = recv(slot->channel, slot->in.data + slot->in.end, space, MSG_DONTWAIT);
     if (n < 0 && errno == EINTR)
       continue;
     if (n < 0 && errno == EAGAIN)
-      break;
-    if (n <= 0) {
-      open = false;
-      break;
-    }
+      return true;
+    if (n <= 0)
+      return false;
     slot->in.end += (size_t)n;
     if ((size_t)n < space)
-      break;
+      return true;
   }
-  for (;;) {
-    struct farm_frame frame;
-    struct farm_result result;
-    const uint8_t *payload;
-    const int got = farm_frame_next(&slot->in, &frame, &payload);
-    if (got < 0)
-      return false;
-    if (got == 0)
-      break;
-    if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result)
-      return false;
-    memcpy(&result, payload, sizeof result);
-    if (result.size > frame.size - sizeof result)
-      return false;
-    struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
-    if (!job)
-      continue; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
-    slot->idle_deaths = 0;
-    pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
-    ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
-          frame.size - sizeof result - result.size);
+}
+
+/* One result from the slot's buffer: 1, no whole one there: 0, nonsense: -1. */
+static int take_result(struct farm_pool *pool, struct slot *slot) {
+  struct farm_frame frame;
+  struct farm_result result;
+  const uint8_t *payload;
+  const int got = farm_frame_next(&slot->in, &frame, &payload);
+  if (got <= 0)
+    return got;
+  if (frame.kind != FARM_FRAME_RESULT || frame.size < sizeof result)
+    return -1;
+  memcpy(&result, payload, sizeof result);
+  if (result.size > frame.size - sizeof result)
+    return -1;
+
+  struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
+  if (!job)
+    return 1; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
+  slot->idle_ends = 0;
+  pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
+  ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
+        frame.size - sizeof result - result.size);
+  return 1;
+}
+
+/* Takes in what the slot has written. False: its channel is closed, or it wrote nonsense. */
+static bool listen_to(struct farm_pool *pool, struct slot *slot) {
+  const bool open = read_slot(slot);
+  int got;
+  while ((got = take_result(pool, slot)) > 0) {
   }
+  if (got < 0)
+    return false;
   if (slot->in.begin == slot->in.end)
     farm_frame_trim(&slot->in);
   return open;
 }
 
-/* The slot is dead: its running task gets the verdict, the others go back to the head of the queue. */
-static void mourn(struct farm_pool *pool, int index, const struct farm_result *verdict, const char *text) {
+/* The job that the slot was computing when it ended, taken out of its queue. NULL: it had not begun one. */
+static struct farm_job *take_running(struct slot *slot, struct farm_slot_record *record) {
+  const uint64_t running = atomic_load(&record->running);
+  struct farm_job *job = running ? farm_job_take(&slot->jobs, running) : NULL;
+  if (!job || atomic_load(&record->ticket[job->ticket]) != running)
+    return job;
+  farm_job_push_front(&slot->jobs, job); /* its ticket is still there: it had not quite begun */
+  return NULL;
+}
+
+/* All jobs of the slot to the head of the pool's queue, in their order. */
+static void queue_again(struct farm_pool *pool, struct slot *slot) {
+  struct farm_job_queue back = {0};
+  for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
+    farm_job_push_front(&back, job);
+  for (struct farm_job *job; (job = farm_job_pop(&back));)
+    farm_job_push_front(&pool->queue, job);
+}
+
+/* The slot's process has ended: its running job gets the verdict, the others are queued again. */
+static void slot_ended(struct farm_pool *pool, int index, const struct farm_result *verdict, const char *text) {
   struct slot *const slot = &pool->slots[index];
   struct farm_slot_record *const record = &pool->setup.records[index];
   if (slot->channel >= 0) {
@@ -275,26 +304,20 @@ static void mourn(struct farm_pool *pool, int index, const struct farm_result *v
   }
   farm_frame_free(&slot->in);
   farm_frame_free(&slot->out);
+
   const uint64_t running = atomic_load(&record->running);
-  struct farm_job *blamed = running ? farm_job_take(&slot->jobs, running) : NULL;
-  if (blamed && atomic_load(&record->ticket[blamed->ticket]) == running) { /* it had not quite begun */
-    farm_job_push_front(&slot->jobs, blamed);
-    blamed = NULL;
-  }
-  slot->idle_deaths = blamed ? 0 : slot->idle_deaths + 1;
-  struct farm_job_queue back = {0};
-  for (struct farm_job *job; (job = farm_job_pop(&slot->jobs));)
-    farm_job_push_front(&back, job);
-  for (struct farm_job *job; (job = farm_job_pop(&back));)
-    farm_job_push_front(&pool->queue, job);
   const int64_t started = atomic_load(&record->started_ns);
+  const bool timed_out = running && slot->killed == running;
+  struct farm_job *job = take_running(slot, record);
+  queue_again(pool, slot);
+  slot->idle_ends = job ? 0 : slot->idle_ends + 1;
+  slot->killed = slot->forgiven = 0;
   for (int i = 0; i < FARM_SLOT_TICKETS; i++)
     atomic_store(&record->ticket[i], 0);
   atomic_store(&record->running, 0);
-  const bool timed_out = running && slot->killed == running;
-  slot->killed = slot->forgiven = 0;
-  if (!blamed)
+  if (!job)
     return;
+
   struct farm_result result = *verdict;
   char limit[96];
   if (timed_out) {
@@ -304,10 +327,11 @@ static void mourn(struct farm_pool *pool, int index, const struct farm_result *v
   }
   result.wall_s = 1e-9 * (double)(clock_ns() - started);
   result.slot = index;
-  ended(pool, blamed, &result, NULL, text, strlen(text));
+  ended(pool, job, &result, NULL, text, strlen(text));
 }
 
-static void slot_died(struct farm_pool *pool, const struct farm_server_message *message) {
+/* The fork server says that a slot's process has ended, or could not be made. A new one is asked for. */
+static void hear_slot_ended(struct farm_pool *pool, const struct farm_server_message *message) {
   struct slot *const slot = &pool->slots[message->slot];
   const int value = message->value;
   char text[160];
@@ -324,16 +348,16 @@ static void slot_died(struct farm_pool *pool, const struct farm_server_message *
     verdict.exit_code = WEXITSTATUS(value);
     snprintf(text, sizeof text, "the run's process exited with code %d and no result", verdict.exit_code);
   }
-  mourn(pool, message->slot, &verdict, text);
+  slot_ended(pool, message->slot, &verdict, text);
   slot->pid = 0;
-  if (slot->idle_deaths >= IDLE_DEATHS || !farm_server_ask(pool->control, FARM_SERVER_SPAWN, message->slot, 0))
+  if (slot->idle_ends >= IDLE_ENDS || !farm_server_ask(pool->control, FARM_SERVER_SPAWN, message->slot, 0))
     slot->given_up = true;
 }
 
-static void server_died(struct farm_pool *pool) {
+static void server_ended(struct farm_pool *pool) {
   const struct farm_result verdict = {.ending = FARM_LOST};
   for (int i = 0; i < pool->setup.options.slots; i++) {
-    mourn(pool, i, &verdict, "the fork server of this rank is gone, and its slots with it");
+    slot_ended(pool, i, &verdict, "the fork server of this rank is gone, and its slots with it");
     pool->slots[i].given_up = true;
   }
   farm_server_end(pool->server, pool->control);
@@ -351,45 +375,54 @@ static void hear_server(struct farm_pool *pool) {
     if (got < 0 || message.slot < 0 || message.slot >= pool->setup.options.slots) {
       if (channel >= 0)
         close(channel);
-      server_died(pool);
+      server_ended(pool);
       return;
     }
     if (message.verb == FARM_SERVER_SPAWNED) {
       pool->slots[message.slot].channel = channel;
       pool->slots[message.slot].pid = message.pid;
     } else if (message.verb == FARM_SERVER_DIED) {
-      slot_died(pool, &message);
+      hear_slot_ended(pool, &message);
     }
   }
 }
 
-/* In process, the deadline is kept here, as the slot is busy. Returns when to look again. In isolation the slot keeps
- * it. */
+/* When the slot's running job is to be killed; it is killed if that time has come. `late` is how long nobody looked.
+ * INT64_MAX: there is nothing to look for. */
+static int64_t keep_deadline(struct farm_pool *pool, int index, int64_t now, int64_t late) {
+  struct slot *const slot = &pool->slots[index];
+  const uint64_t running = atomic_load(&pool->setup.records[index].running);
+  const int64_t started = atomic_load(&pool->setup.records[index].started_ns);
+  const int64_t limit = clock_from_s(pool->setup.options.time_limit_s);
+  if (slot->channel < 0 || slot->jobs.count == 0 || !running || slot->killed == running)
+    return INT64_MAX;
+
+  /* The main process looks every second at least. If it did not, all of them were stopped (Ctrl-Z), which is not the
+   * run's fault. */
+  if (late > 2 * CLOCK_S) {
+    slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
+    slot->forgiven = running;
+  }
+  const int64_t until = started + (slot->forgiven == running ? slot->forgiven_ns : 0) + limit;
+  if (now < until)
+    return until;
+  slot->killed = running;
+  farm_server_ask(pool->control, FARM_SERVER_KILL, index, slot->pid);
+  return INT64_MAX;
+}
+
+/* Returns when to look again. Runs in the slot's own process have their deadline here, because the slot is busy; a slot
+ * that isolates its runs keeps their deadlines itself. */
 static int64_t keep_deadlines(struct farm_pool *pool) {
   const int64_t now = clock_ns(), late = now - pool->looked_ns;
   pool->looked_ns = now;
   int64_t next = INT64_MAX;
   if (!pool->setup.options.in_process || !(pool->setup.options.time_limit_s > 0))
     return next;
-  const int64_t limit = clock_from_s(pool->setup.options.time_limit_s);
   for (int i = 0; i < pool->setup.options.slots; i++) {
-    struct slot *const slot = &pool->slots[i];
-    const uint64_t running = atomic_load(&pool->setup.records[i].running);
-    const int64_t started = atomic_load(&pool->setup.records[i].started_ns);
-    if (slot->channel < 0 || slot->jobs.count == 0)
-      continue;
-    /* We look every second at least. If we did not, all of us were stopped (Ctrl-Z): not the run's fault. */
-    if (running && late > 2 * CLOCK_S) {
-      slot->forgiven_ns = (slot->forgiven == running ? slot->forgiven_ns : 0) + late;
-      slot->forgiven = running;
-    }
-    const int64_t until = (running ? started + (slot->forgiven == running ? slot->forgiven_ns : 0) : now) + limit;
-    if (running && now >= until && slot->killed != running) {
-      slot->killed = running;
-      farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
-    } else if (until < next && slot->killed != running) {
+    const int64_t until = keep_deadline(pool, i, now, late);
+    if (until < next)
       next = until;
-    }
   }
   return next;
 }

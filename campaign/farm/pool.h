@@ -30,8 +30,9 @@ void farm_pool_dispatch(struct farm_pool *pool);
 /* Sleeps until a slot, `signals` (a file to watch, or -1) or the timeout says something; takes in what slots say.
  * True when anything happened. */
 bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns);
-int farm_pool_slots(const struct farm_pool *pool);   /* that work or will; 0: the pool is lost */
-size_t farm_pool_room(const struct farm_pool *pool); /* how many jobs it wants in all, at the recent length of tasks */
+int farm_pool_slots(const struct farm_pool *pool); /* that work or will; 0: the pool is lost */
+/* How many jobs it takes in all, at the recent length of tasks. */
+size_t farm_pool_capacity(const struct farm_pool *pool);
 /* Ends slots and server whatever they do, frees everything; jobs still in it are freed. NULL is fine. */
 void farm_pool_end(struct farm_pool *pool);
 

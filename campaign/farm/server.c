@@ -76,7 +76,8 @@ static void spawn(struct server *server, int slot) {
   close(ends[0]);
 }
 
-static void bury(struct server *server) {
+/* Tells the main process of every slot that has ended. */
+static void reap(struct server *server) {
   struct signalfd_siginfo info;
   while (read(server->child_signal, &info, sizeof info) > 0) {
   }
@@ -145,7 +146,7 @@ static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pi
     if (poll(fds, 2, -1) < 0 && errno != EINTR)
       end(&server);
     if (fds[1].revents & POLLIN)
-      bury(&server);
+      reap(&server);
     if (fds[0].revents) {
       struct farm_server_message message;
       const ssize_t n = recv(control, &message, sizeof message, 0);
