@@ -1,4 +1,4 @@
-/* `clast help [COMMAND]`: the list of commands, one command's help, or the manual page. `clast completion`. */
+/* `clast help [COMMAND]`: the list of commands, one command's help, or the manual page. */
 #include "campaign/commands/help.h"
 
 #include <string.h>
@@ -66,26 +66,4 @@ const struct command help_command = {
     .option_count = sizeof rows / sizeof rows[0],
     .options_size = sizeof(struct options),
     .run = run,
-};
-
-/* ---- `clast completion bash` ---- */
-
-static status run_completion(const struct command_line *line, struct error *error) {
-  if (strcmp(line->arguments[0], "bash") != 0)
-    return status_fail(error, STATUS_USAGE, "completion is made for bash only, not for \"%.64s\"", line->arguments[0]);
-  option_completion(commands_count(), commands_all(), stdout);
-  return STATUS_OK;
-}
-
-const struct command completion_command = {
-    .name = "completion",
-    .group = "about clast",
-    .arguments = "bash",
-    .summary = "print the bash completion script",
-    .doc = "Prints a script that lets bash complete commands, options and file names with the Tab key.",
-    .examples =
-        "source <(clast completion bash)\nclast completion bash > ~/.local/share/bash-completion/completions/clast",
-    .minimum_arguments = 1,
-    .maximum_arguments = 1,
-    .run = run_completion,
 };
