@@ -68,69 +68,100 @@ static status unknown_option(const struct command *command, const char *typed, i
                      nearest ? "?" : "", command->name);
 }
 
-status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
-                    char ***arguments, bool *help, struct error *error) {
+/* A command's options in getopt_long's form. */
+struct getopt_tables {
   struct option names[ROWS_MAXIMUM + 2];
-  char letters[2 * ROWS_MAXIMUM + 4] = ":h"; /* the colon: a missing value is told apart from an unknown option */
-  size_t used = strlen(letters);
+  char letters[2 * ROWS_MAXIMUM + 4];
+};
+
+/* Fills the tables and sets every option to its default. */
+static status prepare(const struct command *command, struct getopt_tables *tables, void *options, struct error *error) {
   if (command->option_count > ROWS_MAXIMUM || command->options_size > OPTION_STRUCT_MAXIMUM)
     return status_fail(error, STATUS_INTERNAL, "the option table of %s is too large", command->name);
   memset(options, 0, command->options_size);
-  *help = false;
+  char *letter = tables->letters;
+  *letter++ = ':'; /* tells a missing value apart from an unknown option */
+  *letter++ = 'h';
   for (size_t i = 0; i < command->option_count; i++) {
     const struct option_row *row = &command->options[i];
-    int takes = row->kind == OPTION_FLAG ? no_argument : required_argument;
-    names[i] = (struct option){.name = row->name, .has_arg = takes, .val = ROW_VALUE + (int)i};
-    if (row->letter) {
-      letters[used++] = row->letter;
-      if (takes == required_argument)
-        letters[used++] = ':';
-    }
+    const int takes = row->kind == OPTION_FLAG ? no_argument : required_argument;
+    tables->names[i] = (struct option){.name = row->name, .has_arg = takes, .val = ROW_VALUE + (int)i};
+    if (row->letter)
+      *letter++ = row->letter;
+    if (row->letter && takes == required_argument)
+      *letter++ = ':';
     if (row->initial && take_value(command, row, row->initial, options, error))
       return status_fail(error, STATUS_INTERNAL, "the default of --%s is wrong", row->name);
   }
-  letters[used] = '\0';
-  names[command->option_count] = (struct option){.name = "help", .has_arg = no_argument, .val = HELP_VALUE};
-  names[command->option_count + 1] = (struct option){0};
+  *letter = '\0';
+  tables->names[command->option_count] = (struct option){.name = "help", .has_arg = no_argument, .val = HELP_VALUE};
+  tables->names[command->option_count + 1] = (struct option){0};
+  return STATUS_OK;
+}
 
+/* The row of what getopt_long returned: a letter, or a row's number. */
+static const struct option_row *find_row(const struct command *command, int value) {
+  if (value >= ROW_VALUE && (size_t)(value - ROW_VALUE) < command->option_count)
+    return &command->options[value - ROW_VALUE];
+  for (size_t i = 0; i < command->option_count; i++)
+    if (command->options[i].letter && value == command->options[i].letter)
+      return &command->options[i];
+  return NULL;
+}
+
+/* One option that getopt_long found; `word` is how it was typed. */
+static status take_option(const struct command *command, int given, const char *word, void *options,
+                          struct error *error) {
+  if (given == '?' && optopt == HELP_VALUE)
+    return status_fail(error, STATUS_USAGE, "--help takes no value");
+  const struct option_row *row = find_row(command, given == '?' || given == ':' ? optopt : given);
+  if (given == '?' && row && optopt >= ROW_VALUE)
+    return status_fail(error, STATUS_USAGE, "--%s takes no value", row->name);
+  if (given == '?')
+    return unknown_option(command, word, optopt, error); /* optopt is 0 for a long name */
+  if (!row)
+    return status_fail(error, STATUS_INTERNAL, "option table of %s", command->name);
+  if (given == ':')
+    return status_fail(error, STATUS_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->argument);
+  return take_value(command, row, optarg, options, error);
+}
+
+static status check_arguments(const struct command *command, size_t count, char *const *arguments,
+                              struct error *error) {
+  if (count < command->minimum_arguments) {
+    const bool one = count > 0 && command->minimum_arguments - count == 1;
+    return status_fail(error, STATUS_USAGE, "clast %s needs %s; usage: clast %s %s", command->name,
+                       one ? "one more argument" : command->arguments, command->name, command->arguments);
+  }
+  if (count > command->maximum_arguments)
+    return status_fail(error, STATUS_USAGE, "clast %s does not know what to do with \"%.64s\"; usage: clast %s %s",
+                       command->name, arguments[command->maximum_arguments], command->name, command->arguments);
+  return STATUS_OK;
+}
+
+status option_parse(const struct command *command, int argc, char **argv, void *options, size_t *count,
+                    char ***arguments, bool *help, struct error *error) {
+  struct getopt_tables tables;
+  status code = prepare(command, &tables, options, error);
+  if (code)
+    return code;
   optind = 0; /* glibc: start over, also after another parse */
   opterr = 0;
+  *help = false;
+
   int given;
-  while ((given = getopt_long(argc, argv, letters, names, NULL)) != -1) {
+  while ((given = getopt_long(argc, argv, tables.letters, tables.names, NULL)) != -1) {
     if (given == HELP_VALUE || given == 'h') {
       *help = true;
       return STATUS_OK;
     }
-    const char *word = argv[optind - 1];
-    if (given == '?' && optopt >= HELP_VALUE)
-      return status_fail(error, STATUS_USAGE, "--%s takes no value",
-                         optopt == HELP_VALUE ? "help" : names[optopt - ROW_VALUE].name);
-    if (given == '?')
-      return unknown_option(command, word, optopt, error); /* optopt is 0 for a long name */
-    const struct option_row *row = NULL;
-    int code = given == ':' ? optopt : given;
-    for (size_t i = 0; i < command->option_count; i++)
-      if (code == ROW_VALUE + (int)i || (command->options[i].letter && code == command->options[i].letter))
-        row = &command->options[i];
-    if (!row)
-      return status_fail(error, STATUS_INTERNAL, "option table of %s", command->name);
-    if (given == ':')
-      return status_fail(error, STATUS_USAGE, "--%s needs a value: --%s %s", row->name, row->name, row->argument);
-    status code_of_value = take_value(command, row, optarg, options, error);
-    if (code_of_value)
-      return code_of_value;
+    code = take_option(command, given, argv[optind - 1], options, error);
+    if (code)
+      return code;
   }
   *count = (size_t)(argc - optind);
   *arguments = argv + optind;
-  if (*count < command->minimum_arguments)
-    return status_fail(error, STATUS_USAGE, "clast %s needs %s; usage: clast %s %s", command->name,
-                       command->minimum_arguments - *count > 1 || *count == 0 ? command->arguments
-                                                                              : "one more argument",
-                       command->name, command->arguments);
-  if (*count > command->maximum_arguments)
-    return status_fail(error, STATUS_USAGE, "clast %s does not know what to do with \"%.64s\"; usage: clast %s %s",
-                       command->name, (*arguments)[command->maximum_arguments], command->name, command->arguments);
-  return STATUS_OK;
+  return check_arguments(command, *count, *arguments, error);
 }
 
 static void print_row(char letter, const char *name, const char *argument, const char *doc, const char *initial,

@@ -167,57 +167,76 @@ static void check_output(struct table *table) {
   }
 }
 
-/* One cell. kind: 't' text, 'n' number (text holds its digits), '-' missing. `shown` is for people. */
-static void cell(struct table *table, char kind, const char *text, const char *shown) {
+struct cell {
+  enum { CELL_TEXT, CELL_NUMBER, CELL_MISSING } kind;
+  const char *text;  /* for programs; digits of a number */
+  const char *shown; /* for people */
+};
+
+/* The aligned table's first rows are kept until their widths are known. */
+static void keep(struct table *table, const struct cell *cell) {
+  const size_t most = table->column_count * SAMPLE_ROWS;
+  if (!table->kept) {
+    table->kept = calloc(most, sizeof *table->kept);
+    table->kept_text = calloc(most, sizeof *table->kept_text);
+  }
+  char *made = table->kept && table->kept_text ? copy(table, cell->shown) : NULL;
+  if (!made) {
+    fail(table);
+    return;
+  }
+  table->kept_text[table->kept_count] = cell->kind == CELL_TEXT;
+  table->kept[table->kept_count++] = made;
+}
+
+static void print_csv(struct table *table, const struct cell *cell) {
+  if (cell->kind == CELL_TEXT)
+    csv_text(cell->text, table->out);
+  else if (cell->kind == CELL_NUMBER)
+    fputs(cell->text, table->out);
+  fputs(table->cell + 1 < table->column_count ? "," : "\r\n", table->out);
+}
+
+static void print_json(struct table *table, const struct cell *cell) {
+  if (table->cell > 0)
+    fputs(", ", table->out);
+  else
+    fputs(table->rows ? ",\n {" : "\n {", table->out);
+  text_json_string(table->columns[table->cell].name, table->out);
+  fputs(": ", table->out);
+  if (cell->kind == CELL_TEXT)
+    text_json_string(cell->text, table->out);
+  else
+    fputs(cell->kind == CELL_NUMBER ? cell->text : "null", table->out);
+  if (table->cell + 1 == table->column_count)
+    fputc('}', table->out);
+}
+
+static void add_cell(struct table *table, struct cell cell) {
   if (table->broken || table->column_count == 0)
     return;
-  size_t column = table->cell;
-  bool streaming = table->format != TABLE_TEXT || table->rows >= SAMPLE_ROWS;
-  if (table->rows == 0 && column == 0 && table->format != TABLE_TEXT)
+  const uint64_t header_row = table->format == TABLE_TEXT ? SAMPLE_ROWS : 0;
+  if (table->cell == 0 && table->rows == header_row)
     header(table);
-  if (table->format == TABLE_TEXT && !streaming) {
-    size_t room = table->column_count * SAMPLE_ROWS;
-    if (!table->kept) {
-      table->kept = calloc(room, sizeof *table->kept);
-      table->kept_text = calloc(room, sizeof *table->kept_text);
-    }
-    char *made = table->kept && table->kept_text ? copy(table, shown) : NULL;
-    if (!made) {
-      fail(table);
-      return;
-    }
-    table->kept_text[table->kept_count] = kind == 't';
-    table->kept[table->kept_count++] = made;
-  } else if (table->format == TABLE_TEXT) {
-    if (table->rows == SAMPLE_ROWS && column == 0)
-      header(table);
-    print_aligned(table, column, shown, NULL, table->columns[column].text);
-  } else if (table->format == TABLE_CSV) {
-    if (kind == 't')
-      csv_text(text, table->out);
-    else if (kind == 'n')
-      fputs(text, table->out);
-    fputs(column + 1 < table->column_count ? "," : "\r\n", table->out);
-  } else {
-    fputs(column == 0 ? (table->rows ? ",\n {" : "\n {") : ", ", table->out);
-    text_json_string(table->columns[column].name, table->out);
-    fputs(": ", table->out);
-    if (kind == 't')
-      text_json_string(text, table->out);
+  switch (table->format) {
+  case TABLE_CSV: print_csv(table, &cell); break;
+  case TABLE_JSON: print_json(table, &cell); break;
+  case TABLE_TEXT:
+    if (table->rows < SAMPLE_ROWS)
+      keep(table, &cell);
     else
-      fputs(kind == 'n' ? text : "null", table->out);
-    if (column + 1 == table->column_count)
-      fputc('}', table->out);
+      print_aligned(table, table->cell, cell.shown, NULL, table->columns[table->cell].text);
+    break;
   }
-  if (++table->cell == table->column_count) {
-    table->cell = 0;
-    table->rows++;
-    check_output(table);
-  }
+  if (table->broken || ++table->cell < table->column_count)
+    return;
+  table->cell = 0;
+  table->rows++;
+  check_output(table);
 }
 
 void table_missing(struct table *table) {
-  cell(table, '-', "", "-");
+  add_cell(table, (struct cell){CELL_MISSING, "", "-"});
 }
 
 void table_text(struct table *table, const char *text) {
@@ -226,7 +245,7 @@ void table_text(struct table *table, const char *text) {
     return;
   }
   if (table->format != TABLE_TEXT || !strpbrk(text, "\n\r\t\033")) {
-    cell(table, 't', text, *text ? text : "");
+    add_cell(table, (struct cell){CELL_TEXT, text, text});
     return;
   }
   char *line = copy(table, text); /* a row stays one line, and no text from a file drives the terminal */
@@ -235,25 +254,34 @@ void table_text(struct table *table, const char *text) {
   for (char *c = line; *c; c++)
     if ((unsigned char)*c < 0x20)
       *c = ' ';
-  cell(table, 't', line, line);
+  add_cell(table, (struct cell){CELL_TEXT, line, line});
   free(line);
 }
 
 void table_integer(struct table *table, int64_t number) {
   char digits[32];
   snprintf(digits, sizeof digits, "%" PRId64, number);
-  cell(table, 'n', digits, digits);
+  add_cell(table, (struct cell){CELL_NUMBER, digits, digits});
 }
 
 void table_boolean(struct table *table, bool value) {
   if (table->format == TABLE_JSON)
-    cell(table, 'n', value ? "true" : "false", "");
+    add_cell(table, (struct cell){CELL_NUMBER, value ? "true" : "false", ""});
   else
-    cell(table, 't', value ? "true" : "false", value ? "yes" : "no");
+    add_cell(table, (struct cell){CELL_TEXT, value ? "true" : "false", value ? "yes" : "no"});
 }
 
 void table_real(struct table *table, double number) {
   table_fixed(table, number, -1);
+}
+
+/* JSON has no infinity. The largest double in its place would be wrong, so it is a text there. */
+static void add_infinity(struct table *table, bool positive) {
+  const char *shown = positive ? "inf" : "-inf";
+  if (table->format == TABLE_JSON)
+    add_cell(table, (struct cell){CELL_TEXT, positive ? "Infinity" : "-Infinity", shown});
+  else
+    add_cell(table, (struct cell){CELL_NUMBER, shown, shown});
 }
 
 void table_fixed(struct table *table, double number, int decimals) {
@@ -261,10 +289,8 @@ void table_fixed(struct table *table, double number, int decimals) {
     table_missing(table);
     return;
   }
-  if (isinf(number)) { /* JSON has no infinity: the largest double would lie, so it is a text */
-    const char *name = number > 0 ? "Infinity" : "-Infinity";
-    cell(table, table->format == TABLE_JSON ? 't' : 'n',
-         table->format == TABLE_CSV ? (number > 0 ? "inf" : "-inf") : name, number > 0 ? "inf" : "-inf");
+  if (isinf(number)) {
+    add_infinity(table, number > 0);
     return;
   }
   char digits[40], shown[40];
@@ -277,7 +303,7 @@ void table_fixed(struct table *table, double number, int decimals) {
     snprintf(shown, sizeof shown, "%.5g", number);
   else
     snprintf(shown, sizeof shown, "%.*f", decimals, number);
-  cell(table, 'n', digits, shown);
+  add_cell(table, (struct cell){CELL_NUMBER, digits, shown});
 }
 
 static status verdict(int write_error, struct error *error) {
