@@ -5,6 +5,39 @@
 #include "campaign/driver/pooling.h"
 #include "db/store/store.h"
 
+static const char *plural(int64_t count) {
+  return count == 1 ? "" : "s";
+}
+
+/* Adds one source. *differing counts the runs that both stores have with different results. */
+static status merge_source(struct store *store, const char *target, const char *source, int64_t *differing,
+                           struct error *error) {
+  int64_t added = 0;
+  *differing = 0;
+  status code = store_merge(store, source, &added, differing, error);
+  if (code)
+    return code;
+  fprintf(stderr, "%s: %" PRId64 " run%s added\n", source, added, plural(added));
+  if (*differing)
+    fprintf(stderr,
+            "clast: warning: %s: %" PRId64 " run%s that %s has too gave other results there; those of %s were kept. "
+            "Runs are the same bits on one binary and CPU class only: `clast replay STORE RUN` tells which store can "
+            "be computed again here\n",
+            source, *differing, plural(*differing), target, target);
+  return STATUS_OK;
+}
+
+static status merge(struct store *store, const struct command_line *line, int64_t *disagreeing, struct error *error) {
+  for (size_t i = 1; i < line->count; i++) {
+    int64_t differing;
+    status code = merge_source(store, line->arguments[0], line->arguments[i], &differing, error);
+    if (code)
+      return code;
+    *disagreeing += differing;
+  }
+  return pooling_store(store, 0, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   struct store *store = NULL;
   int64_t disagreeing = 0;
@@ -14,28 +47,14 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   if (*warning)
     fprintf(stderr, "clast: warning: %s\n", warning);
-  for (size_t i = 1; !code && i < line->count; i++) {
-    int64_t added = 0, differing = 0;
-    code = store_merge(store, line->arguments[i], &added, &differing, error);
-    if (!code)
-      fprintf(stderr, "%s: %" PRId64 " run%s added\n", line->arguments[i], added, added == 1 ? "" : "s");
-    if (!code && differing)
-      fprintf(stderr,
-              "clast: warning: %s: %" PRId64
-              " run%s that %s has too gave other results there; those of %s were kept. Runs are the same "
-              "bits on one binary and CPU class only: `clast replay STORE RUN` tells which store can be computed again "
-              "here\n",
-              line->arguments[i], differing, differing == 1 ? "" : "s", line->arguments[0], line->arguments[0]);
-    disagreeing += differing;
-  }
-  if (!code)
-    code = pooling_store(store, 0, error);
+  code = merge(store, line, &disagreeing, error);
   status closed = store_close(store, code ? NULL : error);
-  code = code ? code : closed;
-  if (!code && disagreeing)
-    code = status_fail(error, STATUS_CONTENT, "merged, but %" PRId64 " run%s disagree between the stores", disagreeing,
-                       disagreeing == 1 ? "" : "s");
-  return code;
+  if (code || closed)
+    return code ? code : closed;
+  if (disagreeing)
+    return status_fail(error, STATUS_CONTENT, "merged, but %" PRId64 " run%s disagree between the stores", disagreeing,
+                       plural(disagreeing));
+  return STATUS_OK;
 }
 
 const struct command merge_command = {

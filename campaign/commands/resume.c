@@ -35,6 +35,6 @@ status resume_look(struct resume *resume, const struct engine_kind *kind, void *
                      kind->time(run), resume->path);
 }
 
-void resume_end(struct resume *resume) {
-  unlink(resume->path);
+void resume_end(const char *path) {
+  unlink(path);
 }

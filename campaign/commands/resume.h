@@ -15,6 +15,6 @@ void resume_begin(struct resume *resume, const char *path);
 /* Between blocks of steps. STATUS_STOPPED after a signal, the file written; what save returns. */
 status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error);
 /* The run came to its end: the file is removed. */
-void resume_end(struct resume *resume);
+void resume_end(const char *path);
 
 #endif

@@ -32,28 +32,79 @@ struct watch {
   int percent;
 };
 
-/* The snapshot that is due; the restart file; a percentage on a terminal. */
+/* Between blocks of steps: the snapshot that is due, the restart file, a percentage on a terminal. */
 static status look(void *context, const struct engine_kind *kind, void *run, struct error *error) {
   struct watch *watch = context;
-  status code = watch->snapshots ? snapshots_look(watch->snapshots, kind, run, error) : STATUS_OK;
-  if (!code && watch->resume)
+  status code = STATUS_OK;
+  if (watch->snapshots)
+    code = snapshots_look(watch->snapshots, kind, run, error);
+  if (code)
+    return code;
+  if (watch->resume)
     code = resume_look(watch->resume, kind, run, error);
-  int percent = (int)floor(100 * kind->progress(run));
+
+  const int percent = (int)floor(100 * kind->progress(run));
   if (watch->terminal && percent != watch->percent)
-    fprintf(stderr, "\r%3d %% of the longest time it may take", watch->percent = percent);
+    fprintf(stderr, "\r%3d %% of the longest time it may take", percent);
+  watch->percent = percent;
   return code;
 }
 
-/* What the run is to leave behind has a place: found out before the run, not after it. */
-static status places(const struct options *options, struct error *error) {
-  status code = options->picture ? picture_canvas_named(options->picture, error) : STATUS_OK;
-  if (!code && options->picture)
-    code = atomic_file_try(options->picture, "picture", error);
-  if (!code && options->fields)
-    code = atomic_file_try(options->fields, "fields file", error);
-  if (!code && options->restart)
-    code = atomic_file_try(options->restart, "restart file", error);
+/* Can the files be written? An error is found before the run, not after it. */
+static status try_files(const struct options *options, struct error *error) {
+  const char *const files[][2] = {{options->picture, "picture"},
+                                  {options->fields, "fields file"},
+                                  {options->restart, "restart file"}};
+  if (options->picture) {
+    status code = picture_canvas_named(options->picture, error);
+    if (code)
+      return code;
+  }
+  for (size_t i = 0; i < sizeof files / sizeof files[0]; i++) {
+    if (!files[i][0])
+      continue;
+    status code = atomic_file_try(files[i][0], files[i][1], error);
+    if (code)
+      return code;
+  }
+  return STATUS_OK;
+}
+
+/* Runs the scene with what watches it. *result is the caller's, also on errors. */
+static status compute(const struct scene *scene, const struct options *options, const char *fields,
+                      struct run_result *result, struct error *error) {
+  struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};
+  struct resume resume;
+  if (options->restart) {
+    resume_begin(&resume, options->restart);
+    watch.resume = &resume;
+  }
+  if (options->snapshots) {
+    const bool resumed = options->restart && access(options->restart, F_OK) == 0;
+    status code = snapshots_open(scene->name, options->snapshots, resumed, &watch.snapshots, error);
+    if (code)
+      return code;
+  }
+
+  const struct run_request request = {.kind = scene->kind,
+                                      .inputs = scene->inputs,
+                                      .seed = (uint64_t)options->seed,
+                                      .fields_path = fields,
+                                      .restart_path = options->restart};
+  status code = run_simulate(&request, look, &watch, BLOCK, result, error);
+  if (watch.terminal)
+    fputs("\r\033[K", stderr);
+  snapshots_close(watch.snapshots);
   return code;
+}
+
+static status draw(const struct scene *scene, const struct options *options, const char *fields,
+                   const struct run_result *result, struct error *error) {
+  if (!options->picture || result->outcome.state == OUTCOME_INVALID)
+    return STATUS_OK; /* an invalid run has no body, and writes no fields */
+  char caption[FIELD_TEXT_SIZE + 64];
+  snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
+  return commands_picture(fields, options->picture, caption, error);
 }
 
 static status simulate(const struct scene *scene, const struct options *options, enum table_format format,
@@ -64,47 +115,37 @@ static status simulate(const struct scene *scene, const struct options *options,
     snprintf(temporary, sizeof temporary, "%s.%ld.h5", options->picture, (long)getpid());
     fields = temporary;
   }
-  struct watch watch = {.percent = -1, .terminal = !options->quiet && isatty(STDERR_FILENO)};
-  struct resume resume;
-  if (options->restart) {
-    resume_begin(&resume, options->restart);
-    watch.resume = &resume;
-  }
-  struct run_request request = {.kind = scene->kind,
-                                .inputs = scene->inputs,
-                                .seed = (uint64_t)options->seed,
-                                .fields_path = fields,
-                                .restart_path = options->restart};
   struct run_result result = {0};
-  status code = options->snapshots
-                    ? snapshots_open(scene->name, options->snapshots,
-                                     options->restart && access(options->restart, F_OK) == 0, &watch.snapshots, error)
-                    : STATUS_OK;
-  if (!code)
-    code = run_simulate(&request, look, &watch, BLOCK, &result, error);
-  if (watch.terminal)
-    fputs("\r\033[K", stderr);
-  if (!code && options->picture &&
-      result.outcome.state != OUTCOME_INVALID) { /* which has no body, and writes no fields */
-    char caption[FIELD_TEXT_SIZE + 64];
-    snprintf(caption, sizeof caption, "%s, seed %lld", scene->name, (long long)options->seed);
-    code = commands_picture(fields, options->picture, caption, error);
-  }
+  status code = compute(scene, options, fields, &result, error);
+  if (code == STATUS_OK)
+    code = draw(scene, options, fields, &result, error);
   if (*temporary)
     remove(temporary);
-  if (result.result) { /* also when a file of it could not be written: hours of computing are not to be lost for that */
+
+  /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
+  if (result.result) {
     const status printed = results_print(scene->kind, options->seed, &result, format, code ? NULL : error);
     code = code ? code : printed;
   }
-  if (!code && options->restart)
-    resume_end(&resume);
-  if (!code && !campaign_usable(&result.outcome))
+  if (code)
+    goto cleanup;
+  if (options->restart)
+    resume_end(options->restart);
+  if (!campaign_usable(&result.outcome))
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
-  else if (!code && *result.outcome.message && !options->quiet)
+  else if (*result.outcome.message && !options->quiet)
     fprintf(stderr, "clast: %s\n", result.outcome.message);
-  snapshots_close(watch.snapshots);
+cleanup:
   run_result_clear(&result);
   return code;
+}
+
+static status load_scene(const struct command_line *line, struct scene **scene, struct error *error) {
+  const struct options *options = line->options;
+  status code = scene_load(line->arguments[0], NULL, scene, error);
+  for (size_t i = 0; code == STATUS_OK && i < options->set.count; i++)
+    code = explain_override(*scene, options->set.items[i], error);
+  return code ? code : scene_check(*scene, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -112,16 +153,16 @@ static status run(const struct command_line *line, struct error *error) {
   enum table_format format = TABLE_TEXT;
   struct scene *scene = NULL;
   status code = table_choose(&options->table, &format, error);
-  if (!code)
-    code = scene_load(line->arguments[0], NULL, &scene, error);
-  for (size_t i = 0; !code && i < options->set.count; i++)
-    code = explain_override(scene, options->set.items[i], error);
-  if (!code)
-    code = scene_check(scene, error);
-  if (!code)
-    code = places(options, error);
-  if (!code)
-    code = simulate(scene, options, format, error);
+  if (code)
+    return code;
+  code = load_scene(line, &scene, error);
+  if (code)
+    goto cleanup;
+  code = try_files(options, error);
+  if (code)
+    goto cleanup;
+  code = simulate(scene, options, format, error);
+cleanup:
   scene_free(scene);
   return code;
 }

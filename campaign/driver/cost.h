@@ -1,6 +1,6 @@
-/* What a run will cost, learnt from those that finished: the engine's a-priori work times a fitted rate, corrected by
- * the point's own mean. Orders the runs (dearest first, against stragglers) and gives the time left. Never part of a
- * result. */
+/* What a run will cost, from the runs that have finished: the engine's own measure of work times a fitted rate,
+ * corrected by the mean of the point's own runs. It gives the order of the runs (most expensive first, so that no long
+ * one is left for the end) and the time left. It is never part of a result. */
 #ifndef CLAST_CAMPAIGN_DRIVER_COST_H
 #define CLAST_CAMPAIGN_DRIVER_COST_H
 

@@ -23,11 +23,11 @@ enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
 
 struct looking {
   double work, work_most;
-  struct scene *dearest; /* owned */
-  uint64_t asked, there; /* runs looked up in the store */
+  struct scene *costliest; /* the point with the most work; owned */
+  uint64_t asked, there;   /* runs looked up in the store */
 };
 
-/* Is the store asked for this point's runs, and how many are there? */
+/* Looks the point's runs up in the store, up to ASKED of them in all. */
 static void ask(const struct campaign *campaign, const struct scene *scene, struct store *store,
                 struct looking *looking) {
   for (int64_t r = 0; store && r < campaign_replicates_least(campaign) && looking->asked < ASKED; r++) {
@@ -62,15 +62,15 @@ static status look(const struct campaign *campaign, struct store *store, struct 
     looking->work += work;
     plan->memory_most = fmax(plan->memory_most, memory);
     ask(campaign, scene, store, looking);
-    if (!looking->dearest || work > looking->work_most) {
+    if (!looking->costliest || work > looking->work_most) {
       looking->work_most = work;
-      scene_free(looking->dearest);
-      looking->dearest = scene;
+      scene_free(looking->costliest);
+      looking->costliest = scene;
     } else {
       scene_free(scene);
     }
   }
-  if (!looking->dearest)
+  if (!looking->costliest)
     code = status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
 cleanup:
   design_free(design);
@@ -78,8 +78,8 @@ cleanup:
   return code;
 }
 
-/* Steps the dearest point for a few seconds; on a whole run the answer is a measurement, else it is extrapolated over
- * the simulated time to the hard end, which a run usually need not reach. */
+/* Steps the most expensive point for a few seconds. A run that ends in this time is a measurement. Else the time is
+ * extrapolated over the simulated time up to the hard end, which a run usually does not reach. */
 static status try_run(const struct scene *scene, uint64_t seed, double seconds, struct plan *plan, size_t *fragments,
                       struct error *error) {
   const struct engine_kind *kind = scene->kind;
@@ -103,7 +103,9 @@ static status try_run(const struct scene *scene, uint64_t seed, double seconds, 
     goto cleanup;
   plan->trial_made = true;
   plan->trial_finished = finished;
-  plan->trial_progress = finished ? 1 : kind->progress ? kind->progress(run) : NOTHING;
+  plan->trial_progress = kind->progress ? kind->progress(run) : NOTHING;
+  if (finished)
+    plan->trial_progress = 1;
   double stepped = clock_s();
   result = calloc(1, kind->results->size);
   if (!result) {
@@ -147,7 +149,7 @@ static void add_up(const struct campaign *campaign, const struct plan_options *o
   plan->cpu_s_least = (double)(plan->runs_least - plan->runs_there) * plan->run_s_mean;
   plan->cpu_s_most = (double)(plan->runs_most - plan->runs_there) * plan->run_s_mean;
   int slots = options->slots > 0 ? options->slots : 1;
-  /* No sooner than the dearest run alone, however many slots. */
+  /* No sooner than one run alone, however many slots. */
   plan->wall_s_least = fmax(plan->cpu_s_least / slots, plan->runs_least > plan->runs_there ? plan->run_s_mean : 0);
   plan->wall_s_most = fmax(plan->cpu_s_most / slots, plan->runs_most > plan->runs_there ? plan->run_s_mean : 0);
   double kept = kept_runs(campaign, plan);
@@ -169,16 +171,16 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   if (code == STATUS_OK)
     code = look(campaign, store, plan, &looking, error);
   if (code == STATUS_OK && !options->no_trial)
-    code = try_run(looking.dearest, campaign_seed(campaign, looking.dearest, 0),
+    code = try_run(looking.costliest, campaign_seed(campaign, looking.costliest, 0),
                    options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
   if (code == STATUS_OK && options->no_trial && store) {
     ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
   }
-  if (code == STATUS_OK && looking.dearest->kind->describe)
-    plan->model = looking.dearest->kind->describe(looking.dearest->inputs);
+  if (code == STATUS_OK && looking.costliest->kind->describe)
+    plan->model = looking.costliest->kind->describe(looking.costliest->inputs);
   if (code == STATUS_OK)
     add_up(campaign, options, &looking, fragments, plan);
-  scene_free(looking.dearest);
+  scene_free(looking.costliest);
   store_close(store, &ignored);
   if (code != STATUS_OK)
     plan_clear(plan);
@@ -201,6 +203,15 @@ static const char *bytes(double count, char *buffer, size_t size) {
   return buffer;
 }
 
+/* Where the times of a run come from. */
+static const char *how_timed(const struct plan *plan) {
+  if (!plan->trial_made)
+    return isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)";
+  if (plan->trial_finished)
+    return " (one whole run timed)";
+  return " (extrapolated to the hard end; runs stop earlier when fracture has ceased)";
+}
+
 void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
   static const char *const designs[] = {"grid", "list", "random", "latin hypercube", "Sobol"};
   char a[64], b[64];
@@ -218,11 +229,8 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
           plan->store_exists ? "" : " (there is none yet)");
   progress_duration(plan->run_s_mean, a, sizeof a);
   progress_duration(plan->run_s_most, b, sizeof b);
-  fprintf(out, "a run     %s%s on the mean, %s the dearest%s\n",
-          plan->trial_made && !plan->trial_finished ? "at most " : "", a, b,
-          !plan->trial_made      ? isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)"
-          : plan->trial_finished ? " (one whole run timed)"
-                                 : " (extrapolated to the hard end; runs stop earlier when fracture has ceased)");
+  fprintf(out, "a run     %s%s on average, %s for the most expensive%s\n",
+          plan->trial_made && !plan->trial_finished ? "at most " : "", a, b, how_timed(plan));
   progress_duration(plan->wall_s_least, a, sizeof a);
   progress_duration(plan->wall_s_most, b, sizeof b);
   fprintf(out, "time      %s", a);

@@ -1,5 +1,5 @@
-/* What a campaign would do and cost; stores nothing. From a timed trial run of up to 5 s of steps at the dearest point
- * looked at, unless told not to. */
+/* What a campaign would do and cost. Stores nothing. Times come from a trial run of up to 5 s at the most expensive
+ * point looked at. */
 #ifndef CLAST_CAMPAIGN_DRIVER_PLAN_H
 #define CLAST_CAMPAIGN_DRIVER_PLAN_H
 

@@ -47,19 +47,47 @@ static status invalid(const struct engine_kind *kind, struct run_result *result,
   return STATUS_OK;
 }
 
-/* From the restart file, when one is asked for and there. */
+/* Goes on from the request's restart file. *run is NULL when it names none, or the file is not there. */
 static status resume(const struct run_request *request, void **run, struct error *error) {
   uint64_t seed = 0;
   *run = NULL;
-  status code = request->restart_path ? restart_peek(request->restart_path, &seed, error) : STATUS_MISSING;
-  if (code == STATUS_MISSING)
+  if (!request->restart_path)
     return STATUS_OK;
-  if (code == STATUS_OK && seed != request->seed)
-    code = status_fail(error, STATUS_CONTENT,
+  status code = restart_peek(request->restart_path, &seed, error);
+  if (code != STATUS_OK)
+    return code == STATUS_MISSING ? STATUS_OK : code;
+  if (seed != request->seed)
+    return status_fail(error, STATUS_CONTENT,
                        "the restart file '%s' is of seed %llu, not %llu: ask for seed %llu, or name another file",
                        request->restart_path, (unsigned long long)seed, (unsigned long long)request->seed,
                        (unsigned long long)seed);
-  return code ? code : restart_load(request->kind, request->inputs, request->restart_path, run, error);
+  return restart_load(request->kind, request->inputs, request->restart_path, run, error);
+}
+
+static status step_to_end(const struct engine_kind *kind, void *run, run_watch watch, void *context, uint64_t block,
+                          struct error *error) {
+  if (!watch)
+    block = UINT64_C(1) << 62;
+  for (bool finished = false;;) {
+    status code = watch ? watch(context, kind, run, error) : STATUS_OK;
+    if (code != STATUS_OK || finished)
+      return code;
+    code = kind->step(run, block, &finished, error);
+    if (code != STATUS_OK)
+      return code;
+  }
+}
+
+/* Results and estimates of a run that has come to its end. On an error the caller clears *result. */
+static status finish(const struct engine_kind *kind, void *run, struct run_result *result, struct error *error) {
+  result->result = calloc(1, kind->results->size);
+  if (!result->result)
+    return status_fail(error, STATUS_MEMORY, "no memory for the result");
+  status code = kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error);
+  if (code != STATUS_OK || result->fragment_count == 0)
+    return code;
+  result->estimate_count = ESTIMATES_COUNT;
+  return estimates_make(result->fragment_count, result->fragments, result->estimates, error);
 }
 
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,
@@ -78,30 +106,15 @@ status run_simulate(const struct run_request *request, run_watch watch, void *co
     if (code != STATUS_OK)
       return status_fail(error, code, "%s", why.message);
   }
-  if (watch)
-    code = watch(context, kind, run, error);
-  for (bool finished = false; code == STATUS_OK && !finished;) {
-    code = kind->step(run, watch ? block : UINT64_C(1) << 62, &finished, error);
-    if (code == STATUS_OK && watch)
-      code = watch(context, kind, run, error);
-  }
+
+  code = step_to_end(kind, run, watch, context, block, error);
   if (code != STATUS_OK)
     goto cleanup;
-  result->result = calloc(1, kind->results->size);
-  if (!result->result) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the result");
-    goto cleanup;
-  }
-  code = kind->finish(run, &result->outcome, result->result, &result->fragments, &result->fragment_count, error);
-  if (code == STATUS_OK && result->fragment_count > 0) {
-    code = estimates_make(result->fragment_count, result->fragments, result->estimates, error);
-    result->estimate_count = ESTIMATES_COUNT;
-  }
-  const bool whole = code == STATUS_OK;
-  if (whole && request->fields_path)
-    code = write_snapshot(kind, run, request->fields_path, error);
-  if (!whole)
+  code = finish(kind, run, result, error);
+  if (code != STATUS_OK)
     run_result_clear(result);
+  else if (request->fields_path)
+    code = write_snapshot(kind, run, request->fields_path, error);
 cleanup:
   kind->free(run);
   return code;
