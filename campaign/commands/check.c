@@ -30,11 +30,11 @@ const struct command check_command = {
     .name = "check",
     .group = "the store",
     .arguments = "STORE",
-    .summary = "is the store whole: integrity, sums, orphans, missing files",
+    .summary = "check a store: integrity, sums, orphaned rows, missing files",
     .doc =
-        "Checks the file's integrity, foreign keys, orphaned rows, kept files that are missing, running sums and\n"
-        "spectra against the fragment masses, masses against the total, results against their ranges, and every run's\n"
-        "identity against its scene. Each problem is a line on stdout; exit 65 when there is any.",
+        "Checks the file's integrity and foreign keys, looks for orphaned rows and missing field files, and compares\n"
+        "running sums and spectra with the fragment masses, masses with the total mass, results with their ranges,\n"
+        "and the identity of every run with its scene. Prints one line per problem; exit 65 if there is one.",
     .examples = "clast check out.db\nclast check out.db && cp out.db /archive/",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

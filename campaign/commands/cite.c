@@ -72,9 +72,9 @@ const struct command cite_command = {
     .arguments = "SCENE",
     .summary = "the papers behind what a scene switches on",
     .doc =
-        "Prints the sources of the engine and of the scene's inputs (a built-in name or a file), but for what is off\n"
-        "or zero, and of the engine's results, so that a paper can name what it really used; `clast explain SCENE`\n"
-        "has the sources of the modules that are on.",
+        "Prints the sources of a scene (a built-in name or a file): of its engine, of the inputs that have an effect,\n"
+        "and of the results. A paper can then cite what it used. `clast explain SCENE` has the sources of the modules\n"
+        "that are on.",
     .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

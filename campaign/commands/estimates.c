@@ -100,11 +100,10 @@ static void headings(struct printing *printing) {
 }
 
 const char *const estimates_legend =
-    "beta: exponent of F(m) ~ m^-beta (differential), pooled over the runs of a point, each run's largest fragment "
-    "left out.\n"
-    "LSQ: least squares on log bins, the paper's way, biased; binned, ML: maximum likelihood on bins and on masses.\n"
-    "Windows hold fragments of 2, 5, 10 mean masses of a grain or particle and more (from N - 1/2). Errors: one "
-    "standard error, from resampling runs.\n";
+    "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together, without the largest fragment of "
+    "each run.\nLSQ: least squares on logarithmic bins (as in the paper; biased). binned, ML: maximum likelihood on "
+    "bins and on masses.\nWindows: fragments of at least 2, 5, 10 mean masses of a grain or particle (from N - 1/2). "
+    "Errors: one standard error, from resampling the runs.\n";
 
 status estimates_print(struct store *store, const struct ask_points_choice *choice, int64_t resamples,
                        enum table_format format, FILE *out, struct error *error) {
@@ -145,11 +144,11 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row option_rows[] = {
     {"point", 'p', OPTION_INTEGER, "N", offsetof(struct options, point), 0, INT64_MAX, "0",
-     "Only this point (point_id in the view points); 0 is all."},
+     "Only this point (point_id in the view points); 0: all."},
     {"campaign", 0, OPTION_INTEGER, "N", offsetof(struct options, campaign), 0, INT64_MAX, "0",
-     "Only the points of this campaign (`clast status`); 0 is all."},
+     "Only the points of this campaign (`clast status` lists them); 0: all."},
     {"resamples", 0, OPTION_INTEGER, "N", offsetof(struct options, resamples), 0, 100000, "1000",
-     "Resamples of the runs for the errors of the exponents; 0 is none."},
+     "Number of resamples of the runs, for the errors of the exponents; 0: no errors."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -159,10 +158,11 @@ const struct command estimates_command = {
     .arguments = "STORE",
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
     .doc =
-        "Prints what `clast run` ends with: for every point M_1/M with its 95 % interval, and the exponent beta of\n"
-        "F(m) ~ m^-beta (differential) by three methods, least squares on log bins (the paper's way, biased), maximum\n"
-        "likelihood on bins and on masses, in three windows (2, 5, 10 mean masses of a grain or particle\n"
-        "and more, each run's largest fragment left out). Errors of the exponents come from resampling runs.",
+        "Prints the table that `clast run` ends with. For every point: the mass share of the largest fragment, M_1/M,\n"
+        "with its 95 % interval, and the exponent beta of F(m) ~ m^-beta (differential) by three methods: least\n"
+        "squares on logarithmic bins (as in the paper; biased), maximum likelihood on bins, and maximum likelihood on\n"
+        "masses. Each in three windows: fragments of at least 2, 5 and 10 mean masses of a grain or particle, without\n"
+        "the largest fragment of each run. Errors of the exponents come from resampling the runs.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

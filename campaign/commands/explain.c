@@ -196,12 +196,12 @@ const struct command explain_command = {
     .name = "explain",
     .group = "scenes and inputs",
     .arguments = "[PATH|SCENE]",
-    .summary = "what an input or result means; what a scene models and what it costs",
-    .doc = "Of a PATH (threshold.strain, or strain where that is unique; contact for a whole section): meaning, unit,\n"
-           "range, default and source. Of a SCENE (a built-in name or a file): what is modelled and why, the expected\n"
-           "cost, and every input with its value (--json and --csv: these alone). Without argument: a table of all "
-           "inputs and\n"
-           "results.",
+    .summary = "what an input or result means; what a scene models and costs",
+    .doc =
+        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section): meaning, unit, range,\n"
+        "default and source. With a SCENE (a built-in name or a file): what is modelled and why, the expected cost,\n"
+        "and every input with its value; with --json or --csv the inputs only. Without argument: a table of all\n"
+        "inputs and results.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
     .options = rows,

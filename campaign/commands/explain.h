@@ -15,8 +15,7 @@ struct explain_options {
   {                                                                                                                    \
     "set", 's', OPTION_LIST, "PATH=VALUE", offsetof(type_, member_), 0, 0, NULL,                                       \
         "Override an input of the scene: threshold.strain=3%, impact.speed='50 m/s'. May be given several times. "     \
-        "What the "                                                                                                    \
-        "scene says and this leaves without effect is dropped."                                                        \
+        "Inputs of the scene that have no effect any more are dropped."                                                \
   }
 
 /* One --set; not checked across fields (scene_check). STATUS_USAGE, STATUS_CONTENT. */

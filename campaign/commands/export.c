@@ -69,12 +69,11 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row option_rows[] = {
     {"csv", 0, OPTION_FLAG, NULL, offsetof(struct options, csv), 0, 0, NULL,
-     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with meaning and unit of each "
+     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning and unit of each "
      "column."},
     {"bits", 0, OPTION_FLAG, NULL, offsetof(struct options, bits), 0, 0, NULL,
-     "Write every value that a run determines as text, in the order of identities and without times and hosts: of two "
-     "stores "
-     "of one campaign these files are the same, however they were computed."},
+     "Write every value that does not depend on where and when a run was computed, as text in the order of identities. "
+     "Two stores of one campaign give the same file, however they were computed."},
 };
 
 const struct command export_command = {
@@ -83,8 +82,8 @@ const struct command export_command = {
     .arguments = "STORE TARGET",
     .summary = "one compact file for hand-over, or a folder of CSV files",
     .doc =
-        "Writes a compact copy of the store as one SQLite file (also while a campaign is running), or with --csv its\n"
-        "views as CSV files in a folder. An existing store is never overwritten; CSV and bits files are.",
+        "Writes a compact copy of the store as one SQLite file, also while a campaign is running; or with --csv its\n"
+        "views as CSV files in a folder. It never overwrites a store. It does overwrite CSV and bits files.",
     .examples = "clast export out.db handover.db\nclast export out.db tables --csv",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

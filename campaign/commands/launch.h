@@ -21,7 +21,7 @@ struct launch_options {
    0,                                                                                                                  \
    4096,                                                                                                               \
    "0",                                                                                                                \
-   "Runs at a time; under mpirun or srun, of each rank. 0 is one per core, and one per rank."},                        \
+   "Runs at a time. Under mpirun or srun: per rank. 0: one per core, or under mpirun or srun one per rank."},          \
       {"in-process",                                                                                                   \
        0,                                                                                                              \
        OPTION_FLAG,                                                                                                    \
@@ -30,10 +30,11 @@ struct launch_options {
        0,                                                                                                              \
        0,                                                                                                              \
        NULL,                                                                                                           \
-       "No process of its own for each run: faster for runs of milliseconds, but a crash takes a slot along."},        \
+       "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a crash ends the slot "     \
+       "too."},                                                                                                        \
   {                                                                                                                    \
     "quiet", 'q', OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, quiet), 0, 0, NULL,    \
-        "No progress and no remarks on stderr; warnings and errors stay."                                              \
+        "Print no progress and no remarks on stderr. Warnings and errors are printed."                                 \
   }
 
 /* Farm, driver, and at the end the table of estimates from the store, on rank 0. The farm is started before anything

@@ -13,18 +13,21 @@ struct entry {
 };
 
 static const struct entry environment[] = {
-    {"CLAST_CPU", "baseline, v3 (AVX2, FMA) or v4 (AVX-512): the class of CPU whose bits are wanted; one that the\n"
-                  "machine does not have is not used. Without it: the best it has. Bits are the same within a class."},
-    {"NO_COLOR", "When it is set and not empty, nothing is coloured."},
-    {"TERM", "When it is unset or dumb, nothing is coloured, and progress is plain lines instead of a bar."},
+    {"CLAST_CPU", "baseline, v3 (AVX2, FMA) or v4 (AVX-512): class of CPU to compute for. Results have the same bits "
+                  "within a class.\nDefault: the best class that the machine has, which is also used instead of a "
+                  "class that it does not have."},
+    {"NO_COLOR", "If it is set and not empty, nothing is coloured."},
+    {"TERM", "If it is unset or dumb, nothing is coloured, and progress is plain lines instead of a bar."},
 };
 
 static const struct entry files[] = {
-    {"CAMPAIGN.yaml", "What to vary, how many seeds, which store. `clast schema campaign` prints its JSON Schema."},
-    {"SCENE.yaml", "One simulation, wherever a SCENE is asked for. `clast scenes NAME` prints one to start from."},
-    {"STORE.db", "Every result, an SQLite 3 file, made by `clast run`; while it is written, `STORE.db-wal` and\n"
-                 "`STORE.db-shm` are parts of it."},
-    {"STORE-fields/", "Fields (HDF5) of the runs that the campaign keeps them of."},
+    {"CAMPAIGN.yaml",
+     "A campaign: what varies, how many seeds, which store. `clast schema campaign` prints its JSON Schema."},
+    {"SCENE.yaml",
+     "A scene: one simulation, for every command that takes a SCENE. `clast scenes NAME` prints one to start from."},
+    {"STORE.db", "The store: every result in one SQLite 3 file, made by `clast run`. While it is written, "
+                 "`STORE.db-wal` and\n`STORE.db-shm` belong to it."},
+    {"STORE-fields/", "HDF5 files with the fields of the runs that the campaign keeps."},
 };
 
 enum text { PROSE, LITERAL };

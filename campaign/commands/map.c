@@ -83,10 +83,10 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
-     "Varied input along the bottom: a path or its unique ending."},
-    {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input along the side."},
+     "Varied input on the horizontal axis: a path or its unique ending."},
+    {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input on the vertical axis."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
-     "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
+     "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a point: beta, or "
      "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };
 
@@ -95,9 +95,9 @@ const struct command map_command = {
     .group = "results",
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over two varied inputs as a picture",
-    .doc = "Draws the mean over seeds of a result, or the exponent pooled over seeds, as a tile for every pair of "
-           "values of\n"
-           "two varied inputs. Pairs without a usable run are crossed. The ending chooses the format, .png or .svg.",
+    .doc = "Draws the mean of a result over seeds, or an exponent fitted to the runs of a point, as a tile for every\n"
+           "pair of values of two varied inputs. A pair without a usable run is crossed out. The ending chooses the\n"
+           "format: .png or .svg.",
     .examples = "clast map out.db map.png -x strain -y angle\nclast map out.db beta.svg -x strain -y angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

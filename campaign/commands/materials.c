@@ -66,11 +66,9 @@ const struct command materials_command = {
     .group = "scenes and inputs",
     .arguments = "[NAME]",
     .summary = "the built-in materials; with a name, its document with sources",
-    .doc =
-        "Lists the materials that a scene of engine sph can name (target.material.name: basalt). With a NAME it prints "
-        "that\n"
-        "material's document, with its sources; any of its values can be overridden in the scene or be a sweep axis\n"
-        "(target.material.weibull.m).",
+    .doc = "Lists the materials that a scene of engine sph can name (target.material.name: basalt). With a NAME it\n"
+           "prints the document of that material, with its sources. A scene can override each of its values, and a\n"
+           "campaign can vary it (target.material.weibull.m).",
     .examples = "clast materials\nclast materials basalt",
     .maximum_arguments = 1,
     .options = rows,

@@ -161,19 +161,18 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title over it."},
+    {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title of the picture."},
     {"what", 0, OPTION_TEXT, "QUANTITY", offsetof(struct options, what), 0, 0, NULL,
-     "Particles: what colours them: damage (where there is any, else pressure), pressure, density, energy, distention, "
-     "flaws..., "
-     "or fragments."},
+     "Particles: quantity shown by colour: damage (or pressure if nothing can crack), pressure, density, energy, "
+     "distention, flaws..., or fragments."},
     {"view", 0, OPTION_TEXT, "VIEW", offsetof(struct options, view), 0, 0, NULL,
      "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the default "
      "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
      "plate)."},
     {"axis", 0, OPTION_TEXT, "x|y|z", offsetof(struct options, axis), 0, 0, NULL,
-     "Particles: the axis that is looked along, at right angles to a cut (y)."},
+     "Particles: direction of view, at right angles to a cut (y)."},
     {"at", 0, OPTION_TEXT, "LENGTH", offsetof(struct options, at), 0, 0, NULL,
-     "Particles: where the cut stands on that axis (the middle of the heaviest fragment)."},
+     "Particles: position of the cut on that axis (the middle of the heaviest fragment)."},
 };
 
 const struct command picture_command = {
@@ -181,11 +180,10 @@ const struct command picture_command = {
     .group = "results",
     .arguments = "FIELDS.hdf PICTURE.png",
     .summary = "draw the body of a fields file: fragments, damage, pressure",
-    .doc = "Draws the body as it is in a fields file (of simulate, replay, or a campaign that keeps fields). Grains in "
-           "the\n"
-           "plane: every fragment in a colour of its own, cracks inside fragments as lines. Particles in space: a cut, "
-           "a view\n"
-           "from outside, or the fragments apart. The ending chooses the format, .png or .svg.",
+    .doc =
+        "Draws the body of a fields file (from simulate, replay, or a campaign that keeps fields). Grains in the\n"
+        "plane: every fragment in its own colour, cracks inside fragments as lines. Particles in space: a cut, a view\n"
+        "from outside, or the fragments apart. The ending chooses the format: .png or .svg.",
     .examples =
         "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
         "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",

@@ -46,11 +46,11 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     {"slots", 'j', OPTION_INTEGER, "N", offsetof(struct options, slots), 0, 1000000, "0",
-     "Runs at a time the wall time is meant for; 0 is one per core of this machine."},
+     "Runs at a time, for the expected wall time. 0: one per core of this machine."},
     {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
-     "Look in this store for runs that are there already, instead of the campaign's."},
+     "Count the runs that this store has, instead of the campaign's store."},
     {"no-trial", 0, OPTION_FLAG, NULL, offsetof(struct options, no_trial), 0, 0, NULL,
-     "Do not time a trial run (up to 5 s)."},
+     "Do not time a trial run. Times then come from the runs in the store."},
     {"json", 0, OPTION_FLAG, NULL, offsetof(struct options, json), 0, 0, NULL, "Print one JSON object."},
 };
 
@@ -60,8 +60,8 @@ const struct command plan_command = {
     .arguments = "CAMPAIGN.yaml",
     .summary = "what a campaign would do and cost; stores nothing",
     .doc =
-        "Reads and checks the campaign, counts its points and runs (and those the store has already), times up to 5 s\n"
-        "of a trial run, and prints what is modelled and the expected time, memory and disk. Nothing is stored.",
+        "Checks the campaign, counts its points and runs and those that the store has, and times a trial run for up\n"
+        "to 5 s. Prints what is modelled and the expected time, memory and disk space. Stores nothing.",
     .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -174,11 +174,11 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
-     "Varied input along the bottom: a path or its unique ending."},
+     "Varied input on the horizontal axis: a path or its unique ending."},
     {"by", 'b', OPTION_TEXT, "AXIS", offsetof(struct options, by), 0, 0, NULL,
-     "Another varied input: a line for each of its values, at most 8."},
+     "Another varied input, with one line for each of its values, at most 8."},
     {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
-     "Result to show: a column of the view runs, or an exponent pooled over the runs of a point: beta, or "
+     "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a point: beta, or "
      "beta_METHOD_WINDOW (beta_binned_from_2)."},
 };
 
@@ -187,14 +187,12 @@ const struct command plot_command = {
     .group = "results",
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over one varied input as lines with error bars",
-    .doc = "Draws the mean over seeds of a result against a varied input, with the 95 % interval of the mean (Student "
-           "t) where\n"
-           "there are two runs or more, and a line for each value of a second one; `clast stats` prints the same "
-           "numbers.\n"
-           "Where other inputs differ, too, it is a mean over them as well, and the title says so. Of an exponent\n"
-           "(`clast estimates`) it draws the fit to each point's runs with the interval from resampling runs. An axis "
-           "over a\n"
-           "factor of 20 and more is logarithmic. The ending chooses the format, .png or .svg.",
+    .doc =
+        "Draws the mean of a result over seeds against a varied input, with the 95 % interval of the mean (Student's\n"
+        "t) where there are two runs or more. A second varied input gives one line for each of its values. `clast\n"
+        "stats` prints the same numbers. If other inputs vary as well, the mean is over them too, and the title says\n"
+        "so. For an exponent it draws the fit to the runs of each point, with the interval from resampling runs. An\n"
+        "axis that spans a factor of 20 or more is logarithmic. The ending chooses the format: .png or .svg.",
     .examples =
         "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,

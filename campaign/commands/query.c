@@ -81,7 +81,7 @@ static const struct option_row rows_of_options[] = {
     {"with", 'w', OPTION_LIST, "NAME=VALUE", offsetof(struct options, with), 0, 0, NULL,
      "Value of a parameter :NAME in the SQL. May be given several times."},
     {"seconds", 0, OPTION_INTEGER, "S", offsetof(struct options, seconds), 0, 1000000, "0",
-     "Give up (exit 75) after so many seconds; 0 is never."},
+     "Stop the query after this many seconds (exit 75); 0: never."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -89,12 +89,11 @@ const struct command query_command = {
     .name = "query",
     .group = "results",
     .arguments = "STORE [SQL]",
-    .summary = "ask the store: SQL that only reads, or a canned query",
+    .summary = "query the store: SQL that only reads, or a canned query",
     .doc =
-        "Runs one SQL statement that only reads, or a canned query by name, and prints its rows. The store may be in\n"
-        "use by a running campaign. Views to start from: runs, points, spectra, estimates; column_doc explains "
-        "columns.\n"
-        "Besides SQLite's own functions: stdev(x), median(x), hist_sum(masses).",
+        "Runs one SQL statement that only reads, or a canned query by name, and prints its rows. A campaign may write\n"
+        "to the store meanwhile. Views to start from: runs, points, spectra, estimates. The table column_doc explains\n"
+        "the columns. Functions besides SQLite's own: stdev(x), median(x), hist_sum(masses).",
     .examples = "clast query out.db \"select replicate, largest_fraction from runs order by 2 limit 5\"\n"
                 "clast query --list",
     .maximum_arguments = 2,

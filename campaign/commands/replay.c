@@ -128,7 +128,7 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     {"fields", 0, OPTION_TEXT, "FILE.h5", offsetof(struct options, fields), 0, 0, NULL,
-     "Write the fields of the run, to look at it or draw it with `clast picture`."},
+     "Write the fields of the run as an HDF5 file, for `clast picture` or ParaView."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -137,10 +137,10 @@ const struct command replay_command = {
     .group = "the store",
     .arguments = "STORE RUN",
     .summary = "compute a stored run again and compare every bit",
-    .doc = "Takes the scene and seed of run number RUN (run_id) from the store, computes it again and compares all "
-           "results\n"
-           "and fragment masses. Differences are printed as a table; exit 65 when there are any. The store is not "
-           "changed.",
+    .doc =
+        "Takes the scene and seed of run RUN (run_id) from the store, computes it again, and compares all results and\n"
+        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. Does not change the\n"
+        "store.",
     .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

@@ -101,15 +101,15 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     {"status", 0, OPTION_TEXT, "failed", offsetof(struct options, status), 0, 0, "failed",
-     "Which runs: those whose every attempt failed by a limit, a crash or a lost worker."},
+     "Which runs: failed are those whose every attempt ended by a limit, a crash or a lost worker."},
     {"time", 0, OPTION_TEXT, "TIME", offsetof(struct options, time), 0, 0, NULL,
-     "Time limit of an attempt (\"30 min\", off); without it twice the campaign's."},
+     "Time limit of an attempt (\"30 min\", off). Default: twice the campaign's."},
     {"memory", 0, OPTION_TEXT, "SIZE", offsetof(struct options, memory), 0, 0, NULL,
-     "Memory limit of an attempt (\"4 GiB\", off); without it twice the campaign's."},
+     "Memory limit of an attempt (\"4 GiB\", off). Default: twice the campaign's."},
     {"campaign", 0, OPTION_INTEGER, "N", offsetof(struct options, campaign), 0, INT32_MAX, "0",
-     "Campaign of the store (`clast status`); 0 is the last one."},
+     "Campaign of the store (`clast status` lists them); 0: the last one."},
     {"folder", 0, OPTION_TEXT, "DIR", offsetof(struct options, folder), 0, 0, NULL,
-     "Folder that the campaign's scene file is relative to; the current one without it."},
+     "Folder that the path of the campaign's scene file starts from. Default: the current folder."},
     LAUNCH_OPTIONS(struct options, launch),
     TABLE_OPTIONS(struct options, launch.table),
 };
@@ -119,9 +119,9 @@ const struct command retry_command = {
     .group = "running",
     .arguments = "STORE",
     .summary = "try failed runs of a store again, with raised limits",
-    .doc = "Takes the campaign from the store and computes what it lacks, runs whose attempts were used up included, "
-           "with\n"
-           "as many attempts more as the campaign allows and raised limits. Limits are no part of a run's identity.",
+    .doc =
+        "Takes the campaign from the store and computes the runs that it lacks. Runs that were given up get as many\n"
+        "attempts again, with higher limits. Limits are not part of a run's identity: results do not depend on them.",
     .examples = "clast retry out.db --status failed --time '1 h'\nclast retry out.db --memory off -j 2",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

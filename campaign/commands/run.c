@@ -34,9 +34,9 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
     {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
-     "Store to write, instead of the campaign's."},
+     "Write this store instead of the campaign's."},
     {"dry-run", 'n', OPTION_FLAG, NULL, offsetof(struct options, dry_run), 0, 0, NULL,
-     "Only say what would be done, like `clast plan`."},
+     "Print what would be done, like `clast plan`, and stop."},
     TABLE_OPTIONS(struct options, launch.table),
 };
 
@@ -44,12 +44,11 @@ const struct command run_command = {
     .name = "run",
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
-    .summary = "run a campaign, or go on with it: only what is missing is computed",
+    .summary = "run a campaign, or go on with it; only missing runs are computed",
     .doc =
-        "Computes every run the campaign asks for and its store lacks, on all cores of this machine or on the ranks "
-        "of\n"
-        "mpirun or srun, and prints the estimates of every point at the end. Ctrl-C stops it cleanly (exit 75); the\n"
-        "same command goes on. Killed, it loses at most the last second of results.",
+        "Computes every run that the campaign needs and the store lacks, on all cores of this machine or on the ranks\n"
+        "of mpirun or srun. At the end it prints the estimates of every point. Ctrl-C stops it (exit 75), and the\n"
+        "same command goes on later. A kill loses at most the last second of results.",
     .examples = "clast run campaign.yaml -j 4\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

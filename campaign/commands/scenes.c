@@ -65,8 +65,8 @@ const struct command scenes_command = {
     .arguments = "[NAME]",
     .summary = "the built-in scenes; with a name, its document to start from",
     .doc =
-        "Lists the scenes that are built in. With a NAME it prints that scene's document, with its sources: save it,\n"
-        "edit it, and give the file wherever a scene is asked for.",
+        "Lists the built-in scenes. With a NAME it prints the document of that scene, with its sources. Save it, edit\n"
+        "it, and use the file as SCENE of any command.",
     .examples = "clast scenes\nclast scenes disc-explosion > my-disc.yaml",
     .maximum_arguments = 1,
     .options = rows,

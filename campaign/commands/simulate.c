@@ -174,15 +174,14 @@ static const struct option_row rows[] = {
     {"picture", 'p', OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
      "Draw the body at the end: fragments of grains, or the damage of particles on a cut."},
     {"fields", 0, OPTION_TEXT, "FILE.hdf", offsetof(struct options, fields), 0, 0, NULL,
-     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file; named .hdf, ParaView "
-     "opens it."},
+     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file. ParaView opens it if "
+     "its name ends in .hdf."},
     {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
-     "Write up to N such files on the way, SCENE_000000.hdf and so on, evenly over the longest time the run may take; "
-     "SCENE.hdf.series lists them with their times for ParaView."},
+     "Write up to N such files during the run, SCENE_000000.hdf and so on, evenly over the longest time that the run "
+     "may take. SCENE.hdf.series lists them with their times for ParaView."},
     {"restart", 0, OPTION_TEXT, "FILE", offsetof(struct options, restart), 0, 0, NULL,
-     "Go on from this file if it is there. It is written every five minutes and when the run is interrupted (exit 75: "
-     "the "
-     "same command goes on, to the same bits), and removed at the end."},
+     "Go on from this file if it exists. It is written every five minutes and when the run is interrupted (exit 75; "
+     "the same command goes on, to the same bits). It is removed at the end."},
     {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
     TABLE_OPTIONS(struct options, table),
 };
@@ -193,7 +192,7 @@ const struct command simulate_command = {
     .arguments = "SCENE",
     .summary = "one run of a scene, with pictures and fields",
     .doc = "Runs one simulation of a SCENE (a built-in name or a file) and prints its results: fragments, largest\n"
-           "fraction, energies, exponents of the fragment spectrum. Nothing is stored but the files asked for.",
+           "fraction, energies, exponents of the fragment spectrum. It writes no file unless an option names one.",
     .examples = "clast simulate disc-explosion --seed 7 --picture disc.png\n"
                 "clast simulate disc-explosion --set threshold.strain=5% --json",
     .minimum_arguments = 1,

@@ -153,14 +153,15 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row option_rows[] = {
     {"point", 'p', OPTION_INTEGER, "N", offsetof(struct options, point), 0, INT64_MAX, "0",
-     "Only this point (point_id in the view points); 0 is all."},
+     "Only this point (point_id in the view points); 0: all."},
     {"where", 'w', OPTION_TEXT, "SQL", offsetof(struct options, where), 0, 0, NULL,
-     "Only runs for which this holds, on the view runs: \"threshold_strain > 0.02\"."},
+     "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."},
     {"picture", 0, OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
-     "Draw F(m) with the fitted power law too: of --point, or of the first eight points. PNG or SVG by the ending."},
+     "Also draw F(m) with the fitted power law, of --point or of the first eight points. PNG or SVG by the ending."},
     {"plot", 0, OPTION_FLAG, NULL, offsetof(struct options, plot), 0, 0, NULL,
-     "Plot F(m) as text instead of the table: of --point, or of the first eight points."},
-    {"ascii", 0, OPTION_FLAG, NULL, offsetof(struct options, ascii), 0, 0, NULL, "The plot in ASCII characters only."},
+     "Plot F(m) as text instead of the table, of --point or of the first eight points."},
+    {"ascii", 0, OPTION_FLAG, NULL, offsetof(struct options, ascii), 0, 0, NULL,
+     "Use ASCII characters only in the plot."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -170,9 +171,9 @@ const struct command spectrum_command = {
     .arguments = "STORE",
     .summary = "fragment mass spectra of the points, with errors from run to run",
     .doc =
-        "Prints for each point and each mass bin that holds something the fragments of all runs that count, the\n"
-        "density F(m) (fragments per kg and run) with its standard error from the scatter between runs, and the share\n"
-        "of the mass. F(m) is differential: a power law m^-beta has this slope on it, N(>m) has beta - 1.",
+        "Prints one row per point and mass bin that has fragments: the fragments of all runs that count, the density\n"
+        "F(m) (fragments per kg and run) with its standard error from the scatter between runs, and the share of the\n"
+        "mass. F(m) is differential: where F(m) ~ m^-beta, N(>m) has the exponent beta - 1.",
     .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --csv --picture spectrum.svg",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -51,11 +51,10 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows_of_options[] = {
     {"by", 'b', OPTION_TEXT, "AXES", offsetof(struct options, by), 0, 0, "",
-     "Varied inputs to group by, comma-separated paths or unique endings of paths (strain,angle). Without it all runs "
-     "are "
-     "pooled."},
+     "Varied inputs to group by: comma-separated paths or unique endings of paths (strain,angle). Default: all runs "
+     "are one group."},
     {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
-     "Results to average, comma-separated; main: the five main ones, a wide table. `clast explain` lists all."},
+     "Results to average, comma-separated; main: the five main results, a wide table. `clast explain` lists all."},
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -65,9 +64,9 @@ const struct command stats_command = {
     .arguments = "STORE",
     .summary = "means over seeds with standard deviation, standard error and 95 % interval",
     .doc =
-        "Groups the runs by varied inputs and prints for each group how many runs count, failed or reached the hard\n"
-        "end time, and of each quantity mean, standard deviation, standard error and half width of the 95 % interval\n"
-        "of the mean (Student t). Runs of different results versions are never mixed.",
+        "Groups the runs by varied inputs. For each group it prints how many runs count, failed, or reached the hard\n"
+        "end time, and for each quantity the mean, standard deviation, standard error, and half width of the 95 %\n"
+        "interval of the mean (Student's t). Runs of different results versions are never mixed.",
     .examples =
         "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
     .minimum_arguments = 1,

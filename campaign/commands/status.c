@@ -31,9 +31,9 @@ const struct command status_command = {
     .arguments = "STORE",
     .summary = "how far the campaigns of a store are, and what failed",
     .doc =
-        "One row per campaign: points, runs stored, those that count in statistics, censored (ended at the hard end\n"
-        "time), failed, surplus; failed attempts, runs given up without a result; and how the last session ended.\n"
-        "Works while a campaign is running.",
+        "Prints one row per campaign: its points, the runs stored, and how many of them count in statistics, are\n"
+        "censored (ended at the hard end time), failed, or are surplus; failed attempts, and runs given up without a\n"
+        "result; and how the last session ended. Works while a campaign is running.",
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
