@@ -1,5 +1,5 @@
-/* The program: finds the command, parses its options, runs it, and is the only place that prints errors and exits.
- * Nothing here starts a thread, MPI or HDF5: `clast run` must fork its slots before any of them. */
+/* The program: finds the command, parses its options and runs it. Errors are printed, and the program exits, only here.
+ * Nothing here starts a thread, MPI or HDF5: `clast run` forks its slots before any of them. */
 #include <fcntl.h>
 #include <signal.h>
 #include <stdalign.h>
@@ -19,7 +19,7 @@ static bool colour(void) {
   return !(no_colour && *no_colour) && terminal && strcmp(terminal, "dumb") != 0 && isatty(STDERR_FILENO);
 }
 
-/* A report on a document's content comes with its own "file:line:col: error:" lines and stands as it is. */
+/* Prints an error. A report on a document has its own "file:line:col: error:" lines and is printed as it is. */
 static void print_error(const struct error *error) {
   size_t line = strcspn(error->message, "\n");
   const char *located = strstr(error->message, ": error: ");
@@ -66,8 +66,8 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   return command->run(&line, error);
 }
 
-/* With stdin, stdout or stderr closed, the first file opened (the store!) would get their number and be printed into.
- */
+/* Opens /dev/null for standard files that are closed. Else the first file opened, the store, would get the number of
+ * one of them, and messages would be printed into it. */
 static void keep_standard_files(void) {
   int file = open("/dev/null", O_RDWR);
   while (file >= 0 && file <= STDERR_FILENO)
@@ -78,7 +78,7 @@ static void keep_standard_files(void) {
 
 int main(int argc, char **argv) {
   keep_standard_files();
-  signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) is no reason to die in the middle of a commit */
+  signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) must not end the program in the middle of a commit */
   analysis_init();
   struct error error = {.status = STATUS_OK};
   status code = run_command_line(argc, argv, &error);

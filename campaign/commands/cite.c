@@ -17,7 +17,7 @@ static void cite_row(struct table *table, const struct field *row) {
   table_text(table, row->source);
 }
 
-/* A switch that is off, a law that is `none`, a coefficient of 0: nobody's paper is behind what is not there. */
+/* A switch that is off, a law `none` or a coefficient of 0 has no effect, so that its paper is not cited. */
 static bool absent(const struct field *row, const void *inputs) {
   struct field_value value;
   field_get(row, inputs, &value);

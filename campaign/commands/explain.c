@@ -12,7 +12,7 @@
 
 enum { TABLES_MAXIMUM = 24 };
 
-/* Every field table a person may ask about. */
+/* All field tables of which `clast explain` knows the paths. */
 static size_t tables(const struct field_table *list[TABLES_MAXIMUM]) {
   size_t count = 0;
   for (size_t i = 0; i < engine_count() && count + 5 < TABLES_MAXIMUM; i++) {

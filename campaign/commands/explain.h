@@ -18,7 +18,7 @@ struct explain_options {
         "Inputs of the scene that have no effect any more are dropped."                                                \
   }
 
-/* One --set; not checked across fields (scene_check). STATUS_USAGE, STATUS_CONTENT. */
+/* Sets one input from PATH=VALUE. scene_check must follow. STATUS_USAGE, STATUS_CONTENT. */
 status explain_override(struct scene *scene, const char *text, struct error *error);
 /* The first sentence of a meaning, without its full stop. */
 void explain_sentence(const char *doc, char *text, size_t size);

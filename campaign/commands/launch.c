@@ -15,7 +15,7 @@
 enum {
   RESAMPLES = 400,
   MANY_POINTS = 64
-}; /* more are not printed at the end of a run unless asked for by --json or --csv */
+}; /* above this number the table at the end is printed only with --json or --csv */
 
 struct notes {
   struct progress *progress;
@@ -58,7 +58,7 @@ static void print_summary(const struct driver_summary *summary, const char *stor
     fputs("stopped; the same command goes on\n", stderr);
 }
 
-/* The store's verdict, not the driver's: what is printed is what any later reader will find. */
+/* Reads the store again, so that it prints what any later reader will find. */
 static status print_estimates(const char *path, int64_t campaign, enum table_format format, bool quiet,
                               struct error *error) {
   struct store *store = NULL;
@@ -132,7 +132,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
   return code ? code : stopped;
 }
 
-/* Before MPI_Init only the launcher's environment knows the rank. */
+/* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
 static bool other_rank(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
   if (!farm_under_mpi())

@@ -37,13 +37,13 @@ struct launch_options {
         "Print no progress and no remarks on stderr. Warnings and errors are printed."                                 \
   }
 
-/* Farm, driver, and at the end the table of estimates from the store, on rank 0. The farm is started before anything
- * that opens HDF5 or starts a thread. */
+/* Starts the farm, runs the campaign, and prints the table of estimates from the store at the end, on rank 0. The farm
+ * is started before anything opens HDF5 or starts a thread. */
 status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
                        enum table_format format, const struct command_line *line, struct error *error);
 
-/* One voice under mpirun: on ranks other than 0 an error is silent, and the process lives a moment longer, because
- * mpirun ends all ranks when the first one leaves with an error. Returns `code`. */
+/* Under mpirun only rank 0 prints errors: on other ranks this clears the message. It also lets the process live a
+ * moment longer, because mpirun ends all ranks when the first one leaves with an error. Returns `code`. */
 status launch_quiet_ranks(status code, struct error *error);
 
 #endif

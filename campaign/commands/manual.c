@@ -1,5 +1,5 @@
-/* The manual page from the command tables: every command, option, example and exit code as --help has them. Its own
- * words are only those that no table holds: NAME, ENVIRONMENT, FILES. */
+/* The manual page, made from the command tables: every command, option, example and exit code as in --help. Only NAME,
+ * ENVIRONMENT and FILES have texts of their own. */
 #include "campaign/commands/help.h"
 
 #include <ctype.h>
@@ -32,8 +32,9 @@ static const struct entry files[] = {
 
 enum text { PROSE, LITERAL };
 
-/* Without these escapes roff takes the character for its own, or a UTF-8 terminal shows one that cannot be pasted into
- * a shell. In prose `...` is bold, a hyphen between letters stays one, and lines run on but for indented ones. */
+/* Escapes, because roff gives these characters a meaning, or a UTF-8 terminal shows others that cannot be pasted into a
+ * shell. In prose, text in backquotes is bold, a hyphen between letters stays one, and lines are joined unless
+ * indented. */
 static void print_text(const char *text, enum text kind, FILE *out) {
   static const char *const escapes[128] = {['\\'] = "\\(rs", ['-'] = "\\-",   ['\''] = "\\(aq", ['"'] = "\\(dq",
                                            ['`'] = "\\(ga",  ['^'] = "\\(ha", ['~'] = "\\(ti"};
@@ -110,7 +111,7 @@ static void print_command(const struct command *command, FILE *out) {
 void manual_write(FILE *out) {
   fputs(".\\\" Made by `clast help --man` from the tables of the commands: change those.\n"
         ".TH CLAST 1 " BUILD_DATE " \"clast " BUILD_VERSION "\" \"User Commands\"\n"
-        ".nr HY 0\n.ad l\n" /* a name is never broken, so that it can be searched for */
+        ".nr HY 0\n.ad l\n" /* a name is never broken at a line's end, so that it can be searched for */
         ".SH NAME\nclast \\- ensembles of brittle-fragmentation simulations\n"
         ".SH SYNOPSIS\n\\fBclast\\fR \\fICOMMAND\\fR [\\fIOPTIONS\\fR] ...\n"
         ".br\n\\fBclast\\fR \\fICOMMAND\\fR \\fB\\-\\-help\\fR\n.br\n\\fBclast \\-\\-version\\fR\n"

@@ -1,4 +1,4 @@
-/* `clast picture FIELDS PICTURE`: draws a body in pieces, whichever engine wrote the file. */
+/* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -93,7 +93,7 @@ cleanup:
   return code;
 }
 
-/* What lies along the axis: the quantity asked for, or distention and damage. */
+/* Draws profiles along the axis: --what, or distention and damage. */
 static status draw_profile(const char *fields, const char *picture, const struct options *options,
                            struct error *error) {
   enum { MOST = 2 };

@@ -1,4 +1,4 @@
-/* `clast query STORE [SQL]`: any question that only reads, and canned ones by name. */
+/* `clast query STORE [SQL]`: any SQL that only reads, and canned queries by name. */
 #include <string.h>
 
 #include "campaign/commands/commands.h"

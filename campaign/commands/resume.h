@@ -1,5 +1,5 @@
-/* A run that can be stopped and gone on with: SIGINT, SIGTERM and SIGHUP write its restart file and end the command,
- * which then exits 75; every few minutes the file is written anew, against harder ends. */
+/* A run that can be stopped and resumed. SIGINT, SIGTERM and SIGHUP write its restart file and end the command with
+ * exit code 75. The file is also written every few minutes, for ends without a signal. */
 #ifndef CLAST_CAMPAIGN_COMMANDS_RESUME_H
 #define CLAST_CAMPAIGN_COMMANDS_RESUME_H
 
@@ -10,9 +10,10 @@ struct resume {
   double saved;     /* s, monotonic: when it was last written */
 };
 
-/* From now on signals are noted, not obeyed; a second one ends the process at once. */
+/* From now on the first signal is only noted. A second one ends the process at once. */
 void resume_begin(struct resume *resume, const char *path);
-/* Between blocks of steps. STATUS_STOPPED after a signal, the file written; what save returns. */
+/* To be called between blocks of steps. STATUS_STOPPED after a signal, when the file is written; or what save returns.
+ */
 status resume_look(struct resume *resume, const struct engine_kind *kind, void *run, struct error *error);
 /* The run came to its end: the file is removed. */
 void resume_end(const char *path);

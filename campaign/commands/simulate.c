@@ -1,4 +1,4 @@
-/* `clast simulate SCENE`: one run, here and now. */
+/* `clast simulate SCENE`: one run, without a store. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +15,7 @@
 #include "campaign/driver/run.h"
 #include "engine/atomic_file.h"
 
-enum { BLOCK = 8 }; /* steps between looks at progress: under a second, also for a million particles */
+enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
 
 struct options {
   int64_t seed, snapshots;

@@ -45,7 +45,7 @@ static void path_of(const struct snapshots *s, int64_t number, char *path, size_
   snprintf(path, size, "%s_%06lld.hdf", s->name, (long long)number);
 }
 
-/* A run that was restored has its first snapshots on the disk already. */
+/* The first snapshots of a restored run are on the disk already: reads their times. */
 static void find_earlier(struct snapshots *s, double progress) {
   s->resumed = false;
   s->next = (int64_t)ceil(progress * (double)s->count);
@@ -108,8 +108,8 @@ status snapshots_look(struct snapshots *s, const struct engine_kind *kind, void 
   s->time[number] = kind->time(run);
   s->next = number + 1;
   while (s->next < s->count && progress < 1 && progress * (double)s->count >= (double)s->next)
-    s->next++; /* steps so long that some were missed: no copies of one state */
+    s->next++; /* the step was so long that some were missed: they are left out */
   if (progress >= 1)
-    s->next = s->count; /* the end has come, before its longest time perhaps: this was the last */
+    s->next = s->count; /* the run has ended, perhaps before its longest time: this was the last */
   return write_series(s, error);
 }

@@ -1,4 +1,4 @@
-/* Fields files on the way of a run, and the list of them with their times that ParaView reads (FILE.series). */
+/* Fields files during a run, and the list of them with their times that ParaView reads (NAME.hdf.series). */
 #ifndef CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
 #define CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
 
@@ -13,9 +13,9 @@ struct snapshots; /* opaque */
  * STATUS_MEMORY. */
 status snapshots_open(const char *name, int64_t count, bool resumed, struct snapshots **out, struct error *error);
 void snapshots_close(struct snapshots *snapshots); /* NULL is fine */
-/* Between blocks of steps: writes the snapshot that is due, if one is, and NAME.hdf.series anew. Both are whole files
- * at any moment. Steps longer than the time between snapshots leave numbers out. What write_snapshot returns,
- * STATUS_IO. */
+/* To be called between blocks of steps: writes the snapshot that is due, if there is one, and NAME.hdf.series again.
+ * Both are complete files at any moment. A step longer than the time between snapshots leaves numbers out. Returns what
+ * write_snapshot returns, or STATUS_IO. */
 status snapshots_look(struct snapshots *snapshots, const struct engine_kind *kind, void *run, struct error *error);
 
 #endif

@@ -18,7 +18,7 @@ struct options {
 
 enum { POINTS_MAXIMUM = 8, WIDTH = 900, COLUMNS = 100 }; /* more curves in one picture cannot be told apart */
 
-/* Whether a pure power law is enough, by likelihood ratios in the same windows. */
+/* Is a pure power law enough? Likelihood ratios against two rivals, in the same windows. */
 static void print_rivals(const struct pooled_rivals *rivals) {
   if (rivals->n == 0 || !isfinite(rivals->cutoff_beta))
     return;

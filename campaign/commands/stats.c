@@ -11,7 +11,7 @@ struct options {
   struct table_options table;
 };
 
-/* Exponents are no results of single runs. */
+/* Exponents are fitted to all runs of a point together: they have no mean over runs. */
 static status refuse_exponents(const char *names, const char *store, struct error *error) {
   for (const char *name = names; *name; name += strcspn(name, ","), name += *name == ',') {
     enum exponent_method method;

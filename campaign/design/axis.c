@@ -50,7 +50,7 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     *value = axis->levels[design_axis_level(axis, u)];
     return;
   }
-  /* The ends of an unbounded law are not values: half a unit of the generator's resolution is kept from them. */
+  /* Keeps half a unit of the generator's resolution from 0 and 1, where an unbounded law has no value. */
   u = fmin(fmax(u, 0x1p-54), 1 - 0x1p-53);
   double x = NAN;
   switch (axis->kind) {

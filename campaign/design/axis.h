@@ -1,6 +1,6 @@
-/* One axis of a campaign: a path into the scene and the values it takes. An axis never knows physics (design: a sweep
- * axis is a path, never an if on its name). Every kind of axis is one function of u in [0, 1): its quantile. Grids walk
- * the levels of the kinds that have levels. */
+/* One axis of a campaign: a path into the scene and the values that it takes. An axis is a path and nothing else: no
+ * code looks at its name. Every kind of axis is one function of u in [0, 1): its quantile. Grids walk the levels of the
+ * kinds that have levels. */
 #ifndef CLAST_CAMPAIGN_DESIGN_AXIS_H
 #define CLAST_CAMPAIGN_DESIGN_AXIS_H
 

@@ -1,5 +1,5 @@
-/* Which points a campaign has, one after the other. Streamed: a design of a million points is a counter, not a table,
- * so that the first run starts at once. Point i of a design depends on (kind, seed, i, number of points) alone. */
+/* The points of a campaign, one after the other. A design of a million points is a counter, not a table, so that the
+ * first run starts at once. Point i of a design depends on kind, seed, i and the number of points only. */
 #ifndef CLAST_CAMPAIGN_DESIGN_DESIGN_H
 #define CLAST_CAMPAIGN_DESIGN_DESIGN_H
 

@@ -1,5 +1,5 @@
-/* When a point has enough replicates. The rule looks at complete prefixes 0..n-1 of replicate numbers and at nothing
- * else: "the first n that finished" would favour quick runs (measured: 2.8 standard errors with 32 workers). */
+/* When a point has enough replicates. The rule judges complete prefixes 0..n-1 of the replicate numbers only: "the
+ * first n that finished" would favour quick runs (measured bias: 2.8 standard errors with 32 workers). */
 #ifndef CLAST_CAMPAIGN_DESIGN_STOPPING_H
 #define CLAST_CAMPAIGN_DESIGN_STOPPING_H
 

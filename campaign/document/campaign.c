@@ -238,8 +238,7 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report(node, path, "%s", error.message);
 }
 
-/* Every point is tried when there are few; else the first ones. Whoever samples a million points gets the rest as
- * notes. */
+/* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. */
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
   struct error error = {0};
@@ -280,7 +279,7 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
       snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
   if (!scene || !campaign->scene_reference[0])
-    return; /* said by document_read; nothing more can be read without it */
+    return; /* document_read has reported it; nothing more can be read without it */
   if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) != STATUS_OK) {
     document_report(scene, "scene", "%s", error.message);
     return;
@@ -382,8 +381,8 @@ struct scene *campaign_point_scene(const struct campaign *campaign, const struct
 uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate) {
   if (!campaign->independent)
     return (uint64_t)campaign->first_seed + (uint64_t)replicate;
-  /* A property of the point, not of its place in the design: a design that grows keeps its seeds. 63 bits, because
-   * SQL's integers have a sign. */
+  /* The seed follows from the point's inputs, not from its place in the design: a design that grows keeps its seeds. 63
+   * bits, because integers of SQL have a sign. */
   uint8_t identity[16];
   uint64_t item = 0, bits[4];
   scene_identity(point, 0, identity);

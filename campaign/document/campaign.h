@@ -25,8 +25,8 @@ enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREM
 
 struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */
   int kind;                   /* enum campaign_design */
-  int64_t points;             /* of the sampling kinds; 0 for grid and list, whose axes say it */
-  int64_t seed;               /* of the sampling kinds: shift, permutations, draws */
+  int64_t points;             /* of the sampling designs; 0 for grid and list, whose axes give it */
+  int64_t seed;               /* of the sampling designs: for shift, permutations and draws */
 };
 
 struct campaign {
@@ -60,8 +60,8 @@ enum { CAMPAIGN_FIRST_RUNS = 50 };
 extern const struct field_table campaign_table;        /* the plain keys */
 extern const struct field_table campaign_design_table; /* the keys of `design` as a mapping */
 
-/* All errors of the document come in *error in one go, located. STATUS_MISSING, STATUS_IO, STATUS_CONTENT.
- * Safe before farm_start: opens no HDF5, starts no thread. */
+/* Reports all errors of the document together in *error, each with its place. STATUS_MISSING, STATUS_IO,
+ * STATUS_CONTENT. May be called before farm_start: opens no HDF5 file, starts no thread. */
 status campaign_load(const char *path, struct campaign **out, struct error *error);
 /* `folder` is what `scene` is relative to (NULL: the current one). */
 status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,

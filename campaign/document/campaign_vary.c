@@ -18,7 +18,7 @@ static bool wrong(struct reading *r, document_node *node, const char *text) {
   return false;
 }
 
-/* A row like the axis' own but with other limits: a mean may lie where no value may. */
+/* A row like the input's own with other limits: the mean of a law may lie where no value may. */
 static struct field number_row(const struct reading *r, const char *unit, double minimum, double maximum,
                                unsigned flags) {
   struct field row = *r->axis->row;
@@ -122,18 +122,18 @@ static bool read_truncation(struct reading *r, bool positive) {
   document_node *node = document_key(r->node, "truncated");
   if (node && !read_pair(r, node, positive, &r->axis->lower, &r->axis->upper))
     return false;
-  /* Position in standard deviations from the middle of the law. */
+  /* Position in a law, in standard deviations from its middle. */
   struct design_axis *axis = r->axis;
   const struct field *row = axis->row;
 #define DEVIATIONS(x) (positive ? log(fmax(x, 0) / axis->a) / axis->b : ((x)-axis->a) / axis->b)
   double from = DEVIATIONS(axis->lower), to = DEVIATIONS(axis->upper);
   double least = DEVIATIONS(row->minimum), most = DEVIATIONS(row->maximum);
 #undef DEVIATIONS
-  /* Beyond 37 standard deviations a normal law's mass is no double any more. */
+  /* beyond 37 standard deviations the mass of a normal law underflows */
   if (from > 37 || to < -37)
     return wrong(r, node, "the law has nothing there: more than 37 standard deviations from its middle");
-  /* What the law reaches must be within what the input can take. Six deviations away (one draw in 1e9) it is cut
-   * without a word. */
+  /* Checks that the values of the law are within the range of the input. A law is cut six standard deviations away (one
+   * draw in 1e9) without a message. */
   if ((from < least && least > -6) || (to > most && most < 6)) {
     document_report(r->node, r->path,
                     "the law reaches values that this input cannot take (%g to %g); cut it: {..., truncated: [a, b]}",
@@ -176,7 +176,7 @@ static bool read_linked(struct reading *r, document_node *node) {
   const struct field *row = other ? field_find(r->campaign->scene->kind->inputs, other, &error) : NULL;
   if (!row)
     return wrong(r, node, other ? error.message : "expected the path of the varied input that this one follows");
-  r->axis->linked = SIZE_MAX; /* by name first: the other may come later in the document */
+  r->axis->linked = SIZE_MAX; /* by name at first: the other input may stand later in the document */
   for (size_t i = 0; i < r->campaign->axis_count; i++)
     if (r->campaign->axes[i].row == row)
       r->axis->linked = i;
@@ -204,7 +204,7 @@ static bool read_linked(struct reading *r, document_node *node) {
   return good;
 }
 
-/* The forms that are mappings: the key that stands in it says which. */
+/* The forms that are mappings: a key tells which form it is. */
 static bool read_form(struct reading *r) {
   static const char *const forms[] = {"from", "log", "uniform", "log_uniform", "normal", "lognormal", "linked", NULL};
   static const char *const keys[][4] = {{"from", "to", "n", NULL},
@@ -231,7 +231,7 @@ static bool read_form(struct reading *r) {
   const char *known[5] = {NULL};
   for (int k = 0; k < 4 && keys[form][k]; k++) {
     known[k] = keys[form][k];
-    document_key(r->node, known[k]); /* seen, wherever the reading below may end */
+    document_key(r->node, known[k]); /* marks the keys as known, wherever the reading below may end */
   }
   document_unknown_keys(r->node, r->path, known);
   if (form != 6 && !is_number(r->axis->row))
@@ -291,7 +291,7 @@ bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
   bool good = readings && campaign->axes;
   if (!good)
     document_report(vary, "vary", "no memory");
-  for (size_t i = 0; good && i < count; i++) { /* rows first, so that links find each other in any order */
+  for (size_t i = 0; good && i < count; i++) { /* the rows of all axes first, so that links work in any order */
     const char *key = NULL;
     struct error error = {0};
     readings[i].node = document_item(vary, i, &key);

@@ -16,8 +16,8 @@ struct cost_point { /* one point's own record; `work` set by the caller, the res
 };
 
 void cost_learn(struct cost_model *model, struct cost_point *point, double wall_s);
-/* Seconds of the point's next run. Before anything has finished: its work, in the engine's unit, which orders as well.
- */
+/* Seconds of the point's next run. Before any run has finished: its work in the engine's unit, which gives the same
+ * order. */
 double cost_predict(const struct cost_model *model, const struct cost_point *point);
 
 #endif

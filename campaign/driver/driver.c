@@ -177,7 +177,7 @@ static status tick(void *context, int running, struct error *error) {
   return store_tick(driver->store, error);
 }
 
-/* mpirun may kill in a second: what is there is committed first. */
+/* Commits what is there first: mpirun may kill in a second. */
 static void stopping(void *context, int signal_number) {
   struct driver *driver = context;
   (void)signal_number;
@@ -246,7 +246,7 @@ static status manage(struct driver *driver, struct farm *farm, struct driver_sum
   status ended = driver_end(driver, code == STATUS_OK ? error : NULL);
   code = code != STATUS_OK ? code : ended;
   driver_summarise(driver, summary);
-  if (code == STATUS_OK) /* after a stop there is no time to lose: the next invocation pools */
+  if (code == STATUS_OK) /* a stopped campaign pools in its next invocation */
     code = pooling_store(driver->store, summary->campaign_id, error);
   code = verdict(summary, code, error);
   status session = store_end_session(driver->store, summary->session_id, outcome_of(code),

@@ -31,18 +31,18 @@ struct driver_options {
 struct driver_summary {
   int64_t campaign_id, session_id;
   uint64_t points, points_done;   /* different ones; those whose replicates are complete */
-  uint64_t points_invalid;        /* whose values cannot be run together: no runs, counted as failures */
+  uint64_t points_invalid;        /* values that the engine cannot run together: no runs, counted as failures */
   int64_t runs_reused, runs_done; /* found in the store; computed now */
-  int64_t runs_failed;            /* gave up after their attempts, or ended in a failed state; reused ones included */
-  int64_t runs_censored;          /* ended at the hard end time: usable, but fragments may still be breaking */
-  int64_t runs_surplus;           /* of the points met, in the store and left out of statistics */
+  int64_t runs_failed;            /* given up after their attempts, or ended in a failed state; includes reused ones */
+  int64_t runs_censored;          /* ended at the hard end time: usable, but fragments may still have been breaking */
+  int64_t runs_surplus;           /* in the store, but left out of statistics */
   int64_t fields_written;         /* HDF5 files kept */
   int64_t attempts_failed;        /* of this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
   double cpu_s;                                     /* of the runs computed now */
 };
 
-/* time and memory limits of the document into *options; the rest is left alone. */
+/* Copies the campaign's time and memory limits into *options. The other options are left alone. */
 void driver_farm_options(const struct campaign *campaign, struct farm_options *options);
 
 /* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed;
@@ -51,12 +51,13 @@ void driver_farm_options(const struct campaign *campaign, struct farm_options *o
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error);
 
-/* The pieces of driver_run, for tests that play the farm themselves. */
+/* The parts of driver_run, for tests that take the farm's place. */
 struct driver;
 status driver_open(const struct campaign *campaign, struct store *store, const struct driver_options *options,
                    struct driver **out, struct error *error);
 struct farm_manager driver_manager(struct driver *driver);
-/* After the farm: the last line of progress, the open batch committed; an error that no tick has passed on yet. */
+/* After the farm has ended: prints the last progress line and commits the open batch. Returns an error that no tick has
+ * passed on yet. */
 status driver_end(struct driver *driver, struct error *error);
 void driver_summarise(const struct driver *driver, struct driver_summary *summary);
 void driver_free(struct driver *driver); /* NULL is fine; the store stays open */

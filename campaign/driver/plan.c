@@ -16,8 +16,8 @@
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000 };
 #define NOTHING ((double)NAN)
 
-/* Bytes of a run's rows beyond its masses: run and result row, eleven estimates, some twenty bins of its spectrum;
- * measured on stores of thousands of runs, and meant to a factor of 1.5. */
+/* Bytes of a run's rows besides its masses: run and result row, eleven estimates, some twenty bins of its spectrum.
+ * Measured on stores of thousands of runs; good to a factor of 1.5. */
 #define BYTES_PER_RUN      3500.0
 #define BYTES_PER_FRAGMENT 8.0
 
@@ -49,7 +49,7 @@ static status look(const struct campaign *campaign, struct store *store, struct 
   if (code != STATUS_OK)
     goto cleanup;
   plan->points = design_points(design);
-  /* Evenly spread over the design, as far as it can be walked in a moment. */
+  /* Points evenly spread over the design, as far as it can be walked in a moment. */
   uint64_t walked = plan->points < WALKED ? plan->points : WALKED, stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
   struct error first = {0};
   for (uint64_t i = 0; i < walked && design_next(design, values); i++) {

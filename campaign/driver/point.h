@@ -1,5 +1,5 @@
-/* One point of a campaign under way: which of its replicates are wanted, out, done; its prefix; what it costs. For the
- * driver only. */
+/* One point of a campaign that is being computed: the states of its replicates, its prefix, its cost. For the driver
+ * only. */
 #ifndef CLAST_CAMPAIGN_DRIVER_POINT_H
 #define CLAST_CAMPAIGN_DRIVER_POINT_H
 
@@ -13,7 +13,7 @@ struct point_replicate {
   unsigned char state;    /* enum point_state */
   bool counted;           /* stored, and not surplus */
   bool surplus;           /* stored with surplus = 1 */
-  bool fields;            /* its HDF5 file is there, or nothing is to be written: a state invalid has no body */
+  bool fields;            /* its HDF5 file exists, or there is nothing to write: an invalid run has no body */
   bool replay, replaying; /* its HDF5 file is wanted, and under way */
 };
 
@@ -38,17 +38,17 @@ struct point {
 struct point *point_create(const struct campaign *campaign, struct scene *scene);
 void point_free(struct point *point); /* NULL is fine */
 
-/* Room for replicate r: false when memory is out. */
+/* Makes space for replicate r. False when memory is refused. */
 bool point_reserve(struct point *point, int64_t replicate);
 void point_want_again(struct point *point, int64_t replicate); /* a failed attempt that may be repeated */
 void point_finish_replicate(struct point *point, int64_t replicate, enum point_state state, double value);
 /* Judges complete prefixes until one is not, or the point is decided. True when the prefix or the decision changed. */
 bool point_judge(struct point *point);
-/* The lowest replicate to send out now, -1 for none. `ahead`: also beyond the prefix, one batch at most. */
+/* The lowest replicate to send out now, -1: none. With `ahead` up to one batch beyond the prefix. */
 int64_t point_next(struct point *point, bool ahead);
 /* After the decision: marks which replicates' fields are to be computed again. */
 void point_want_fields(struct point *point, const struct campaign *campaign);
-/* Nothing more to send out and nothing out. */
+/* True when the point has nothing to send out and nothing is out. */
 bool point_over(const struct point *point);
 /* Runs of the prefix that are neither done nor failed. */
 int64_t point_missing(const struct point *point);

@@ -73,7 +73,7 @@ static status store_failure(struct driver *driver, const struct flight *flight, 
   return store_add_attempt(driver->store, &attempt, error);
 }
 
-/* Twenty failures among the first fifty mean that something is wrong with the campaign, not with chance. */
+/* Many failures among the first runs mean that something is wrong with the campaign, not with chance. */
 static status judge_failures(struct driver *driver, bool failed, struct error *error) {
   if (driver->first_done >= CAMPAIGN_FIRST_RUNS)
     return STATUS_OK;

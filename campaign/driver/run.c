@@ -8,8 +8,8 @@
 
 #include "engine/restart.h"
 
-/* Both encodings begin so. All ranks of a farm run one binary, so arrays of structs go as they lie in memory; the mark,
- * the sizes and the tables' own hashes catch anything else. */
+/* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
+ * in memory. The marks, the sizes and the hashes of the tables find anything else. */
 #define TASK_MARK   "clast task 1"
 #define RESULT_MARK "clast result 1"
 
@@ -19,7 +19,7 @@ void run_result_clear(struct run_result *result) {
   *result = (struct run_result){0};
 }
 
-/* The folder of a fields file is made by whoever writes first. */
+/* Makes the folder of the fields file if it is missing. */
 static status write_snapshot(const struct engine_kind *kind, void *run, const char *path, struct error *error) {
   const char *slash = strrchr(path, '/');
   if (slash && slash != path) {
@@ -120,7 +120,7 @@ cleanup:
   return code;
 }
 
-/* Bytes out: a first pass with bytes = NULL counts, a second writes. */
+/* Writes bytes. A first pass with bytes = NULL counts them. */
 struct writer {
   uint8_t *bytes;
   size_t size;
@@ -145,7 +145,7 @@ static void put_object(struct writer *writer, const struct field_table *table, c
   writer->size += size;
 }
 
-/* Bytes in; any shortfall or surprise turns `good` off, and everything after it reads as nothing. */
+/* Reads bytes. Anything missing or unexpected turns `good` off, and everything read after that is zero. */
 struct reader {
   const uint8_t *bytes;
   size_t left;

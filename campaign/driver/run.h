@@ -12,7 +12,7 @@ struct run_request {
   const void *inputs; /* kind->inputs->size bytes */
   uint64_t seed;
   const char *fields_path;  /* HDF5 file to write at the end, or NULL */
-  const char *restart_path; /* in process only: where it is there, the run goes on from this file; or NULL */
+  const char *restart_path; /* in process only: a restart file; if it exists, the run goes on from it. Or NULL */
 };
 
 struct run_result {

@@ -42,7 +42,7 @@ struct resuming {
   bool out_of_memory;
 };
 
-/* A run that the store has: ours if its identity is what our replicate's would be. */
+/* A run that the store has. It is a replicate of the point if its identity is the one that the replicate would have. */
 static void take_stored(void *context, const struct store_point_run *run) {
   struct resuming *resuming = context;
   struct point *point = resuming->point;
@@ -71,8 +71,8 @@ static void take_stored(void *context, const struct store_point_run *run) {
   sample_add(&driver->moments, usable ? run->value : DRIVER_NOTHING);
 }
 
-/* The prefix moved: those of its runs that were computed ahead count from now on. Nothing that counts is taken out
- * again, so that a point shared with another campaign keeps what that one decided. */
+/* After the prefix has moved: runs that were computed ahead and lie in it now count from here on. No run that counts is
+ * taken out again, so that a point shared with another campaign keeps that campaign's decision. */
 static status admit(struct driver *driver, struct point *point, struct error *error) {
   bool any = false;
   int64_t prefix = point->prefix;
@@ -105,7 +105,7 @@ status driver_window_judge(struct driver *driver, struct point *point, struct er
   return admit(driver, point, error);
 }
 
-/* Values that cannot be run together: counted, the first few told. */
+/* Values that cannot be run together are counted; a note is written for the first few. */
 static void skip_invalid(struct driver *driver, const struct error *why) {
   if (++driver->summary.points_invalid > 5)
     return;
@@ -115,7 +115,7 @@ static void skip_invalid(struct driver *driver, const struct error *why) {
   driver_note(driver, text);
 }
 
-/* What the store has of the point, and what follows from it. */
+/* Takes the point's stored runs, then judges its prefixes. */
 static status resume(struct driver *driver, struct point *point, struct error *error) {
   struct resuming resuming = {driver, point, false};
   status code = store_point_runs(driver->store, point->id, point->scene->kind, driver->row, driver->row_of_outcome,
@@ -127,7 +127,7 @@ static status resume(struct driver *driver, struct point *point, struct error *e
   code = driver_window_judge(driver, point, error);
   if (code != STATUS_OK)
     return code;
-  return admit(driver, point, error); /* a fixed number may cover what an older rule left out */
+  return admit(driver, point, error); /* a fixed number of replicates may cover runs that an older rule left out */
 }
 
 bool driver_window_expand(struct driver *driver, status *code, struct error *error) {
@@ -169,7 +169,7 @@ bool driver_window_expand(struct driver *driver, status *code, struct error *err
 void driver_window_drop(struct driver *driver, struct point *point) {
   for (size_t i = 0; i < driver->point_count; i++)
     if (driver->points[i] == point) {
-      /* Order is kept: equal costs go in design order. */
+      /* The order stays: points of equal cost go in the order of the design. */
       memmove(&driver->points[i], &driver->points[i + 1], (driver->point_count - i - 1) * sizeof *driver->points);
       driver->point_count--;
       break;

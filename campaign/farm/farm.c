@@ -142,7 +142,7 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   *out = farm;
   return STATUS_OK;
 cleanup:
-  farm->link = NULL; /* MPI stays as it is, so that the caller can still say why; mpirun ends the other ranks */
+  farm->link = NULL; /* MPI stays open, so that the caller can report why; mpirun ends the other ranks */
   farm_stop(farm, NULL);
   return result;
 }
@@ -183,7 +183,8 @@ static status finalize(void *context, int rank, const struct farm_frame *frame, 
   return STATUS_OK;
 }
 
-/* MPI_Finalize waits for the others, spinning. So they meet asleep first: the manager may have a store to close. */
+/* MPI_Finalize spins while it waits for the others. So the ranks first wait here, asleep: the manager may have a store
+ * to close. */
 static bool agree_to_finalize(struct farm *farm) {
   int count;
   if (farm->broken)

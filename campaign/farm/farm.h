@@ -1,15 +1,16 @@
 /* The farm: tasks (byte strings) out, results (byte strings) back, over slots on this machine and over MPI ranks.
  * It knows nothing of physics, scenes or stores, so that it can be tested and timed with synthetic tasks.
  *
- * One slot pool everywhere (design: joint 4): farm_start() forks a fork server before MPI_Init, any thread and HDF5;
- * the server forks slots; a slot forks one child per run (isolated) or computes itself (in process, for very short
- * runs). `-j N` alone drives N slots; under mpirun/srun every rank is such a pool and MPI links the pools to rank 0.
- * One protocol, one code path. Nobody busy-waits.
+ * There is one pool of slots everywhere. farm_start() forks a fork server before MPI_Init, any thread and HDF5. The
+ * server forks the slots. A slot forks one child per run (isolated), or computes the run itself (in process, for very
+ * short runs). `-j N` alone drives N slots; under mpirun or srun every rank is such a pool, and MPI links the pools to
+ * rank 0. Messages and code are the same in both cases. No process busy-waits.
  *
- * Measured by bench_farm on two cores shared with other work (400 tasks, lognormal, mean 50 ms), of the time the kernel
- * gave: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at mean 1 s dearest first. No-op runs without a
- * store: 640 000-970 000/s in process, 3 200-4 000/s isolated: a fork costs half a millisecond of a slot. So isolated
- * is the default, and in process pays for runs below some 10 ms. */
+ * Measured by bench_farm on two cores shared with other work (400 tasks, lognormal, mean 50 ms), as a share of the
+ * time that the kernel gave: 0.975-0.982 in process, 0.954-0.975 isolated, 0.992-0.997 at a mean of 1 s with the most
+ * expensive first. Empty runs without a store: 640 000-970 000/s in process, 3 200-4 000/s isolated, because a fork
+ * costs half a millisecond of a slot. So isolated is the default, and in process is better for runs below some 10 ms.
+ */
 #ifndef CLAST_CAMPAIGN_FARM_FARM_H
 #define CLAST_CAMPAIGN_FARM_FARM_H
 
@@ -19,32 +20,32 @@
 
 #include "schemas/status.h"
 
-/* Runs in a slot or its child: task bytes in, malloc'd result bytes out. Called with nothing of MPI or the store open.
- * A non-zero status with *error filled is an attempt that failed in an orderly way (reason "exit"). */
+/* Computes one task in a slot or its child: task bytes in, malloc'd result bytes out. Neither MPI nor the store is open
+ * here. A status other than STATUS_OK, with *error filled, is an attempt that failed in order (reason "exit"). */
 typedef status (*farm_work)(const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
                             struct error *error);
 
 struct farm_options {
-  int slots;           /* per rank; 0 = one per core this process may use (1 under MPI) */
-  bool in_process;     /* slots compute themselves: no fork per run, a crash costs the slot's current run */
-  double time_limit_s; /* wall time per attempt, 0 = none; SIGTERM then SIGKILL */
-  size_t memory_limit; /* bytes per attempt (RLIMIT_AS over the base), 0 = none */
+  int slots;           /* per rank; 0: one per core that this process may use (under MPI: one) */
+  bool in_process;     /* runs are computed in the slot's process: no fork per run, but a crash ends the slot as well */
+  double time_limit_s; /* wall time of an attempt, 0: none. Then SIGTERM, and SIGKILL half a second later */
+  size_t memory_limit; /* bytes of an attempt beyond those of the slot (RLIMIT_AS), 0: none */
   bool use_mpi;        /* decided by farm_under_mpi() */
   /* Zero means the default in all of these. */
-  double
-      grace_s; /* after SIGINT, SIGTERM, SIGHUP: running tasks get this long; 2, under MPI 0.5 (mpirun kills after 1) */
-  double drain_s; /* the same after SIGUSR1, the batch system's early warning, and after report() said STOPPED; 120 */
-  double lost_after_s; /* a rank silent this long is lost (each says something every 2 s); 60 */
+  double grace_s; /* time that running tasks get after SIGINT, SIGTERM or SIGHUP; 2, under MPI 0.5, because mpirun kills
+                     after 1 */
+  double drain_s; /* the same after SIGUSR1, which a batch system sends early, and after report() returned
+                     STATUS_STOPPED; 120 */
+  double lost_after_s; /* a rank is lost when it has sent nothing for so long (it sends something every 2 s); 60 */
 };
 
 struct farm;
 
-/* True when started by mpirun, srun or another PMI launcher with more than... any number of ranks (environment only).
+/* True when started by mpirun, srun or another PMI launcher, with any number of ranks. Looks at the environment only.
  */
 bool farm_under_mpi(void);
 
-/* Must be the first thing a computing process does: before MPI_Init, threads and HDF5. Forks the server and the slots.
- * Every rank calls it. */
+/* Forks the server and the slots. Every rank calls it, before MPI_Init, any thread and HDF5. */
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error);
 int farm_rank(const struct farm *farm); /* 0 = manager */
 int farm_ranks(const struct farm *farm);
@@ -74,22 +75,23 @@ struct farm_report {
 /* The manager's callbacks, called from farm_run on rank 0 only. */
 struct farm_manager {
   void *context;
-  /* Give the next task (true) or none at the moment (false). The farm asks again after every report. */
+  /* Gives the next task (true), or says that there is none at the moment (false). The farm asks again after every
+   * report. */
   bool (*next)(void *context, struct farm_task *task);
-  /* A task ended, one way or another: exactly once per task, but for tasks taken back because the farm stops (they were
-   * not run). STATUS_OK goes on. STATUS_STOPPED drains: no new tasks, running ones finish within drain_s and are
-   * reported. Anything else ends the farm at once with that status and no more reports. */
+  /* A task has ended. Called exactly once per task; not for tasks that were taken back, unbegun, because the farm
+   * stops. STATUS_OK goes on. STATUS_STOPPED drains: no new tasks go out, and running ones have drain_s to finish and
+   * are reported. Any other status ends the farm at once, without further reports. */
   status (*report)(void *context, const struct farm_report *report, struct error *error);
-  /* At most every 100 ms, also while nothing happens: progress, store_tick. running/waiting: tasks out on slots. */
+  /* Every 100 ms at most, also while nothing happens: for a progress line and store_tick. `running`: tasks on slots. */
   status (*tick)(void *context, int running, struct error *error);
-  /* The first stop signal has come (or the launcher or a rank has died): commit at once, mpirun may kill in a second.
-   * Before any grace; may be NULL. Reports of tasks that still finish in time follow. */
+  /* The first stop signal has come, or the launcher or a rank has died. Commit at once: mpirun may kill in a second.
+   * Reports of tasks that still finish in time follow. May be NULL. */
   void (*stopping)(void *context, int signal_number);
 };
 
-/* Runs until next() gives nothing and nothing is out. Rank 0 manages; the others serve until told to stop and return
- * the manager's final status. First SIGINT/SIGTERM (SIGUSR1 too): no new tasks, what runs is finished if quick (grace)
- * or dropped, STATUS_STOPPED. Second: at once. */
+/* Runs until next() gives nothing and no task is out. Rank 0 manages; the others serve until it ends them, and return
+ * its final status. After the first SIGINT, SIGTERM, SIGHUP or SIGUSR1 no new tasks go out, running ones get a while to
+ * finish, and the status is STATUS_STOPPED. A second signal ends the farm at once. */
 status farm_run(struct farm *farm, const struct farm_manager *manager, struct error *error);
 
 /* Utilisation of the last farm_run: sum of task CPU over slots x wall from first dispatch to last report. */

@@ -47,25 +47,27 @@ struct farm_result {
   uint64_t size;
 };
 
-/* A growing byte queue. data[begin..end) is what is in it; `begin` moves by whole frames, so that it stays aligned. */
+/* A growing byte queue. data[begin..end) is its content; `begin` moves by whole frames, so that it stays aligned. */
 struct farm_bytes {
   uint8_t *data;
   size_t begin, end, capacity;
 };
 
-/* Room for `more` bytes at data+end; false when memory is refused (nothing changed). Moves what is in it. */
+/* Makes space for `more` bytes at data+end. May move the content. False when memory is refused; nothing has changed
+ * then. */
 bool farm_frame_reserve(struct farm_bytes *bytes, size_t more);
-void farm_frame_free(struct farm_bytes *bytes); /* and leaves it empty, ready for use */
-/* Keeps a small buffer for the next use, gives a large one back. Call when empty. */
+void farm_frame_free(struct farm_bytes *bytes); /* leaves the queue empty and ready for use */
+/* For an empty queue: keeps a small buffer for the next use and frees a large one. */
 void farm_frame_trim(struct farm_bytes *bytes);
 
-/* Append a frame whose payload is the parts one after the other. False when memory is refused or it is too large. */
+/* Appends a frame. Its payload is the parts one after the other. False when memory is refused or the payload is too
+ * large. */
 bool farm_frame_append(struct farm_bytes *bytes, enum farm_frame_kind kind, uint16_t ticket, uint64_t handle, int parts,
                        const struct iovec *part);
-/* Take the first frame out: 1 found (payload borrowed until the next reserve or append), 0 not all there yet, -1 torn.
- */
+/* Takes the first frame out of the queue. 1: found, its payload is borrowed until the next reserve or append. 0: not
+ * all of it has arrived. -1: torn. */
 int farm_frame_next(struct farm_bytes *bytes, struct farm_frame *frame, const uint8_t **payload);
-/* How many more bytes the first, unfinished frame needs (at least `minimum`): what to reserve before reading. */
+/* Bytes to reserve before reading: those that the first, unfinished frame lacks, at least `minimum`. */
 size_t farm_frame_missing(const struct farm_bytes *bytes, size_t minimum);
 
 #endif

@@ -1,6 +1,6 @@
-/* The child is forked from the slot, which has neither threads nor MPI nor open files of HDF5: 0.1-0.3 ms, against 5 ms
- * for an executable that loads HDF5. The answer comes through a pipe, the verdict from wait4: exit code, signal, CPU
- * seconds and peak memory as the kernel saw them. */
+/* The child is forked from the slot, which has no threads, no MPI and no open HDF5 files. That takes 0.1-0.3 ms; an
+ * executable that loads HDF5 takes 5 ms. The answer comes through a pipe. Exit code, signal, CPU seconds and peak
+ * memory come from wait4. */
 #include "campaign/farm/isolate.h"
 
 #include <errno.h>
@@ -86,7 +86,7 @@ static _Noreturn void compute(const struct farm_isolate *isolate, const struct f
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
-  setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}); /* a thousand crashes must not fill the disk */
+  setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0}); /* core files of a thousand crashes would fill the disk */
   if (setup->options.memory_limit)
     farm_isolate_limit_memory(setup->options.memory_limit);
 
@@ -95,7 +95,7 @@ static _Noreturn void compute(const struct farm_isolate *isolate, const struct f
   struct error error = {0};
   const int64_t verdict = setup->work(task, size, &result, &result_size, &error);
   if (setup->options.memory_limit)
-    farm_isolate_limit_memory(0); /* the limit is on the work, not on its answer */
+    farm_isolate_limit_memory(0); /* the limit holds for the work, not for its answer */
 
   struct iovec part[2] = {{.iov_base = (void *)&verdict, .iov_len = sizeof verdict},
                           {.iov_base = result, .iov_len = result_size}};
@@ -147,7 +147,8 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
     const int asked_ms = timeout_ms(until);
     const int64_t before = clock_ns();
     const int ready = poll(fds, 3, asked_ms);
-    if (asked_ms >= 0 && until != INT64_MAX) { /* stopped (Ctrl-Z) meanwhile? That time is not the run's. */
+    if (asked_ms >= 0 &&
+        until != INT64_MAX) { /* time during which all was stopped (Ctrl-Z) does not count for the run */
       const int64_t late = clock_ns() - before - asked_ms * CLOCK_MS;
       if (late > CLOCK_S)
         until += late;
@@ -166,7 +167,7 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
       if (ended == child)
         break;
       if (ended < 0 && errno != EINTR) {
-        *wait_status = SIGKILL; /* somebody else waited for it: no verdict, so a crash */
+        *wait_status = SIGKILL; /* another waitpid has taken its status: treated as a crash */
         break;
       }
     }

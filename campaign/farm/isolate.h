@@ -1,4 +1,4 @@
-/* One run in a child process of its own: limits, deadline, and nothing it does can hurt the slot. */
+/* One run in its own child process, with limits and a deadline. Nothing that the run does can hurt the slot. */
 #ifndef CLAST_CAMPAIGN_FARM_ISOLATE_H
 #define CLAST_CAMPAIGN_FARM_ISOLATE_H
 
@@ -8,7 +8,7 @@
 struct farm_isolate {
   int channel;      /* the slot's: when it closes, the child is killed and the slot ends */
   int child_signal; /* signalfd of SIGCHLD */
-  int result[2];    /* pipe, renewed after a run that left it in doubt */
+  int result[2];    /* pipe; renewed after a run that may have left something in it */
   struct farm_bytes in;
 };
 

@@ -129,7 +129,7 @@ static status receive(struct farm_link *link, bool *any, struct error *error) {
   return STATUS_OK;
 }
 
-/* An earlier message of this rank has not all arrived yet. */
+/* an earlier message of this rank has not arrived completely */
 static bool overtakes(const struct farm_link *link, const struct message *message) {
   for (const struct message *before = link->arriving; before != message; before = before->next)
     if (before->rank == message->rank)

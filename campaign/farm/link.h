@@ -16,16 +16,17 @@ struct farm_link;
 status farm_link_open(struct farm_link **out, struct error *error);
 int farm_link_rank(const struct farm_link *link);
 int farm_link_ranks(const struct farm_link *link);
-/* Queues a frame for a rank. STATUS_MEMORY. */
+/* Queues a frame for a rank. STATUS_MEMORY when memory is refused. */
 status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
                       const struct iovec *part, struct error *error);
 status farm_link_flush(struct farm_link *link, struct error *error);
-/* Takes in what has arrived: calls `take` for every frame. *count of messages received, sends completed. */
+/* Calls `take` for every frame that has arrived. *count: messages received and sends completed. */
 status farm_link_drain(struct farm_link *link,
                        status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
                                       struct error *error),
                        void *context, int *count, struct error *error);
-/* MPI_Finalize when `together` (all ranks do the same now), else MPI_Abort with this exit code: does not return. */
+/* Calls MPI_Finalize when `together` (all ranks call it now). Else calls MPI_Abort with this exit code and does not
+ * return. */
 void farm_link_close(struct farm_link *link, bool together, int exit_code);
 
 #endif

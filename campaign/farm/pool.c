@@ -15,7 +15,8 @@
 #include "campaign/farm/server.h"
 #include "schemas/clock.h"
 
-/* Tasks shorter than this are sent ahead in numbers, so that a slot never starves while the manager handles a batch. */
+/* Several tasks shorter than this are sent ahead to a slot, so that it never waits while the manager handles a batch.
+ */
 #define AHEAD_NS  (500 * CLOCK_MS / 1000)
 #define IDLE_ENDS 5 /* of a slot in a row without a task: it is given up */
 
@@ -115,7 +116,8 @@ static void flush(struct slot *slot) {
     if (n < 0 && errno == EINTR)
       continue;
     if (n <= 0)
-      return; /* full: poll tells when not; dead: the server tells */
+      return; /* either the channel is full, and poll reports when it is not; or the slot has ended, and the server
+                 reports that */
     slot->out.begin += (size_t)n;
   }
   if (slot->out.begin == slot->out.end)
@@ -253,7 +255,7 @@ static int take_result(struct farm_pool *pool, struct slot *slot) {
 
   struct farm_job *job = farm_job_take(&slot->jobs, frame.handle);
   if (!job)
-    return 1; /* cannot be: it was neither withdrawn nor lost if the slot ran it */
+    return 1; /* unreachable: a job that the slot ran is in its queue */
   slot->idle_ends = 0;
   pool->mean_wall_s += 0.1 * (result.wall_s - pool->mean_wall_s);
   ended(pool, job, &result, payload + sizeof result, (const char *)payload + sizeof result + result.size,
@@ -454,7 +456,8 @@ bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns) {
       continue;
     if (listen_to(pool, slot))
       continue;
-    /* Closed: it is dead and the server will say why. Nonsense: kill it, and the server will say so. */
+    /* Closed: the slot has ended, and the server reports why. Nonsense: the slot is killed, and the server reports
+     * that. */
     if (pool->control >= 0)
       farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
     close(slot->channel);

@@ -51,18 +51,18 @@ struct farm {
   int rank, ranks;
   struct farm_peer *peers; /* manager: one per rank */
   struct farm_usage usage;
-  /* Stop signals, taken through a file so that no handler and no global is needed. */
+  /* Stop signals, read from a file: no handler and no global is needed. */
   int signals;
   sigset_t mask_before;
-  pid_t launcher; /* parent at the start: when it changes under MPI, mpirun is dead */
-  bool broken;    /* some rank is lost or does not answer: MPI_Finalize would hang */
+  pid_t launcher; /* parent at the start; if it changes under MPI, mpirun has died */
+  bool broken;    /* a rank is lost or does not answer: MPI_Finalize would hang */
   status last;    /* of the last run */
 };
 
 status farm_manage(struct farm *farm, const struct farm_manager *manager, struct error *error);
 status farm_serve(struct farm *farm, struct error *error);
 
-/* The next stop signal that came, 0 = none. Also SIGTERM, once, when the launcher has died. */
+/* The next stop signal that has come; 0: none. Also SIGTERM, once, when the launcher has died. */
 int farm_signal(struct farm *farm);
 
 #endif

@@ -1,4 +1,5 @@
-/* A rank other than 0: its pool works, its main process carries tasks and results between the pool and the manager. */
+/* A rank other than 0: its pool computes, its main process carries tasks and results between the pool and the manager.
+ */
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,7 +71,8 @@ static status take(void *context, int rank, const struct farm_frame *frame, cons
   return STATUS_OK;
 }
 
-/* Between two signals or after the launcher's death the manager may be gone for good: then leave alone. */
+/* Passes signals on to the manager. True: the launcher has died and the manager has not ended this rank in 2 s, so that
+ * the rank ends by itself. */
 static bool leave_alone(struct server *server, int64_t *leave_ns) {
   const int number = farm_signal(server->farm);
   if (number)

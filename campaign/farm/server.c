@@ -102,8 +102,8 @@ static _Noreturn void end(struct server *server) {
   _exit(STATUS_OK);
 }
 
-/* mpirun binds each of up to two ranks to one core, and what it forks inherits that. Slots that would share cores get
- * all the cores there are instead (the kernel cuts this down to what the job's cpuset allows). */
+/* mpirun binds a rank to one core when there are two ranks or fewer, and what it forks inherits that. Slots that would
+ * share cores get all cores instead; the kernel cuts this down to the job's cpuset. */
 static void spread(int slots) {
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) != 0 || CPU_COUNT(&set) >= slots)

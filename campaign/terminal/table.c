@@ -35,7 +35,7 @@ struct table *table_new(enum table_format format, FILE *out) {
   static const struct table failed = {.out_of_memory = true, .broken = true};
   struct table *table = calloc(1, sizeof *table);
   if (!table)
-    return (struct table *)&failed; /* only ever read: every call below returns at once when broken */
+    return (struct table *)&failed; /* never written: every call below returns at once when `broken` */
   table->format = format;
   table->out = out;
   return table;
@@ -152,7 +152,7 @@ static void header(struct table *table) {
   }
 }
 
-/* What a write to `out` failed with: a pipe whose reader went away says so for ever, errno may be gone by now. */
+/* Why a write to `out` failed. errno may have changed since; a pipe whose reader has gone still reports it. */
 static int failure_of(FILE *out, int code) {
   struct pollfd pipe_end = {.fd = fileno(out), .events = POLLOUT};
   if (poll(&pipe_end, 1, 0) == 1 && (pipe_end.revents & POLLERR))
@@ -248,7 +248,7 @@ void table_text(struct table *table, const char *text) {
     add_cell(table, (struct cell){CELL_TEXT, text, text});
     return;
   }
-  char *line = copy(table, text); /* a row stays one line, and no text from a file drives the terminal */
+  char *line = copy(table, text); /* a row stays one line, and a text from a file cannot control the terminal */
   if (!line)
     return;
   for (char *c = line; *c; c++)

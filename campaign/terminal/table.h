@@ -37,10 +37,10 @@ status table_end(struct table *table, struct error *error);
 
 void table_drop(struct table *table); /* frees it, prints nothing that was not printed yet */
 
-/* True once the reader has gone away or writing failed: no need to make more rows. */
+/* True when the reader has gone or writing has failed: more rows are not needed. */
 bool table_broken(const struct table *table);
 
-/* Flush stdout; the same verdict as table_end. For commands that print text. */
+/* Flushes stdout; returns the same statuses as table_end. For commands that print text. */
 status table_flush(FILE *out, struct error *error);
 
 /* Options every command with a table has. */
@@ -55,7 +55,7 @@ struct table_options {
    "Print CSV with a header line, SI units."}
 /* clang-format on */
 status table_choose(const struct table_options *options, enum table_format *format, struct error *error);
-/* For what is text whatever is asked for: STATUS_USAGE when a format was. */
+/* For output that is always text: STATUS_USAGE when --json or --csv was given. */
 status table_text_only(const struct table_options *options, const char *what, struct error *error);
 
 #endif
