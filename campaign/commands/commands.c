@@ -1,3 +1,4 @@
+/* The list of commands. */
 #include "campaign/commands/commands.h"
 
 #include <string.h>

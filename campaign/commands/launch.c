@@ -1,3 +1,4 @@
+/* Farm, driver, summary and the table at the end. */
 #include "campaign/commands/launch.h"
 
 #include <inttypes.h>

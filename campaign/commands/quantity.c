@@ -1,3 +1,4 @@
+/* Reads the quantity from groups of runs, or fits the exponent of each point. */
 #include "campaign/commands/quantity.h"
 
 #include <math.h>

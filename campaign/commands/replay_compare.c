@@ -1,3 +1,4 @@
+/* Compares values by their bits, column by column. */
 #include "campaign/commands/replay_compare.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* Prints a run's results: long for people, wide for programs. */
 #include "campaign/commands/results.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Signals and the restart file. */
 #include "campaign/commands/resume.h"
 
 #include <signal.h>

@@ -1,3 +1,4 @@
+/* Writes the snapshot that is due, and the list of all. */
 #include "campaign/commands/snapshots.h"
 
 #include <math.h>

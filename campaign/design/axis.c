@@ -1,3 +1,4 @@
+/* Quantiles of every kind of axis. */
 #include "campaign/design/axis.h"
 
 #include <gsl/gsl_cdf.h>

@@ -1,3 +1,4 @@
+/* Walks the points of every kind of design. */
 #include "campaign/design/design.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The stopping rule: batches of replicates until the interval is narrow enough. */
 #include "campaign/design/stopping.h"
 
 #include "analysis/statistics/sample.h"

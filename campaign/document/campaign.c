@@ -1,3 +1,4 @@
+/* The keys of a campaign as field tables, and the reader of the document. */
 #include "campaign/document/campaign.h"
 
 #include <math.h>

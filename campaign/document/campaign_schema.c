@@ -1,3 +1,4 @@
+/* Fills the template of the JSON Schema. */
 #include "campaign/document/campaign_schema.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Reads every form of the key `vary` and links the axes. */
 #include "campaign/document/campaign_vary.h"
 
 #include <math.h>

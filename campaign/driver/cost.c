@@ -1,3 +1,4 @@
+/* A fitted rate of work, corrected by each point's own runs. */
 #include "campaign/driver/cost.h"
 
 void cost_learn(struct cost_model *model, struct cost_point *point, double wall_s) {

@@ -1,3 +1,5 @@
+/* The life of a campaign's driver: opening, the whole run with farm and store, progress, the end. Runs go out in send.c
+ * and come back in receive.c. */
 #include "campaign/driver/private.h"
 
 #include <stdio.h>

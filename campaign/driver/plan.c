@@ -1,3 +1,4 @@
+/* Walks the design, times a trial run, and prints the plan as text or JSON. */
 #include "campaign/driver/plan.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The states of a point's replicates, and which of them is next. */
 #include "campaign/driver/point.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Fits the exponents of every point that has runs and no estimates yet. */
 #include "campaign/driver/pooling.h"
 
 #include <stdlib.h>

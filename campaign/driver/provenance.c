@@ -1,3 +1,4 @@
+/* Writes the facts as a JSON object. */
 #include "campaign/driver/provenance.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Computes one run, and encodes tasks and results as bytes. */
 #include "campaign/driver/run.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* Starts and ends the farm of one rank: pool, signals, MPI, introduction of the ranks. */
 #include "campaign/farm/farm.h"
 
 #include <errno.h>

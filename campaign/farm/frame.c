@@ -1,3 +1,4 @@
+/* Builds and checks frames in a growing buffer of bytes. */
 #include "campaign/farm/frame.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Queues and the table of jobs. */
 #include "campaign/farm/job.h"
 
 #include <stdlib.h>

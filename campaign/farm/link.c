@@ -1,3 +1,4 @@
+/* Non-blocking messages between ranks: collects frames, sends, receives, finalizes MPI. */
 #include "campaign/farm/link.h"
 
 #include <mpi.h>

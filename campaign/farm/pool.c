@@ -1,3 +1,4 @@
+/* Sends jobs to slots, takes results in, replaces slots that end, keeps deadlines of runs in process. */
 #include "campaign/farm/pool.h"
 
 #include <errno.h>

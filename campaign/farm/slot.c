@@ -1,3 +1,4 @@
+/* The loop of a slot: takes tasks, computes them or has them computed in a child, sends results in batches. */
 #include "campaign/farm/slot.h"
 
 #include <errno.h>

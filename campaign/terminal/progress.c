@@ -1,3 +1,4 @@
+/* The progress bar of a terminal, or plain lines for a log. */
 #include "campaign/terminal/progress.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Rows of a query as cells of a table, with the units of the store's columns. */
 #include "campaign/terminal/rows.h"
 
 #include <stdlib.h>
