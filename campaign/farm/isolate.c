@@ -135,6 +135,19 @@ static int timeout_ms(int64_t until_ns) {
   return left > 3600 * CLOCK_S ? 3600000 : (int)(left / CLOCK_MS) + 1;
 }
 
+/* True when the child has ended; then *wait_status and *usage are filled. */
+static bool has_ended(const struct farm_isolate *isolate, pid_t child, int *wait_status, struct rusage *usage) {
+  struct signalfd_siginfo info;
+  while (read(isolate->child_signal, &info, sizeof info) > 0) {
+  }
+  const pid_t ended = wait4(child, wait_status, WNOHANG, usage);
+  if (ended < 0 && errno != EINTR) {
+    *wait_status = SIGKILL; /* another waitpid has taken its status: treated as a crash */
+    return true;
+  }
+  return ended == child;
+}
+
 /* Waits for the child's end; false: it was ended at its deadline. */
 static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit_ns, int *wait_status,
                         struct rusage *usage) {
@@ -146,31 +159,21 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
                             {.fd = isolate->channel, .events = POLLRDHUP}};
     const int asked_ms = timeout_ms(until);
     const int64_t before = clock_ns();
-    const int ready = poll(fds, 3, asked_ms);
-    if (asked_ms >= 0 &&
-        until != INT64_MAX) { /* time during which all was stopped (Ctrl-Z) does not count for the run */
+    if (poll(fds, 3, asked_ms) <= 0)
+      fds[0].revents = fds[1].revents = fds[2].revents = 0;
+    if (asked_ms >= 0) { /* time during which all was stopped (Ctrl-Z) does not count for the run */
       const int64_t late = clock_ns() - before - asked_ms * CLOCK_MS;
       if (late > CLOCK_S)
         until += late;
     }
-    if (ready > 0 && (fds[2].revents & (POLLRDHUP | POLLHUP | POLLERR))) {
-      kill(child, SIGKILL); /* the main process is gone */
+    if (fds[2].revents & (POLLRDHUP | POLLHUP | POLLERR)) {
+      kill(child, SIGKILL); /* the main process has ended */
       _exit(STATUS_OK);
     }
-    if (ready > 0 && (fds[1].revents & POLLIN))
+    if (fds[1].revents & POLLIN)
       drain_pipe(isolate);
-    if (ready > 0 && (fds[0].revents & POLLIN)) {
-      struct signalfd_siginfo info;
-      while (read(isolate->child_signal, &info, sizeof info) > 0) {
-      }
-      const pid_t ended = wait4(child, wait_status, WNOHANG, usage);
-      if (ended == child)
-        break;
-      if (ended < 0 && errno != EINTR) {
-        *wait_status = SIGKILL; /* another waitpid has taken its status: treated as a crash */
-        break;
-      }
-    }
+    if ((fds[0].revents & POLLIN) && has_ended(isolate, child, wait_status, usage))
+      break;
     if (clock_ns() >= until) {
       kill(child, in_time ? SIGTERM : SIGKILL);
       until = in_time ? clock_ns() + TERM_GRACE_NS : INT64_MAX;

@@ -113,23 +113,40 @@ static void spread(int slots) {
   sched_setaffinity(0, sizeof set, &set);
 }
 
-static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pid_t parent) {
-  farm_slot_die_with(parent);
-  /* Signals typed at a terminal or sent by mpirun reach the whole group: what they mean is decided by the main process.
-   */
+/* Signals typed at a terminal or sent by mpirun reach the whole group; the main process decides what they mean. Data is
+ * printed by the main process alone: what a library prints in a run goes to stderr. */
+static void detach(void) {
   const int ignored[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGQUIT};
   for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
     signal(ignored[i], SIG_IGN);
   signal(SIGPIPE, SIG_DFL);
   signal(SIGCHLD, SIG_DFL);
-  /* Data goes to stdout by the main process alone: whatever a library prints in a run goes to stderr. */
   dup2(STDERR_FILENO, STDOUT_FILENO);
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (nothing >= 0) {
-    dup2(nothing, STDIN_FILENO);
-    if (nothing > STDERR_FILENO)
-      close(nothing);
-  }
+  if (nothing < 0)
+    return;
+  dup2(nothing, STDIN_FILENO);
+  if (nothing > STDERR_FILENO)
+    close(nothing);
+}
+
+/* One message of the main process. Nonsense, or the end of `control`, ends the server and its slots. */
+static void obey(struct server *server) {
+  struct farm_server_message message;
+  const ssize_t n = recv(server->control, &message, sizeof message, 0);
+  if (n < 0 && errno == EINTR)
+    return;
+  if (n != (ssize_t)sizeof message || message.slot < 0 || message.slot >= server->setup->options.slots)
+    end(server);
+  if (message.verb == FARM_SERVER_SPAWN)
+    spawn(server, message.slot);
+  if (message.verb == FARM_SERVER_KILL && message.pid > 0 && server->pids[message.slot] == message.pid)
+    kill(message.pid, SIGKILL);
+}
+
+static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pid_t parent) {
+  farm_slot_die_with(parent);
+  detach();
   spread(setup->options.slots);
   sigset_t set;
   sigemptyset(&set);
@@ -142,24 +159,15 @@ static _Noreturn void serve(const struct farm_slot_setup *setup, int control, pi
     _exit(STATUS_MEMORY);
   for (int slot = 0; slot < setup->options.slots; slot++)
     spawn(&server, slot);
+
   for (;;) {
     struct pollfd fds[2] = {{.fd = control, .events = POLLIN}, {.fd = server.child_signal, .events = POLLIN}};
     if (poll(fds, 2, -1) < 0 && errno != EINTR)
       end(&server);
     if (fds[1].revents & POLLIN)
       reap(&server);
-    if (fds[0].revents) {
-      struct farm_server_message message;
-      const ssize_t n = recv(control, &message, sizeof message, 0);
-      if (n < 0 && errno == EINTR)
-        continue;
-      if (n != (ssize_t)sizeof message || message.slot < 0 || message.slot >= setup->options.slots)
-        end(&server);
-      if (message.verb == FARM_SERVER_SPAWN)
-        spawn(&server, message.slot);
-      if (message.verb == FARM_SERVER_KILL && message.pid > 0 && server.pids[message.slot] == message.pid)
-        kill(message.pid, SIGKILL);
-    }
+    if (fds[0].revents)
+      obey(&server);
   }
 }
 

@@ -108,54 +108,77 @@ static bool claim(struct farm_slot_record *record, const struct farm_frame *fram
   return false;
 }
 
+/* If the machine runs out of memory, the kernel shall end a run and not the manager. Every process may raise its score.
+ */
+static void offer_to_oom_killer(void) {
+  const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
+  if (score < 0)
+    return;
+  if (write(score, "500", 3) != 3)
+    errno = 0;
+  close(score);
+}
+
+struct serving {
+  const struct farm_slot_setup *setup;
+  int slot, channel;
+  struct farm_isolate isolate;
+  struct farm_bytes in, out;
+  int64_t memory_floor, flushed_ns;
+};
+
+/* Computes every task in the buffer, sending results now and then. */
+static void run_tasks(struct serving *s) {
+  struct farm_slot_record *const record = &s->setup->records[s->slot];
+  struct farm_frame frame;
+  const uint8_t *payload;
+  int got;
+  while ((got = farm_frame_next(&s->in, &frame, &payload)) == 1) {
+    if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame))
+      continue;
+    const bool written = s->setup->options.in_process
+                             ? run_here(s->setup, s->slot, frame.handle, payload, frame.size, &s->memory_floor, &s->out)
+                             : farm_isolate_run(&s->isolate, s->setup, s->slot, frame.handle, payload, frame.size,
+                                                &s->out);
+    if (!written)
+      _exit(STATUS_MEMORY);
+    atomic_store(&record->running, 0);
+    const int64_t now = clock_ns();
+    if (now - s->flushed_ns > FLUSH_AFTER_NS || s->out.end - s->out.begin > FLUSH_AT_BYTES) {
+      flush(s->channel, &s->out);
+      s->flushed_ns = now;
+    }
+  }
+  if (got < 0)
+    _exit(STATUS_INTERNAL);
+  flush(s->channel, &s->out);
+}
+
+/* Waits for more bytes. The end of the channel ends the slot. */
+static void read_tasks(struct serving *s) {
+  if (s->in.begin == s->in.end)
+    farm_frame_trim(&s->in);
+  if (!farm_frame_reserve(&s->in, farm_frame_missing(&s->in, 4096)))
+    _exit(STATUS_MEMORY);
+  ssize_t n;
+  do
+    n = recv(s->channel, s->in.data + s->in.end, s->in.capacity - s->in.end, 0);
+  while (n < 0 && errno == EINTR);
+  if (n <= 0)
+    _exit(STATUS_OK);
+  s->in.end += (size_t)n;
+  s->flushed_ns = clock_ns();
+}
+
 _Noreturn void farm_slot_serve(const struct farm_slot_setup *setup, int slot, int channel, pid_t parent) {
   farm_slot_die_with(parent);
-  /* If the machine runs out of memory, a run is to be ended, not the manager. Raising is allowed to everybody. */
-  const int score = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
-  if (score >= 0) {
-    if (write(score, "500", 3) != 3)
-      errno = 0;
-    close(score);
-  }
-  struct farm_slot_record *const record = &setup->records[slot];
-  struct farm_bytes in = {0}, out = {0};
-  struct farm_isolate isolate;
-  int64_t memory_floor = 0, flushed = clock_ns();
-  peak_memory(&memory_floor);
-  if (!setup->options.in_process && !farm_isolate_open(&isolate, channel))
+  offer_to_oom_killer();
+  struct serving serving = {.setup = setup, .slot = slot, .channel = channel, .flushed_ns = clock_ns()};
+  peak_memory(&serving.memory_floor);
+  if (!setup->options.in_process && !farm_isolate_open(&serving.isolate, channel))
     _exit(STATUS_MEMORY);
   for (;;) {
-    struct farm_frame frame;
-    const uint8_t *payload;
-    int got;
-    while ((got = farm_frame_next(&in, &frame, &payload)) == 1) {
-      if (frame.kind != FARM_FRAME_TASK || !claim(record, &frame))
-        continue;
-      const bool written = setup->options.in_process
-                               ? run_here(setup, slot, frame.handle, payload, frame.size, &memory_floor, &out)
-                               : farm_isolate_run(&isolate, setup, slot, frame.handle, payload, frame.size, &out);
-      if (!written)
-        _exit(STATUS_MEMORY);
-      atomic_store(&record->running, 0);
-      const int64_t now = clock_ns();
-      if (now - flushed > FLUSH_AFTER_NS || out.end - out.begin > FLUSH_AT_BYTES) {
-        flush(channel, &out);
-        flushed = now;
-      }
-    }
-    if (got < 0)
-      _exit(STATUS_INTERNAL);
-    flush(channel, &out);
-    if (in.begin == in.end)
-      farm_frame_trim(&in);
-    if (!farm_frame_reserve(&in, farm_frame_missing(&in, 4096)))
-      _exit(STATUS_MEMORY);
-    const ssize_t n = recv(channel, in.data + in.end, in.capacity - in.end, 0);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      _exit(STATUS_OK);
-    in.end += (size_t)n;
-    flushed = clock_ns();
+    run_tasks(&serving);
+    read_tasks(&serving);
   }
 }
