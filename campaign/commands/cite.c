@@ -35,17 +35,15 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
+  if (code)
+    return code;
   struct scene *scene = NULL;
-  if (!code)
-    code = scene_load(line->arguments[0], NULL, &scene, error);
-  for (size_t i = 0; !code && i < options->set.count; i++)
-    code = explain_override(scene, options->set.items[i], error);
-  if (!code)
-    code = scene_check(scene, error);
+  code = explain_load(line->arguments[0], &options->set, &scene, error);
   if (code) {
     scene_free(scene);
     return code;
   }
+
   struct table *table = table_new(format, stdout);
   table_column(table, "what", NULL);
   table_column(table, "source", NULL);

@@ -139,10 +139,9 @@ static status list_inputs(const struct scene *scene, enum table_format format, s
   return table_end(table, error);
 }
 
-static status explain_scene(struct scene *scene, enum table_format format, struct error *error) {
-  status code = scene_check(scene, error);
-  if (code || format != TABLE_TEXT)
-    return code ? code : list_inputs(scene, format, error);
+static status explain_scene(const struct scene *scene, enum table_format format, struct error *error) {
+  if (format != TABLE_TEXT)
+    return list_inputs(scene, format, error);
   char *description = scene->kind->describe(scene->inputs);
   if (!description)
     return status_fail(error, STATUS_MEMORY, "out of memory");
@@ -153,31 +152,8 @@ static status explain_scene(struct scene *scene, enum table_format format, struc
   return STATUS_OK;
 }
 
-static status run(const struct command_line *line, struct error *error) {
-  const struct explain_options *options = line->options;
-  if (line->count == 0)
-    return list_paths(options, error);
-  const char *name = line->arguments[0];
-  const char *ending = strrchr(name, '.');
-  bool file = strchr(name, '/') ||
-              (ending && (strcmp(ending, ".yaml") == 0 || strcmp(ending, ".yml") == 0 || strcmp(ending, ".json") == 0));
-  enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->table, &format, error);
-  if (!code && !file && !scene_builtin_text(name) && options->set.count == 0)
-    return (code = table_text_only(&options->table, "the explanation of a path", error)) ? code
-                                                                                         : explain_path(name, error);
-  struct scene *scene = NULL;
-  if (!code)
-    code = scene_load(name, NULL, &scene, error);
-  for (size_t i = 0; !code && i < options->set.count; i++)
-    code = explain_override(scene, options->set.items[i], error);
-  if (!code)
-    code = explain_scene(scene, format, error);
-  scene_free(scene);
-  return code;
-}
-
-status explain_override(struct scene *scene, const char *text, struct error *error) {
+/* One --set. */
+static status set_input(struct scene *scene, const char *text, struct error *error) {
   const char *equals = strchr(text, '=');
   char path[FIELD_TEXT_SIZE];
   if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
@@ -185,6 +161,46 @@ status explain_override(struct scene *scene, const char *text, struct error *err
                        text);
   snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
   return scene_set_text(scene, path, equals + 1, error);
+}
+
+status explain_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {
+  status code = scene_load(name, NULL, scene, error);
+  for (size_t i = 0; code == STATUS_OK && i < set->count; i++)
+    code = set_input(*scene, set->items[i], error);
+  return code ? code : scene_check(*scene, error);
+}
+
+static bool is_file_name(const char *name) {
+  static const char *const endings[] = {".yaml", ".yml", ".json"};
+  const char *ending = strrchr(name, '.');
+  if (strchr(name, '/'))
+    return true;
+  for (size_t i = 0; ending && i < sizeof endings / sizeof endings[0]; i++)
+    if (strcmp(ending, endings[i]) == 0)
+      return true;
+  return false;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct explain_options *options = line->options;
+  if (line->count == 0)
+    return list_paths(options, error);
+  enum table_format format = TABLE_TEXT;
+  status code = table_choose(&options->table, &format, error);
+  if (code)
+    return code;
+
+  const char *name = line->arguments[0];
+  if (!is_file_name(name) && !scene_builtin_text(name) && options->set.count == 0) {
+    code = table_text_only(&options->table, "the explanation of a path", error);
+    return code ? code : explain_path(name, error);
+  }
+  struct scene *scene = NULL;
+  code = explain_load(name, &options->set, &scene, error);
+  if (code == STATUS_OK)
+    code = explain_scene(scene, format, error);
+  scene_free(scene);
+  return code;
 }
 
 static const struct option_row rows[] = {

@@ -18,8 +18,9 @@ struct explain_options {
         "Inputs of the scene that have no effect any more are dropped."                                                \
   }
 
-/* Sets one input from PATH=VALUE. scene_check must follow. STATUS_USAGE, STATUS_CONTENT. */
-status explain_override(struct scene *scene, const char *text, struct error *error);
+/* Loads the scene `name` (built-in or a file), sets each PATH=VALUE of `set`, and checks it. *scene is the caller's to
+ * free, also on errors. STATUS_USAGE, STATUS_CONTENT, what scene_load returns. */
+status explain_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error);
 /* The first sentence of a meaning, without its full stop. */
 void explain_sentence(const char *doc, char *text, size_t size);
 

@@ -48,13 +48,16 @@ static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
-  if (code || line->count == 0)
-    return code ? code : list(format, error);
-  struct sph_material material;
-  if ((code = table_text_only(&options->table, "a material's document", error)))
+  if (code)
     return code;
+  if (line->count == 0)
+    return list(format, error);
+  code = table_text_only(&options->table, "a material's document", error);
+  if (code)
+    return code;
+  struct sph_material material;
   code = sph_materials_load(line->arguments[0], &material, error); /* names the nearest one */
-  if (!code)
+  if (code == STATUS_OK)
     fputs(sph_materials_text(line->arguments[0]), stdout);
   return code;
 }

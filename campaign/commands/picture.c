@@ -1,5 +1,4 @@
 /* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
-
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -26,30 +25,39 @@ static status draw_grains(const char *fields, const char *picture, const char *c
   return code;
 }
 
+/* A view by its name; NULL leaves *view as it is. */
+static status choose_view(const char *name, enum picture_view *view, struct error *error) {
+  static const char *const names[] = {[PICTURE_CUT] = "cut", [PICTURE_OUTSIDE] = "outside", [PICTURE_APART] = "apart"};
+  if (!name)
+    return STATUS_OK;
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+    if (names[i] && strcmp(name, names[i]) == 0) {
+      *view = (enum picture_view)i;
+      return STATUS_OK;
+    }
+  return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
+}
+
 /* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
 static status choose_look(const struct options *options, struct picture_look *look, const char **what,
                           struct error *error) {
   *what = options->what ? options->what : "damage";
-  if (!strcmp(*what, "fragments"))
+  if (strcmp(*what, "fragments") == 0)
     *what = NULL;
   *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .axis = 1, .plane = NAN};
-  if (options->view && !strcmp(options->view, "cut"))
-    look->view = PICTURE_CUT;
-  else if (options->view && !strcmp(options->view, "outside"))
-    look->view = PICTURE_OUTSIDE;
-  else if (options->view && !strcmp(options->view, "apart"))
-    look->view = PICTURE_APART;
-  else if (options->view)
-    return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", options->view);
-  if (options->axis && (strlen(options->axis) != 1 || !strchr("xyz", options->axis[0])))
-    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", options->axis);
-  if (options->axis)
-    look->axis = options->axis[0] - 'x';
-  if (options->at && look->view != PICTURE_CUT)
+  status code = choose_view(options->view, &look->view, error);
+  if (code)
+    return code;
+
+  const char *axis = options->axis ? options->axis : "y";
+  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
+    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
+  look->axis = axis[0] - 'x';
+  if (!options->at)
+    return STATUS_OK;
+  if (look->view != PICTURE_CUT)
     return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
-  if (options->at && unit_read(options->at, "m", &look->plane, error))
-    return STATUS_USAGE;
-  return STATUS_OK;
+  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
 }
 
 static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
@@ -66,6 +74,19 @@ static void name_look(const struct picture_look *look, const struct picture_clou
     snprintf(text + used, size - used, ", fragments drawn apart");
 }
 
+/* Reads the quantity to colour by: --what, else damage, or the pressure of what cannot crack. NULL: fragments. */
+static status read_quantity(const char *fields, bool chosen, struct picture_cloud *cloud, const char **what,
+                            char unit[32], struct error *error) {
+  if (!*what)
+    return STATUS_OK;
+  if (!chosen) {
+    if (picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, NULL) == STATUS_OK)
+      return STATUS_OK;
+    *what = "pressure";
+  }
+  return picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, error);
+}
+
 static status draw_particles(const char *fields, const char *picture, const char *caption,
                              const struct options *options, struct error *error) {
   struct picture_look look;
@@ -73,13 +94,13 @@ static status draw_particles(const char *fields, const char *picture, const char
   const char *what;
   char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
   status code = choose_look(options, &look, &what, error);
-  if (code || (code = picture_cloud_read(fields, &cloud, error)))
+  if (code)
     return code;
-  if (what && !options->what) { /* what cannot crack shows its pressure */
-    if (picture_cloud_read_column(fields, &cloud, what, &cloud.value, unit, NULL))
-      what = "pressure";
-  }
-  if (what && !cloud.value && (code = picture_cloud_read_column(fields, &cloud, what, &cloud.value, unit, error)))
+  code = picture_cloud_read(fields, &cloud, error);
+  if (code)
+    return code;
+  code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
+  if (code)
     goto cleanup;
   name_look(&look, &cloud, title, sizeof title);
   picture_particles_numbers(&cloud, numbers, sizeof numbers);
@@ -104,10 +125,14 @@ static status draw_profile(const char *fields, const char *picture, const struct
   char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
   size_t count = 0, rows = 0, panels = 0;
   status code = picture_cloud_read(fields, &cloud, error);
-  if (code || (code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error)))
+  if (code)
+    goto cleanup;
+  code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
+  if (code)
     goto cleanup;
   for (; panels < MOST && names[panels]; panels++) {
-    if ((code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error)))
+    code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error);
+    if (code)
       goto cleanup;
     if (rows != count) {
       code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
@@ -130,26 +155,30 @@ cleanup:
   return code;
 }
 
+/* Grains in the plane have one picture only. An unreadable file is told before that. */
+static status refuse_options(const char *fields, struct error *error) {
+  struct picture_body body;
+  status code = picture_body_read(fields, &body, error);
+  if (code)
+    return code;
+  picture_body_clear(&body);
+  return status_fail(error, STATUS_USAGE,
+                     "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
+                     "are for particles in space",
+                     fields);
+}
+
 static status draw(const char *fields, const char *picture, const struct options *options, struct error *error) {
-  if (picture_cloud_in_file(fields) && options->view && !strcmp(options->view, "profile")) {
-    if (options->axis || options->at)
-      return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
-    return draw_profile(fields, picture, options, error);
+  if (!picture_cloud_in_file(fields)) {
+    if (options->what || options->view || options->axis || options->at)
+      return refuse_options(fields, error);
+    return draw_grains(fields, picture, options->caption, error);
   }
-  if (picture_cloud_in_file(fields))
+  if (!options->view || strcmp(options->view, "profile") != 0)
     return draw_particles(fields, picture, options->caption, options, error);
-  if (options->what || options->view || options->axis || options->at) {
-    struct picture_body body;
-    status code = picture_body_read(fields, &body, error);
-    if (code)
-      return code;
-    picture_body_clear(&body);
-    return status_fail(error, STATUS_USAGE,
-                       "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
-                       "are for particles in space",
-                       fields);
-  }
-  return draw_grains(fields, picture, options->caption, error);
+  if (options->axis || options->at)
+    return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
+  return draw_profile(fields, picture, options, error);
 }
 
 status commands_picture(const char *fields, const char *picture, const char *caption, struct error *error) {

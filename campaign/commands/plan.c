@@ -11,30 +11,37 @@ struct options {
   bool no_trial, json;
 };
 
+static status print(const struct campaign *campaign, const struct plan *plan, int slots, bool json,
+                    struct error *error) {
+  if (!json) {
+    plan_print(campaign, plan, slots, stdout);
+    return STATUS_OK;
+  }
+  char *text = plan_json(campaign, plan, slots);
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  puts(text);
+  free(text);
+  return STATUS_OK;
+}
+
 status commands_plan(const char *path, const char *store, int64_t slots, bool no_trial, bool json,
                      struct error *error) {
   struct campaign *campaign = NULL;
-  struct plan plan = {0};
-  long cores = sysconf(_SC_NPROCESSORS_ONLN);
-  struct plan_options options = {.store_path = store,
-                                 .no_trial = no_trial,
-                                 .slots = slots       ? (int)slots
-                                          : cores > 0 ? (int)cores
-                                                      : 1};
   status code = campaign_load(path, &campaign, error);
-  if (!code)
-    code = plan_make(campaign, &options, &plan, error);
-  if (!code && json) {
-    char *text = plan_json(campaign, &plan, options.slots);
-    if (text)
-      puts(text);
-    else
-      code = status_fail(error, STATUS_MEMORY, "out of memory");
-    free(text);
-  } else if (!code) {
-    plan_print(campaign, &plan, options.slots, stdout);
+  if (code)
+    return code;
+  struct plan plan;
+  struct plan_options options = {.store_path = store, .no_trial = no_trial, .slots = (int)slots};
+  if (slots == 0) {
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    options.slots = cores > 0 ? (int)cores : 1;
   }
-  plan_clear(&plan);
+  code = plan_make(campaign, &options, &plan, error);
+  if (code == STATUS_OK) {
+    code = print(campaign, &plan, options.slots, json, error);
+    plan_clear(&plan);
+  }
   campaign_free(campaign);
   return code;
 }

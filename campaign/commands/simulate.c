@@ -140,14 +140,6 @@ cleanup:
   return code;
 }
 
-static status load_scene(const struct command_line *line, struct scene **scene, struct error *error) {
-  const struct options *options = line->options;
-  status code = scene_load(line->arguments[0], NULL, scene, error);
-  for (size_t i = 0; code == STATUS_OK && i < options->set.count; i++)
-    code = explain_override(*scene, options->set.items[i], error);
-  return code ? code : scene_check(*scene, error);
-}
-
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -155,7 +147,7 @@ static status run(const struct command_line *line, struct error *error) {
   status code = table_choose(&options->table, &format, error);
   if (code)
     return code;
-  code = load_scene(line, &scene, error);
+  code = explain_load(line->arguments[0], &options->set, &scene, error);
   if (code)
     goto cleanup;
   code = try_files(options, error);

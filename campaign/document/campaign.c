@@ -332,11 +332,13 @@ status campaign_load(const char *path, struct campaign **out, struct error *erro
   struct document *document = NULL;
   *out = NULL;
   status code = document_open(path, &document, error);
+  if (code != STATUS_OK)
+    return code;
   const char *slash = strrchr(path, '/');
   char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : NULL;
-  if (code == STATUS_OK && slash && !folder)
+  if (slash && !folder)
     code = status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  if (code == STATUS_OK)
+  else
     code = from_document(document, folder, out, error);
   free(folder);
   document_free(document);

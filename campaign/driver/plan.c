@@ -167,24 +167,28 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
   const char *path = options->store_path ? options->store_path : campaign->store;
   status code = store_open_reader(path, &store, error);
   plan->store_exists = code == STATUS_OK;
-  if (code == STATUS_MISSING)
-    code = STATUS_OK;
-  if (code == STATUS_OK)
-    code = look(campaign, store, plan, &looking, error);
-  if (code == STATUS_OK && !options->no_trial)
-    code = try_run(looking.costliest, campaign_seed(campaign, looking.costliest, 0),
-                   options->trial_s > 0 ? options->trial_s : 5, plan, &fragments, error);
-  if (code == STATUS_OK && options->no_trial && store) {
-    ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
+  if (code != STATUS_OK && code != STATUS_MISSING)
+    return code;
+
+  code = look(campaign, store, plan, &looking, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+  const struct scene *scene = looking.costliest;
+  if (options->no_trial) {
+    if (store)
+      ask_run_wall_times(store, &plan->run_s_mean, &plan->run_s_most, &ignored);
+  } else {
+    const double trial_s = options->trial_s > 0 ? options->trial_s : 5;
+    code = try_run(scene, campaign_seed(campaign, scene, 0), trial_s, plan, &fragments, error);
+    if (code != STATUS_OK)
+      goto cleanup;
   }
-  if (code == STATUS_OK && looking.costliest->kind->describe)
-    plan->model = looking.costliest->kind->describe(looking.costliest->inputs);
-  if (code == STATUS_OK)
-    add_up(campaign, options, &looking, fragments, plan);
+  if (scene->kind->describe)
+    plan->model = scene->kind->describe(scene->inputs);
+  add_up(campaign, options, &looking, fragments, plan);
+cleanup:
   scene_free(looking.costliest);
   store_close(store, &ignored);
-  if (code != STATUS_OK)
-    plan_clear(plan);
   return code;
 }
 

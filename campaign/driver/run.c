@@ -272,34 +272,49 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
   return STATUS_OK;
 }
 
-status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
-                   struct error *error) {
-  struct reader reader = {task, task_size, true};
-  char name[64], fields_path[4096];
-  *result = NULL;
-  *result_size = 0;
+/* Reads a task; the inputs are the caller's to free. */
+static status decode_task(run_find find, const uint8_t *task, size_t size, struct run_request *request, void **inputs,
+                          char *fields_path, size_t path_size, struct error *error) {
+  struct reader reader = {task, size, true};
+  char name[64];
   take_mark(&reader, TASK_MARK);
   take_text(&reader, name, sizeof name);
-  uint64_t seed = take_count(&reader);
-  take_text(&reader, fields_path, sizeof fields_path);
-  const struct engine_kind *kind = reader.good ? find(name, error) : NULL;
-  if (reader.good && !kind)
-    return STATUS_INTERNAL;
-  void *inputs = kind ? calloc(1, kind->inputs->size) : NULL;
-  if (kind && !inputs)
-    return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
-  if (kind)
-    take_object(&reader, kind->inputs, inputs);
-  status code = STATUS_OK;
-  if (!reader.good || reader.left)
-    code = status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");
-  struct run_result values = {0};
-  if (code == STATUS_OK) {
-    struct run_request request = {kind, inputs, seed, fields_path[0] ? fields_path : NULL, NULL};
-    code = run_simulate(&request, NULL, NULL, 0, &values, error);
+  request->seed = take_count(&reader);
+  take_text(&reader, fields_path, path_size);
+  if (reader.good) {
+    request->kind = find(name, error);
+    if (!request->kind)
+      return STATUS_INTERNAL;
+    *inputs = calloc(1, request->kind->inputs->size);
+    if (!*inputs)
+      return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+    take_object(&reader, request->kind->inputs, *inputs);
   }
-  if (code == STATUS_OK && !(*result = encode_result(kind, &values, result_size)))
+  if (!reader.good || reader.left)
+    return status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");
+  request->inputs = *inputs;
+  request->fields_path = *fields_path ? fields_path : NULL;
+  return STATUS_OK;
+}
+
+status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
+                   struct error *error) {
+  struct run_request request = {0};
+  struct run_result values = {0};
+  char fields_path[4096];
+  void *inputs = NULL;
+  *result = NULL;
+  *result_size = 0;
+  status code = decode_task(find, task, task_size, &request, &inputs, fields_path, sizeof fields_path, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+  code = run_simulate(&request, NULL, NULL, 0, &values, error);
+  if (code != STATUS_OK)
+    goto cleanup;
+  *result = encode_result(request.kind, &values, result_size);
+  if (!*result)
     code = status_fail(error, STATUS_MEMORY, "no memory for the result");
+cleanup:
   run_result_clear(&values);
   free(inputs);
   return code;

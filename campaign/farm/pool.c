@@ -170,30 +170,43 @@ static int slot_with(const struct farm_pool *pool, bool most) {
   return best;
 }
 
-void farm_pool_dispatch(struct farm_pool *pool) {
+/* To the slots with the fewest jobs, until every slot has enough. */
+static void send_waiting(struct farm_pool *pool) {
   const size_t deep = depth(pool);
   while (pool->queue.first) {
     const int index = slot_with(pool, false);
     if (index < 0 || pool->slots[index].jobs.count >= deep)
-      break;
+      return;
     struct farm_job *job = farm_job_pop(&pool->queue);
     if (!give(pool, index, job)) {
       farm_job_push_front(&pool->queue, job);
-      break;
+      return;
     }
   }
-  for (int index; !pool->queue.first && (index = slot_with(pool, false)) >= 0 && pool->slots[index].jobs.count == 0;) {
+}
+
+/* Jobs that wait at a slot go to idle ones, when no job waits in the pool. */
+static void relieve_slots(struct farm_pool *pool) {
+  while (!pool->queue.first) {
+    const int idle = slot_with(pool, false);
+    if (idle < 0 || pool->slots[idle].jobs.count > 0)
+      return;
     const int loaded = slot_with(pool, true);
     if (pool->slots[loaded].jobs.count < 2)
-      break;
+      return;
     struct farm_job *job = take_back(pool, loaded);
     if (!job)
-      break;
-    if (!give(pool, index, job)) {
+      return;
+    if (!give(pool, idle, job)) {
       farm_job_push_front(&pool->queue, job);
-      break;
+      return;
     }
   }
+}
+
+void farm_pool_dispatch(struct farm_pool *pool) {
+  send_waiting(pool);
+  relieve_slots(pool);
   for (int i = 0; i < pool->setup.options.slots; i++)
     flush(&pool->slots[i]);
 }

@@ -361,7 +361,9 @@ status table_end(struct table *table, struct error *error) {
 status table_choose(const struct table_options *options, enum table_format *format, struct error *error) {
   if (options->json && options->csv)
     return status_fail(error, STATUS_USAGE, "--json and --csv exclude each other");
-  *format = options->json ? TABLE_JSON : options->csv ? TABLE_CSV : TABLE_TEXT;
+  *format = options->json ? TABLE_JSON : TABLE_TEXT;
+  if (options->csv)
+    *format = TABLE_CSV;
   return STATUS_OK;
 }
 
