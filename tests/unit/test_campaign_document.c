@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/document/campaign.h"
 #include "campaign/design/design.h"
+#include "campaign/document/campaign.h"
 #include "campaign/driver/plan.h"
 
 #define HEAD "name: t\nscene: disc-explosion\n"

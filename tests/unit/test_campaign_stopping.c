@@ -10,8 +10,8 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
-#include "campaign/driver/cost.h"
 #include "campaign/design/stopping.h"
+#include "campaign/driver/cost.h"
 #include "campaign/driver/point.h"
 #include "engine/random.h"
 
