@@ -24,6 +24,8 @@
 #define pair_pressure        TYPED(pair_pressure)
 #define pair_add             TYPED(pair_add)
 #define pair_end             TYPED(pair_end)
+#define pair_forces          TYPED(pair_forces)
+#define pair_sum_batch       TYPED(pair_sum_batch)
 #define sum_pairs            TYPED(sum_pairs)
 #define sum_pairs_plain      TYPED(sum_pairs_plain)
 #define sum_pairs_artificial TYPED(sum_pairs_artificial)
@@ -160,7 +162,7 @@ INLINE void pair_viscosity(const struct sph_pair_constants *k, const struct pair
     p->viscous *= me->record[PAIR_DENSITY] * its[PAIR_DENSITY];
 }
 
-/* The columns of a symmetric tensor, xx xy xz yy yz zz. */
+/* The column of element a, b of a symmetric tensor, xx xy xz yy yz zz. */
 #define SYMMETRIC(a, b) ((a) < (b) ? (a) * (5 - (a)) / 2 + (b) : (b) * (5 - (b)) / 2 + (a))
 
 /* Adds the artificial stress f^4 (R_i + R_j), f = W(r)/W(spacing) [Monaghan 2000; Gray, Monaghan & Swift 2001] to the
@@ -272,6 +274,72 @@ INLINE void pair_end(struct pair_member *me, const bool corrected, REAL *record)
     record_collect(record, column, me->sum + column);
 }
 
+/* The forces of a batch: of the whole stress, or of the pressure alone. */
+INLINE void pair_forces(const struct sph_pair_constants *k, const struct pair_member me[GROUP], const vec *its,
+                        const REAL *in, size_t stride, const uint32_t *slot, const bool corrected,
+                        const bool artificial, struct pair_batch p[GROUP]) {
+  if (!k->strength && !corrected) {
+    FOR_MEMBERS(m)
+      pair_pressure(k, &me[m], its, &p[m]);
+    return;
+  }
+  const size_t turned = (artificial ? PAIR_TURNED_TOO : PAIR_TURNED) - PAIR_NARROW;
+  vec more[PAIR_WIDE - PAIR_NARROW];
+  UNROLL
+  for (size_t column = 0; column < PAIR_WIDE - PAIR_NARROW; column += LANES)
+    if ((artificial && column < 6) || (corrected && column + LANES > turned && column < turned + 3))
+      record_fetch(in, stride, PAIR_NARROW + column, slot, more + column);
+  FOR_MEMBERS(m)
+    pair_stress(k, &me[m], its, more, corrected, artificial, &p[m]);
+}
+
+/* Sums one batch; `left` neighbours are left in the list. Returns the pairs within the support so far, by lane. */
+INLINE vec pair_sum_batch(const struct sph_pair_constants *k, const REAL *in, size_t in_stride, REAL *out,
+                          size_t out_stride, const uint32_t *slot, INT left, const bool whole, vec within,
+                          const bool corrected, const bool artificial, struct pair_member me[GROUP]) {
+  const vec zero = {0};
+  struct pair_batch p[GROUP];
+  vec its[PAIR_NARROW], gain[PAIR_WIDE];
+  UNROLL
+  for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+    record_fetch(in, in_stride, column, slot, its + column);
+
+  FOR_MEMBERS(m)
+    pair_distance(k, &me[m], its, left, m > 0, m == 0 || whole, &p[m]);
+  vec its_volume = its[PAIR_MASS];
+  if (k->volume_weights) {
+    const vec per_its = vec_inverse(its[PAIR_DENSITY]);
+    FOR_MEMBERS(m)
+      p[m].per_densities = me[m].per_density * per_its;
+    its_volume = its[PAIR_MASS] * per_its;
+  }
+  FOR_MEMBERS(m)
+    pair_slope(k, &me[m], its_volume, &p[m]);
+  FOR_MEMBERS(m)
+    pair_viscosity(k, &me[m], its, &p[m]);
+  pair_forces(k, me, its, in, in_stride, slot, corrected, artificial, p);
+
+  FOR_MEMBERS(m) {
+    const vec mass = zero + me[m].record[PAIR_MASS], volume = k->volume_weights ? mass * me[m].per_density : mass;
+    const vec signal = vec_keep_max(p[m].near, p[m].mu, zero + LEAST_SIGNAL);
+    vec cooling = p[m].viscous * p[m].slope * p[m].closing; /* twice */
+    if (artificial)
+      cooling -= p[m].work;
+    within = vec_add_where(within, p[m].near, zero + 1);
+    pair_add(&p[m], its[PAIR_MASS], its_volume, cooling, signal, true, false, corrected, me[m].sum);
+    pair_add(&p[m], mass, volume, cooling, signal, false, m == 0, corrected, gain);
+  }
+  if (corrected)
+    record_spread_four(out, out_stride, PAIR_NARROW, slot, gain + PAIR_NARROW);
+  else
+    gain[SUM_MOMENT] = gain[SUM_MOMENT + 1] = zero;
+  UNROLL
+  for (size_t column = 0; column < PAIR_NARROW; column += LANES)
+    record_spread(out, out_stride, column, slot, gain + column);
+  return within;
+}
+
+/* Sums a chunk. Returns the number of pairs within the support. */
 INLINE double sum_pairs(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in,
                         REAL *out, const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
@@ -279,9 +347,7 @@ INLINE double sum_pairs(const struct sph_pair_chunk *chunk, const struct sph_pai
   const size_t in_stride = artificial && corrected ? PAIR_WIDE : artificial || corrected ? middle : PAIR_NARROW;
   const size_t out_stride = corrected ? middle : PAIR_NARROW;
   const uint32_t *end = chunk->neighbour + chunk->start[(chunk->own + GROUP - 1) / GROUP];
-  const vec zero = {0};
-  vec within = zero;
-
+  vec within = {0};
   for (size_t i = 0; i < chunk->own; i += GROUP) {
     const bool whole = i + GROUP <= chunk->own;
     const uint32_t *slot = chunk->neighbour + chunk->start[i / GROUP];
@@ -289,71 +355,21 @@ INLINE double sum_pairs(const struct sph_pair_chunk *chunk, const struct sph_pai
     struct pair_member me[GROUP];
     FOR_MEMBERS(m)
       pair_begin(&k, in + (i + (size_t)m < chunk->own ? i + (size_t)m : i) * in_stride, &me[m]);
-
     for (INT done = 0; done < total; done += LANES, slot += LANES) {
-      struct pair_batch p[GROUP];
-      vec its[PAIR_NARROW], more[PAIR_WIDE - PAIR_NARROW], gain[PAIR_WIDE];
-      UNROLL
-      for (size_t column = 0; column < PAIR_NARROW; column += LANES)
-        record_fetch(in, in_stride, column, slot, its + column);
       if (SINGLE) { /* 1 to 2 % of a large run; nothing in double */
         const uint32_t *next = slot + LANES < end ? slot + LANES : slot; /* lists follow each other */
         UNROLL
         for (int lane = 0; lane < LANES; lane++)
           __builtin_prefetch(out + next[lane] * out_stride, 1);
       }
-
-      FOR_MEMBERS(m)
-        pair_distance(&k, &me[m], its, total - done, m > 0, m == 0 || whole, &p[m]);
-      vec its_volume = its[PAIR_MASS];
-      if (k.volume_weights) {
-        const vec per_its = vec_inverse(its[PAIR_DENSITY]);
-        FOR_MEMBERS(m)
-          p[m].per_densities = me[m].per_density * per_its;
-        its_volume = its[PAIR_MASS] * per_its;
-      }
-      FOR_MEMBERS(m)
-        pair_slope(&k, &me[m], its_volume, &p[m]);
-      FOR_MEMBERS(m)
-        pair_viscosity(&k, &me[m], its, &p[m]);
-      if (k.strength || corrected) {
-        const size_t turned = (artificial ? PAIR_TURNED_TOO : PAIR_TURNED) - PAIR_NARROW;
-        UNROLL
-        for (size_t column = 0; column < PAIR_WIDE - PAIR_NARROW; column += LANES)
-          if ((artificial && column < 6) || (corrected && column + LANES > turned && column < turned + 3))
-            record_fetch(in, in_stride, PAIR_NARROW + column, slot, more + column);
-        FOR_MEMBERS(m)
-          pair_stress(&k, &me[m], its, more, corrected, artificial, &p[m]);
-      } else {
-        FOR_MEMBERS(m)
-          pair_pressure(&k, &me[m], its, &p[m]);
-      }
-
-      FOR_MEMBERS(m) {
-        const vec mass = zero + me[m].record[PAIR_MASS], volume = k.volume_weights ? mass * me[m].per_density : mass;
-        const vec signal = vec_keep_max(p[m].near, p[m].mu, zero + LEAST_SIGNAL);
-        vec cooling = p[m].viscous * p[m].slope * p[m].closing; /* twice */
-        if (artificial)
-          cooling -= p[m].work;
-        within = vec_add_where(within, p[m].near, zero + 1);
-        pair_add(&p[m], its[PAIR_MASS], its_volume, cooling, signal, true, false, corrected, me[m].sum);
-        pair_add(&p[m], mass, volume, cooling, signal, false, m == 0, corrected, gain);
-      }
-      if (corrected)
-        record_spread_four(out, out_stride, PAIR_NARROW, slot, gain + PAIR_NARROW);
-      else
-        gain[SUM_MOMENT] = gain[SUM_MOMENT + 1] = zero;
-      UNROLL
-      for (size_t column = 0; column < PAIR_NARROW; column += LANES)
-        record_spread(out, out_stride, column, slot, gain + column);
+      within = pair_sum_batch(&k, in, in_stride, out, out_stride, slot, total - done, whole, within, corrected,
+                              artificial, me);
     }
-
     FOR_MEMBERS(m) {
       if (m == 0 || whole)
         pair_end(&me[m], corrected, out + (i + (size_t)m) * out_stride);
     }
   }
-
   double pairs = 0;
   UNROLL
   for (int lane = 0; lane < LANES; lane++)
