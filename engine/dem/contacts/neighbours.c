@@ -44,8 +44,8 @@ void dem_neighbours_cache_side(struct dem_system *s, uint32_t near, const struct
   block->side_y[lane] = s->outline_y[to] - s->outline_y[from];
   block->offset[lane] = s->outline_x[from] * block->side_y[lane] - s->outline_y[from] * block->side_x[lane];
   const uint32_t first_other = s->first_vertex[other], count = s->first_vertex[other + 1] - first_other;
-  for (size_t v = 0; v < 3; v++) {
-    const size_t vertex = first_other + (overlap->vertex + (v == 0 ? count - 1 : v == 1 ? 0 : 1)) % count;
+  for (size_t v = 0; v < 3; v++) { /* the vertex before the nearest one, the nearest, the one after */
+    const size_t vertex = first_other + (overlap->vertex + count - 1 + v) % count;
     block->vertex_x[v][lane] = s->outline_x[vertex];
     block->vertex_y[v][lane] = s->outline_y[vertex];
   }
@@ -125,7 +125,9 @@ static bool grow_cells(struct dem_system *s) {
 
 static int32_t cell_of(double position, double per_size) {
   const double cell = floor(position * per_size);
-  return cell > 1e9 ? 1000000000 : cell > -1e9 ? (int32_t)cell : -1000000000;
+  if (cell > 1e9)
+    return 1000000000;
+  return cell > -1e9 ? (int32_t)cell : -1000000000; /* also for a position that is no number */
 }
 
 static size_t bucket_of(const struct dem_system *s, int32_t x, int32_t y) {
@@ -199,6 +201,64 @@ static void set_skins(struct dem_system *s) {
   }
 }
 
+/* Considers grain i with all grains of one cell. `mine` is the outline of i, whose lowest cell is (x0, y0). */
+static bool search_cell(struct dem_system *s, uint32_t i, const struct dem_ring *mine, size_t bucket, int32_t x,
+                        int32_t y) {
+  const int32_t x0 = s->cell_low[i][0], y0 = s->cell_low[i][1];
+  for (uint32_t e = s->cell_head[bucket]; e != none; e = s->cell_next[e]) {
+    if (s->cell_key[e][0] != x || s->cell_key[e][1] != y)
+      continue;
+    const uint32_t j = s->cell_grain[e];
+    const int32_t home_x = s->cell_low[j][0], home_y = s->cell_low[j][1];
+    if (x != (home_x > x0 ? home_x : x0) || y != (home_y > y0 ? home_y : y0))
+      continue; /* a pair is considered once, in the lowest cell that both share */
+    if (!consider(s, i, j, mine))
+      return false;
+  }
+  return true;
+}
+
+/* Considers grain i with all grains before it, and enters it into its cells. */
+static bool search_grain(struct dem_system *s, uint32_t i, double per_size, size_t *entries) {
+  const double reach = s->c.radius[i] + s->c.skin[i];
+  const int32_t x0 = cell_of(s->c.x[i] - reach, per_size), x1 = cell_of(s->c.x[i] + reach, per_size);
+  const int32_t y0 = cell_of(s->c.y[i] - reach, per_size), y1 = cell_of(s->c.y[i] + reach, per_size);
+  s->cell_low[i][0] = x0;
+  s->cell_low[i][1] = y0;
+  struct dem_ring mine;
+  dem_neighbours_ring(s, i, 0.0, 0.0, &mine);
+  for (int32_t y = y0; y <= y1; y++)
+    for (int32_t x = x0; x <= x1; x++) {
+      const size_t bucket = bucket_of(s, x, y);
+      if (!search_cell(s, i, &mine, bucket, x, y))
+        return false;
+      const size_t e = *entries;
+      if (e == s->cell_capacity && !grow_cells(s))
+        return false;
+      s->cell_key[e][0] = x;
+      s->cell_key[e][1] = y;
+      s->cell_grain[e] = i;
+      s->cell_next[e] = s->cell_head[bucket];
+      s->cell_head[bucket] = (uint32_t)e;
+      *entries = e + 1;
+    }
+  return true;
+}
+
+/* Points the unused lanes of the last near block at the ghosts, and clears them, so that equal states have equal bytes.
+ */
+static void pad_near(struct dem_system *s) {
+  for (size_t lane = s->now.near_count; lane % DEM_BLOCK; lane++) {
+    struct dem_near_block *block = &s->near[lane / DEM_BLOCK];
+    const size_t start = offsetof(struct dem_near_block, side_x);
+    double *const fields = (double *)((char *)block + start);
+    for (size_t f = 0; f < (sizeof *block - start) / sizeof(dem_lane); f++)
+      fields[f * DEM_BLOCK + lane % DEM_BLOCK] = 0.0;
+    block->owner[lane % DEM_BLOCK] = s->ghost;
+    block->other[lane % DEM_BLOCK] = s->ghost + 1;
+  }
+}
+
 bool dem_neighbours_make(struct dem_system *s) {
   s->now.rebuilds++;
   set_skins(s);
@@ -206,50 +266,14 @@ bool dem_neighbours_make(struct dem_system *s) {
   s->now.near_count = 0;
   if (s->in->contact.law == DEM_CONTACT_OFF)
     return true;
+
   const double per_size = 1.0 / (1.5 * s->mean_diameter);
   size_t entries = 0;
   for (size_t b = 0; b < s->cell_buckets; b++)
     s->cell_head[b] = none;
-  for (uint32_t i = 0; i < s->count; i++) {
-    if (!s->present[i])
-      continue;
-    const double reach = s->c.radius[i] + s->c.skin[i];
-    const int32_t x0 = cell_of(s->c.x[i] - reach, per_size), x1 = cell_of(s->c.x[i] + reach, per_size);
-    const int32_t y0 = cell_of(s->c.y[i] - reach, per_size), y1 = cell_of(s->c.y[i] + reach, per_size);
-    s->cell_low[i][0] = x0;
-    s->cell_low[i][1] = y0;
-    struct dem_ring mine;
-    dem_neighbours_ring(s, i, 0.0, 0.0, &mine);
-    for (int32_t y = y0; y <= y1; y++)
-      for (int32_t x = x0; x <= x1; x++) {
-        const size_t bucket = bucket_of(s, x, y);
-        for (uint32_t e = s->cell_head[bucket]; e != none; e = s->cell_next[e]) {
-          if (s->cell_key[e][0] != x || s->cell_key[e][1] != y)
-            continue;
-          const uint32_t j = s->cell_grain[e];
-          const int32_t home_x = s->cell_low[j][0], home_y = s->cell_low[j][1];
-          if (x != (home_x > x0 ? home_x : x0) || y != (home_y > y0 ? home_y : y0))
-            continue; /* a pair is considered once, in the lowest cell that both share */
-          if (!consider(s, i, j, &mine))
-            return false;
-        }
-        if (entries == s->cell_capacity && !grow_cells(s))
-          return false;
-        s->cell_key[entries][0] = x;
-        s->cell_key[entries][1] = y;
-        s->cell_grain[entries] = i;
-        s->cell_next[entries] = s->cell_head[bucket];
-        s->cell_head[bucket] = (uint32_t)entries++;
-      }
-  }
-  for (size_t lane = s->now.near_count; lane % DEM_BLOCK; lane++) {
-    struct dem_near_block *block = &s->near[lane / DEM_BLOCK];
-    const size_t start = offsetof(struct dem_near_block, side_x);
-    double *const fields = (double *)((char *)block + start);
-    for (size_t f = 0; f < (sizeof *block - start) / sizeof(dem_lane); f++)
-      fields[f * DEM_BLOCK + lane % DEM_BLOCK] = 0.0; /* so that equal states have equal bytes */
-    block->owner[lane % DEM_BLOCK] = s->ghost;
-    block->other[lane % DEM_BLOCK] = s->ghost + 1;
-  }
+  for (uint32_t i = 0; i < s->count; i++)
+    if (s->present[i] && !search_grain(s, i, per_size, &entries))
+      return false;
+  pad_near(s);
   return true;
 }

@@ -121,67 +121,96 @@ static void add_beams(struct snapshot_file *file, const struct dem_run *run) {
   free(row);
 }
 
-/* Outlines of the grains that are left, as VTK reads them. */
-static void outlines(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
-  size_t n = run->tessellation->cell_count, points = 0, cells = 0;
-  size_t capacity = run->tessellation->first_vertex[n];
-  double *point = malloc(capacity * 3 * sizeof *point), *mass = malloc(n * sizeof *mass);
-  double *velocity = malloc(n * 3 * sizeof *velocity), *spin = malloc(n * sizeof *spin);
-  int64_t *offset = malloc((n + 1) * sizeof *offset), *connectivity = malloc(capacity * sizeof *connectivity);
-  int64_t *fragment = malloc(n * sizeof *fragment), *grain = malloc(n * sizeof *grain);
-  unsigned char *type = malloc(n);
-  if (!point || !mass || !velocity || !spin || !offset || !connectivity || !fragment || !grain || !type) {
-    snapshot_file_fail(file);
-    goto cleanup;
-  }
-  offset[0] = 0;
+/* Outlines of the present grains, as VTK reads them: one cell per grain. */
+struct outlines {
+  size_t points, cells;
+  double *point, *mass, *velocity, *spin; /* 3 per point; 1, 3, 1 per cell */
+  int64_t *offset, *connectivity, *fragment, *grain;
+  unsigned char *type;
+};
+
+static bool allocate_outlines(struct outlines *o, size_t points, size_t cells) {
+  *o = (struct outlines){.point = malloc(points * 3 * sizeof *o->point),
+                         .mass = malloc(cells * sizeof *o->mass),
+                         .velocity = malloc(cells * 3 * sizeof *o->velocity),
+                         .spin = malloc(cells * sizeof *o->spin),
+                         .offset = malloc((cells + 1) * sizeof *o->offset),
+                         .connectivity = malloc(points * sizeof *o->connectivity),
+                         .fragment = malloc(cells * sizeof *o->fragment),
+                         .grain = malloc(cells * sizeof *o->grain),
+                         .type = malloc(cells)};
+  return o->point && o->mass && o->velocity && o->spin && o->offset && o->connectivity && o->fragment && o->grain &&
+         o->type;
+}
+
+static void free_outlines(struct outlines *o) {
+  free(o->point);
+  free(o->mass);
+  free(o->velocity);
+  free(o->spin);
+  free(o->offset);
+  free(o->connectivity);
+  free(o->fragment);
+  free(o->grain);
+  free(o->type);
+}
+
+static void fill_outlines(struct outlines *o, const struct dem_run *run, const uint32_t *label) {
+  const size_t n = run->tessellation->cell_count, capacity = run->tessellation->first_vertex[n];
+  o->offset[0] = 0;
   for (uint32_t i = 0; i < n; i++) {
     struct dem_grain g = dem_system_grain(run->system, i);
     struct dem_point corner[OUTLINE_CORNERS];
     if (!g.present)
       continue;
     size_t corners = dem_system_outline(run->system, i, OUTLINE_CORNERS, corner);
-    for (size_t k = 0; k < corners && k < OUTLINE_CORNERS && points < capacity; k++) {
-      point[3 * points] = corner[k].x;
-      point[3 * points + 1] = corner[k].y;
-      point[3 * points + 2] = 0;
-      connectivity[points] = (int64_t)points;
-      points++;
+    for (size_t k = 0; k < corners && k < OUTLINE_CORNERS && o->points < capacity; k++) {
+      double *point = &o->point[3 * o->points];
+      point[0] = corner[k].x;
+      point[1] = corner[k].y;
+      point[2] = 0;
+      o->connectivity[o->points] = (int64_t)o->points;
+      o->points++;
     }
-    offset[cells + 1] = (int64_t)points;
-    type[cells] = VTK_POLYGON;
-    mass[cells] = g.mass;
-    spin[cells] = g.spin;
-    velocity[3 * cells] = g.vx;
-    velocity[3 * cells + 1] = g.vy;
-    velocity[3 * cells + 2] = 0;
-    grain[cells] = i;
-    fragment[cells++] = (int64_t)label[i];
+    const size_t c = o->cells++;
+    o->offset[c + 1] = (int64_t)o->points;
+    o->type[c] = VTK_POLYGON;
+    o->mass[c] = g.mass;
+    o->spin[c] = g.spin;
+    o->velocity[3 * c] = g.vx;
+    o->velocity[3 * c + 1] = g.vy;
+    o->velocity[3 * c + 2] = 0;
+    o->grain[c] = i;
+    o->fragment[c] = (int64_t)label[i];
   }
+}
+
+static void outlines(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label) {
+  const struct dem_tessellation *t = run->tessellation;
+  struct outlines o;
+  if (!allocate_outlines(&o, t->first_vertex[t->cell_count], t->cell_count)) {
+    snapshot_file_fail(file);
+    free_outlines(&o);
+    return;
+  }
+  fill_outlines(&o, run, label);
+  const size_t points = o.points, cells = o.cells;
   snapshot_file_vtk(file, points, cells, points);
-  snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, points, 3, point, "m",
+  snapshot_file_data(file, "VTKHDF/Points", SNAPSHOT_FILE_REAL, points, 3, o.point, "m",
                      "corners of the grains' outlines");
-  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, points, 0, connectivity, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, cells + 1, 0, offset, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, cells, 0, type, NULL, NULL);
-  snapshot_file_data(file, "VTKHDF/CellData/fragment", SNAPSHOT_FILE_INTEGER, cells, 0, fragment, "1",
+  snapshot_file_data(file, "VTKHDF/Connectivity", SNAPSHOT_FILE_INTEGER, points, 0, o.connectivity, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Offsets", SNAPSHOT_FILE_INTEGER, cells + 1, 0, o.offset, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/Types", SNAPSHOT_FILE_BYTE, cells, 0, o.type, NULL, NULL);
+  snapshot_file_data(file, "VTKHDF/CellData/fragment", SNAPSHOT_FILE_INTEGER, cells, 0, o.fragment, "1",
                      "number of its fragment by descending mass");
-  snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, grain, "1", "index into /grains");
-  snapshot_file_data(file, "VTKHDF/CellData/mass", SNAPSHOT_FILE_REAL, cells, 0, mass, "kg m-1",
+  snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, o.grain, "1",
+                     "index into /grains");
+  snapshot_file_data(file, "VTKHDF/CellData/mass", SNAPSHOT_FILE_REAL, cells, 0, o.mass, "kg m-1",
                      "mass per metre of thickness");
-  snapshot_file_data(file, "VTKHDF/CellData/velocity", SNAPSHOT_FILE_REAL, cells, 3, velocity, "m s-1",
+  snapshot_file_data(file, "VTKHDF/CellData/velocity", SNAPSHOT_FILE_REAL, cells, 3, o.velocity, "m s-1",
                      "velocity of the centre of mass");
-  snapshot_file_data(file, "VTKHDF/CellData/spin", SNAPSHOT_FILE_REAL, cells, 0, spin, "rad s-1", "angular velocity");
-cleanup:
-  free(point);
-  free(mass);
-  free(velocity);
-  free(spin);
-  free(offset);
-  free(connectivity);
-  free(fragment);
-  free(grain);
-  free(type);
+  snapshot_file_data(file, "VTKHDF/CellData/spin", SNAPSHOT_FILE_REAL, cells, 0, o.spin, "rad s-1", "angular velocity");
+  free_outlines(&o);
 }
 
 static void content(struct snapshot_file *file, const struct dem_run *run, const uint32_t *label,

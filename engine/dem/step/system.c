@@ -144,8 +144,10 @@ static void book_holds(struct dem_system *s, double dt) {
     if (!s->present[i])
       continue;
     const unsigned f = s->freedoms[i];
-    s->now.external_work -= dt * ((f & 1 ? s->c.fx[i] * s->c.vx[i] : 0.0) + (f & 2 ? s->c.fy[i] * s->c.vy[i] : 0.0) +
-                                  (f & 4 ? s->c.torque[i] * s->c.spin[i] : 0.0));
+    const double x = f & 1 ? s->c.fx[i] * s->c.vx[i] : 0.0;
+    const double y = f & 2 ? s->c.fy[i] * s->c.vy[i] : 0.0;
+    const double turn = f & 4 ? s->c.torque[i] * s->c.spin[i] : 0.0;
+    s->now.external_work -= dt * (x + y + turn);
   }
 }
 
