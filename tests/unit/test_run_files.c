@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 #include "engine/restart.h"
 #include "tests/support/sweep.h"
@@ -101,6 +102,20 @@ static void refused(const struct engine_kind *kind, const void *inputs, const ch
     fail_msg("no \"%s\" in: %s", why, error.message);
 }
 
+/* Writes `version` into a restart file and makes its checksum (FNV-1a of all but the last 8 bytes) right again. */
+static void set_version(const char *path, uint64_t version) {
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  assert_int_equal(atomic_file_read(path, "restart file", &bytes, &size, NULL), STATUS_OK);
+  memcpy(bytes + 8, &version, sizeof version);
+  uint64_t sum = 0xcbf29ce484222325U;
+  for (size_t k = 0; k + 8 < size; k++)
+    sum = (sum ^ bytes[k]) * 0x100000001b3U;
+  memcpy(bytes + size - 8, &sum, sizeof sum);
+  assert_int_equal(atomic_file_write(path, "restart file", bytes, size, NULL), STATUS_OK);
+  free(bytes);
+}
+
 static void damaged_is_refused(const struct engine_kind *kind, const void *inputs, const void *other,
                                const struct engine_kind *foreign, const void *foreign_inputs) {
   struct error error = {0};
@@ -127,6 +142,15 @@ static void damaged_is_refused(const struct engine_kind *kind, const void *input
     fputc(byte, file);
     fclose(file);
   }
+  assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
+  kind->free(run);
+  uint64_t version;
+  FILE *file = fopen(path, "rb");
+  assert_true(fseek(file, 8, SEEK_SET) == 0 && fread(&version, sizeof version, 1, file) == 1);
+  fclose(file);
+  set_version(path, version - 1);
+  refused(kind, inputs, path, "another version");
+  set_version(path, version);
   assert_int_equal(restart_load(kind, inputs, path, &run, &error), STATUS_OK);
   kind->free(run);
   assert_int_equal(truncate(path, info.st_size / 2), 0);

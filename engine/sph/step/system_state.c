@@ -3,63 +3,48 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "engine/restart.h"
 #include "engine/sph/step/system_layout.h"
 
-struct section {
-  void *data;
-  size_t bytes;
-};
+enum { BLOCKS = SPH_COLUMNS + 10 };
 
-enum { SECTIONS = SPH_COLUMNS + 10 };
-
-static size_t sections(struct sph_system *s, struct section out[SECTIONS]) {
+static size_t saved(struct sph_system *s, struct restart_block out[BLOCKS]) {
   double *column[SPH_COLUMNS];
   size_t count = 0;
   const size_t columns = sph_system_columns_list(s, column);
-  out[count++] = (struct section){&s->n, sizeof s->n};
-  out[count++] = (struct section){&s->now, sizeof s->now};
+  out[count++] = (struct restart_block){&s->n, sizeof s->n};
+  out[count++] = (struct restart_block){&s->now, sizeof s->now};
   for (size_t k = 0; k < columns; k++)
-    out[count++] = (struct section){column[k], s->n * sizeof(double)};
+    out[count++] = (struct restart_block){column[k], s->n * sizeof(double)};
   for (int k = 0; k < 5; k++)
-    out[count++] = (struct section){sph_pairs_listed(s->pairs)[k], s->n * sizeof(double)};
-  out[count++] = (struct section){s->id, s->n * sizeof *s->id};
+    out[count++] = (struct restart_block){sph_pairs_listed(s->pairs)[k], s->n * sizeof(double)};
+  out[count++] = (struct restart_block){s->id, s->n * sizeof *s->id};
   if (s->held)
-    out[count++] = (struct section){s->held, s->n};
+    out[count++] = (struct restart_block){s->held, s->n};
   return count;
 }
 
 size_t sph_system_state_size(const struct sph_system *system) {
-  struct sph_system view = *system; /* sections() wants pointers it may write through; this one only counts */
-  struct section list[SECTIONS];
-  size_t total = 0;
-  for (size_t k = 0, count = sections(&view, list); k < count; k++)
-    total += list[k].bytes;
-  return total;
+  struct sph_system view = *system; /* blocks can be written to; these are only counted */
+  struct restart_block blocks[BLOCKS];
+  return restart_blocks_size(blocks, saved(&view, blocks));
 }
 
 void sph_system_state_save(const struct sph_system *system, void *bytes) {
   struct sph_system view = *system;
-  struct section list[SECTIONS];
-  unsigned char *to = bytes;
-  for (size_t k = 0, count = sections(&view, list); k < count; k++) {
-    memcpy(to, list[k].data, list[k].bytes);
-    to += list[k].bytes;
-  }
+  struct restart_block blocks[BLOCKS];
+  restart_blocks_save(blocks, saved(&view, blocks), bytes);
 }
 
 bool sph_system_state_load(struct sph_system *s, const void *bytes, size_t size) {
-  struct section list[SECTIONS];
-  const unsigned char *from = bytes;
+  struct restart_block blocks[BLOCKS];
   size_t n;
   if (size != sph_system_state_size(s))
     return false;
-  memcpy(&n, from, sizeof n);
+  memcpy(&n, bytes, sizeof n);
   if (n != s->n)
     return false;
-  for (size_t k = 0, count = sections(s, list); k < count; k++) {
-    memcpy(list[k].data, from, list[k].bytes);
-    from += list[k].bytes;
-  }
+  restart_blocks_load(blocks, saved(s, blocks), bytes);
   for (size_t i = 0; i < n; i++)
     if (s->id[i] >= n) {
       s->fault = SPH_FAULT_NOT_FINITE;
