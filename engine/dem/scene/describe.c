@@ -3,9 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "engine/dem/lattice/assemble.h"
 #include "engine/dem/run/run.h"
 
-enum { MEASURED_UP_TO = 20000 }; /* grains: beyond, stability and energies are scaled instead of measured on a body */
+enum { MEASURED_UP_TO = 20000 }; /* grains; larger bodies are not built for a description */
 
 double dem_describe_threshold_energy(const struct dem_inputs *in, const struct dem_tessellation *t) {
   double sum = 0; /* half (E S / l) (t l)^2 */
@@ -25,12 +26,13 @@ void dem_describe_sound_speeds(const struct dem_inputs *in, double *extension, d
                       in->grain.density);
 }
 
-/* Two squares of side s face on, d = 2 s/sqrt(pi): pushed through each other they store at most half kappa s^4 with
- * kappa = Y/(d S_ref), S_ref = 0.54 d (printed law: half Y s^3/d of work), and have rho s^2 v^2 / 4 to spend. */
+/* Two squares of side s face on, with d = 2 s/sqrt(pi). Pushed through each other they store at most half kappa s^4
+ * with kappa = Y/(d S_ref) (printed law: half Y s^3/d of work). Their kinetic energy is rho s^2 v^2 / 4. Here s = 1. */
 double dem_describe_passing_speed(const struct dem_inputs *in) {
   const double d = 2 / sqrt(M_PI);
   switch ((enum dem_contact_law)in->contact.law) {
-  case DEM_CONTACT_CONSERVATIVE: return sqrt(2 / (0.54 * d * d) * in->grain.young_modulus / in->grain.density);
+  case DEM_CONTACT_CONSERVATIVE:
+    return sqrt(2 / (dem_assemble_reference_side(0, d, d) * d) * in->grain.young_modulus / in->grain.density);
   case DEM_CONTACT_PRINTED: return sqrt(2 / d * in->grain.young_modulus / in->grain.density);
   case DEM_CONTACT_OFF: break;
   }
@@ -107,6 +109,33 @@ static double energy_put_in(const struct dem_inputs *in) {
   return NAN;
 }
 
+/* What only a body can tell, here that of seed 1: counts, the energy of its beams, the stability limit. */
+static void body(const struct dem_inputs *in, FILE *out) {
+  struct dem_inputs probe = *in;
+  probe.fidelity.time_step = 1e-15; /* any step is good enough to build the body */
+  probe.stop.end_time = 1e-12;
+  probe.impact.speed = 1;
+  if (dem_inputs_loaded(&probe))
+    probe.kind = DEM_BLOCK_IMPACT; /* the same body without a stress-strain record */
+  struct dem_run *run = NULL;
+  struct error error = {0};
+  if (dem_run_create(&probe, 1, &run, &error)) {
+    fprintf(out, "  cannot be run: %s\n", error.message);
+    return;
+  }
+  const double energy = energy_put_in(in), needed = dem_describe_threshold_energy(in, run->tessellation);
+  const double step = in->fidelity.time_step, limit = run->stable_time_step;
+  fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", run->tessellation->cell_count, run->tessellation->pair_count);
+  if (isnan(energy))
+    fprintf(out, "  every beam at the strain threshold would hold %.4g J/m\n", needed);
+  else
+    fprintf(out, "  energy put in: %.4g J/m; every beam at the strain threshold would hold %.4g J/m (ratio %.3g)\n",
+            energy, needed, energy / needed);
+  fprintf(out, "  time step: %.4g s, stability limit 2/omega_max %.4g s (ratio %.2g)%s\n", step, limit, step / limit,
+          step > limit ? ": UNSTABLE, will be refused" : "");
+  dem_run_free(run);
+}
+
 char *dem_describe_scene(const struct dem_inputs *in) {
   char *text = NULL;
   size_t size = 0;
@@ -120,35 +149,11 @@ char *dem_describe_scene(const struct dem_inputs *in) {
   fprintf(out, "  sound speed (estimate along a square lattice): %.0f m/s in extension, %.0f m/s in compression\n",
           extension, compression);
 
-  double grains = dem_inputs_grains(in), energy = energy_put_in(in);
+  const double grains = dem_inputs_grains(in);
   if (grains > MEASURED_UP_TO)
     fprintf(out, "  grains: about %.0f; too many to measure stability and energies for a description\n", grains);
-  else { /* the body of seed 1 */
-    struct dem_inputs probe = *in;
-    probe.fidelity.time_step = 1e-15; /* any step will do to build it */
-    struct dem_run *run = NULL;
-    struct error error = {0};
-    probe.stop.end_time = 1e-12;
-    if (dem_inputs_loaded(&probe))
-      probe.kind = DEM_BLOCK_IMPACT; /* the same body without its record */
-    probe.impact.speed = 1;
-    if (dem_run_create(&probe, 1, &run, &error))
-      fprintf(out, "  cannot be run: %s\n", error.message);
-    else {
-      double needed = dem_describe_threshold_energy(in, run->tessellation), limit = run->stable_time_step;
-      fprintf(out, "  grains: %zu, beams: %zu (seed 1)\n", run->tessellation->cell_count,
-              run->tessellation->pair_count);
-      if (isnan(energy))
-        fprintf(out, "  every beam at the strain threshold would hold %.4g J/m\n", needed);
-      else
-        fprintf(out, "  energy put in: %.4g J/m; every beam at the strain threshold would hold %.4g J/m (ratio %.3g)\n",
-                energy, needed, energy / needed);
-      fprintf(out, "  time step: %.4g s, stability limit 2/omega_max %.4g s (ratio %.2g)%s\n", in->fidelity.time_step,
-              limit, in->fidelity.time_step / limit,
-              in->fidelity.time_step > limit ? ": UNSTABLE, will be refused" : "");
-    }
-    dem_run_free(run);
-  }
+  else
+    body(in, out);
   fprintf(out, "  at most %.3g steps of %.3g grains\n", dem_inputs_end_time(in) / in->fidelity.time_step, grains);
   if (fclose(out)) {
     free(text);
