@@ -20,16 +20,16 @@ struct engine_kind {
    * time that scales with a size. A pure function of the given ones, called again after every change. NULL: there are
    * none. */
   void (*complete)(void *inputs, const bool *given);
-  /* Conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
+  /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */
   double (*work)(const void *inputs); /* a-priori cost in arbitrary units (grain- or particle-steps), for scheduling */
 
-  /* Build the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
+  /* Builds the initial state; inputs are copied. On failure *run is NULL. STATUS_MEMORY or STATUS_CONTENT. */
   status (*prepare)(const void *inputs, uint64_t seed, void **run, struct error *error);
-  /* Advance by at most max_steps; *finished when the scene's stop rule, its end or a failure came. A numerical failure
+  /* Advances by at most max_steps; *finished after the scene's stop rule, its end or a failure. A numerical failure
    * (NaN, collapse) is no error status: the run is finished and says so in its outcome. STATUS_MEMORY is one: the
    * machine's, not the run's, so that no result is made of it. */
   status (*step)(void *run, uint64_t max_steps, bool *finished, struct error *error);

@@ -1,6 +1,6 @@
 /* A scene: which engine, and its typed inputs. Built-in scenes are documents with their sources, kept in
- * engine/<engine>/scene/builtin/ and compiled into the program; `clast scenes NAME` prints one as a start for one's
- * own. */
+ * engine/<engine>/scene/builtin/ and compiled into the program. `clast scenes NAME` prints one, as a start for a new
+ * scene. */
 #ifndef CLAST_ENGINE_SCENE_H
 #define CLAST_ENGINE_SCENE_H
 
@@ -19,19 +19,19 @@ const char *scene_builtin_name(size_t index);
 const char *scene_builtin_text(const char *name); /* the document, or NULL */
 
 /* `reference` is a built-in name or a path (a path when it holds '/' or ends in .yaml/.yml/.json), relative to `folder`
- * (NULL: the current one). All errors of the document come in *error in one go.
+ * (NULL: the current one). *error gets all errors of the document at once.
  * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error);
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
 
-/* Override one input by path or unique suffix, from text ("5 km/s") or as a value; what follows from it and was not
- * given follows anew. Not checked across fields. */
+/* Overrides one input by path or unique suffix, from text ("5 km/s") or as a value. Inputs that follow from it and were
+ * not given are completed again. Conditions across fields are not checked. */
 status scene_set_text(struct scene *scene, const char *path, const char *text, struct error *error);
 status scene_set(struct scene *scene, const char *path, const struct field_value *value, struct error *error);
-/* After the last override: what the document gave and overrides left without effect is as if it had not been given;
- * overrides without effect are refused, cross-field conditions checked. */
+/* Checks a scene after its last override. A line of the document that has no effect because of an override counts as
+ * not given; an override without effect is refused; conditions across fields are checked. */
 status scene_check(struct scene *scene, struct error *error);
 
 /* JSON Schema of this engine's scene documents: what schemas/scene-<engine>.schema.json holds. */

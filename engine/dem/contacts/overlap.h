@@ -54,7 +54,7 @@ LANES_INLINE void overlap_clip(const struct dem_ring *p, const struct dem_ring *
       const lanes_i along = (lanes_abs(from) <= same) & (lanes_abs(to) <= same);
       from = lanes_select(along, lanes_all(own ? -1.0 : 1.0), from);
       to = lanes_select(along, lanes_all(own ? -1.0 : 1.0), to);
-      const lanes_d crossing = from / (from - to); /* infinite, so nothing is left, where both are outside and equal */
+      const lanes_d crossing = from / (from - to); /* infinite where both are outside and equal: nothing is left then */
       enter = lanes_max(enter, lanes_mask(from > 0.0, crossing));
       leave = lanes_min(leave, lanes_select(to > 0.0, crossing, lanes_all(1.0)));
     }

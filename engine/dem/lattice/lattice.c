@@ -6,7 +6,7 @@
 
 #include "engine/random.h"
 
-enum { BEYOND = 6 }; /* squares around a disc: its own sqrt(2), neighbours' 3, and one for rounding up */
+enum { BEYOND = 6 }; /* squares around a disc: a cell reaches sqrt(2), its neighbours lie within 3, 1 for rounding */
 
 status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_points *points, struct error *error) {
   *points = (struct dem_lattice_points){.columns = lattice->columns, .rows = lattice->rows, .walled = true};
@@ -34,7 +34,7 @@ status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_po
   return STATUS_OK;
 }
 
-/* Keep the part with nx x + ny y <= c; the new side faces `across`. */
+/* Keeps the part with nx x + ny y <= c; the new side faces `across`. */
 static bool cut(struct dem_lattice_cell *cell, double nx, double ny, double c, int64_t across) {
   double side[DEM_LATTICE_CORNERS];
   bool outside = false;
@@ -89,7 +89,7 @@ bool dem_lattice_cell(const struct dem_lattice_points *points, uint32_t column, 
         int64_t j = y * points->columns + x;
         double qx = points->point[j].x - p.x, qy = points->point[j].y - p.y;
         double half = 0.5 * (qx * qx + qy * qy);
-        double reach = 0; /* no cut when the bisector passes beyond the furthest corner */
+        double reach = 0; /* a bisector beyond the farthest corner cuts nothing */
         for (int k = 0; k < cell->count; k++)
           reach = fmax(reach, cell->x[k] * cell->x[k] + cell->y[k] * cell->y[k]);
         if (half * 0.5 < reach * (1 + 1e-9) && !cut(cell, qx, qy, half, j))

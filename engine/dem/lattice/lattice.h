@@ -2,10 +2,10 @@
  *
  * One point per grid square, thrown uniformly into the concentric square of side `disorder` (K99 section 2.1: "randomly
  * and independently in each square of the grid with a maximal distance a from the center", a between 0 and the
- * spacing). K99's words leave open whether that region is a disc or a square; a disc of radius a = spacing would leave
- * the grid square, against "in each square", so it is the square of side a, which at a = spacing fills the grid square
- * exactly. No place in the plane is then further than sqrt(2) from a point, hence a cell reaches at most sqrt(2) from
- * its point, and neighbours lie at most three squares apart. */
+ * spacing). K99 does not say whether that region is a disc or a square. A disc of radius a = spacing would leave the
+ * grid square, against "in each square"; the square of side a = spacing fills it exactly, so the region is that square.
+ * No place in the plane is then farther than sqrt(2) from a point. Hence a cell reaches at most sqrt(2) from its point,
+ * and neighbours lie at most three squares apart. */
 #ifndef CLAST_ENGINE_DEM_LATTICE_LATTICE_H
 #define CLAST_ENGINE_DEM_LATTICE_LATTICE_H
 
@@ -32,13 +32,13 @@ struct dem_lattice_cell {
   double x[DEM_LATTICE_CORNERS], y[DEM_LATTICE_CORNERS];
   int64_t across[DEM_LATTICE_CORNERS];
 };
-/* False when the cell has more corners than a cell can have (never seen: each of its at most 48 candidates would have
- * to be a neighbour). */
+/* Cuts one cell. False when it has too many corners (never seen: nearly all of its 48 candidates would have to be
+ * neighbours). */
 bool dem_lattice_cell(const struct dem_lattice_points *points, uint32_t column, uint32_t row,
                       struct dem_lattice_cell *cell);
 
-/* The corner between the sides shared with a and b of the cell of point i: the same bits whichever of the cells that
- * meet there asks, and in whatever order. */
+/* The corner between the sides that the cell of point i shares with a and b. All cells that meet there get the same
+ * bits. */
 struct dem_point dem_lattice_corner(const struct dem_lattice_points *points, int64_t i, int64_t a, int64_t b);
 
 #endif

@@ -1,5 +1,4 @@
-/* Grains from a vectorizable random lattice: Voronoi cells by half-plane clipping, cut by the body's outline.
- * K99 section 2.1; physics: one point per grid square, at most `disorder` x spacing from the square's centre. */
+/* Grains of a body: the Voronoi cells of a random lattice (K99 section 2.1), cut by the body's outline. */
 #ifndef CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
 #define CLAST_ENGINE_DEM_LATTICE_TESSELLATION_H
 
@@ -12,7 +11,7 @@ struct dem_point {
   double x, y;
 };
 
-/* A convex polygon's counter-clockwise vertices. */
+/* The cells of a body, and the pairs of cells with a common side. */
 struct dem_tessellation {
   size_t cell_count;
   uint32_t *first_vertex;   /* cell_count + 1 */
@@ -40,7 +39,7 @@ struct dem_lattice {
 };
 
 status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tessellation **out, struct error *error);
-/* Two bodies side by side as one; no pairs between them. Frees neither input. */
+/* Joins two bodies into one, without pairs between them. The inputs stay with the caller. */
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error);
 void dem_tessellation_free(struct dem_tessellation *tessellation); /* NULL is fine */

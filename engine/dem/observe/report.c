@@ -5,7 +5,7 @@
 
 #include "engine/dem/run/run.h"
 
-/* Grains that are left, by their order; their fragments by the beams that hold. `label` (by grain, may be NULL) is the
+/* Finds the fragments: the present grains, joined by the beams that hold. label[grain] (may be NULL) becomes the
  * fragment's number, UINT32_MAX for the explosive. */
 status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
                             struct error *error) {
@@ -125,7 +125,7 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
                                     : (double)NAN;
   double momentum[2], magnitude, translation = 0;
   dem_run_momentum(run, momentum, &magnitude);
-  /* forces inside the body cancel: what held grains feel is what the free ones lose */
+  /* forces inside the body cancel: the impulse on held grains is the momentum that the free ones lose */
   double px = momentum[0] - run->state.momentum_start[0] + run->state.impulse[0];
   double py = momentum[1] - run->state.momentum_start[1] + run->state.impulse[1];
   outcome->momentum_error = magnitude > 0 ? not_infinite(hypot(px, py) / magnitude) : (double)NAN;

@@ -242,7 +242,7 @@ status dem_snapshot_write(struct dem_run *run, const char *path, struct error *e
     return status_fail(error, STATUS_MEMORY, "no memory to write '%s'", path);
   if ((code = dem_report_finish(run, &outcome, &results, &fragments, &count, error)))
     goto cleanup;
-  free(fragments); /* once more, for the labels */
+  free(fragments); /* found again below, with labels */
   if ((code = dem_report_fragments(run, label, &fragments, &count, error)) ||
       (code = snapshot_file_open(dem_engine.name, dem_engine.doc, dem_engine.results_version, run->seed, &dem_inputs,
                                  &run->inputs, &file, error)))

@@ -147,13 +147,14 @@ static double slope(const struct dem_run *run, bool lateral, double lowest, doub
   return n >= 3 ? (n * sxy - sx * sy) / (n * sxx - sx * sx) : (double)NAN;
 }
 
-/* K99 figure 8, as numbers: cracks upright, triangles on the confined ends intact. Breaks up to the largest stress. */
+/* K99 figure 8 as numbers: upright cracks, and intact triangles on the confined ends. Counts breaks up to the largest
+ * stress. */
 static void pattern(const struct dem_run *run, struct dem_results *results) {
   const struct dem_tessellation *t = run->tessellation;
   double width = run->section, height = (double)run->inputs.body.rows * run->inputs.grain.spacing;
   const struct dem_break *log;
   size_t breaks = dem_system_breaks(run->system, &log);
-  double beams[2] = {0}, broken[2] = {0}, upright = 0, all = 0; /* [inside the triangles] */
+  double beams[2] = {0}, broken[2] = {0}, upright = 0, all = 0; /* by [inside the triangles] */
   for (size_t p = 0; p < t->pair_count + breaks; p++) {
     bool is_break = p >= t->pair_count;
     if (is_break && log[p - t->pair_count].time > run->state.time_peak)
@@ -181,7 +182,7 @@ void dem_loading_results(const struct dem_run *run, struct dem_results *results)
   if (s->samples == 0)
     return;
   results->final_strain = fabs(run->sample[s->samples - 1].strain);
-  /* from a tenth on, away from the start's vibrations; in compression up to half of the failure strain */
+  /* from a tenth of the final strain on, after the first vibrations; in compression up to half of the failure strain */
   double highest = run->inputs.kind == DEM_COMPRESSION ? 0.5 * s->strain_peak : HUGE_VAL;
   double reference = run->inputs.kind == DEM_COMPRESSION ? s->strain_peak : run->inputs.loading.strain_end;
   results->young_modulus = slope(run, false, 0.1 * reference, highest);

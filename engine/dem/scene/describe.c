@@ -109,7 +109,7 @@ static double energy_put_in(const struct dem_inputs *in) {
   return NAN;
 }
 
-/* What only a body can tell, here that of seed 1: counts, the energy of its beams, the stability limit. */
+/* Builds the body of seed 1 and describes it: counts, the energy of its beams, the stability limit. */
 static void body(const struct dem_inputs *in, FILE *out) {
   struct dem_inputs probe = *in;
   probe.fidelity.time_step = 1e-15; /* any step is good enough to build the body */

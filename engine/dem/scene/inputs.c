@@ -1,5 +1,6 @@
-/* "K99" in the sources below: Kun, D'Addetta, Herrmann & Ramm 1999, Two-dimensional dynamic simulation of fracture and
- * fragmentation of solids; numbers of its table 1 turned from CGS into SI (unit thickness: energies per metre). */
+/* The rows of the scene: unit, range, default, documentation, source of each input. "K99" is Kun, D'Addetta, Herrmann &
+ * Ramm 1999, Two-dimensional dynamic simulation of fracture and fragmentation of solids. The numbers of its table 1 are
+ * converted from CGS to SI; the thickness is 1 m, so energies are per metre. */
 #include "engine/dem/scene/inputs.h"
 
 #include <math.h>

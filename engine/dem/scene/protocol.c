@@ -1,4 +1,4 @@
-/* Bodies and how they are set in motion: K99 section 3.3. Loads between plates: loading.c. */
+/* Builds the bodies and sets them in motion: K99 section 3.3. Loads between moving sides: loading.c. */
 #include "engine/dem/run/run.h"
 
 #include <math.h>
@@ -60,7 +60,7 @@ static uint32_t grain_nearest(const struct dem_tessellation *t, double x, double
   return nearest;
 }
 
-/* The common side of two neighbours, as `charge` has it: from one shared vertex to the next, counter-clockwise. */
+/* The common side of two neighbours, counter-clockwise for the grain `charge`. */
 static bool common_side(const struct dem_tessellation *t, uint32_t charge, uint32_t other, struct dem_point *side) {
   uint32_t start = t->first_vertex[charge], end = t->first_vertex[charge + 1];
   for (uint32_t k = start; k < end; k++) {
@@ -79,8 +79,8 @@ static bool common_side(const struct dem_tessellation *t, uint32_t charge, uint3
 /* K99 section 3.3.1. Each neighbour of the central grain starts perpendicular to their common side, with a speed
  * proportional to side over mass, so that the momenta, sums of side x normal around a closed polygon, add up to zero;
  * the kinetic energies add up to E_o. The central grain "plays the role of the explosive": the paper gives it neither a
- * velocity nor a place among the fragments, and its momentum balance is that of the neighbours alone. So it is burnt:
- * its beams and contacts vanish at t = 0, and its mass is left out of every total. */
+ * velocity nor a place among the fragments, and balances the momenta of the neighbours alone. So it vanishes: its beams
+ * and contacts end at t = 0, and no total contains its mass. */
 static status charge(struct dem_run *run, struct error *error) {
   const struct dem_tessellation *t = run->tessellation;
   run->charge = grain_nearest(t, 0, 0);
@@ -135,7 +135,8 @@ static void collision(struct dem_run *run) {
     centre[1].y = fmax(centre[1].y, t->centroid[c].y);
   }
   double radius = run->inputs.body.diameter / 2;
-  double x = centre[1].x - radius, y = centre[1].y - radius; /* of the second disc, near enough to tell them apart */
+  double x = centre[1].x - radius,
+         y = centre[1].y - radius; /* rough centre of the second disc, to tell the discs apart */
   for (uint32_t c = 0; c < t->cell_count; c++) {
     double v = run->inputs.collision.speed / 2;
     dem_system_set_velocity(run->system, c, t->centroid[c].x * x + t->centroid[c].y * y > 0 ? -v : v, 0, 0);

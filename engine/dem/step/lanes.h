@@ -2,7 +2,7 @@
  *
  * The including file sets LANES to its class's register width (2, 4 or 8). Data lie in blocks of eight whatever the
  * class, and running sums are kept per block lane, so that their order is the same everywhere. Products and sums may
- * contract to FMA where the class has it: on purpose, and why the class is recorded with a run. */
+ * contract to FMA where the class has it; that is why the class is recorded with a run. */
 #ifndef CLAST_ENGINE_DEM_STEP_LANES_H
 #define CLAST_ENGINE_DEM_STEP_LANES_H
 
@@ -68,8 +68,8 @@ LANES_INLINE lanes_d lanes_gather(const double *array, const uint32_t *index) {
 #endif
 }
 
-/* The value as it is, out of the compiler's sight: it will not be contracted into what follows, so that two places that
- * compute the same do so to the last bit. */
+/* The same value, hidden from the compiler: it cannot be contracted into the next operation, so that two places with
+ * the same formula give the same bits. */
 LANES_INLINE lanes_d lanes_rounded(lanes_d value) {
 #ifdef __x86_64__
   __asm__("" : "+v"(value));

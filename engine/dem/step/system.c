@@ -1,4 +1,4 @@
-/* The step of the moving grains, what may be done to them, and what can be read from them. */
+/* The moving grains: set-up, holds, the step, and what others read. */
 #include "engine/dem/step/system.h"
 
 #include <math.h>
@@ -97,7 +97,7 @@ void dem_system_remove(struct dem_system *s, uint32_t grain) {
   }
   s->c.vx[grain] = s->c.vy[grain] = s->c.spin[grain] = 0.0;
   s->c.mobility_x[grain] = s->c.mobility_y[grain] = s->c.mobility_angle[grain] = 0.0;
-  s->now.ready = 0; /* the list made before the next evaluation has neither its bonds nor its contacts */
+  s->now.ready = 0; /* the next evaluation makes a new list, without the bonds and contacts of this grain */
 }
 
 static double kinetic_of(const struct dem_system *s, uint32_t i) {
@@ -113,7 +113,7 @@ static void prescribe(struct dem_system *s, uint32_t grain) {
     s->c.vy[grain] = s->held_vy[grain];
   if (s->freedoms[grain] & 4)
     s->c.spin[grain] = s->held_spin[grain];
-  s->now.external_work += kinetic_of(s, grain) - before; /* a jolt is work too */
+  s->now.external_work += kinetic_of(s, grain) - before; /* a sudden change of velocity is work, too */
 }
 
 void dem_system_hold(struct dem_system *s, uint32_t grain, unsigned freedoms) {
@@ -137,7 +137,7 @@ void dem_system_drive(struct dem_system *s, uint32_t grain, double vx, double vy
   prescribe(s, grain);
 }
 
-/* Work of the holds over `dt`: what keeps a driven freedom at its velocity balances the force on it. */
+/* Books the work of the holds over `dt`: the reaction that keeps a held freedom at its velocity balances the force. */
 static void book_holds(struct dem_system *s, double dt) {
   for (size_t k = 0; k < s->held_count; k++) {
     const uint32_t i = s->held[k];

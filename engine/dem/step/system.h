@@ -50,7 +50,7 @@ struct dem_grain {
   bool present;
 };
 struct dem_grain dem_system_grain(const struct dem_system *system, uint32_t grain);
-/* Force on a grain at the last evaluation (with reaction of its holds left out). */
+/* Force on a grain at the last evaluation (without the reaction of its holds). */
 void dem_system_force(const struct dem_system *system, uint32_t grain, double *fx, double *fy, double *torque);
 /* Beams: alive or not, their strain now. */
 bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
@@ -64,7 +64,8 @@ double dem_system_overlap_share(struct dem_system *system);
 /* Current outline of a grain, counter-clockwise; returns the number of vertices (up to capacity are written). */
 size_t dem_system_outline(const struct dem_system *system, uint32_t grain, size_t capacity, struct dem_point *vertices);
 
-/* Everything that the next step depends on, so that a restored run continues with the same bits. */
+/* Everything that the next step depends on: a restored run continues with the same bits. load: false when the bytes fit
+ * no state of this system, or without memory. */
 size_t dem_system_state_size(const struct dem_system *system);
 void dem_system_state_save(const struct dem_system *system, void *bytes);
 bool dem_system_state_load(struct dem_system *system, const void *bytes, size_t size);
