@@ -143,12 +143,12 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    {"point", 'p', OPTION_INTEGER, "N", offsetof(struct options, point), 0, INT64_MAX, "0",
-     "Only this point (point_id in the view points); 0: all."},
-    {"campaign", 0, OPTION_INTEGER, "N", offsetof(struct options, campaign), 0, INT64_MAX, "0",
-     "Only the points of this campaign (`clast status` lists them); 0: all."},
-    {"resamples", 0, OPTION_INTEGER, "N", offsetof(struct options, resamples), 0, 100000, "1000",
-     "Number of resamples of the runs, for the errors of the exponents; 0: no errors."},
+    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
+                       "Only this point (point_id in the view points); 0: all."),
+    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0",
+                       "Only the points of this campaign (`clast status` lists them); 0: all."),
+    OPTION_ROW_INTEGER("resamples", 0, "N", struct options, resamples, 0, 100000, "1000",
+                       "Number of resamples of the runs, for the errors of the exponents; 0: no errors."),
     TABLE_OPTIONS(struct options, table),
 };
 

@@ -68,12 +68,14 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    {"csv", 0, OPTION_FLAG, NULL, offsetof(struct options, csv), 0, 0, NULL,
-     "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning and unit of each "
-     "column."},
-    {"bits", 0, OPTION_FLAG, NULL, offsetof(struct options, bits), 0, 0, NULL,
-     "Write every value that does not depend on where and when a run was computed, as text in the order of identities. "
-     "Two stores of one campaign give the same file, however they were computed."},
+    OPTION_ROW_FLAG("csv", 0, struct options, csv,
+                    "Write a folder of CSV files: runs, points, spectra, estimates, and column_doc with the meaning "
+                    "and unit of each "
+                    "column."),
+    OPTION_ROW_FLAG("bits", 0, struct options, bits,
+                    "Write every value that does not depend on where and when a run was computed, as text in the order "
+                    "of identities. "
+                    "Two stores of one campaign give the same file, however they were computed."),
 };
 
 const struct command export_command = {

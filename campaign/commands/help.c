@@ -50,8 +50,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"man", 0, OPTION_FLAG, NULL, offsetof(struct options, man), 0, 0, NULL,
-     "Print the manual page clast(1), every command in one text, as roff."},
+    OPTION_ROW_FLAG("man", 0, struct options, man,
+                    "Print the manual page clast(1), every command in one text, as roff."),
 };
 
 const struct command help_command = {

@@ -13,29 +13,15 @@ struct launch_options {
 };
 
 #define LAUNCH_OPTIONS(type_, member_)                                                                                 \
-  {"slots",                                                                                                            \
-   'j',                                                                                                                \
-   OPTION_INTEGER,                                                                                                     \
-   "N",                                                                                                                \
-   offsetof(type_, member_) + offsetof(struct launch_options, slots),                                                  \
-   0,                                                                                                                  \
-   4096,                                                                                                               \
-   "0",                                                                                                                \
-   "Runs at a time. Under mpirun or srun: per rank. 0: one per core, or under mpirun or srun one per rank."},          \
-      {"in-process",                                                                                                   \
-       0,                                                                                                              \
-       OPTION_FLAG,                                                                                                    \
-       NULL,                                                                                                           \
-       offsetof(type_, member_) + offsetof(struct launch_options, in_process),                                         \
-       0,                                                                                                              \
-       0,                                                                                                              \
-       NULL,                                                                                                           \
-       "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a crash ends the slot "     \
-       "too."},                                                                                                        \
-  {                                                                                                                    \
-    "quiet", 'q', OPTION_FLAG, NULL, offsetof(type_, member_) + offsetof(struct launch_options, quiet), 0, 0, NULL,    \
-        "Print no progress and no remarks on stderr. Warnings and errors are printed."                                 \
-  }
+  OPTION_ROW_INTEGER(                                                                                                  \
+      "slots", 'j', "N", type_, member_.slots, 0, 4096, "0",                                                           \
+      "Runs at a time. Under mpirun or srun: per rank. 0: one per core, or under mpirun or srun one per rank."),       \
+      OPTION_ROW_FLAG(                                                                                                 \
+          "in-process", 0, type_, member_.in_process,                                                                  \
+          "Compute runs in the slot's own process. Faster for runs of a few milliseconds, but a crash ends the slot "  \
+          "too."),                                                                                                     \
+      OPTION_ROW_FLAG("quiet", 'q', type_, member_.quiet,                                                              \
+                      "Print no progress and no remarks on stderr. Warnings and errors are printed.")
 
 /* Starts the farm, runs the campaign, and prints the table of estimates from the store at the end, on rank 0. The farm
  * is started before anything opens HDF5 or starts a thread. */

@@ -82,12 +82,13 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"x", 'x', OPTION_TEXT, "AXIS", offsetof(struct options, x), 0, 0, NULL,
-     "Varied input on the horizontal axis: a path or its unique ending."},
-    {"y", 'y', OPTION_TEXT, "AXIS", offsetof(struct options, y), 0, 0, NULL, "Varied input on the vertical axis."},
-    {"quantity", 'q', OPTION_TEXT, "NAME", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
-     "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a point: beta, or "
-     "beta_METHOD_WINDOW (beta_binned_from_2)."},
+    OPTION_ROW_TEXT("x", 'x', "AXIS", struct options, x, NULL,
+                    "Varied input on the horizontal axis: a path or its unique ending."),
+    OPTION_ROW_TEXT("y", 'y', "AXIS", struct options, y, NULL, "Varied input on the vertical axis."),
+    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
+                    "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "
+                    "point: beta, or "
+                    "beta_METHOD_WINDOW (beta_binned_from_2)."),
 };
 
 const struct command map_command = {

@@ -190,18 +190,21 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"caption", 0, OPTION_TEXT, "TEXT", offsetof(struct options, caption), 0, 0, NULL, "Title of the picture."},
-    {"what", 0, OPTION_TEXT, "QUANTITY", offsetof(struct options, what), 0, 0, NULL,
-     "Particles: quantity shown by colour: damage (or pressure if nothing can crack), pressure, density, energy, "
-     "distention, flaws..., or fragments."},
-    {"view", 0, OPTION_TEXT, "VIEW", offsetof(struct options, view), 0, 0, NULL,
-     "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the default "
-     "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
-     "plate)."},
-    {"axis", 0, OPTION_TEXT, "x|y|z", offsetof(struct options, axis), 0, 0, NULL,
-     "Particles: direction of view, at right angles to a cut (y)."},
-    {"at", 0, OPTION_TEXT, "LENGTH", offsetof(struct options, at), 0, 0, NULL,
-     "Particles: position of the cut on that axis (the middle of the heaviest fragment)."},
+    OPTION_ROW_TEXT("caption", 0, "TEXT", struct options, caption, NULL, "Title of the picture."),
+    OPTION_ROW_TEXT(
+        "what", 0, "QUANTITY", struct options, what, NULL,
+        "Particles: quantity shown by colour: damage (or pressure if nothing can crack), pressure, density, energy, "
+        "distention, flaws..., or fragments."),
+    OPTION_ROW_TEXT(
+        "view", 0, "VIEW", struct options, view, NULL,
+        "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the "
+        "default "
+        "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
+        "plate)."),
+    OPTION_ROW_TEXT("axis", 0, "x|y|z", struct options, axis, NULL,
+                    "Particles: direction of view, at right angles to a cut (y)."),
+    OPTION_ROW_TEXT("at", 0, "LENGTH", struct options, at, NULL,
+                    "Particles: position of the cut on that axis (the middle of the heaviest fragment)."),
 };
 
 const struct command picture_command = {

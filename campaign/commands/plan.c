@@ -52,13 +52,13 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"slots", 'j', OPTION_INTEGER, "N", offsetof(struct options, slots), 0, 1000000, "0",
-     "Runs at a time, for the expected wall time. 0: one per core of this machine."},
-    {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
-     "Count the runs that this store has, instead of the campaign's store."},
-    {"no-trial", 0, OPTION_FLAG, NULL, offsetof(struct options, no_trial), 0, 0, NULL,
-     "Do not time a trial run. Times then come from the runs in the store."},
-    {"json", 0, OPTION_FLAG, NULL, offsetof(struct options, json), 0, 0, NULL, "Print one JSON object."},
+    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0",
+                       "Runs at a time, for the expected wall time. 0: one per core of this machine."),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL,
+                    "Count the runs that this store has, instead of the campaign's store."),
+    OPTION_ROW_FLAG("no-trial", 0, struct options, no_trial,
+                    "Do not time a trial run. Times then come from the runs in the store."),
+    OPTION_ROW_FLAG("json", 0, struct options, json, "Print one JSON object."),
 };
 
 const struct command plan_command = {

@@ -75,13 +75,12 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows_of_options[] = {
-    {"list", 'l', OPTION_FLAG, NULL, offsetof(struct options, list), 0, 0, NULL,
-     "List the canned queries (with --json: their SQL too)."},
-    {"named", 'n', OPTION_TEXT, "NAME", offsetof(struct options, named), 0, 0, NULL, "Run a canned query."},
-    {"with", 'w', OPTION_LIST, "NAME=VALUE", offsetof(struct options, with), 0, 0, NULL,
-     "Value of a parameter :NAME in the SQL. May be given several times."},
-    {"seconds", 0, OPTION_INTEGER, "S", offsetof(struct options, seconds), 0, 1000000, "0",
-     "Stop the query after this many seconds (exit 75); 0: never."},
+    OPTION_ROW_FLAG("list", 'l', struct options, list, "List the canned queries (with --json: their SQL too)."),
+    OPTION_ROW_TEXT("named", 'n', "NAME", struct options, named, NULL, "Run a canned query."),
+    OPTION_ROW_LIST("with", 'w', "NAME=VALUE", struct options, with,
+                    "Value of a parameter :NAME in the SQL. May be given several times."),
+    OPTION_ROW_INTEGER("seconds", 0, "S", struct options, seconds, 0, 1000000, "0",
+                       "Stop the query after this many seconds (exit 75); 0: never."),
     TABLE_OPTIONS(struct options, table),
 };
 

@@ -100,16 +100,16 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"status", 0, OPTION_TEXT, "failed", offsetof(struct options, status), 0, 0, "failed",
-     "Which runs: failed are those whose every attempt ended by a limit, a crash or a lost worker."},
-    {"time", 0, OPTION_TEXT, "TIME", offsetof(struct options, time), 0, 0, NULL,
-     "Time limit of an attempt (\"30 min\", off). Default: twice the campaign's."},
-    {"memory", 0, OPTION_TEXT, "SIZE", offsetof(struct options, memory), 0, 0, NULL,
-     "Memory limit of an attempt (\"4 GiB\", off). Default: twice the campaign's."},
-    {"campaign", 0, OPTION_INTEGER, "N", offsetof(struct options, campaign), 0, INT32_MAX, "0",
-     "Campaign of the store (`clast status` lists them); 0: the last one."},
-    {"folder", 0, OPTION_TEXT, "DIR", offsetof(struct options, folder), 0, 0, NULL,
-     "Folder that the path of the campaign's scene file starts from. Default: the current folder."},
+    OPTION_ROW_TEXT("status", 0, "failed", struct options, status, "failed",
+                    "Which runs: failed are those whose every attempt ended by a limit, a crash or a lost worker."),
+    OPTION_ROW_TEXT("time", 0, "TIME", struct options, time, NULL,
+                    "Time limit of an attempt (\"30 min\", off). Default: twice the campaign's."),
+    OPTION_ROW_TEXT("memory", 0, "SIZE", struct options, memory, NULL,
+                    "Memory limit of an attempt (\"4 GiB\", off). Default: twice the campaign's."),
+    OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT32_MAX, "0",
+                       "Campaign of the store (`clast status` lists them); 0: the last one."),
+    OPTION_ROW_TEXT("folder", 0, "DIR", struct options, folder, NULL,
+                    "Folder that the path of the campaign's scene file starts from. Default: the current folder."),
     LAUNCH_OPTIONS(struct options, launch),
     TABLE_OPTIONS(struct options, launch.table),
 };

@@ -33,10 +33,8 @@ static status run(const struct command_line *line, struct error *error) {
 
 static const struct option_row rows[] = {
     LAUNCH_OPTIONS(struct options, launch),
-    {"store", 0, OPTION_TEXT, "FILE", offsetof(struct options, store), 0, 0, NULL,
-     "Write this store instead of the campaign's."},
-    {"dry-run", 'n', OPTION_FLAG, NULL, offsetof(struct options, dry_run), 0, 0, NULL,
-     "Print what would be done, like `clast plan`, and stop."},
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
+    OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run, "Print what would be done, like `clast plan`, and stop."),
     TABLE_OPTIONS(struct options, launch.table),
 };
 

@@ -26,8 +26,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    {"engine", 0, OPTION_TEXT, "NAME", offsetof(struct options, engine), 0, 0, "dem",
-     "Engine whose scenes the schema describes."},
+    OPTION_ROW_TEXT("engine", 0, "NAME", struct options, engine, "dem", "Engine whose scenes the schema describes."),
 };
 
 const struct command schema_command = {

@@ -160,21 +160,24 @@ cleanup:
 }
 
 static const struct option_row rows[] = {
-    {"seed", 0, OPTION_INTEGER, "N", offsetof(struct options, seed), 0, INT64_MAX, "1",
-     "Seed of the run: the same seed gives the same bits."},
+    OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1",
+                       "Seed of the run: the same seed gives the same bits."),
     EXPLAIN_SET(struct options, set),
-    {"picture", 'p', OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
-     "Draw the body at the end: fragments of grains, or the damage of particles on a cut."},
-    {"fields", 0, OPTION_TEXT, "FILE.hdf", offsetof(struct options, fields), 0, 0, NULL,
-     "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file. ParaView opens it if "
-     "its name ends in .hdf."},
-    {"snapshots", 0, OPTION_INTEGER, "N", offsetof(struct options, snapshots), 0, 100000, "0",
-     "Write up to N such files during the run, SCENE_000000.hdf and so on, evenly over the longest time that the run "
-     "may take. SCENE.hdf.series lists them with their times for ParaView."},
-    {"restart", 0, OPTION_TEXT, "FILE", offsetof(struct options, restart), 0, 0, NULL,
-     "Go on from this file if it exists. It is written every five minutes and when the run is interrupted (exit 75; "
-     "the same command goes on, to the same bits). It is removed at the end."},
-    {"quiet", 'q', OPTION_FLAG, NULL, offsetof(struct options, quiet), 0, 0, NULL, "No progress on the terminal."},
+    OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, picture, NULL,
+                    "Draw the body at the end: fragments of grains, or the damage of particles on a cut."),
+    OPTION_ROW_TEXT(
+        "fields", 0, "FILE.hdf", struct options, fields, NULL,
+        "Write all grains or particles, fragments, inputs and results at the end as an HDF5 file. ParaView opens it if "
+        "its name ends in .hdf."),
+    OPTION_ROW_INTEGER("snapshots", 0, "N", struct options, snapshots, 0, 100000, "0",
+                       "Write up to N such files during the run, SCENE_000000.hdf and so on, evenly over the longest "
+                       "time that the run "
+                       "may take. SCENE.hdf.series lists them with their times for ParaView."),
+    OPTION_ROW_TEXT(
+        "restart", 0, "FILE", struct options, restart, NULL,
+        "Go on from this file if it exists. It is written every five minutes and when the run is interrupted (exit 75; "
+        "the same command goes on, to the same bits). It is removed at the end."),
+    OPTION_ROW_FLAG("quiet", 'q', struct options, quiet, "No progress on the terminal."),
     TABLE_OPTIONS(struct options, table),
 };
 

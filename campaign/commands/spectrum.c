@@ -152,16 +152,16 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row option_rows[] = {
-    {"point", 'p', OPTION_INTEGER, "N", offsetof(struct options, point), 0, INT64_MAX, "0",
-     "Only this point (point_id in the view points); 0: all."},
-    {"where", 'w', OPTION_TEXT, "SQL", offsetof(struct options, where), 0, 0, NULL,
-     "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."},
-    {"picture", 0, OPTION_TEXT, "FILE.png", offsetof(struct options, picture), 0, 0, NULL,
-     "Also draw F(m) with the fitted power law, of --point or of the first eight points. PNG or SVG by the ending."},
-    {"plot", 0, OPTION_FLAG, NULL, offsetof(struct options, plot), 0, 0, NULL,
-     "Plot F(m) as text instead of the table, of --point or of the first eight points."},
-    {"ascii", 0, OPTION_FLAG, NULL, offsetof(struct options, ascii), 0, 0, NULL,
-     "Use ASCII characters only in the plot."},
+    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
+                       "Only this point (point_id in the view points); 0: all."),
+    OPTION_ROW_TEXT("where", 'w', "SQL", struct options, where, NULL,
+                    "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+    OPTION_ROW_TEXT(
+        "picture", 0, "FILE.png", struct options, picture, NULL,
+        "Also draw F(m) with the fitted power law, of --point or of the first eight points. PNG or SVG by the ending."),
+    OPTION_ROW_FLAG("plot", 0, struct options, plot,
+                    "Plot F(m) as text instead of the table, of --point or of the first eight points."),
+    OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
     TABLE_OPTIONS(struct options, table),
 };
 

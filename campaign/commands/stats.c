@@ -50,11 +50,13 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows_of_options[] = {
-    {"by", 'b', OPTION_TEXT, "AXES", offsetof(struct options, by), 0, 0, "",
-     "Varied inputs to group by: comma-separated paths or unique endings of paths (strain,angle). Default: all runs "
-     "are one group."},
-    {"quantity", 'q', OPTION_TEXT, "NAMES", offsetof(struct options, quantity), 0, 0, OUTCOME_DEFAULT,
-     "Results to average, comma-separated; main: the five main results, a wide table. `clast explain` lists all."},
+    OPTION_ROW_TEXT(
+        "by", 'b', "AXES", struct options, by, "",
+        "Varied inputs to group by: comma-separated paths or unique endings of paths (strain,angle). Default: all runs "
+        "are one group."),
+    OPTION_ROW_TEXT(
+        "quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT,
+        "Results to average, comma-separated; main: the five main results, a wide table. `clast explain` lists all."),
     TABLE_OPTIONS(struct options, table),
 };
 

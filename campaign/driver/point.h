@@ -11,7 +11,6 @@ enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED };
 
 struct point_replicate {
   unsigned char state;    /* enum point_state */
-  bool counted;           /* stored, and not surplus */
   bool surplus;           /* stored with surplus = 1 */
   bool fields;            /* its HDF5 file exists, or there is nothing to write: an invalid run has no body */
   bool replay, replaying; /* its HDF5 file is wanted, and under way */

@@ -35,6 +35,25 @@ struct option_row {
   const char *doc;          /* one or two sentences */
 };
 
+/* Rows by kind: long name, letter or 0, name of the value, struct and member, range, default, doc. */
+#define OPTION_ROW_FLAG(name_, letter_, type_, member_, doc_)                                                          \
+  { .name = name_, .letter = letter_, .kind = OPTION_FLAG, .offset = offsetof(type_, member_), .doc = doc_ }
+#define OPTION_ROW_TEXT(name_, letter_, argument_, type_, member_, initial_, doc_)                                     \
+  {                                                                                                                    \
+    .name = name_, .letter = letter_, .kind = OPTION_TEXT, .argument = argument_, .offset = offsetof(type_, member_),  \
+    .initial = initial_, .doc = doc_                                                                                   \
+  }
+#define OPTION_ROW_LIST(name_, letter_, argument_, type_, member_, doc_)                                               \
+  {                                                                                                                    \
+    .name = name_, .letter = letter_, .kind = OPTION_LIST, .argument = argument_, .offset = offsetof(type_, member_),  \
+    .doc = doc_                                                                                                        \
+  }
+#define OPTION_ROW_INTEGER(name_, letter_, argument_, type_, member_, minimum_, maximum_, initial_, doc_)              \
+  {                                                                                                                    \
+    .name = name_, .letter = letter_, .kind = OPTION_INTEGER, .argument = argument_,                                   \
+    .offset = offsetof(type_, member_), .minimum = minimum_, .maximum = maximum_, .initial = initial_, .doc = doc_     \
+  }
+
 /* What a command gets. */
 struct command_line {
   const void *options; /* the command's struct, filled */
