@@ -9,10 +9,26 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
-#include "analysis/pictures/picture_body.h"
 #include "analysis/pictures/picture_cloud.h"
 #include "analysis/statistics/pooled.h"
+
+/* A broken body of convex polygons (DEM's grains), and the fragment that each belongs to. */
+struct picture_body {
+  size_t cells;
+  uint32_t *first_vertex; /* cells + 1: cell i has the vertices first_vertex[i] .. first_vertex[i + 1] - 1 */
+  double (*vertex)[2];    /* m */
+  uint32_t *fragment;     /* by cell: number of its fragment, 0 the heaviest */
+  size_t cracks;          /* broken links inside one fragment, drawn as lines; between fragments there is a gap */
+  uint32_t (*crack)[2];   /* pairs of cells; NULL for none */
+};
+
+/* Reads the body of a fields file of any engine whose cells are polygons. The file may come from anywhere: every size
+ * and index is checked. *body owns its arrays: picture_body_clear(). STATUS_MISSING: there is no such file.
+ * STATUS_CONTENT: it is no fields file, or it is damaged. STATUS_MEMORY. After an error *body is all zero. */
+status picture_body_read(const char *path, struct picture_body *body, struct error *error);
+void picture_body_clear(struct picture_body *body);
 
 struct picture_panel {
   struct picture_body body;
@@ -64,6 +80,13 @@ struct picture_series {
  * stands beside the frame and makes the picture wider than `width`. */
 status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
                         const struct picture_series *series, struct error *error);
+
+/* The same as text for a terminal (text_plot.c). Writes one row per bin:
+ *     lower edge   count   F(m)   error in %      ├──●──┤  ·
+ * the point, one standard error to both sides, and (·) the series' first fit. columns: width of the terminal, at least
+ * 72 are used. unicode: false for ASCII only. It writes no colour, and nothing when there is no fragment. */
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
+                        const struct picture_series *series);
 
 /* Quantities along a line (such as depth below a crater), one panel each, one above the other. A value that is not
  * finite leaves a gap. */

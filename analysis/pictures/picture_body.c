@@ -1,11 +1,10 @@
 /* Reading a body of polygons from a fields file. */
-#include "analysis/pictures/picture_body.h"
-
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/pictures/picture.h"
 #include "analysis/pictures/snapshot_read.h"
 
 /* The columns as the file has them, with their lengths; NULL: the file has no such column. */

@@ -44,4 +44,21 @@ void picture_canvas_length_text(double metres, char *text, size_t size);
 /* 10 with a raised exponent. */
 void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent);
 
+/* Ramps that read in grey and for the colour-blind: lightness changes evenly from one end to the other, in a signed
+ * ramp from the middle to both ends. */
+enum picture_ramp {
+  PICTURE_RAMP_RISING, /* dark blue to pale yellow */
+  PICTURE_RAMP_SIGNED, /* blue, nearly white in the middle, orange brown */
+  PICTURE_RAMP_DAMAGE, /* pale stone to near black red: unbroken rock is light, broken rock stands out */
+};
+void picture_canvas_ramp(cairo_t *cairo, enum picture_ramp ramp, double share); /* share 0..1 */
+
+/* The colour bar: upright, with ticks on its right and `quantity` beside it. It needs 6.5 font to the right of
+ * x + width. */
+void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x, double y, double width, double height,
+                               double font, double low, double high, const char *quantity);
+/* The scale bar: a round length of about a quarter of `available`, with its text above. */
+void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,
+                              double font);
+
 #endif

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
-#include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
 
@@ -232,7 +231,7 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   cairo_set_line_width(cairo, 0.11 * cell);
   cairo_stroke(cairo);
   cairo_restore(cairo);
-  picture_bars_length(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
+  picture_canvas_scale_bar(cairo, left + 0.02 * width, top + height + 1.75 * font, scale, width, font);
   cairo_set_source_rgb(cairo, 0.25, 0.25, 0.25);
   if (panel->caption)
     picture_canvas_text(cairo, left + width * 0.98, top + height + 1.75 * font, font, PICTURE_RIGHT, false,

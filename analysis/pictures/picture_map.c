@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include "analysis/pictures/picture.h"
-#include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/pictures/picture_frame.h"
 #include "analysis/statistics/sample.h"
@@ -56,7 +55,7 @@ static void draw_tile(const struct layout *l, double x, double y, double value) 
     return;
   }
   double share = l->high > l->low ? (value - l->low) / (l->high - l->low) : 0.5;
-  picture_bars_colour(l->cairo, PICTURE_RAMP_RISING, share);
+  picture_canvas_ramp(l->cairo, PICTURE_RAMP_RISING, share);
   cairo_rectangle(l->cairo, x, y, l->tile_x + 0.4, l->tile_y + 0.4);
   cairo_fill(l->cairo);
 
@@ -123,8 +122,8 @@ status picture_map(const char *path, double width, const char *title, const char
       draw_tile(&l, l.left + l.tile_x * (double)i, l.top + l.tall - l.tile_y * (double)(j + 1),
                 value[j * x->count + i]);
   draw_axes(&l, x, y);
-  picture_bars_colours(l.cairo, PICTURE_RAMP_RISING, l.left + l.wide + 1.2 * font, l.top, 1.1 * font, l.tall, font,
-                       l.low, l.high, quantity);
+  picture_canvas_colour_bar(l.cairo, PICTURE_RAMP_RISING, l.left + l.wide + 1.2 * font, l.top, 1.1 * font, l.tall, font,
+                            l.low, l.high, quantity);
   picture_canvas_title(l.cairo, l.left, font, title);
   picture_canvas_text(l.cairo, l.left + l.wide / 2, height - 0.8 * font, 1.05 * font, PICTURE_CENTRE, false, x->label);
   picture_canvas_text_upright(l.cairo, 1.5 * font, l.top + l.tall / 2, 1.05 * font, y->label);

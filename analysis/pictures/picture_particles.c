@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "analysis/pictures/picture.h"
-#include "analysis/pictures/picture_bars.h"
 #include "analysis/pictures/picture_canvas.h"
 #include "analysis/statistics/sample.h"
 
@@ -287,7 +286,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
       cairo_set_source_rgb(cairo, 1, 0, 1);
     else {
       double share = s->high > s->low ? (value[d->id] - s->low) / (s->high - s->low) : 0.5;
-      picture_bars_colour(cairo, s->ramp, fmin(fmax(share, 0), 1));
+      picture_canvas_ramp(cairo, s->ramp, fmin(fmax(share, 0), 1));
     }
     cairo_arc(cairo, d->x, d->y, d->radius, 0, 2 * M_PI);
     cairo_fill(cairo);
@@ -376,10 +375,10 @@ static status draw(const char *path, double width, struct scene *s, struct error
   cairo_restore(cairo);
   picture_canvas_head(cairo, gap, font, look->title, 0.95 * font, look->subtitle);
   axes(cairo, look->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
-  picture_bars_length(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
+  picture_canvas_scale_bar(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
   if (s->cloud->value)
-    picture_bars_colours(cairo, s->ramp, gap + wide + 1.2 * font, top, 1.2 * font, fmin(tall, 26 * font), font,
-                         s->low / s->scale, s->high / s->scale, s->label);
+    picture_canvas_colour_bar(cairo, s->ramp, gap + wide + 1.2 * font, top, 1.2 * font, fmin(tall, 26 * font), font,
+                              s->low / s->scale, s->high / s->scale, s->label);
   else
     legend(cairo, s, gap + wide + 1.2 * font, top, font);
   return picture_canvas_close(&canvas, STATUS_OK, error);

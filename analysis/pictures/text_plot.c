@@ -1,8 +1,8 @@
 /* Spectra as text. */
-#include "analysis/pictures/text_plot.h"
-
 #include <math.h>
 #include <string.h>
+
+#include "analysis/pictures/picture.h"
 
 enum { LEAST_COLUMNS = 72, FRONT = 38, MOST_PLOT = 200 };
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "analysis/pictures/text_plot.h"
+#include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/point.h"

@@ -1,4 +1,4 @@
-/* Union-find against a plain flood fill on random graphs; mechanics of a fragment against sums written out by hand. */
+/* Union-find against a flood fill on random graphs; the mechanics of a fragment against explicit sums. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Pictures are whole files of the right kind with ink where it belongs; errors leave nothing behind. With a folder as
- * argument the pictures stay there, to be looked at. */
+/* Pictures are complete files of the right kind with ink in the right places; an error leaves no file behind. With a
+ * folder as argument the pictures stay there. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -278,7 +278,7 @@ static void curves_are_drawn(void **state) {
   assert_true(hued(at("curves.png"), false, 0.2, 0.9, 0.1, 0.4) > 1000 &&
               hued(at("curves.png"), true, 0.2, 0.9, 0.1, 0.4) == 0);
   assert_true(hued(at("curves.png"), true, 0, 1, 0.6, 0.9) > 100);     /* dots */
-  assert_true(hued(at("curves.png"), true, 0.3, 0.85, 0.1, 0.9) == 0); /* and no line over what is no number */
+  assert_true(hued(at("curves.png"), true, 0.3, 0.85, 0.1, 0.9) == 0); /* and no line across a gap */
   /* the dot in the middle of the decades stands in the middle of the axis; a bar is taller than a dot */
   const double middle = (7.5 + 0.5 * (46 - 8.5)) / 46;
   const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1),

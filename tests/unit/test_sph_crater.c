@@ -1,4 +1,4 @@
-/* Craters: a hole dug into a lattice by hand is measured as it was dug; ejecta, closed pores and their shares. */
+/* Craters: holes of known size in a lattice, ejecta, closed pores and their shares. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -48,7 +48,7 @@ static void untouched(void **state) {
   sph_particles_free(p);
 }
 
-/* A bowl of radius 12 mm, all of it thrown out at 20 m/s; a pit elsewhere that is not connected does not count. */
+/* A bowl of radius 12 mm, ejected at 20 m/s. A pit that is not connected to it does not count. */
 static void thrown_out(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();
@@ -61,7 +61,7 @@ static void thrown_out(void **state) {
       count++;
     }
     if (hypot(now->x[i] - 24e-3, now->y[i] - 24e-3) < 3e-3 && depth < 5e-3)
-      now->z[i] -= 10e-3; /* pushed in, far off */
+      now->z[i] -= 10e-3; /* a pit far from the axis */
   }
   struct sph_results c = {0};
   assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
@@ -89,7 +89,7 @@ static void compacted(void **state) {
   for (size_t i = 0; i < now->n; i++)
     if (hypot(now->x[i], now->y[i]) < 10e-3 && now->z[i] > 10e-3) {
       now->z[i] = 10e-3 + (now->z[i] - 10e-3) / 2;
-      now->rest_distention[i] = 1; /* closed for good, though torn matter stands in tension and shows more */
+      now->rest_distention[i] = 1; /* closed for good; `distention` of fractured matter, under tension, stays larger */
       now->damage_cbrt[i] = 1;
       count++;
     }
@@ -115,7 +115,7 @@ static void compacted(void **state) {
   sph_particles_free(now);
 }
 
-/* A ball of which nothing is left: its crater is the ball, not the room below its upper half as well. */
+/* A ball that is ejected whole: its crater is the ball, without the space below it. */
 static void nothing_left(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();
@@ -139,7 +139,7 @@ static void nothing_left(void **state) {
   sph_particles_free(now);
 }
 
-/* Matter of hardly any pores is not compacted by the first of them that closes. */
+/* Matter with distention below 1.01 at the start is never counted as compacted. */
 static void hardly_porous(void **state) {
   (void)state;
   struct sph_particles *start = slab(), *now = slab();

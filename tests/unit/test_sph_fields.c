@@ -1,6 +1,6 @@
-/* Files of particles: what is written is what is read, by HDF5's own calls and by ours; their layout is the one that
- * VTK and ParaView open; files cut short, changed or made by others are refused. Pictures from them. With a folder as
- * argument the pictures stay there, to be looked at. */
+/* Fields files of particles: HDF5's own calls and our reader read what was written; the layout is the one that VTK and
+ * ParaView open; truncated, changed and foreign files are refused. Also pictures from such files: with a folder as
+ * argument they stay there. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -206,7 +206,7 @@ static void what_is_written_is_what_is_read(void **state) {
   unlink(at("a.hdf"));
 }
 
-/* VTKHDF 1.0: what ParaView 5.11 and VTK 9.1 insist on. */
+/* VTKHDF 1.0: what ParaView 5.11 and VTK 9.1 require. */
 static void layout_is_what_vtk_reads(void **state) {
   (void)state;
   struct sph_particles *p = shattered(6000); /* enough for the compressed columns */
@@ -305,7 +305,7 @@ static void damaged_and_foreign_files_are_refused(void **state) {
     assert_int_equal(picture_cloud_read(bad, &cloud, &error), STATUS_CONTENT);
     assert_true(cloud.n == 0 && !cloud.position);
   }
-#ifdef __SANITIZE_ADDRESS__ /* HDF5 1.10 itself reads beyond its buffers in damaged headers: not ours to mend */
+#ifdef __SANITIZE_ADDRESS__ /* HDF5 1.10 itself reads beyond its buffers in damaged headers */
   const uint64_t damages = 0;
 #else
   const uint64_t damages = 300;
@@ -372,7 +372,8 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   sph_particles_free(p);
 }
 
-static unsigned char pixel(const char *path, double x, double y) { /* mean brightness round a place given in shares */
+static unsigned char pixel(const char *path, double x,
+                           double y) { /* mean brightness round a place; x and y are shares of width and height */
   cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
   assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
   int stride = cairo_image_surface_get_stride(surface), sum = 0;

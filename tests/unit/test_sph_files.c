@@ -86,7 +86,7 @@ static void fields_hold_what_the_run_reports(void **state) {
   char unit[32];
   double *heaviest = calloc(cloud.n, sizeof *heaviest);
   for (size_t i = 0; i < cloud.n; i++) {
-    assert_int_equal(cloud.part[i] == 3, i >= run->targets); /* the projectile belongs to nothing */
+    assert_int_equal(cloud.part[i] == 3, i >= run->targets); /* the projectile belongs to no fragment */
     if (cloud.fragment[i] < 0)
       continue;
     mass += cloud.mass[i];

@@ -1,5 +1,5 @@
-/* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 by itself; motion of
- * asymmetric pieces; what is far away, not finite, empty. */
+/* Fragments of SPH particles: against brute force over all pairs; each rule of BA95 section 4.4 by itself; spin of
+ * asymmetric fragments; particles that are far away or not finite; no particles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -167,7 +167,7 @@ static void equals_brute_force(void **state) {
       assert_true(found.fragments[f - 1].mass >= found.fragments[f].mass);
     sph_fragments_clear(&found);
   }
-  if (!(cores > 1000 && veneers > 500 && dust > 500 && several > 30)) /* the draws do try the rules */
+  if (!(cores > 1000 && veneers > 500 && dust > 500 && several > 30)) /* the draws exercise the rules */
     fail_msg("%zu core, %zu veneer, %zu dust, %zu times more than 5 fragments", cores, veneers, dust, several);
   sph_particles_free(p);
 }
@@ -199,7 +199,7 @@ static void numbering_does_not_matter(void **state) {
   sph_particles_free(q);
 }
 
-/* A row of particles 0.9 apart, h = 1: whole 0-3, broken 4-6, whole 7-8. */
+/* A row of particles 0.9 apart, h = 1: unbroken 0-3, broken 4-6, unbroken 7-8. */
 static struct sph_particles *row(void) {
   struct sph_particles *p = make(9, SPH_WITH_DAMAGE | SPH_WITH_STRESS);
   for (size_t i = 0; i < 9; i++) {
@@ -289,7 +289,7 @@ static void static_strength_breaks(void **state) {
   sph_particles_free(p);
 }
 
-/* Two blocks that touch are two fragments, unless asked otherwise; a body that is left out counts nowhere. */
+/* Two blocks that touch are two fragments unless across_bodies is set; a body that is left out counts nowhere. */
 static void bodies_touch_or_are_left_out(void **state) {
   (void)state;
   struct sph_particles *p = make(10, 0);
@@ -367,7 +367,7 @@ static void turning_pieces(void **state) {
   sph_fragments_clear(&f);
   sph_particles_free(p);
 
-  p = make(3, 0); /* three in a line along (1,2,2)/3: what turns about the line itself cannot be told, and is 0 */
+  p = make(3, 0); /* three in a line along (1,2,2)/3: the spin about the line is unknown and reported as 0 */
   const double across[3] = {2, -2, 1}; /* of length 3, at right angles to the line */
   for (size_t i = 0; i < 3; i++) {
     double s = 0.5 * ((double)i - 1);
@@ -398,7 +398,7 @@ static void shape_and_ejecta(void **state) {
         p->x[n] = 0.6 * a - 0.8 * b, p->y[n] = 0.8 * a + 0.6 * b, p->z[n] = c;
         p->vx[n++] = 7;
       }
-  for (size_t k = 0; k < 2; k++) { /* two bits fly off at 3 m/s and -4 m/s relative to it */
+  for (size_t k = 0; k < 2; k++) { /* two particles move at 3 m/s and -4 m/s relative to it */
     p->x[n] = 100 + 10 * (double)k;
     p->vx[n] = 7;
     p->vy[n++] = k ? -4 : 3;
@@ -418,7 +418,7 @@ static void shape_and_ejecta(void **state) {
 
 static void periodic_box(void **state) {
   (void)state;
-  /* a rod across the seam at x = 0, turning about z; and a bar all round the box along y */
+  /* a rod across the boundary x = 0 that turns about z, and a bar that spans the box along y */
   struct sph_particles *p = make(24, 0);
   struct sph_fragments_options o = sph_fragments_default();
   o.periodic[0] = 20;
@@ -444,7 +444,7 @@ static void periodic_box(void **state) {
   sph_particles_free(p);
 }
 
-/* A grid over the extent would need 1e27 cells and more; what is not finite is nobody's neighbour. */
+/* A grid over the extent would need more than 1e27 cells; a particle that is not finite has no neighbours. */
 static void far_flung_and_not_finite(void **state) {
   (void)state;
   struct sph_particles *p = row();
@@ -499,7 +499,7 @@ static void nothing_all_dust_all_one(void **state) {
   sph_particles_free(p);
 }
 
-/* The initial smoothing lengths link no farther when loose matter has swollen. */
+/* With the initial smoothing lengths, expanding matter does not link farther. */
 static void h_may_be_the_initial_one(void **state) {
   (void)state;
   struct sph_particles *p = row();

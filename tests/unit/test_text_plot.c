@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/pictures/text_plot.h"
+#include "analysis/pictures/picture.h"
 
 static char *plot(int columns, bool unicode, const struct picture_series *series) {
   char *text = NULL;
