@@ -10,9 +10,9 @@
 
 #include "schemas/status.h"
 
-/* A particle's part in its fragment: unbroken, in the layer of broken particles at its surface (the veneer), a broken
+/* A particle's part in its fragment: unbroken, in the layer of broken particles at its surface, a broken
  * particle on its own, or of a body that has no fragments (a projectile). The numbers are those of the file. */
-enum picture_part { PICTURE_CORE, PICTURE_VENEER, PICTURE_DUST, PICTURE_LEFT_OUT, PICTURE_PARTS };
+enum picture_part { PICTURE_CORE, PICTURE_LAYER, PICTURE_DUST, PICTURE_LEFT_OUT, PICTURE_PARTS };
 
 struct picture_cloud {
   size_t n;

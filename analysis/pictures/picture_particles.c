@@ -263,8 +263,8 @@ static void fragment_colour(cairo_t *cairo, const struct scene *s, size_t i, dou
   else {
     double hue = fmod(252 + 137.50776 * (double)f, 360), wave = 0.03 * ((double)(f % 3) - 1);
     bool large = s->count[f] >= RESOLVED;
-    picture_canvas_colour(cairo, (large ? 0.68 : 0.84) + wave + 0.14 * light + (part == PICTURE_VENEER ? 0.05 : 0),
-                          (large ? 0.125 : 0.05) * (part == PICTURE_VENEER ? 0.75 : 1), hue, 1);
+    picture_canvas_colour(cairo, (large ? 0.68 : 0.84) + wave + 0.14 * light + (part == PICTURE_LAYER ? 0.05 : 0),
+                          (large ? 0.125 : 0.05) * (part == PICTURE_LAYER ? 0.75 : 1), hue, 1);
   }
 }
 

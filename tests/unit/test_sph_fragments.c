@@ -78,7 +78,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
   for (size_t i = 0; i < n; i++)
     if (part[i] == SPH_FRAGMENTS_CORE)
       mass[group[i]] += p->mass[i];
-  for (size_t i = 0; i < n && o->veneer; i++) {
+  for (size_t i = 0; i < n && o->layer; i++) {
     long best = -1;
     if (part[i] != SPH_FRAGMENTS_DUST)
       continue;
@@ -92,7 +92,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
     }
     if (best < 0)
       continue;
-    part[i] = SPH_FRAGMENTS_VENEER;
+    part[i] = SPH_FRAGMENTS_LAYER;
     group[i] = group[best];
   }
   free(square);
@@ -106,7 +106,7 @@ static void equals_brute_force(void **state) {
   struct sph_particles *p = make(N, SPH_WITH_DAMAGE);
   long group[N];
   uint8_t part[N], left_out[N];
-  size_t cores = 0, veneers = 0, dust = 0, several = 0;
+  size_t cores = 0, layers = 0, dust = 0, several = 0;
   for (uint64_t seed = 1; seed <= 60; seed++) {
     const struct sph_fragments_body bodies[3] = {{false, NAN}, {false, NAN}, {seed % 3 == 0, NAN}};
     struct sph_fragments_options o = sph_fragments_default();
@@ -115,7 +115,7 @@ static void equals_brute_force(void **state) {
     o.body_count = 3;
     o.damage = 0.3 + 0.01 * (double)(seed % 70);
     o.link_length = 0.7 + 0.1 * (double)(seed % 6);
-    o.veneer = seed % 4 != 0;
+    o.layer = seed % 4 != 0;
     o.across_bodies = seed % 2;
     for (int d = 0; d < 3; d++)
       if (seed >> d & 1)
@@ -143,7 +143,7 @@ static void equals_brute_force(void **state) {
         fail_msg("seed %d i %zu: %d is not %d", (int)seed, i, found.part[i], part[i]);
       assert_int_equal(found.label[i] == UINT32_MAX, left_out[i]);
       cores += part[i] == SPH_FRAGMENTS_CORE;
-      veneers += part[i] == SPH_FRAGMENTS_VENEER;
+      layers += part[i] == SPH_FRAGMENTS_LAYER;
       dust += part[i] == SPH_FRAGMENTS_DUST;
       if (left_out[i])
         continue;
@@ -167,8 +167,8 @@ static void equals_brute_force(void **state) {
       assert_true(found.fragments[f - 1].mass >= found.fragments[f].mass);
     sph_fragments_clear(&found);
   }
-  if (!(cores > 1000 && veneers > 500 && dust > 500 && several > 30)) /* the draws exercise the rules */
-    fail_msg("%zu core, %zu veneer, %zu dust, %zu times more than 5 fragments", cores, veneers, dust, several);
+  if (!(cores > 1000 && layers > 500 && dust > 500 && several > 30)) /* the draws exercise the rules */
+    fail_msg("%zu core, %zu layer, %zu dust, %zu times more than 5 fragments", cores, layers, dust, several);
   sph_particles_free(p);
 }
 
@@ -209,7 +209,7 @@ static struct sph_particles *row(void) {
   return p;
 }
 
-static void veneer_is_one_layer_and_nearest_decides(void **state) {
+static void only_one_layer_joins_and_nearest_decides(void **state) {
   (void)state;
   struct sph_particles *p = row();
   struct sph_fragments_options o = sph_fragments_default();
@@ -218,19 +218,19 @@ static void veneer_is_one_layer_and_nearest_decides(void **state) {
   assert_int_equal(with.count, 3);
   for (int i = 0; i < 9; i++)
     assert_int_equal(with.label[i], label[i]);
-  assert_int_equal(with.part[4], SPH_FRAGMENTS_VENEER);
+  assert_int_equal(with.part[4], SPH_FRAGMENTS_LAYER);
   assert_int_equal(with.part[5], SPH_FRAGMENTS_DUST);
   assert_true(with.fragments[0].mass == 5 && with.core_largest == 4 && with.core_second == 2 && with.dust_mass == 1);
   assert_int_equal(with.resolved, 2);
   assert_int_equal(with.fragments[2].first, 5);
   sph_fragments_clear(&with);
-  o.veneer = false;
+  o.layer = false;
   struct sph_fragments bare = find(p, &o);
   assert_true(bare.fragments[0].mass == 4 && bare.fragments[1].mass == 2 && bare.dust_mass == 3);
   assert_int_equal(bare.count, 5);
   sph_fragments_clear(&bare);
-  o.veneer = true; /* one broken particle between the two: at the same distance, the heavier has it; nearer, the lighter
-                    */
+  o.layer = true; /* one broken particle between the two: at the same distance, the heavier has it; nearer, the lighter
+                   */
   p->damage_cbrt[4] = p->damage_cbrt[6] = 0;
   p->x[5] = 4.5;
   p->x[4] = 3.5;
@@ -455,7 +455,7 @@ static void far_flung_and_not_finite(void **state) {
   p->vx[1] = INFINITY;
   struct sph_fragments f = find(p, &o);
   assert_int_equal(f.label[2], f.label[4]);
-  assert_int_equal(f.fragments[0].count, 3); /* 2, 3 and their veneer 4 */
+  assert_int_equal(f.fragments[0].count, 3); /* 2, 3 and their layer 4 */
   assert_int_equal(f.count, 7);
   assert_int_equal(f.part[0], SPH_FRAGMENTS_DUST);
   assert_int_equal(f.part[1], SPH_FRAGMENTS_DUST);
@@ -523,7 +523,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(equals_brute_force),
       cmocka_unit_test(numbering_does_not_matter),
-      cmocka_unit_test(veneer_is_one_layer_and_nearest_decides),
+      cmocka_unit_test(only_one_layer_joins_and_nearest_decides),
       cmocka_unit_test(static_strength_breaks),
       cmocka_unit_test(bodies_touch_or_are_left_out),
       cmocka_unit_test(turning_pieces),

@@ -27,7 +27,7 @@ void sph_plate_report(const struct sph_run *run, struct sph_results *results);
 /* report.c: from the final state to outcome, results and fragments. */
 struct sph_crater_options sph_report_crater_options(const struct sph_run *run);
 /* The target's fragments by the inputs' rules, except for the two choices given. Uses the particles last read. */
-status sph_report_fragments(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *out,
+status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error);
 /* *fragments: by descending mass, malloc'd. */
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,

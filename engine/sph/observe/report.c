@@ -10,7 +10,7 @@
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { INITIAL_H = 0, ROD_PARTS = 100 };
 
-status sph_report_fragments(const struct sph_run *run, double static_strength, bool veneer, struct sph_fragments *out,
+status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   const struct sph_fragments_body bodies[SPH_RUN_BODIES] = {
@@ -20,7 +20,7 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   struct sph_fragments_options options = sph_fragments_default();
   options.damage = in->fragments.damage;
   options.link_length = in->fragments.link_length;
-  options.veneer = veneer;
+  options.layer = layer;
   options.h = in->fragments.link_h == INITIAL_H ? run->start->h : NULL;
   memcpy(options.periodic, run->periodic, sizeof options.periodic);
   options.bodies = bodies;

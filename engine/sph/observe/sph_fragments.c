@@ -1,4 +1,4 @@
-/* Fragments of SPH particles: cores, veneer, dust. */
+/* Fragments of SPH particles: cores, their layers of broken particles, dust. */
 #include "engine/sph/observe/sph_fragments.h"
 
 #include <math.h>
@@ -9,7 +9,7 @@
 #include "engine/sph/observe/cell_grid.h"
 
 struct sph_fragments_options sph_fragments_default(void) {
-  return (struct sph_fragments_options){.damage = 1, .link_length = 1, .veneer = true, .periodic = {NAN, NAN, NAN}};
+  return (struct sph_fragments_options){.damage = 1, .link_length = 1, .layer = true, .periodic = {NAN, NAN, NAN}};
 }
 
 /* Members are the particles that are not left out. */
@@ -17,7 +17,7 @@ struct search {
   const struct sph_particles *p;
   const struct sph_fragments_options *options;
   struct sph_fragments *out;
-  uint8_t *role;     /* by particle: enum sph_cell_grid_role; active: unbroken, passive: may join a veneer */
+  uint8_t *role;     /* by particle: enum sph_cell_grid_role; active: unbroken, passive: may join a layer */
   uint32_t *parent;  /* by particle: union-find of the cores */
   double *core_mass; /* by particle that is a root: kg of its core; else 0 */
   double *nearest;   /* by broken particle: r^2 to its nearest unbroken one, m^2 */
@@ -78,7 +78,7 @@ static void classify(struct search *s) {
       continue;
 
     add_member(s, i);
-    s->out->part[i] = SPH_FRAGMENTS_DUST; /* until it joins a veneer */
+    s->out->part[i] = SPH_FRAGMENTS_DUST; /* until it joins a layer */
     bool unbroken = is_unbroken(s, i);
     double sum = p->x[i] + p->y[i] + p->z[i] + p->vx[i] + p->vy[i] + p->vz[i] + p->mass[i] + h[i];
     if (!isfinite(sum) || !(h[i] > 0))
@@ -86,7 +86,7 @@ static void classify(struct search *s) {
     if (unbroken) {
       s->out->part[i] = SPH_FRAGMENTS_CORE;
       s->role[i] = SPH_CELL_GRID_ACTIVE;
-    } else if (s->options->veneer) {
+    } else if (s->options->layer) {
       s->role[i] = SPH_CELL_GRID_PASSIVE;
     }
   }
@@ -126,7 +126,7 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   s->mate[broken] = unbroken;
 }
 
-/* Links of the cores, then of the veneer. */
+/* Links of the cores, then of their layers. */
 static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
   struct sph_cell_grid *grid = NULL;
@@ -138,19 +138,19 @@ static status link_members(struct search *s, struct error *error) {
   for (size_t i = 0; i < p->n; i++)
     if (s->role[i] == SPH_CELL_GRID_ACTIVE)
       s->core_mass[fragments_root(s->parent, (uint32_t)i)] += p->mass[i];
-  if (s->options->veneer)
+  if (s->options->layer)
     sph_cell_grid_visit(grid, true, choose_mate, s);
   sph_cell_grid_free(grid);
   for (size_t i = 0; i < p->n; i++)
     if (s->mate[i] != UINT32_MAX) {
-      s->out->part[i] = SPH_FRAGMENTS_VENEER;
+      s->out->part[i] = SPH_FRAGMENTS_LAYER;
       s->link[s->links][0] = s->place[i];
       s->link[s->links++][1] = s->place[s->mate[i]];
     }
   return STATUS_OK;
 }
 
-/* The particle that is the root of the core to which particle i belongs, as core or as veneer. */
+/* The particle that is the root of the core to which particle i belongs, as core or as layer. */
 static uint32_t root_of(struct search *s, size_t i) {
   return fragments_root(s->parent, s->mate[i] != UINT32_MAX ? s->mate[i] : (uint32_t)i);
 }

@@ -5,13 +5,13 @@
  *      exceeds the static strength of its body. This anticipates the end state, in which the last cracks open slowly.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
- *   3. Veneer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of two at
+ *   3. Layer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of two at
  *      the same distance the one of the heavier core decides, then the one of the core with the lower first particle.
- *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The veneer itself links
+ *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The layer itself links
  *      nothing.
  *   4. Dust: every other broken particle is a fragment of its own, below the resolution.
  *
- * A core is thus a fragment without its veneer, its layer of broken particles.
+ * A core is thus a fragment without its layer of broken particles. The input fragments.veneer switches step 3 on.
  *
  * A pure function of the particles as a system reads them back. The fragments depend on positions and states, not on
  * the numbering of particles, except that fragments of exactly the same mass are numbered by their first particle. */
@@ -31,18 +31,18 @@ struct sph_fragments_body {
 struct sph_fragments_options {
   double damage;      /* 0..1: a particle is unbroken when its D is below; without damage all are */
   double link_length; /* over the mean h of the two: 1 in BA95 */
-  bool veneer;
+  bool layer;         /* step 3 */
   bool across_bodies; /* particles of two bodies may be friends. Off by default: bodies that touch are not bonded */
   const double *h;    /* m, by particle: the initial smoothing lengths, so that expanding matter does not link farther.
-                       * NULL: the    current ones. Borrowed */
+                       * NULL: the current ones. Borrowed */
   double periodic[3]; /* m, length of the periodic box per direction; NaN = open */
   const struct sph_fragments_body
       *bodies; /* by sph_particles.body; NULL: no body is left out, none has a static strength. Borrowed */
   size_t body_count;
 };
-struct sph_fragments_options sph_fragments_default(void); /* D < 1, one mean h, veneer, open, current h */
+struct sph_fragments_options sph_fragments_default(void); /* D < 1, one mean h, layer, open, current h */
 
-enum sph_fragments_part { SPH_FRAGMENTS_CORE, SPH_FRAGMENTS_VENEER, SPH_FRAGMENTS_DUST, SPH_FRAGMENTS_LEFT_OUT };
+enum sph_fragments_part { SPH_FRAGMENTS_CORE, SPH_FRAGMENTS_LAYER, SPH_FRAGMENTS_DUST, SPH_FRAGMENTS_LEFT_OUT };
 
 struct sph_fragments {
   size_t n;        /* particles */
