@@ -53,6 +53,13 @@ const struct field *outcome_main(size_t index) {
   return NULL;
 }
 
+const char *outcome_name(size_t offset) {
+  for (size_t i = 0; i < outcome_table.count; i++)
+    if (rows[i].offset == offset)
+      return rows[i].path;
+  return NULL;
+}
+
 bool outcome_is_usable(int state) {
   return state == OUTCOME_COMPLETED || state == OUTCOME_END_TIME;
 }

@@ -41,6 +41,10 @@ extern const struct field_table outcome_table;
  * these rows. */
 const struct field *outcome_main(size_t index);
 
+/* The name of a member's row, which is its column in the store: OUTCOME_NAME(total_mass). */
+const char *outcome_name(size_t offset);
+#define OUTCOME_NAME(member) outcome_name(offsetof(struct outcome, member))
+
 /* Did a run of this state give results: completed, or ended at its time? */
 bool outcome_is_usable(int state);
 /* Does a run count in statistics? Its state is usable and every main result is a number. (A surplus run does not count

@@ -44,8 +44,7 @@ static struct query_canned queries[] = {
      ""},
     {"censored", "Runs that ended at their time: fragments may still have been breaking.",
      "SELECT point_id, run_id, replicate, seed, time, " OUTCOME_DEFAULT " FROM run WHERE state = 'end-time' ORDER BY "
-     "point_id, "
-     "replicate",
+     "point_id, replicate",
      ""},
     {"slowest", "The twenty runs that took longest.",
      "SELECT run_id, point_id, replicate, seed, wall_time, cpu_time, peak_memory, steps, host, rank FROM run ORDER BY "

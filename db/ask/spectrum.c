@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 static const char start[] = "WITH chosen AS (SELECT r.run_id, r.point_id, r.results_version,"
-                            "   (SELECT total_mass FROM run WHERE run_id = r.run_id) AS m"
+                            "   (SELECT %s FROM run WHERE run_id = r.run_id) AS m"
                             "   FROM run AS r WHERE r.counts AND r.results_version ="
                             "   (SELECT max(results_version) FROM run AS newest WHERE newest.point_id = r.point_id)";
 
@@ -29,7 +29,7 @@ status ask_spectrum(struct store *store, int64_t point_id, const char *where, co
   FILE *out = open_memstream(&sql, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  fputs(start, out);
+  fprintf(out, start, OUTCOME_NAME(total_mass));
   if (point_id)
     fprintf(out, " AND r.point_id = %lld", (long long)point_id);
   if (where)

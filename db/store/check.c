@@ -46,19 +46,25 @@ static status no_rows(struct report *report, const char *sql, struct error *erro
 static const char *const questions[] = {
     "SELECT 'database: ' || integrity_check FROM pragma_integrity_check WHERE integrity_check <> 'ok'",
     "SELECT 'foreign key: row ' || ifnull(rowid, '?') || ' of table ' || \"table\" || ' names a row of ' || parent || "
-    "' that "
-    "is not there' FROM pragma_foreign_key_check",
+    "' that is not there' FROM pragma_foreign_key_check",
     "SELECT 'run ' || run_id || ' has no fragment masses' FROM run WHERE run_id NOT IN (SELECT run_id FROM "
     "fragment_mass)",
     "SELECT 'point ' || point_id || ' has no inputs' FROM point WHERE point_id NOT IN (SELECT point_id FROM "
     "point_input)",
-    "SELECT 'run ' || run_id || ': ' || length(masses) / 8.0 || ' masses, but fragment_count is ' || fragment_count "
-    "FROM run "
-    "JOIN fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * fragment_count",
     "SELECT 'bin ' || bin || ' has no edges' FROM (SELECT DISTINCT bin FROM point_spectrum) WHERE bin NOT IN (SELECT "
-    "bin FROM "
-    "bin)",
+    "bin FROM bin)",
 };
+
+/* Every fragment of a run that counts has a mass. */
+static status check_fragment_counts(struct report *report, struct error *error) {
+  const char *count = OUTCOME_NAME(fragment_count);
+  char sql[512];
+  snprintf(sql, sizeof sql,
+           "SELECT 'run ' || run_id || ': ' || length(masses) / 8.0 || ' masses, but %1$s is ' || %1$s FROM run JOIN "
+           "fragment_mass USING (run_id) WHERE counts AND length(masses) <> 8 * %1$s",
+           count);
+  return no_rows(report, sql, error);
+}
 
 /* Runs without a row in the table of their engine, for every engine in the store. */
 static status check_results(struct report *report, struct error *error) {
@@ -198,9 +204,10 @@ static status check_masses(struct report *report, struct error *error) {
   status result = sql_integer(report->store->db, "SELECT max(length(masses)) FROM fragment_mass", 0, &largest, error);
   if (result != STATUS_OK)
     return result;
-  result = sql_prepare(report->store->db,
-                       "SELECT run_id, masses, total_mass, counts FROM fragment_mass JOIN run USING (run_id)", &runs,
-                       "checking", error);
+  char sql[256];
+  snprintf(sql, sizeof sql, "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
+           OUTCOME_NAME(total_mass));
+  result = sql_prepare(report->store->db, sql, &runs, "checking", error);
   if (result == STATUS_OK)
     result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
                          &spectrum, "checking", error);
@@ -276,9 +283,10 @@ static status check_sums(struct report *report, struct error *error) {
 
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
-  static status (*const checks[])(struct report *, struct error *) = {check_questions, check_results, check_ranges,
-                                                                      check_files,     check_sums,    check_masses,
-                                                                      check_identities};
+  static status (*const checks[])(struct report *, struct error *) = {check_questions, check_fragment_counts,
+                                                                      check_results,   check_ranges,
+                                                                      check_files,     check_sums,
+                                                                      check_masses,    check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && i < sizeof checks / sizeof checks[0]; i++)

@@ -7,18 +7,29 @@
 #include "db/store/sums.h"
 #include "db/store/views.h"
 
+/* The file's application id, version, and how many tables, indexes and views it has. */
+struct header {
+  int64_t application, version, things;
+};
+
+static status read_header(sqlite3 *db, struct header *header, struct error *error) {
+  status result = sql_integer(db, "PRAGMA application_id", 0, &header->application, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_integer(db, "PRAGMA user_version", 0, &header->version, error);
+  if (result != STATUS_OK)
+    return result;
+  return sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &header->things, error);
+}
+
 status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error) {
-  int64_t application, user_version, things;
-  status result = sql_integer(db, "PRAGMA application_id", 0, &application, error);
-  if (result == STATUS_OK)
-    result = sql_integer(db, "PRAGMA user_version", 0, &user_version, error);
-  if (result == STATUS_OK)
-    result = sql_integer(db, "SELECT count(*) FROM sqlite_schema", 0, &things, error);
+  struct header header;
+  status result = read_header(db, &header, error);
   if (result == STATUS_CONTENT && (sqlite3_errcode(db) & 0xff) == SQLITE_NOTADB)
     return status_fail(error, STATUS_CONTENT,
                        "%s is no SQLite database, so no store of clast. Name another file; this one was left alone.",
                        path);
-  if (result == STATUS_CONTENT) /* SQLite compares the file's length with what its header says */
+  if (result == STATUS_CONTENT) /* SQLite compares the file's length with the length in its header */
     return status_fail(
         error, STATUS_CONTENT,
         "%s is damaged, perhaps cut short: %s. Restore a copy, or save what can be saved with `sqlite3 FILE "
@@ -26,23 +37,23 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
         path, sqlite3_errmsg(db));
   if (result != STATUS_OK)
     return result;
-  if (application == 0 && user_version == 0 && things == 0) {
+  if (header.application == 0 && header.version == 0 && header.things == 0) {
     *version = -1;
     return STATUS_OK;
   }
-  if (application != SCHEMA_APPLICATION_ID)
+  if (header.application != SCHEMA_APPLICATION_ID)
     return status_fail(
         error, STATUS_CONTENT,
         "%s is a database of another program (application id 0x%08llx), not a store of clast. Name another "
         "file; this one was left alone.",
-        path, (unsigned long long)application);
-  if (user_version > SCHEMA_VERSION || user_version < 0)
+        path, (unsigned long long)header.application);
+  if (header.version > SCHEMA_VERSION || header.version < 0)
     return status_fail(
         error, STATUS_CONTENT,
         "%s was written by a newer clast (store version %lld; this program knows up to %d). Use that newer "
         "program; the file was left alone.",
-        path, (long long)user_version, SCHEMA_VERSION);
-  *version = (int)user_version;
+        path, (long long)header.version, SCHEMA_VERSION);
+  *version = (int)header.version;
   return STATUS_OK;
 }
 
@@ -71,7 +82,7 @@ static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_ve
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
   char *copy = NULL;
-  for (int i = 0; i < 100; i++) { /* an earlier try that failed may have left one */
+  for (int i = 0; i < 100; i++) { /* an earlier try may have left a copy */
     sqlite3_free(copy);
     copy = i ? sqlite3_mprintf("%s.version%d.%d", path, version, i) : sqlite3_mprintf("%s.version%d", path, version);
     if (!copy)
@@ -84,6 +95,23 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
   return result;
 }
 
+/* Within a transaction. version: -1 for a new file. */
+static status bring_forward(sqlite3 *db, int version, struct error *error) {
+  status result = schema_complete_all(db, error);
+  for (int i = version; version >= 0 && result == STATUS_OK && i < SCHEMA_VERSION; i++)
+    result = steps[i](db, error);
+  if (result != STATUS_OK)
+    return result;
+  result = drop_empty_motion(db, error);
+  if (result != STATUS_OK)
+    return result;
+  result = views_regenerate(db, error);
+  if (result != STATUS_OK)
+    return result;
+  return sql_executef(db, "opening for writing", error, "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT",
+                      SCHEMA_APPLICATION_ID, SCHEMA_VERSION);
+}
+
 status migrate_bring_forward(sqlite3 *db, const char *path, int version, struct error *error) {
   status result = version >= 0 && version < SCHEMA_VERSION ? back_up(db, path, version, error) : STATUS_OK;
   if (result != STATUS_OK)
@@ -91,17 +119,7 @@ status migrate_bring_forward(sqlite3 *db, const char *path, int version, struct 
   result = sql_execute(db, "BEGIN IMMEDIATE", "opening for writing", error);
   if (result != STATUS_OK)
     return result;
-  result = schema_complete_all(db, error);
-  for (int i = version; version >= 0 && result == STATUS_OK && i < SCHEMA_VERSION; i++)
-    result = steps[i](db, error);
-  if (result == STATUS_OK)
-    result = drop_empty_motion(db, error);
-  if (result == STATUS_OK)
-    result = views_regenerate(db, error);
-  if (result == STATUS_OK)
-    result = sql_executef(db, "opening for writing", error,
-                          "PRAGMA application_id = %d; PRAGMA user_version = %d; COMMIT", SCHEMA_APPLICATION_ID,
-                          SCHEMA_VERSION);
+  result = bring_forward(db, version, error);
   if (result != STATUS_OK)
     sqlite3_exec(db, "ROLLBACK", NULL, NULL, NULL);
   return result;

@@ -165,15 +165,11 @@ def literals(path):
                 yield number, match.group(1)
 
 
-# Statements that compare columns of the store with each other; a test runs them on the real tables.
-COMPARING = ("db/store/check.c", "db/ask/spectrum.c")
-
-
 def check_names():
     """A path in any text exists. Outside of the engines no text but an example names a result: its row does."""
     _, results, _ = known_paths()
     for path in files(".c", ".h"):
-        may_name = path.startswith("engine/") or path in COMPARING or "FIELD_TABLE(" in read(path)
+        may_name = path.startswith("engine/") or "FIELD_TABLE(" in read(path)
         for number, text in literals(path):
             unknown = list(unknown_paths(text))
             check(not unknown, f"{path}:{number}: no input or result is called {', '.join(unknown)}")
