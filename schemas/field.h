@@ -45,7 +45,8 @@ struct field {
                        * active only then; given otherwise, it is refused */
   const char *doc;    /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
-  int main_rank;      /* results only: place among the main results, from 1; 0: not a main result */
+  int main_rank; /* results only: place among the main results, from 1; 0: not a main result. A change of them needs
+                  * a migration of table run (its CHECK and its index) */
 };
 
 struct field_table {

@@ -16,14 +16,12 @@ static struct query_canned queries[] = {
     {"spectrum",
      "Pooled fragment mass spectrum of a point with its density F(m) and the scatter between runs (:point).",
      "SELECT bin, lower, upper, n, runs, count, count_mean, count_sd, density FROM spectra WHERE point_id = :point "
-     "ORDER BY "
-     "bin",
+     "ORDER BY bin",
      "point"},
     {"spectra", "Pooled fragment mass spectrum of every point.", "SELECT * FROM spectra ORDER BY point_id, bin", ""},
     {"run-spectrum", "Fragment mass spectrum of one run (:run).",
      "SELECT s.bin, b.lower, b.upper, s.count, s.mass FROM spectrum s JOIN bin b USING (bin) WHERE s.run_id = :run "
-     "ORDER BY "
-     "s.bin",
+     "ORDER BY s.bin",
      "run"},
     {"exponents",
      "Exponent beta of F(m) ~ m^-beta by method and window: pooled over each point's runs, with its error.",
@@ -37,8 +35,7 @@ static struct query_canned queries[] = {
     {"scatter", "How much the seed matters: relative scatter of the main results per point.", NULL, ""},
     {"failures", "Runs without a usable result, and attempts that failed, with what they said.",
      "SELECT point_id, replicate, seed, state AS reason, attempt, wall_time, host, message FROM run WHERE counts = 0 "
-     "AND "
-     "surplus = 0\nUNION ALL\n"
+     "AND surplus = 0\nUNION ALL\n"
      "SELECT point_id, replicate, seed, reason || iif(signal, ' (signal ' || signal || ')', iif(exit_code, ' (exit ' "
      "|| exit_code || ')', '')), number, wall_time, host, message FROM attempt ORDER BY point_id, replicate, attempt",
      ""},
@@ -52,8 +49,8 @@ static struct query_canned queries[] = {
      ""},
     {"cost", "Time and memory per point.",
      "SELECT point_id, count(*) AS runs, total(wall_time) AS wall_time, avg(wall_time) AS wall_time_mean, "
-     "max(wall_time) AS "
-     "wall_time_max, max(peak_memory) AS peak_memory FROM run GROUP BY point_id ORDER BY wall_time DESC",
+     "max(wall_time) AS wall_time_max, max(peak_memory) AS peak_memory FROM run GROUP BY point_id ORDER BY wall_time "
+     "DESC",
      ""},
     {"progress", "Runs stored per session.",
      "SELECT s.session_id, s.started_at, s.ended_at, s.outcome, s.host, count(r.run_id) AS runs, total(r.cpu_time) AS "

@@ -39,33 +39,27 @@ static status map_parents(sqlite3 *db, struct error *error) {
       "CREATE TEMP TABLE merge_point AS SELECT b.point_id AS theirs, a.point_id AS ours FROM other.point b LEFT JOIN "
       "main.point a USING (hash);"
       "INSERT INTO main.point (hash, engine, scene_name, scene) SELECT hash, engine, scene_name, scene FROM "
-      "other.point "
-      "WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
-      "DROP TABLE merge_point;"
-      "CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
+      "other.point WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
+      "DROP TABLE merge_point; CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
       "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
       "INSERT OR IGNORE INTO main.point_input SELECT m.ours, i.path, i.value FROM other.point_input i JOIN merge_point "
-      "m ON "
-      "m.theirs = i.point_id;"
+      "m ON m.theirs = i.point_id;"
       "INSERT OR IGNORE INTO main.axis SELECT * FROM other.axis;"
 
       "INSERT INTO main.campaign (name, document, plan, added_at) SELECT name, document, plan, added_at FROM "
-      "other.campaign "
-      "b WHERE NOT EXISTS (SELECT 1 FROM main.campaign a WHERE a.name = b.name AND a.document = b.document);"
+      "other.campaign b WHERE NOT EXISTS (SELECT 1 FROM main.campaign a WHERE a.name = b.name AND a.document = "
+      "b.document);"
       "INSERT OR IGNORE INTO main.campaign_point SELECT a.campaign_id, m.ours FROM other.campaign_point c JOIN "
       "other.campaign b ON b.campaign_id = c.campaign_id JOIN main.campaign a ON a.name = b.name AND a.document = "
-      "b.document "
-      "JOIN merge_point m ON m.theirs = c.point_id;"
+      "b.document JOIN merge_point m ON m.theirs = c.point_id;"
 
       "INSERT INTO main.session (started_at, ended_at, outcome, host, pid, facts) SELECT started_at, ended_at, "
-      "outcome, host, "
-      "pid, facts FROM other.session b WHERE NOT EXISTS (SELECT 1 FROM main.session a WHERE (a.started_at, a.host, "
-      "a.pid) = "
-      "(b.started_at, b.host, b.pid));"
+      "outcome, host, pid, facts FROM other.session b WHERE NOT EXISTS (SELECT 1 FROM main.session a WHERE "
+      "(a.started_at, a.host, "
+      "a.pid) = (b.started_at, b.host, b.pid));"
       "CREATE TEMP TABLE merge_session (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
       "INSERT OR IGNORE INTO merge_session SELECT b.session_id, a.session_id FROM other.session b JOIN main.session a "
-      "ON "
-      "(a.started_at, a.host, a.pid) = (b.started_at, b.host, b.pid);",
+      "ON (a.started_at, a.host, a.pid) = (b.started_at, b.host, b.pid);",
       doing, error);
 }
 
@@ -81,15 +75,14 @@ static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
                               "b.run_id) FROM other.run b WHERE b.identity NOT IN (SELECT identity FROM main.run);",
                               doing, error);
   if (result == STATUS_OK)
-    result =
-        sql_executef(db, doing, error,
-                     "CREATE TEMP TABLE merge_rows AS SELECT %s FROM other.run WHERE run_id IN (SELECT theirs FROM "
-                     "merge_run);"
-                     "UPDATE merge_rows SET run_id = (SELECT ours FROM merge_run WHERE theirs = run_id), point_id = "
-                     "(SELECT ours FROM merge_point WHERE theirs = point_id), session_id = (SELECT ours FROM "
-                     "merge_session WHERE theirs = session_id);"
-                     "INSERT INTO main.run (%s) SELECT %s FROM merge_rows ORDER BY run_id; DROP TABLE merge_rows;",
-                     columns + 2, columns + 2, columns + 2);
+    result = sql_executef(
+        db, doing, error,
+        "CREATE TEMP TABLE merge_rows AS SELECT %s FROM other.run WHERE run_id IN (SELECT theirs FROM "
+        "merge_run);UPDATE merge_rows SET run_id = (SELECT ours FROM merge_run WHERE theirs = run_id), point_id = "
+        "(SELECT ours FROM merge_point WHERE theirs = point_id), session_id = (SELECT ours FROM "
+        "merge_session WHERE theirs = session_id);"
+        "INSERT INTO main.run (%s) SELECT %s FROM merge_rows ORDER BY run_id; DROP TABLE merge_rows;",
+        columns + 2, columns + 2, columns + 2);
   sqlite3_free(columns);
   return result == STATUS_OK ? sql_integer(db, "SELECT count(*) FROM merge_run", 0, added, error) : result;
 }
@@ -113,13 +106,11 @@ static status copy_attempts(sqlite3 *db, struct error *error) {
       db,
       "INSERT INTO main.attempt (identity, point_id, replicate, seed, session_id, number, reason, exit_code, signal, "
       "wall_time, peak_memory, limited_to, message, host, rank, failed_at) SELECT b.identity, m.ours, b.replicate, "
-      "b.seed, "
-      "s.ours, b.number, b.reason, b.exit_code, b.signal, b.wall_time, b.peak_memory, b.limited_to, b.message, b.host, "
+      "b.seed, s.ours, b.number, b.reason, b.exit_code, b.signal, b.wall_time, b.peak_memory, b.limited_to, b.message, "
+      "b.host, "
       "b.rank, b.failed_at FROM other.attempt b JOIN merge_point m ON m.theirs = b.point_id LEFT JOIN merge_session s "
-      "ON "
-      "s.theirs = b.session_id WHERE NOT EXISTS (SELECT 1 FROM main.attempt a WHERE (a.identity, a.number, "
-      "a.failed_at) = "
-      "(b.identity, b.number, b.failed_at))",
+      "ON s.theirs = b.session_id WHERE NOT EXISTS (SELECT 1 FROM main.attempt a WHERE (a.identity, a.number, "
+      "a.failed_at) = (b.identity, b.number, b.failed_at))",
       doing, error);
 }
 

@@ -51,31 +51,40 @@ static status write_axes(sqlite3 *db, FILE *out, struct error *error) {
                   write_text, out, error);
 }
 
+/* Columns of run, then of every result table. An engine's column with the name of another column gets its table's name
+ * in front. */
+static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) {
+  status
+      result = each_row(db,
+                        "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
+                        "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity')",
+                        write_text, out, error);
+  if (result != STATUS_OK)
+    return result;
+  return each_row(db,
+                  "SELECT format('  %w.\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
+                  "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "
+                  "pragma_table_xinfo(o.name) d WHERE o.type = 'table' AND o.name GLOB 'result_*' AND d.name = "
+                  "c.name) > 1, format(' AS \"%w_%w\"', t.name, c.name), '')) "
+                  "FROM sqlite_schema t, pragma_table_xinfo(t.name) c WHERE t.type = 'table' AND t.name GLOB "
+                  "'result_*' AND c.name <> 'run_id' ORDER BY t.name, c.cid",
+                  write_text, out, error);
+}
+
 static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
   fprintf(out, "CREATE VIEW runs AS -- every run with its varied inputs and all its results\n"
                "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n");
   status result = write_axes(db, out, error);
-  if (result == STATUS_OK)
-    result = each_row(db,
-                      "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT IN "
-                      "('run_id', 'point_id', 'replicate', 'seed', 'identity')",
-                      write_text, out, error);
-  if (result == STATUS_OK) /* an engine's column with the name of a column of run gets its table's name in front */
-    result = each_row(db,
-                      "SELECT format('  %w.\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
-                      "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "
-                      "pragma_table_xinfo(o.name) d WHERE o.type = 'table' AND o.name GLOB 'result_*' AND d.name = "
-                      "c.name) > 1, format(' AS \"%w_%w\"', t.name, c.name), '')) "
-                      "FROM sqlite_schema t, pragma_table_xinfo(t.name) c WHERE t.type = 'table' AND t.name GLOB "
-                      "'result_*' AND c.name <> 'run_id' ORDER BY t.name, c.cid",
-                      write_text, out, error);
+  if (result != STATUS_OK)
+    return result;
+  result = write_result_columns(db, out, error);
+  if (result != STATUS_OK)
+    return result;
   fprintf(out, "  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id");
-  if (result == STATUS_OK)
-    result =
-        each_row(db,
-                 "SELECT format(char(10) || '  LEFT JOIN %w ON %w.run_id = r.run_id', name, name) FROM sqlite_schema "
-                 "WHERE type = 'table' AND name GLOB 'result_*' ORDER BY name",
-                 write_text, out, error);
+  result = each_row(db,
+                    "SELECT format(char(10) || '  LEFT JOIN %w ON %w.run_id = r.run_id', name, name) FROM "
+                    "sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY name",
+                    write_text, out, error);
   fprintf(out, ";\n");
   return result;
 }
@@ -146,22 +155,28 @@ static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
   return result;
 }
 
+static status write_estimate_columns(sqlite3 *db, FILE *out, struct error *error) {
+  return each_row(db, "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'",
+                  write_text, out, error);
+}
+
 static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
-  static const char
-      fields[] = "SELECT format('\"%w\", ', name) FROM pragma_table_xinfo('estimate') WHERE name <> 'run_id'";
   fprintf(out, "CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
                "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
+  if (result != STATUS_OK)
+    return result;
   fprintf(out, "  ");
-  if (result == STATUS_OK)
-    result = each_row(db, fields, write_text, out, error);
+  result = write_estimate_columns(db, out, error);
+  if (result != STATUS_OK)
+    return result;
   fprintf(out, "e.results_version\nFROM (\n  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, ");
-  if (result == STATUS_OK)
-    result = each_row(db, fields, write_text, out, error);
+  result = write_estimate_columns(db, out, error);
+  if (result != STATUS_OK)
+    return result;
   fprintf(out, "r.results_version\n  FROM estimate JOIN run r USING (run_id)\n  UNION ALL\n"
                "  SELECT point_id, NULL, NULL, NULL, NULL, ");
-  if (result == STATUS_OK)
-    result = each_row(db, fields, write_text, out, error);
+  result = write_estimate_columns(db, out, error);
   fprintf(out, "results_version FROM point_estimate\n) e JOIN point p ON p.point_id = e.point_id;\n");
   return result;
 }
@@ -174,10 +189,9 @@ static status document(sqlite3 *db, struct error *error) {
       "' (input ' || path || ')' FROM axis, "
       "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, w.column1, NULL, "
-      "w.column2 FROM "
-      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, (VALUES ('scene', 'name of the scene the inputs "
-      "started from')) w;"
-      "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES"
+      "w.column2 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, (VALUES ('scene', 'name of the "
+      "scene the inputs "
+      "started from')) w;INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) VALUES"
       "('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus'),"
       "('points', 'failed_attempts', '1', 'attempts that failed: limits, crashes, lost workers'),"
       "('spectra', 'n', '1', 'runs of the point that count'),"
@@ -186,19 +200,16 @@ static status document(sqlite3 *db, struct error *error) {
       "('spectra', 'count_mean', '1', 'fragments in the bin per run'),"
       "('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),"
       "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
-      "integral "
-      "over mass is 1');"
+      "integral over mass is 1');"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "
       "s.column1, d.unit, s.column2 || d.meaning "
-      "FROM "
-      "column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
+      "FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
       "('_se', 'standard error of the mean: '), ('_hw95', 'half width of the 95 % confidence interval of the mean "
       "(Student): ')) s WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE "
-      "c.name = "
-      "d.column_name || s.column1);"
+      "c.name = d.column_name || s.column1);"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, c.name, d.unit, "
-      "d.meaning FROM "
-      "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, column_doc d "
+      "d.meaning FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, "
+      "column_doc d "
       "WHERE (d.column_name = c.name OR d.table_name || '_' || d.column_name = c.name) AND (d.table_name IN ('run', "
       "'point', 'point_total', 'point_spectrum', 'bin', 'estimate') OR d.table_name GLOB 'result_*') "
       "ORDER BY CASE WHEN d.table_name IN ('estimate', 'point_total', 'point_spectrum', 'bin') THEN v.column1 IN "
