@@ -30,7 +30,7 @@ static void print(const char *name, double value, const char *unit) {
   fflush(stdout);
 }
 
-static int dearest_first(const void *a, const void *b) {
+static int costliest_first(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
   return x < y ? 1 : x > y ? -1 : 0;
 }
@@ -282,13 +282,13 @@ int main(int argc, char **argv) {
     return 1;
   cost_sum = fill(costs, TASKS, 0.05, 1);
   long_sum = fill(long_costs, LONG_TASKS, 1, 2);
-  qsort(long_costs, LONG_TASKS, sizeof *long_costs, dearest_first);
+  qsort(long_costs, LONG_TASKS, sizeof *long_costs, costliest_first);
   snprintf(burn_program, sizeof burn_program, "/tmp/bench_farm_burn_%d", (int)getpid());
   snprintf(command, sizeof command, "cc -O2 -o %s %.*s/farm_burn.c", burn_program,
            (int)(strrchr(__FILE__, '/') - __FILE__), __FILE__);
   const bool others = argc < 3 || strcmp(argv[2], "farm") != 0;
   const bool burner = others && system(command) == 0;
-  printf("# %d tasks, lognormal, %.3f CPU s; %d tasks dearest first, %.3f CPU s; %d slots; best of %d\n", TASKS,
+  printf("# %d tasks, lognormal, %.3f CPU s; %d tasks most expensive first, %.3f CPU s; %d slots; best of %d\n", TASKS,
          cost_sum, LONG_TASKS, long_sum, SLOTS, rounds);
 
   double in_process = NAN, isolated = NAN, xargs = NAN, parallel = NAN, python_mpi = NAN, two = NAN, three = NAN;

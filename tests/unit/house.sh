@@ -135,7 +135,7 @@ check_heads() {
     IFS= read -r first <"$file" || true
     case "$first" in
       '/* '*' '*) ;;
-      *) echo "house: not yet an error: $file does not begin with a comment that says what it is for" ;;
+      *) fail "$file does not begin with a comment that says what it is for" ;;
     esac
   done < <(find "${order[@]}" tests -name '*.[ch]')
 }
