@@ -99,7 +99,7 @@ def file_names():
     return {os.path.basename(name) for name in files("", folders=FOLDERS + ("tests", "."))}
 
 
-# ---- documents: what they quote exists ----
+# ---- documents: what they quote exists (contributing.sh checks their links) ----
 
 
 def check_commands(place, quotation):
@@ -147,9 +147,6 @@ def check_documents():
             check_files(place, here, match.group(1))
             for token in unknown_paths(match.group(1)):
                 fail(f'{place}: no input or result is called "{token}"')
-        for match in re.finditer(r"\]\((?![a-z]+:)([^)#\s]+)(?:#[^)]*)?\)", outside):
-            place = f"{document}:{line_of(text, match.start())}"
-            check(os.path.exists(os.path.join(here, match.group(1))), f"{place}: the link's target {match.group(1)} does not exist")
 
 
 # ---- names of inputs and results in the code ----
