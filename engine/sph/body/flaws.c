@@ -133,11 +133,12 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
   if (!d.has)
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
   status code = draw_all(&d, owner, context, most, error);
-  if (!code) {
-    *out = sort_by_particle(&d);
-    if (!*out)
-      code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
-  }
+  if (code)
+    goto cleanup;
+  *out = sort_by_particle(&d);
+  if (!*out)
+    code = status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", d.count);
+cleanup:
   free(d.flaw);
   free(d.has);
   return code;

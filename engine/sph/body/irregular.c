@@ -75,8 +75,9 @@ static status fill_uniform(const struct sph_lattice *lattice, const struct sph_s
       at[i][k] = p[k] + 1.4 * start.spacing * (random_uniform(bits[k]) - 0.5);
   }
   code = sph_relax_spread(lattice, shape, start.spacing, start.n, at, error);
-  if (!code)
-    code = store(shape, &lattice->grading, start.n, at, points, error);
+  if (code)
+    goto cleanup;
+  code = store(shape, &lattice->grading, start.n, at, points, error);
 cleanup:
   free(at);
   sph_lattice_empty(&start);

@@ -186,7 +186,8 @@ size_t sph_kd_tree_find(const struct sph_kd_tree *t, const double p[3]) {
   return sph_kd_tree_other(t, p, SIZE_MAX);
 }
 
-size_t sph_kd_tree_within(const struct sph_kd_tree *t, const double p[3], double radius, uint32_t *out, size_t room) {
+size_t sph_kd_tree_within(const struct sph_kd_tree *t, const double p[3], double radius, uint32_t *out,
+                          size_t capacity) {
   struct part stack[DEEPEST];
   int depth = 0;
   size_t count = 0;
@@ -198,7 +199,7 @@ size_t sph_kd_tree_within(const struct sph_kd_tree *t, const double p[3], double
       const double dx = p[0] - t->at[i][0], dy = p[1] - t->at[i][1], dz = p[2] - t->at[i][2];
       if (dx * dx + dy * dy + dz * dz > reach)
         continue;
-      if (count < room)
+      if (count < capacity)
         out[count] = t->id[i];
       count++;
     }

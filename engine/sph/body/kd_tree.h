@@ -18,9 +18,9 @@ void sph_kd_tree_free(struct sph_kd_tree *nearest); /* NULL is fine */
 size_t sph_kd_tree_find(const struct sph_kd_tree *nearest, const double point[3]);
 /* The nearest point except `self`; SIZE_MAX when there is no other. */
 size_t sph_kd_tree_other(const struct sph_kd_tree *nearest, const double point[3], size_t self);
-/* Finds the points within `radius`. Writes at most `room` indices, returns the number of points. They are not sorted,
- * but their order is always the same. */
+/* Finds the points within `radius`. Writes at most `capacity` indices, returns the number of points. They are not
+ * sorted, but their order is always the same. */
 size_t sph_kd_tree_within(const struct sph_kd_tree *nearest, const double point[3], double radius, uint32_t *out,
-                          size_t room);
+                          size_t capacity);
 
 #endif

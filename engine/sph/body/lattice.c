@@ -11,23 +11,23 @@
 /* A right-angled cell with particles at `basis` (fractions of its sides). Lengths are in spacings: the hexagonal
  * lattice's neighbours are 2^(1/6) apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
 struct cell {
-  double side[3];   /* distance of particles in a row, of rows, of layers */
-  int rows, layers; /* in a period along y, along z */
+  double side[3]; /* distance of particles in a row, of rows, of layers */
+  int period[3];  /* particles in a row, rows, layers until the lattice repeats */
   int count;
   double basis[4][3];
 };
 static const double hexagonal = 1.122462048309373;
 static const struct cell cells[] = {
     [SPH_LATTICE_HEXAGONAL] = {{1.122462048309373, 0.9720806486198328, 0.9164864246657354},
-                               2,
-                               2,
+                               {1, 2, 2},
                                4,
                                {{0, 0, 0}, {0.5, 0.5, 0}, {0.5, 1. / 6, 0.5}, {0, 2. / 3, 0.5}}},
-    [SPH_LATTICE_CUBIC] = {{1, 1, 1}, 1, 1, 1, {{0, 0, 0}}},
+    [SPH_LATTICE_CUBIC] = {{1, 1, 1}, {1, 1, 1}, 1, {{0, 0, 0}}},
 };
 
+/* The period of a lattice along a direction, in spacings. */
 static double period(const struct cell *cell, int direction) {
-  return cell->side[direction] * (direction == 0 ? 1 : direction == 1 ? cell->rows : cell->layers);
+  return cell->side[direction] * cell->period[direction];
 }
 
 double sph_lattice_period(int kind, double spacing, int direction, double at_least) {
@@ -68,7 +68,7 @@ static void fit_box(const struct sph_lattice *lattice, const struct cell *cell, 
   int step[3];
   for (int k = 0; k < 3; k++) {
     ideal[k] = box->side[k] / (spacing * cell->side[k]);
-    step[k] = lattice->periodic[k] ? (k == 1 ? cell->rows : k == 2 ? cell->layers : 1) : 1;
+    step[k] = lattice->periodic[k] ? cell->period[k] : 1;
   }
   enum { AROUND = 3 };
   for (int trial = 0; trial < (2 * AROUND) * (2 * AROUND) * (2 * AROUND); trial++) {
@@ -113,7 +113,7 @@ static status fill_box(const struct sph_lattice *lattice, const struct cell *cel
     const double stretch = step[k] / (points->spacing * cell->side[k]);
     points->stretch = fmax(points->stretch, fmax(stretch, 1 / stretch));
   }
-  const bool shifted = cell->rows == 2; /* rows stand in the gaps of their neighbours, half a point to and fro */
+  const bool shifted = cell->period[1] == 2; /* rows lie in the gaps of the next ones, shifted by half a particle */
   size_t i = 0;
   for (size_t layer = 0; layer < (size_t)count[2]; layer++)
     for (size_t row = 0; row < (size_t)count[1]; row++)
@@ -250,7 +250,7 @@ static void stack_layers(struct cut *c, double spacing, double layers) { /* whol
  * it, and a search for better offsets would take long. Layers cannot miss the ends. */
 static bool thin(const struct cut *c) {
   const struct sph_shape *s = c->shape;
-  const double each = c->side[0] * c->side[1] * c->side[2] / c->cell->count, layer = c->side[2] / c->cell->layers;
+  const double each = c->side[0] * c->side[1] * c->side[2] / c->cell->count, layer = c->side[2] / c->cell->period[2];
   const double across = c->layered ? sqrt(each / layer) : cbrt(each), along = c->layered ? 0 : across;
   if (s->kind == SPH_SHAPE_SPHERE)
     return false;
@@ -274,7 +274,7 @@ static size_t search(const struct sph_lattice *lattice, const struct cut *c, dou
     double offset[3];
     offsets(lattice, trial, offset);
     if (c->layered) { /* half a layer from the end */
-      const double end = (0.5 * c->side[2] / c->cell->layers - 0.5 * c->shape->length) / c->side[2];
+      const double end = (0.5 * c->side[2] / c->cell->period[2] - 0.5 * c->shape->length) / c->side[2];
       offset[2] = end - floor(end);
     }
     const size_t count = cut(c, offset, NULL);
@@ -314,7 +314,7 @@ static void settle(const struct cut *c, double wanted, struct sph_points *points
 static size_t search_layers(const struct sph_lattice *lattice, struct cut *c, double spacing, double wanted,
                             double best[3], double *layers) {
   const double length = c->shape->length;
-  const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? c->cell->layers : 1;
+  const int step = lattice->periodic[0] || lattice->periodic[1] || lattice->periodic[2] ? c->cell->period[2] : 1;
   const double ideal = length / (spacing * c->cell->side[2]) / step, nearest = fmax(1, round(ideal));
   const double other = fmax(1, nearest + (ideal > nearest ? 1 : -1));
   *layers = nearest * step;

@@ -21,7 +21,7 @@ struct work {
   double spacing;
   double length[3]; /* m, of periodic directions; 0 = open */
   double (*at)[3], (*push)[3], *s;
-  size_t *first, room;
+  size_t *first, capacity;
   uint32_t *list;
 };
 
@@ -37,15 +37,15 @@ static double wanted(const struct work *w, const double p[3]) {
 
 /* Appends the neighbours of p, which is one periodic image of a point, to the list. */
 static bool append(struct work *w, const struct sph_kd_tree *tree, const double p[3], double radius, size_t *total) {
-  size_t found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->room - *total);
-  if (found > w->room - *total) {
-    const size_t room = w->room + w->room / 2 + found;
-    uint32_t *grown = realloc(w->list, room * sizeof *grown);
+  size_t found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->capacity - *total);
+  if (found > w->capacity - *total) {
+    const size_t capacity = w->capacity + w->capacity / 2 + found;
+    uint32_t *grown = realloc(w->list, capacity * sizeof *grown);
     if (!grown)
       return false;
     w->list = grown;
-    w->room = room;
-    found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->room - *total);
+    w->capacity = capacity;
+    found = sph_kd_tree_within(tree, p, radius, w->list + *total, w->capacity - *total);
   }
   *total += found;
   return true;
@@ -177,7 +177,7 @@ static void round_of(struct work *w, double step) {
 
 status sph_relax_spread(const struct sph_lattice *lattice, const struct sph_shape *shape, double spacing, size_t n,
                         double (*at)[3], struct error *error) {
-  struct work w = {.lattice = lattice, .shape = shape, .n = n, .spacing = spacing, .at = at, .room = 64 * n + 64};
+  struct work w = {.lattice = lattice, .shape = shape, .n = n, .spacing = spacing, .at = at, .capacity = 64 * n + 64};
   status code = STATUS_OK;
   for (int k = 0; k < 3; k++)
     if (lattice->periodic[k])
@@ -185,7 +185,7 @@ status sph_relax_spread(const struct sph_lattice *lattice, const struct sph_shap
   w.push = malloc(n * sizeof *w.push);
   w.s = malloc(n * sizeof *w.s);
   w.first = malloc((n + 1) * sizeof *w.first);
-  w.list = malloc(w.room * sizeof *w.list);
+  w.list = malloc(w.capacity * sizeof *w.list);
   if (!w.push || !w.s || !w.first || !w.list) {
     code = status_fail(error, STATUS_MEMORY, "no memory to spread %zu particles", n);
     goto cleanup;

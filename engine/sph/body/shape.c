@@ -25,32 +25,39 @@ static status positive(double value, const char *name, struct error *error) {
   return status_fail(error, STATUS_CONTENT, "%s is %g m: give a positive length.", name, value);
 }
 
+static status check_cylinder(const struct sph_shape *s, struct error *error) {
+  double ignored[3];
+  status code = positive(s->radius, "the radius of a cylinder", error);
+  if (code)
+    return code;
+  code = positive(s->length, "the length of a cylinder", error);
+  if (code)
+    return code;
+  if (!(s->inner_radius >= 0 && s->inner_radius < s->radius))
+    return status_fail(error, STATUS_CONTENT,
+                       "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.", s->inner_radius,
+                       s->radius);
+  if (!(unit(s->axis, ignored) > 0))
+    return status_fail(error, STATUS_CONTENT, "the axis of a cylinder has no direction.");
+  return STATUS_OK;
+}
+
 status sph_shape_check(const struct sph_shape *s, struct error *error) {
   static const char *const side[3] = {"side x of a box", "side y of a box", "side z of a box"};
-  double ignored[3];
   for (int k = 0; k < 3; k++)
     if (!isfinite(s->centre[k]))
       return status_fail(error, STATUS_CONTENT, "the centre of a body is not finite.");
   status code = STATUS_OK;
   switch (s->kind) {
   case SPH_SHAPE_SPHERE: return positive(s->radius, "the radius of a sphere", error);
-  case SPH_SHAPE_CYLINDER:
-    code = positive(s->radius, "the radius of a cylinder", error);
-    if (!code)
-      code = positive(s->length, "the length of a cylinder", error);
-    if (code)
-      return code;
-    if (!(s->inner_radius >= 0 && s->inner_radius < s->radius))
-      return status_fail(error, STATUS_CONTENT,
-                         "the hole of a cylinder has radius %g m: give 0 to below its radius, %g m.", s->inner_radius,
-                         s->radius);
-    if (!(unit(s->axis, ignored) > 0))
-      return status_fail(error, STATUS_CONTENT, "the axis of a cylinder has no direction.");
-    return STATUS_OK;
+  case SPH_SHAPE_CYLINDER: return check_cylinder(s, error);
   case SPH_SHAPE_BOX:
-    for (int k = 0; k < 3 && !code; k++)
+    for (int k = 0; k < 3; k++) {
       code = positive(s->side[k], side[k], error);
-    return code;
+      if (code)
+        return code;
+    }
+    return STATUS_OK;
   default: return status_fail(error, STATUS_INTERNAL, "shape %d is unknown", s->kind);
   }
 }

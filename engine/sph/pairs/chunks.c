@@ -39,7 +39,7 @@ size_t sph_chunks_bytes(const struct sph_chunks *c) {
   return bytes;
 }
 
-/* The particles of later chunks that stand in a chunk's lists, numbered from its first own one: a bit for each, and for
+/* The particles of later chunks that are in a chunk's lists, numbered from its first own one: a bit for each, and for
  * each word of bits how many are set before it. */
 struct met {
   uint64_t *bits;
@@ -152,20 +152,20 @@ static bool find_stretches(struct sph_chunks *s) {
   return true;
 }
 
-/* Makes the lists of chunk k. They are made in `room`, which a thread uses for one chunk after the other, and kept in
- * no more memory than they need. */
-static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sph_neighbour_lists *room) {
+/* Makes the lists of chunk k. They are made in `scratch`, which a thread uses for one chunk after the other, and kept
+ * in no more memory than they need. */
+static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sph_neighbour_lists *scratch) {
   struct sph_chunk *c = &s->chunk[k];
   c->first = k * SPH_CHUNK;
   c->own = n - c->first < SPH_CHUNK ? n - c->first : SPH_CHUNK;
   c->lists.start = s->start + 2 * c->first + k;
   c->lists.count = c->lists.start + c->own + 1;
-  room->start = c->lists.start;
-  room->count = c->lists.count;
-  if (!sph_neighbours_list(s->neighbours, k, room) || !sph_list_balance(c->own, s->per_list, room))
+  scratch->start = c->lists.start;
+  scratch->count = c->lists.count;
+  if (!sph_neighbours_list(s->neighbours, k, scratch) || !sph_list_balance(c->own, s->per_list, scratch))
     return false;
 
-  const size_t lists = (c->own + s->per_list - 1) / s->per_list, used = room->start[lists];
+  const size_t lists = (c->own + s->per_list - 1) / s->per_list, used = scratch->start[lists];
   if (!c->lists.j || c->lists.capacity < used || c->lists.capacity > used + used / 4) {
     free(c->lists.j);
     c->lists.capacity = used + used / 16 / SPH_LIST_ALIGN * SPH_LIST_ALIGN;
@@ -175,8 +175,8 @@ static bool list_chunk(const struct sph_chunks *s, size_t k, size_t n, struct sp
       return false;
     }
   }
-  memcpy(c->lists.j, room->j, used * sizeof *room->j);
-  c->lists.pairs = room->pairs;
+  memcpy(c->lists.j, scratch->j, used * sizeof *scratch->j);
+  c->lists.pairs = scratch->pairs;
   return find_halo(c, lists, n);
 }
 
@@ -190,13 +190,13 @@ status sph_chunks_list(struct sph_chunks *s, size_t n, const double *x, const do
 #pragma omp parallel num_threads(threads) if (threads > 1) reduction(&& : enough)
 #endif
   {
-    struct sph_neighbour_lists room = {0};
+    struct sph_neighbour_lists scratch = {0};
 #ifdef _OPENMP
 #pragma omp for schedule(dynamic, 1)
 #endif
     for (size_t k = 0; k < s->count; k++)
-      enough = list_chunk(s, k, n, &room) && enough;
-    free(room.j);
+      enough = list_chunk(s, k, n, &scratch) && enough;
+    free(scratch.j);
   }
   if (!enough || !find_stretches(s))
     return status_fail(error, STATUS_MEMORY, "no memory for the neighbours of %zu particles", n);

@@ -2,12 +2,12 @@
  *
  * A list is summed in batches of as many neighbours as a vector register has lanes, and a partly filled last batch
  * wastes lanes: one in six where two particles share a list (batches of 16), one in nine where none do (8). But a pair
- * may stand in the list of either partner. So each list passes the neighbours beyond its last full batch of
+ * may be in the list of either partner. So each list passes the neighbours beyond its last full batch of
  * SPH_LIST_ALIGN to the lists of those neighbours, if they come later in the chunk:
  * A list of 18, for example, keeps 16 and becomes an entry in the lists of two of its neighbours.
  *
  * Lists shared by two particles become shorter as well: if a list holds both particles of a later list, each as a
- * neighbour of the same one particle p, then p as a single entry of the later list stands for both pairs. */
+ * neighbour of the same one particle p, then a single entry of the later list, p, serves for both pairs. */
 #include <stdlib.h>
 #include <string.h>
 

@@ -109,14 +109,6 @@ static bool grow(void **array, size_t *capacity, size_t wanted, size_t size) {
 
 /* ---- life ---- */
 
-static size_t columns_of(bool single, bool one, bool two) {
-  if (one && two)
-    return PAIR_WIDE;
-  if (!one && !two)
-    return PAIR_NARROW;
-  return single ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
-}
-
 static void choose_columns(struct sph_pairs *p, const struct sph_pair_options *options) {
   p->options = *options;
   p->threads = options->fidelity.threads > 1 ? (size_t)options->fidelity.threads : 1;
@@ -125,8 +117,8 @@ static void choose_columns(struct sph_pairs *p, const struct sph_pair_options *o
   p->corrected = options->method.gradient_correction;
   p->kernels = sph_pairs_kernels_choose();
   p->records = p->single ? p->kernels->in_float : p->kernels->in_double;
-  p->in_columns = columns_of(p->single, p->artificial, p->corrected);
-  p->out_columns = columns_of(p->single, false, p->corrected);
+  p->in_columns = sph_pair_columns(p->single, p->artificial, p->corrected);
+  p->out_columns = sph_pair_columns(p->single, false, p->corrected);
 }
 
 static bool allocate(struct sph_pairs *p) {

@@ -48,6 +48,15 @@ enum sph_pair_sum {
  * with both. */
 enum { PAIR_NARROW = 16, PAIR_MIDDLE_DOUBLE = 24, PAIR_MIDDLE_FLOAT = 32, PAIR_WIDE = 32 };
 
+/* The length of a record that has one, two or none of the extra parts. */
+static inline size_t sph_pair_columns(bool single, bool one, bool other) {
+  if (one && other)
+    return PAIR_WIDE;
+  if (!one && !other)
+    return PAIR_NARROW;
+  return single ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
+}
+
 /* Particles with consecutive numbers that share one list of neighbours. A neighbour is loaded, and its sums are stored,
  * once for all of them. */
 enum { PAIR_GROUP_DOUBLE = 1, PAIR_GROUP_FLOAT = 2 };
@@ -108,7 +117,7 @@ struct sph_near_boxes {
 };
 struct sph_near_particles {
   const double *place[3], *reach; /* by particle */
-  const uint32_t *first;          /* by group: its first particle, and the number of them */
+  const uint32_t *first;          /* by leaf box: its first particle, and the number of them */
   const uint8_t *size;
 };
 
@@ -133,9 +142,9 @@ struct sph_pair_kernels {
    * number is not below `lowest`. Writes their numbers to `found` (room for 8 count), returns how many. */
   size_t (*near_boxes)(const struct sph_near_boxes *boxes, const uint32_t *parent, size_t count,
                        const struct sph_near_box *own, const double period[3], uint32_t lowest, uint32_t *found);
-  /* The same for the particles of `count` groups: x, y, z, reach to `at`, their numbers to `number` (room for 17
+  /* The same for the particles of `count` leaves: x, y, z, reach to `at`, their numbers to `number` (room for 17
    * count). */
-  size_t (*near_particles)(const struct sph_near_particles *particles, const uint32_t *group, size_t count,
+  size_t (*near_particles)(const struct sph_near_particles *particles, const uint32_t *leaf, size_t count,
                            const struct sph_near_box *own, const double period[3], double *at[4], uint32_t *number);
   /* Finds those of `count` candidates (x, y, z, reach in `at`) that are within the sum of reaches of one of `owns`
    * particles `own`. Writes their numbers to `found`, returns how many. If `tag` is not 0, it is the bit that marks a

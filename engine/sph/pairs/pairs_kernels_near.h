@@ -96,12 +96,12 @@ INLINE size_t near_boxes_of(const struct sph_near_boxes *boxes, const uint32_t *
   return n;
 }
 
-INLINE size_t near_particles_of(const struct sph_near_particles *p, const uint32_t *group, size_t count,
+INLINE size_t near_particles_of(const struct sph_near_particles *p, const uint32_t *leaf, size_t count,
                                 const struct sph_near_box *own, const double period[3], double *at[4], uint32_t *number,
                                 const bool wrapped) {
   size_t n = 0;
   for (size_t k = 0; k < count; k++) {
-    const uint32_t first = p->first[group[k]], size = p->size[group[k]];
+    const uint32_t first = p->first[leaf[k]], size = p->size[leaf[k]];
     for (uint32_t part = 0; part < size; part += 8) {
       const size_t from = first + part;
       const near_vector its = near_load(p->reach + from), reach = its + own->reach, zero = {0};
@@ -173,10 +173,10 @@ static size_t near_boxes(const struct sph_near_boxes *boxes, const uint32_t *par
                             : near_boxes_of(boxes, parent, count, own, period, lowest, found, false);
 }
 
-static size_t near_particles(const struct sph_near_particles *particles, const uint32_t *group, size_t count,
+static size_t near_particles(const struct sph_near_particles *particles, const uint32_t *leaf, size_t count,
                              const struct sph_near_box *own, const double period[3], double *at[4], uint32_t *number) {
-  return near_wraps(period) ? near_particles_of(particles, group, count, own, period, at, number, true)
-                            : near_particles_of(particles, group, count, own, period, at, number, false);
+  return near_wraps(period) ? near_particles_of(particles, leaf, count, own, period, at, number, true)
+                            : near_particles_of(particles, leaf, count, own, period, at, number, false);
 }
 
 static size_t near_pairs(size_t count, double *const at[4], const uint32_t *number, const double (*own)[4], size_t owns,

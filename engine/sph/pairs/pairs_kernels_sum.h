@@ -103,7 +103,7 @@ INLINE void pair_begin(const struct sph_pair_constants *k, const REAL *record, s
 /* How far apart the partners are, and whether they are within the support. `left`: neighbours left in the list.
  *
  * Coincident particles exert no force on each other, and nothing is divided by their distance of zero. All members but
- * the first also stand in the list themselves (`listed`); no particle is its own neighbour. */
+ * the first are also in the list themselves (`listed`); no particle is its own neighbour. */
 INLINE void pair_distance(const struct sph_pair_constants *k, const struct pair_member *me, const vec *its, INT left,
                           const bool listed, bool exists, struct pair_batch *p) {
   const vec zero = {0};
@@ -343,9 +343,8 @@ INLINE vec pair_sum_batch(const struct sph_pair_constants *k, const REAL *in, si
 INLINE double sum_pairs(const struct sph_pair_chunk *chunk, const struct sph_pair_constants *constants, const REAL *in,
                         REAL *out, const bool corrected, const bool artificial) {
   const struct sph_pair_constants k = *constants;
-  const size_t middle = SINGLE ? PAIR_MIDDLE_FLOAT : PAIR_MIDDLE_DOUBLE;
-  const size_t in_stride = artificial && corrected ? PAIR_WIDE : artificial || corrected ? middle : PAIR_NARROW;
-  const size_t out_stride = corrected ? middle : PAIR_NARROW;
+  const size_t in_stride = sph_pair_columns(SINGLE, artificial, corrected);
+  const size_t out_stride = sph_pair_columns(SINGLE, false, corrected);
   const uint32_t *end = chunk->neighbour + chunk->start[(chunk->own + GROUP - 1) / GROUP];
   vec within = {0};
   for (size_t i = 0; i < chunk->own; i += GROUP) {

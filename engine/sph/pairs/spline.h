@@ -6,14 +6,18 @@
 
 /* W, 1/m^3. */
 static inline double sph_spline(double r, double h) {
-  double q = r / h, t = 2 - q, norm = SPH_SPLINE_NORM / (h * h * h);
-  return q < 1 ? norm * (1 - 1.5 * q * q + 0.75 * q * q * q) : q < 2 ? norm * 0.25 * t * t * t : 0;
+  const double q = r / h, t = 2 - q, norm = SPH_SPLINE_NORM / (h * h * h);
+  if (q < 1)
+    return norm * (1 - 1.5 * q * q + 0.75 * q * q * q);
+  return q < 2 ? norm * 0.25 * t * t * t : 0;
 }
 
 /* (dW/dr)/r, 1/m^5; finite at r = 0. */
 static inline double sph_spline_slope(double r, double h) {
-  double q = r / h, t = 2 - q, norm = SPH_SPLINE_NORM / (h * h * h * h * h);
-  return q < 1 ? norm * (2.25 * q - 3) : q < 2 ? -norm * 0.75 * t * t / q : 0;
+  const double q = r / h, t = 2 - q, norm = SPH_SPLINE_NORM / (h * h * h * h * h);
+  if (q < 1)
+    return norm * (2.25 * q - 3);
+  return q < 2 ? -norm * 0.75 * t * t / q : 0;
 }
 
 #endif
