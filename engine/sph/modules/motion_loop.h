@@ -159,15 +159,8 @@ RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_solid 
 
 enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
 
-/* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
- *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
- *   force     cfl sqrt(h/|a|)
- *   energy    a fifth of (u + c^2/100)/|du/dt|
- *   density   a tenth of 1/|div v|
- *   damage    damage_step over the rate of D^(1/3) */
-RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool strength,
-                                 bool damaged) {
+/* v by half the change of the accelerations. */
+RANGE_INLINE void motion_correct_velocity(struct sph_system *s, struct sph_block *b) {
   const double half = 0.5 * s->dt;
   const size_t low = b->low, n = b->high - b->low;
   double *const velocity[3] = {s->c.vx, s->c.vy, s->c.vz};
@@ -182,6 +175,30 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
       was[low + m] = a[m];
     }
   }
+}
+
+/* The first particle, by place, that is no longer finite or beyond 1e30. */
+RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block *b, const double *courant) {
+  for (size_t i = b->high; i-- > b->low;) {
+    const double all = fabs(s->c.x[i]) + fabs(s->c.y[i]) + fabs(s->c.z[i]) + fabs(s->c.ax[i]) + fabs(s->c.ay[i]) +
+                       fabs(s->c.az[i]) + fabs(s->c.density[i]) + fabs(s->c.energy[i]) + courant[i - b->low];
+    if (!(all < 1e30))
+      b->lost = i;
+  }
+}
+
+/* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
+ *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
+ *             and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
+ *   force     cfl sqrt(h/|a|)
+ *   energy    a fifth of (u + c^2/100)/|du/dt|
+ *   density   a tenth of 1/|div v|
+ *   damage    damage_step over the rate of D^(1/3) */
+RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *body, struct sph_block *b, bool strength,
+                                 bool damaged) {
+  const double half = 0.5 * s->dt;
+  const size_t low = b->low, n = b->high - b->low;
+  motion_correct_velocity(s, b);
   const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8],
                *signal = b->sums->signal;
   const double *c = s->c.sound_speed, *d = s->c.damage, *ax = s->c.ax, *ay = s->c.ay, *az = s->c.az;
@@ -230,15 +247,8 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   b->worst[SPH_LIMIT_DENSITY] = MOTION_DENSITY_SHARE_INVERSE * range_largest(squeeze, n);
   if (damaged && s->c.damage_rate)
     b->worst[SPH_LIMIT_DAMAGE] = range_largest(s->c.damage_rate + low, n) / s->in.fidelity.damage_step;
-  if (!lost)
-    return;
-  for (size_t k = n; k-- > 0;) { /* the first of them, by place */
-    const size_t i = low + k;
-    const double all = fabs(x[i]) + fabs(y[i]) + fabs(z[i]) + fabs(ax[i]) + fabs(ay[i]) + fabs(az[i]) +
-                       fabs(density[i]) + fabs(energy[i]) + courant[k];
-    if (!(all < 1e30))
-      b->lost = i;
-  }
+  if (lost)
+    motion_find_lost(s, b, courant);
 }
 
 RANGE_HOOK void motion_correct_fluid(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {

@@ -81,17 +81,28 @@ static void begin(struct sph_run *run) {
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error) {
   *out = NULL;
   status code = sph_inputs_check(inputs, error);
-  if (code || (code = check_memory(inputs, error)))
+  if (code)
     return code;
+  code = check_memory(inputs, error);
+  if (code)
+    return code;
+
   struct sph_run *run = calloc(1, sizeof *run);
   if (!run)
     return status_fail(error, STATUS_MEMORY, "no memory for a run");
   run->inputs = *inputs;
   run->seed = seed;
-  if ((code = sph_protocol_bodies(run, error)) || (code = make_system(run, error)))
+  code = sph_protocol_bodies(run, error);
+  if (code)
     goto cleanup;
-  if ((code = sph_particles_make(run->start->n, sph_system_columns_arrays(run->system->columns), &run->now, error)) ||
-      (code = sph_protocol_record_start(run, error)))
+  code = make_system(run, error);
+  if (code)
+    goto cleanup;
+  code = sph_particles_make(run->start->n, sph_system_columns_arrays(run->system->columns), &run->now, error);
+  if (code)
+    goto cleanup;
+  code = sph_protocol_record_start(run, error);
+  if (code)
     goto cleanup;
   for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own */
     sph_flaws_free(run->flaws[b]);

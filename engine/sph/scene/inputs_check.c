@@ -206,14 +206,19 @@ const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
 status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
   struct sph_shape target = sph_derived_target(in);
   status code = check_material("target", &in->target, error);
-  if (!code)
-    code = check_shape("target", &in->target, &target, error);
-  if (!code && sph_derived_has_projectile(in))
-    code = check_material("projectile", &in->projectile, error);
-  if (!code)
-    code = check_protocol(in, error);
   if (code)
     return code;
+  code = check_shape("target", &in->target, &target, error);
+  if (code)
+    return code;
+  if (sph_derived_has_projectile(in))
+    code = check_material("projectile", &in->projectile, error);
+  if (code)
+    return code;
+  code = check_protocol(in, error);
+  if (code)
+    return code;
+
   bool cracks = sph_derived_cracks(&in->target) ||
                 (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
   if (cracks && in->method.artificial_stress > 0)

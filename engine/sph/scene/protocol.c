@@ -168,8 +168,7 @@ static status set_in_motion(struct sph_run *run, const double flight[3], struct 
 static status make_flaws(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct sph_middle middle = {.axis = {0, 0, 1}, .half = in->target.length / 2 - in->stretch.flaw_free};
-  status code = STATUS_OK;
-  for (int b = 0; b < run->body_count && !code; b++) {
+  for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_inputs *body = inputs_of(run, b);
     if (!sph_derived_cracks(body))
       continue;
@@ -177,13 +176,14 @@ static status make_flaws(struct sph_run *run, struct error *error) {
                                .draw = in->fracture.draw,
                                .seed = run->seed,
                                .body = (uint64_t)b};
-    code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
-                           in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL, &run->flaws[b],
-                           error);
-    if (!code)
-      run->flaw_count += run->flaws[b]->count;
+    const status code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],
+                                        in->kind == SPH_STRETCH && in->stretch.flaw_free > 0 ? &middle : NULL,
+                                        &run->flaws[b], error);
+    if (code)
+      return code;
+    run->flaw_count += run->flaws[b]->count;
   }
-  return code;
+  return STATUS_OK;
 }
 
 /* A wave that crosses the layer and returns keeps exp(-rate depth/(3 c)) of its amplitude: half of the kinetic energy,
@@ -220,14 +220,22 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error) {
     place_plate(run);
   else
     run->shape[0] = sph_derived_target(in);
-  if (code || (code = make_bodies(run, error)))
+  if (code)
     return code;
+  code = make_bodies(run, error);
+  if (code)
+    return code;
+
   run->targets = in->kind == SPH_COLLISION ? run->start->n : run->range[0].n;
   for (int b = 0; b < run->body_count; b++) {
     const struct sph_body_physics physics = sph_derived_physics(inputs_of(run, b), NULL);
     sph_modules_set_up(&physics, in, run->start, run->range[b].first, run->range[b].first + run->range[b].n);
   }
-  if ((code = set_in_motion(run, flight, error)) || (code = damp(run, error)))
+  code = set_in_motion(run, flight, error);
+  if (code)
+    return code;
+  code = damp(run, error);
+  if (code)
     return code;
   return make_flaws(run, error);
 }

@@ -103,17 +103,24 @@ static status check_memory(const struct sph_particles *p, size_t body_count, con
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
                         const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error) {
   status code = check_inputs(inputs, error);
-  if (!code)
-    code = check_domain(domain, error);
-  if (!code)
-    code = check_particles(particles, body_count, error);
+  if (code)
+    return code;
+  code = check_domain(domain, error);
+  if (code)
+    return code;
+  code = check_particles(particles, body_count, error);
+  if (code)
+    return code;
+
   size_t first = 0;
-  for (size_t b = 0; b < body_count && !code; b++) {
+  for (size_t b = 0; b < body_count; b++) {
     size_t last = first;
     while (last < particles->n && particles->body[last] == b)
       last++;
     code = check_body(b, &bodies[b], particles, first, last, inputs, error);
+    if (code)
+      return code;
     first = last;
   }
-  return code ? code : check_memory(particles, body_count, bodies, inputs, error);
+  return check_memory(particles, body_count, bodies, inputs, error);
 }

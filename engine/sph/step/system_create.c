@@ -34,14 +34,16 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b) {
   for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++)
     if (yields || stage < SPH_YIELD || stage > SPH_RETURN)
       add_stage(s, b, stage, b->before, &b->before_count);
-  add(b->before, &b->before_count, damage ? r->output_damaged : strength ? r->output_whole : r->output_fluid);
+  sph_hook output = strength ? r->output_whole : r->output_fluid;
+  add(b->before, &b->before_count, damage ? r->output_damaged : output);
 
   if (s->held || s->c.damping)
     add(b->after, &b->after_count, r->hold);
   if (!strength)
     add(b->after, &b->after_count, r->fluid_rates);
   add_stage(s, b, SPH_RATES, b->after, &b->after_count);
-  add(b->after, &b->after_count, damage ? r->correct_damaged : strength ? r->correct_whole : r->correct_fluid);
+  sph_hook correct = strength ? r->correct_whole : r->correct_fluid;
+  add(b->after, &b->after_count, damage ? r->correct_damaged : correct);
 }
 
 static status make_body(struct sph_system *s, struct sph_solid *b, struct error *error) {
@@ -120,14 +122,20 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
                     struct error *error) {
   find_bodies(s, p, bodies);
   status code = sph_system_columns_take(s, p, error);
-  for (size_t b = 0; b < s->body_count && !code; b++)
-    code = make_body(s, &s->solid[b], error);
-  if (!code)
-    code = make_blocks(s, error);
-  if (!code)
-    code = make_pairs(s, error);
   if (code)
     return code;
+  for (size_t b = 0; b < s->body_count; b++) {
+    code = make_body(s, &s->solid[b], error);
+    if (code)
+      return code;
+  }
+  code = make_blocks(s, error);
+  if (code)
+    return code;
+  code = make_pairs(s, error);
+  if (code)
+    return code;
+
   bound_h(s, p);
   sph_system_columns_fill(s, p);
   if (!sph_system_step_begin(s))
