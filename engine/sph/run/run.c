@@ -25,7 +25,7 @@ double sph_run_extent(const struct sph_run *run) {
   return sph_shape_reach(&run->shape[0], diagonal);
 }
 
-/* The first reason given stays, but a fault stands above any other. */
+/* Ends the run. The first reason stays, but a fault replaces any other. */
 static __attribute__((format(printf, 4, 5))) void end(struct sph_run *run, int stop, int outcome_state,
                                                       const char *format, ...) {
   if (run->state.finished && (stop != SPH_STOP_FAULT || run->state.stop == SPH_STOP_FAULT))
@@ -104,7 +104,7 @@ status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph
   code = sph_protocol_record_start(run, error);
   if (code)
     goto cleanup;
-  for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own */
+  for (int b = 0; b < SPH_RUN_BODIES; b++) { /* the system has its own copies */
     sph_flaws_free(run->flaws[b]);
     run->flaws[b] = NULL;
   }
@@ -135,7 +135,7 @@ static bool can_crack(const struct sph_run *run) {
   return run->flaw_count > 0;
 }
 
-/* The declared rule: damage counts as ceased since the last time it was stop.quiet_growth below what it is now. */
+/* Fracture is over when the mean damage grows by less than stop.quiet_growth during stop.quiet_time. */
 static void look_at_damage(struct sph_run *run) {
   struct sph_state *state = &run->state;
   double damage = sph_system_damage(run->system, NULL), time = sph_system_time(run->system);
@@ -181,7 +181,7 @@ static void look_at_end(struct sph_run *run) {
   if (can_crack(run) && !isnan(run->state.first_damage))
     end(run, SPH_STOP_END_TIME, OUTCOME_END_TIME, "damage still grew %.3g s before the hard end: raise stop.end_time",
         time - run->state.quiet_since);
-  else /* nothing ever broke: there is no fracture that could still go on */
+  else /* nothing ever broke: no fracture can still go on */
     end(run, SPH_STOP_END_TIME, OUTCOME_COMPLETED, "%s", "");
 }
 

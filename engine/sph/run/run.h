@@ -46,28 +46,27 @@ struct sph_run {
   double periodic[3];                      /* m, NaN = open */
   double impact_direction[3];              /* from the target's centre to the point of impact; unit */
   struct sph_particles *start;             /* as they were set up: positions and h at rest */
-  struct sph_particles *now;               /* room to read the system back; sph_run_read */
+  struct sph_particles *now;               /* the system as last read; sph_run_read */
   struct sph_flaws *flaws[SPH_RUN_BODIES]; /* NULL: the body does not crack; freed once the system has them */
   size_t flaw_count;
   struct sph_system *system;
   struct sph_state state;
-  struct sph_sample *sample; /* sample_capacity of them; NULL: the protocol records nothing */
+  struct sph_sample *sample; /* sample_capacity of them; NULL: the protocol records none */
   size_t sample_capacity;
   double sample_interval;        /* s */
-  struct sph_plane_shock exact;  /* piston: what it should do */
-  struct sph_plate_layer *layer; /* piston: room for a look (plate.c) */
+  struct sph_plane_shock exact;  /* piston: the exact solution */
+  struct sph_plate_layer *layer; /* piston: memory of plate.c */
 };
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
 void sph_run_free(struct sph_run *run); /* NULL is fine */
-/* At most max_steps, independent of how they are split over calls. STATUS_MEMORY: that is no result, and the run cannot
- * go on. */
+/* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: this is no result,
+ * and the run cannot go on. */
 status sph_run_advance(struct sph_run *run, uint64_t max_steps);
 /* The particles as they are now, in the order of their ids; owned by the run, valid until the next call. */
 const struct sph_particles *sph_run_read(struct sph_run *run);
-double
-sph_run_closed(const struct sph_ledger *ledger);  /* the sum that must stay constant, J; clamps are not credited */
-double sph_run_extent(const struct sph_run *run); /* m, the target's reach: a length for errors */
+double sph_run_closed(const struct sph_ledger *ledger); /* the sum that must stay constant, J; `clamped` is not in it */
+double sph_run_extent(const struct sph_run *run);       /* m, the target's reach: a length for errors */
 
 /* protocol.c: bodies with their flaws, where they stand and how they move. Fills shape, range, start, flaws... of the
  * run. */

@@ -6,7 +6,7 @@
 
 #include "engine/sph/body/bodies.h"
 
-enum { PISTON_LAYERS = 4 }; /* more than a support: what is behind the piston is not seen */
+enum { PISTON_LAYERS = 4 }; /* thicker than a support: the plate does not feel the piston's back */
 
 double sph_derived_wave_speed(const struct sph_body_inputs *b) {
   return sph_derived_longitudinal_speed(&b->material, b->strength);
@@ -111,7 +111,7 @@ status sph_derived_aim(const struct sph_inputs *in, struct sph_shape shape[2], d
   shape[1] = sph_derived_projectile(in);
   memcpy(shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof shape[1].axis);
   status code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight,
-                               error); /* touching; and now back along the flight */
+                               error); /* in contact; the gap follows, back along the flight */
   for (int k = 0; !code && k < 3; k++)
     shape[1].centre[k] -= flight[k] * in->impact.gap / cos(angle);
   return code;

@@ -9,30 +9,30 @@
 
 bool sph_derived_has_projectile(const struct sph_inputs *inputs);
 int sph_derived_bodies(const struct sph_inputs *inputs);
-/* Is there a second body that belongs to no fragment: a projectile or a piston (ids after the target's)? */
+/* Is there a second body that belongs to no fragment, a projectile or a piston? Its ids follow the target's. */
 bool sph_derived_has_intruder(const struct sph_inputs *inputs);
-/* Does the body crack? Whether `auto` is on: the material has Weibull's m and k. */
+/* Does the body crack? With fracture: auto it does if the material has Weibull's m and k. */
 bool sph_derived_cracks(const struct sph_body_inputs *body);
-/* What the moving system is told of the body. */
+/* The body as the moving system reads it. */
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *body, const struct sph_flaws *flaws);
 double sph_derived_density(const struct sph_body_inputs *body);    /* kg/m^3, bulk */
 double sph_derived_wave_speed(const struct sph_body_inputs *body); /* m/s, longitudinal */
-/* The target's outline at the origin; the projectile's, of the size that impact.projectile asks for, there too. */
+/* Outlines of target and projectile (of the size that impact.projectile selects), both at the origin. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_piston(const struct sph_inputs *inputs); /* at the origin, too */
-/* m: what repeats along y or z (direction 1 or 2) in whole periods of the target's lattice, at least so thick, and so
- * thick that no particle meets its own image. */
+/* Thickness, m, of a body that repeats along y or z (direction 1 or 2): whole periods of the target's lattice, not less
+ * than `at_least`, and thick enough that no particle meets its own image. */
 double sph_derived_thickness(const struct sph_inputs *inputs, int direction, double at_least);
 double sph_derived_target_mass(const struct sph_inputs *inputs);     /* kg */
 double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 without one */
 double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
-double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies, near enough to plan */
+double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies; an estimate for plans */
 double sph_derived_crossing(const struct sph_inputs *inputs); /* s, of a wave through the target's longest extent */
 double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
-/* Target and projectile where they start, and the unit direction of flight: it touches the target where the normal is
- * z, the flight impact.angle from it, whatever the gap before. STATUS_CONTENT. */
+/* Target and projectile at the start, and the unit direction of flight. The projectile hits the target where the normal
+ * is z; the angle between flight and normal is impact.angle, whatever the gap. STATUS_CONTENT. */
 status sph_derived_aim(const struct sph_inputs *inputs, struct sph_shape shape[2], double flight[3],
                        struct error *error);
 /* Specific impact energy Q = (m v^2 / 2) / M, J/kg; NaN without an impact. */

@@ -1,4 +1,4 @@
-/* What a scene models and why, what it needs and how its numbers compare: text for `clast explain` and `plan`. */
+/* Text for `clast explain` and `plan`: what a scene models and why, its memory and time, and numbers to compare. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,8 +11,8 @@
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
 
-/* What stands beside the moving system, per particle (as set up and as read back; fragments at the end, when dust is
- * many: the peak of a whole process, less the system), per flaw, and in any case. */
+/* Memory beside the moving system: per particle (particles as set up and as read back, and fragments at the end; the
+ * peak of a whole process less the system, measured), per flaw, and of any process. */
 enum { BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 /* Nanoseconds of one core for a particle-step of the basalt sphere without options (bench_sph; AVX-512 at 2 to 3 GHz);
  * modules say what options add. */
@@ -25,7 +25,7 @@ static double flaws_expected(double particles) {
 
 enum { BODIES = 2 };
 
-/* What the bodies of a scene bring into the moving system. */
+/* What the bodies of a scene need in the moving system. */
 struct need {
   uint64_t modules[BODIES], columns; /* bits (modules.h): of each body, of all */
   size_t pairs;                      /* bytes per particle of the pair loop's options */
@@ -64,7 +64,7 @@ size_t sph_describe_memory(const struct sph_inputs *in) {
 static double steps_expected(const struct sph_inputs *in) {
   double h = sph_derived_smallest_spacing(in) * in->fidelity.smoothing;
   double blow = in->kind == SPH_IMPACT ? 0.25 * in->impact.speed
-                                       : 0; /* compressed matter is faster than sound at rest */
+                                       : 0; /* waves in compressed matter are faster than at rest */
   return in->stop.end_time / (in->fidelity.cfl * h / (1.5 * sph_derived_wave_speed(&in->target) + blow));
 }
 

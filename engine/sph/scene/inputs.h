@@ -108,11 +108,11 @@ struct sph_inputs {
 
 extern const struct field_table sph_inputs;
 
-/* inputs_complete.c: what was not given and follows from what was (engine_kind.complete). */
+/* inputs_complete.c: sets inputs that were not given and follow from others (engine_kind.complete). */
 void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
-/* What makes fewer particles of these inputs: "lower fidelity.particles". */
+/* How to have fewer particles: "lower fidelity.particles". */
 const char *sph_inputs_check_fewer(const struct sph_inputs *inputs);
 
 #endif

@@ -1,4 +1,4 @@
-/* Conditions across the inputs: what cannot be run is refused here, with a remedy. */
+/* Conditions across inputs: refuses scenes that cannot be run, with a remedy. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-/* Inputs that were not given and follow from others. */
+/* Values of inputs that were not given and follow from other inputs. */
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +17,7 @@ static size_t row_at(size_t offset) {
   return row;
 }
 
-/* The values of the named material, but for those that the scene gives. */
+/* The values of the named material, unless the scene gives them. */
 static void complete_material(struct sph_inputs *in, struct sph_body_inputs *body, const char *fallback,
                               const bool *given) {
   struct sph_material material;
@@ -59,8 +59,8 @@ static double static_strength(const struct sph_inputs *in) {
   return strength > 0 && strength <= 1e15 ? strength : (double)NAN;
 }
 
-/* Until the first front of a plate has gone 0.94 of the way, so that nothing has come back; NaN where values are
- * missing. */
+/* Time at which the first front of a plate has gone 0.94 of its width, so that no wave has come back; NaN where values
+ * are missing. */
 static double plate_time(const struct sph_inputs *in) {
   struct sph_plane_shock exact;
   if (sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))

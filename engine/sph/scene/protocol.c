@@ -10,7 +10,7 @@
 
 enum { Z = 2 };
 
-/* A collision has two of the target. */
+/* In a collision both bodies are targets. */
 static const struct sph_body_inputs *inputs_of(const struct sph_run *run, int body) {
   return body == 1 && sph_derived_has_projectile(&run->inputs) ? &run->inputs.projectile : &run->inputs.target;
 }
@@ -44,7 +44,7 @@ static void place_slabs(struct sph_run *run) {
   run->periodic[Z] = length;
 }
 
-/* The plate from x = 0 on, the piston before it; what repeats begins at 0. */
+/* The plate begins at x = 0, the piston is in front of it; the periodic box begins at 0. */
 static void place_plate(struct sph_run *run) {
   run->shape[0] = sph_derived_target(&run->inputs);
   run->shape[1] = sph_derived_piston(&run->inputs);
@@ -101,8 +101,8 @@ static status make_bodies(struct sph_run *run, struct error *error) {
   return sph_bodies_make(body, (size_t)run->body_count, arrays_of(in), &run->start, run->range, error);
 }
 
-/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends; and the
- * sides' share of it, by Poisson's ratio. */
+/* The first longitudinal mode of a free bar: v_z = v sin(pi z/L), antisymmetric, with no strain at the ends. The sides
+ * move by Poisson's ratio. */
 static void ring(struct sph_run *run) {
   struct sph_particles *p = run->start;
   double speed = run->inputs.vibration.speed, k = M_PI / run->inputs.target.length;
@@ -115,7 +115,7 @@ static void ring(struct sph_run *run) {
   }
 }
 
-/* A grip at each end, or nothing pulls. */
+/* Holds both ends; without particles in both grips nothing would pull. */
 static status grip(struct sph_run *run, struct error *error) {
   const double length = run->inputs.stretch.grip;
   bool below = false, above = false;
@@ -186,8 +186,8 @@ static status make_flaws(struct sph_run *run, struct error *error) {
   return STATUS_OK;
 }
 
-/* A wave that crosses the layer and returns keeps exp(-rate depth/(3 c)) of its amplitude: half of the kinetic energy,
- * which is half of its energy, twice the integral of rate (s/depth)^2. 10.5 c/depth leaves 3 %. */
+/* A damping layer. A wave that crosses it and returns keeps exp(-rate depth/(3 c)) of its amplitude: damping acts on
+ * the kinetic half of its energy, and the rate grows as the square of the depth. 10.5 c/depth leaves 3 %. */
 static status damp(struct sph_run *run, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   if (!run->start->damping)

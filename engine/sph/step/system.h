@@ -48,11 +48,11 @@ enum sph_limiter { /* what set the time step */
                    SPH_LIMITS
 };
 
-/* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + damped - initial - work_of_held; clamps are booked apart. */
+/* J, kg m/s, kg m^2/s. Energy error = kinetic + internal + damped - initial - work_of_held. The energy that the bound
+ * u >= 0 adds is `clamped`; it is no part of that sum. */
 struct sph_ledger {
-  double kinetic, internal, work_of_held, damped, clamped; /* clamped: put in by u >= 0 */
-  uint64_t
-      density_held; /* particle-steps at the lowest density; that changes pressures, but puts no energy in by itself */
+  double kinetic, internal, work_of_held, damped, clamped;
+  uint64_t density_held; /* particle-steps at the lowest density; it changes pressures, but adds no energy by itself */
   double momentum[3], angular_momentum[3];
   double momentum_scale; /* sum |p| */
 };
@@ -71,32 +71,34 @@ size_t sph_system_bytes(const struct sph_system *system);
 enum sph_fault { /* why a step could not be done */
                  SPH_FAULT_NONE,
                  SPH_FAULT_NOT_FINITE,
-                 SPH_FAULT_TIME_STEP, /* of the numbers: the same on any machine */
-                 SPH_FAULT_MEMORY,    /* of the machine: a run that had more of it would have gone on */
+                 SPH_FAULT_TIME_STEP, /* the same on any machine */
+                 SPH_FAULT_MEMORY,    /* this machine has too little; elsewhere the run would go on */
 };
 
-/* One time step, not beyond `until` (s). False on a fault, and from then on. */
+/* One time step, not beyond `until` (s). False after a fault; later calls return false, too. */
 bool sph_system_step(struct sph_system *system, double until);
-int sph_system_fault(const struct sph_system *system);           /* enum sph_fault */
-const char *sph_system_failure(const struct sph_system *system); /* what, where, when; empty when all is well */
+int sph_system_fault(const struct sph_system *system); /* enum sph_fault */
+const char *
+sph_system_failure(const struct sph_system *system); /* what failed, where and when; empty without a fault */
 double sph_system_time(const struct sph_system *system);
 double sph_system_last_step(const struct sph_system *system); /* s */
 int sph_system_limiter(const struct sph_system *system);      /* enum sph_limiter, of the last step */
 uint64_t sph_system_steps(const struct sph_system *system);
 struct sph_ledger sph_system_ledger(const struct sph_system *system);
-/* Mass-weighted mean damage of bodies with flaws, and how fast it grows now (1/s; NULL is fine): is fracture going on?
- */
+/* Mass-weighted mean damage of bodies with flaws, and its present rate (1/s; NULL is fine). A rate above 0 means that
+ * fracture goes on. */
 double sph_system_damage(const struct sph_system *system, double *rate);
-/* Read back in the order of the ids, at one time level; arrays present in *out are filled. Positions are wrapped into
- * the box in periodic directions. The pressure is that of the last evaluation (the predicted state of the same time).
- */
+/* Fills the arrays that *out has, in the order of the ids, all at one time. Positions are wrapped into the box in
+ * periodic directions. The pressure is that of the last evaluation (the predicted state of the same time). */
 void sph_system_read(const struct sph_system *system, struct sph_particles *out);
-/* How many flaws each particle has, by id (0 in bodies without). False, and nothing filled, when no body has any. */
+/* Number of flaws of each particle, by id (0 in bodies without). Returns false and fills nothing when no body has any.
+ */
 bool sph_system_flaws(const struct sph_system *system, uint32_t *count);
-double sph_system_neighbours(const struct sph_system *system); /* mean number within 2h */
+double sph_system_neighbours(const struct sph_system *system); /* mean number of neighbours within 2h */
 
 size_t sph_system_state_size(const struct sph_system *system);
 void sph_system_state_save(const struct sph_system *system, void *bytes);
-bool sph_system_state_load(struct sph_system *system, const void *bytes, size_t size); /* then the same bits */
+bool sph_system_state_load(struct sph_system *system, const void *bytes,
+                           size_t size); /* the next steps give the same bits */
 
 #endif

@@ -1,9 +1,9 @@
-/* What a system must be given: refused with a message that names the body, the particle or the parameter. */
+/* Refuses what a system cannot compute, with a message that names the body, the particle or the input. */
 #include <math.h>
 
 #include "engine/sph/step/system_layout.h"
 
-/* What its modules ask of a body, whose particles are first .. last - 1. */
+/* The checks of a body's modules; its particles are first .. last - 1. */
 static status check_body(size_t index, const struct sph_body_physics *b, const struct sph_particles *particles,
                          size_t first, size_t last, const struct sph_inputs *inputs, struct error *error) {
   for (size_t m = 0; m < SPH_MODULES; m++) {
@@ -31,8 +31,7 @@ static bool is_read(const struct field *row) {
   return false;
 }
 
-/* Inputs within the ranges of their rows. A number that follows from other inputs may still be missing: none is read
- * here. */
+/* Inputs lie within the ranges of their rows. Derived inputs may still be missing; the system reads none of them. */
 static status check_inputs(const struct sph_inputs *inputs, struct error *error) {
   for (size_t k = 0; k < sph_inputs.count; k++) {
     const struct field *row = &sph_inputs.rows[k];

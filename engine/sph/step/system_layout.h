@@ -2,8 +2,8 @@
  *
  * Particles are columns (structure of arrays). Bodies stand one after the other, so that a range has one material;
  * within a body particles are sorted in space. All loops over particles go block by block: a block's columns stay in
- * the cache from one hook to the next, and what a block sums up depends neither on the number of threads nor on the
- * CPU's width. */
+ * the cache from one hook to the next, and the sums of a block depend neither on the number of threads nor on the width
+ * of the CPU's vectors. */
 #ifndef CLAST_ENGINE_SPH_STEP_SYSTEM_LAYOUT_H
 #define CLAST_ENGINE_SPH_STEP_SYSTEM_LAYOUT_H
 
@@ -23,12 +23,12 @@ struct sph_columns {
   double *ax, *ay, *az; /* rates of the last evaluation */
   double *density_rate, *energy_rate;
   double *pressure, *sound_speed; /* undamaged, bulk */
-  double *pressure_term;          /* -P/rho^2, damaged: what the pair loop takes */
+  double *pressure_term;          /* -P/rho^2, damaged: the pair loop reads it */
   double *damping;
   /* elastic */
   double *stress[5], *stress_rate[5];
-  double *stress_factor; /* (1-D)/rho^2: what the pair loop takes times the stress */
-  double *two_mu;        /* Pa, effective, where a module publishes it; else the material's holds */
+  double *stress_factor; /* (1-D)/rho^2: the pair loop multiplies the stress by it */
+  double *two_mu;        /* Pa, effective 2 mu in bodies whose modules publish it; others have the material's */
   /* fracture */
   double *damage;                   /* D^(1/3), of all causes */
   double *flaw_damage;              /* D^(1/3) by flaws, where `damage` has other causes, too */
@@ -73,20 +73,20 @@ struct sph_block {
   double clamped;              /* J */
   double damped, work_of_held; /* W, now */
   uint64_t density_held;
-  double slack;   /* m: every particle has at least this much of its slack left; below 0 one may have none left */
-  double swollen; /* volume that lists reach, over that of the supports, beyond what the skin adds; summed */
-  size_t lost;    /* place of a particle that is no longer finite, or n */
+  double slack;   /* m: smallest remaining slack of its particles; below 0 the lists may miss a pair */
+  double swollen; /* sum over particles: volume of the list's reach over that of the support, less what the skin adds */
+  size_t lost;    /* index of a particle that is no longer finite, or n */
 };
 
-/* A body: its modules and its constants, made once from its material. */
+/* A body: its modules, and what they have prepared from its material. */
 struct sph_solid {
   struct sph_body_physics physics; /* flaws is NULL (modules/weibull.c has them) */
-  uint64_t modules, columns;       /* that it has: bits by enum sph_module_index, by SPH_COLUMN */
+  uint64_t modules, columns;       /* a bit each, by enum sph_module_index and by SPH_COLUMN */
   void *prepared[SPH_MODULES];     /* by its modules (sph_module.prepare) */
   size_t first, last;              /* its particles */
   double density;                  /* kg/m^3 at the start, bulk */
   double lowest_density;
-  sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* what a step calls, in order */
+  sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* loops of a step, in order: before and after the pair loop */
   size_t before_count, after_count;
 };
 
@@ -94,14 +94,14 @@ static inline bool sph_solid_has(const struct sph_solid *body, size_t column) {
   return body->columns >> column & 1;
 }
 
-/* All that changes from step to step and is no column. */
+/* What changes from step to step, beside the columns. */
 struct sph_progress {
   double time, last_step, first_step;
   double worst[SPH_LIMITS];
-  double clamped, damped, work_of_held; /* J, booked so far */
+  double clamped, damped, work_of_held; /* J, since the start */
   double damping_power, holding_power;  /* W, at the last evaluation */
   uint64_t steps, listings, density_held;
-  uint64_t horizon;  /* steps that lists are made for */
+  uint64_t horizon;  /* number of steps for which lists are made */
   double neighbours; /* within 2h, at the last pass of the pair loop */
   int64_t limiter;
 };
@@ -111,13 +111,13 @@ struct sph_ranges; /* ranges.h */
 struct sph_system {
   struct sph_inputs in; /* viscosity, method, fracture and fidelity of it */
   struct sph_domain domain;
-  double highest_h; /* over its first value: SPH_HIGHEST_H, or what a thin periodic box allows */
+  double highest_h; /* over its first value: SPH_HIGHEST_H, or less in a thin periodic box */
   struct sph_progress now;
   size_t n, stride; /* particles; doubles from one column to the next */
   struct sph_columns c;
   double *arena; /* holds every column */
   size_t arena_doubles;
-  uint32_t *id;  /* id of the particle that stands at a place */
+  uint32_t *id;  /* by index: id of the particle */
   uint8_t *held; /* enum sph_freedom bits; NULL when none is */
   double dt;     /* s, of the step under way */
   uint32_t *order;
@@ -127,7 +127,7 @@ struct sph_system {
   uint64_t columns; /* that some body needs */
   struct sph_pairs *pairs;
   const struct sph_ranges *ranges;
-  int fault; /* enum sph_fault; in words: */
+  int fault; /* enum sph_fault; `failure` says it in words */
   char failure[256];
 };
 
@@ -149,27 +149,26 @@ double sph_system_columns_bytes(uint64_t columns, size_t pairs, const struct sph
 /* x within the periodic box; as it is where `length` is NaN. */
 double sph_system_columns_wrapped(double x, double length);
 
-/* What sph_system_create refuses: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
+/* The checks of sph_system_create: STATUS_CONTENT, or STATUS_MEMORY before anything is allocated. */
 status sph_system_check(const struct sph_particles *particles, size_t body_count, const struct sph_body_physics *bodies,
                         const struct sph_inputs *inputs, const struct sph_domain *domain, struct error *error);
 
 /* ---- system_step.c ---- */
 
-/* Sorts, lists and evaluates at the initial state. False (see failure): as sph_system_step. */
+/* Sorts the particles, makes lists and evaluates the forces at the initial state. False as sph_system_step. */
 bool sph_system_step_begin(struct sph_system *system);
 
-/* What the pair loop is given of the particles as they stand; the system's own columns. */
+/* The columns that the pair loop reads. */
 struct sph_pair_fields sph_system_step_fields(const struct sph_system *system);
 
 /* ---- system_list.c: when a system sorts its particles and makes lists of neighbours ---- */
 
-/* New lists when the old ones may miss a pair (a block has no slack left); now and then the particles are sorted first,
- * by the count of listings alone. False (see failure): as sph_system_step. */
+/* Makes new lists when the old ones may miss a pair (a block has no slack left). Every few times the particles are
+ * sorted first; a count decides, not the clock. False as sph_system_step. */
 bool sph_system_list(struct sph_system *system);
-/* Lists for the positions of the last listing (sph_pairs_listed), after a restart. */
+/* Lists for the positions at which the last lists were made (sph_pairs_listed); after a restart. */
 bool sph_system_list_again(struct sph_system *system);
-/* m: what h with its slack may be at most, so that no particle meets its own image in a thin periodic box; infinite in
- * the open. */
+/* Largest h with slack, m, at which no particle meets its own image in a periodic box; infinite in open space. */
 double sph_system_list_reach(const struct sph_domain *domain);
 
 #endif

@@ -13,16 +13,17 @@
 
 enum {
   LISTINGS_PER_SORT = 8,
-  LEAST_HORIZON = 2, /* steps that lists are made for */
-  ROOM = 4,          /* most slack, in h */
+  LEAST_HORIZON = 2, /* smallest number of steps for which lists are made */
+  ROOM = 4,          /* largest slack over h */
 };
 
-/* By precision: steps that lists are made for, at most; neighbours whose sums take as long as making lists (bench_sph
- * pairs). In float a sum takes half the time and making lists as long as in double, so that longer ones pay. */
+/* By precision. horizon_most: largest number of steps for which lists are made. listing: time to make the lists of a
+ * particle over the time to sum one neighbour (bench_sph pairs). In float a sum takes half the time of double and
+ * making lists takes as long, so that longer lists pay. */
 static const uint64_t horizon_most[] = {[SPH_DOUBLE] = 20, [SPH_FLOAT] = 30};
 static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
 
-/* What stands at order[i] comes to i. */
+/* Moves the particle at order[i] to i, in all columns. */
 static bool permute(struct sph_system *s) {
   double *all[SPH_COLUMNS];
   const size_t columns = sph_system_columns_list(s, all),
@@ -60,7 +61,7 @@ static bool permute(struct sph_system *s) {
   return true;
 }
 
-/* Bodies stay in their places; within each, along the space-filling curve. */
+/* Sorts the particles of each body along the space-filling curve. */
 static bool sort(struct sph_system *s) {
   struct error error = {0};
   for (size_t b = 0; b < s->body_count; b++) {
@@ -102,12 +103,12 @@ double sph_system_list_reach(const struct sph_domain *domain) {
   for (int d = 0; d < 3; d++)
     if (domain->periodic[d] < thinnest)
       thinnest = domain->periodic[d];
-  return 0.2499 * thinnest; /* twice that of a pair, 2 (h + slack), must fit */
+  return 0.2499 * thinnest; /* twice the reach of a pair, 2 (h + slack), must fit */
 }
 
-/* Lists for the positions as they are. How far each particle may go before they are worn: fast ones have more room, so
- * that a spray of debris does not make new lists all the time, and slow ones have little, so that their lists are
- * short. A thin periodic box bounds the reach. */
+/* Makes lists for the present positions. Slack is how far a particle may move before the lists may miss a pair. A fast
+ * particle has more slack, so that a spray of debris does not need new lists in every step; a slow one has less, so
+ * that its list is short. A thin periodic box bounds the reach. */
 static bool list_anew(struct sph_system *s) {
   const struct sph_columns *c = &s->c;
   const double skin = s->in.fidelity.skin, horizon = (double)s->now.horizon * s->dt;
@@ -134,7 +135,7 @@ static bool list_anew(struct sph_system *s) {
 bool sph_system_list_again(struct sph_system *s) {
   struct error error = {0};
   for (size_t k = 0; k < s->block_count; k++)
-    s->block[k].slack = -1; /* to be looked up */
+    s->block[k].slack = -1; /* unknown: look_up_slack finds it */
   if (sph_pairs_relist(s->pairs, &error) == STATUS_OK)
     return true;
   s->fault = error.status == STATUS_MEMORY ? SPH_FAULT_MEMORY : SPH_FAULT_NOT_FINITE;
@@ -142,9 +143,9 @@ bool sph_system_list_again(struct sph_system *s) {
   return false;
 }
 
-/* What is lost, until the lists are worn, on pairs beyond the support that only the room of fast particles brings in:
- * much where many fly fast and close together. In neighbours, like `listing`. By counting, not by the clock: bits
- * depend on it. */
+/* Cost of pairs that are in the lists only because of fast particles' slack, over the steps for which the lists are
+ * made. It is high where many particles fly fast and close together. Unit as `listing`. It is counted and not timed,
+ * because the bits depend on it. */
 static double lost_on_room(const struct sph_system *s) {
   double swollen = 0;
   for (size_t k = 0; k < s->block_count; k++)
@@ -162,7 +163,7 @@ static void lengthen(struct sph_system *s) {
 bool sph_system_list(struct sph_system *s) {
   bool worn = s->now.listings == 0;
   for (size_t k = 0; k < s->block_count; k++)
-    worn |= s->block[k].slack < 0; /* looked up in this step */
+    worn |= s->block[k].slack < 0; /* of this step */
   if (!worn)
     return true;
   wrap(s);
@@ -173,8 +174,8 @@ bool sph_system_list(struct sph_system *s) {
   }
   if (!list_anew(s))
     return false;
-  /* lists for half as many steps cost less where the loss is above that of listing twice; twice as many steps mean some
-   * eight times the loss */
+  /* Lists for half as many steps cost less where the loss is above the cost of making lists twice. Lists for twice as
+   * many steps have about eight times the loss. */
   while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 &&
          lost_on_room(s) > 2 * listing[s->in.fidelity.precision]) {
     s->now.horizon /= 2;
@@ -182,6 +183,6 @@ bool sph_system_list(struct sph_system *s) {
       return false;
   }
   if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->in.fidelity.precision])
-    lengthen(s); /* the next ones */
+    lengthen(s); /* for the next lists */
   return true;
 }

@@ -1,5 +1,5 @@
-/* Everything that the next step depends on. Lists are not saved: they are made again from the positions of the last
- * listing, and the pair loop sums in their order. */
+/* Everything on which the next step depends. Lists are not saved: they are made again from the positions at which they
+ * were made, in the same order, and the pair loop sums in that order. */
 #include <stdio.h>
 #include <string.h>
 

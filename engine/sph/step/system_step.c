@@ -1,25 +1,27 @@
-/* The order of a step, and why: physics modules in modules.c; here what stands around them.
+/* One time step. The order of the physics modules is in modules/list.h.
  *
- *   predict x v rho u h S D | pressure, yield, open flaws, what damage leaves | one pair loop | rates, half the change
- * of rates
+ *   1. predict x v rho u h S D
+ *   2. pressure, yield limit, open flaws, damaged stress
+ *   3. one pair loop
+ *   4. rates; half the change of the rates is added to the predicted state
  *
- * Everything happens block by block, so that the columns of a block are read once from memory before the pair loop and
- * once in it: rates follow as soon as a block's sums are complete. */
+ * All of it happens block by block, so that the columns of a block are read from memory once before the pair loop and
+ * once after it. The rates of a block follow as soon as its sums are complete. */
 #include "engine/sph/step/system_layout.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static const double collapse = 1e-6; /* of the first step: what takes a million times longer will not end */
+static const double collapse = 1e-6; /* of the first step: a run of a million times smaller steps would not end */
 
 static void run(struct sph_system *s, struct sph_block *block, const sph_hook *hook, size_t count) {
   for (size_t m = 0; m < count; m++)
     hook[m](s, &s->solid[block->body], block);
 }
 
-/* Looked up anew when all that the fastest moved, added up over the steps, may have used it up. A hundredth is more
- * than positions are rounded by meanwhile. */
+/* Finds the slack of a block from the positions. Called when the ways of the fastest particle of each step, added up,
+ * may have used the slack up. The factor allows for rounding of positions. */
 static void look_up_slack(struct sph_system *s, struct sph_block *block) {
   block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
 }
@@ -40,7 +42,7 @@ static void before_pairs(struct sph_system *s) {
   }
 }
 
-/* The first block from place `at` on. */
+/* The first block whose particles begin at index `at` or behind it. */
 static size_t first_block(const struct sph_system *s, size_t at) {
   size_t low = 0, high = s->block_count;
   while (low < high) {
@@ -53,7 +55,7 @@ static size_t first_block(const struct sph_system *s, size_t at) {
   return low;
 }
 
-/* What the pair loop found for a piece goes on at once into the rates of its blocks. */
+/* Called by the pair loop with the sums of some particles: runs the loops after the pair loop on their blocks. */
 static void after_pairs(void *context, size_t first, size_t count, const struct sph_pair_sums *sums) {
   struct sph_system *s = context;
   for (size_t m = 0; s->in.method.gradient_correction && m < 6; m++)
@@ -133,7 +135,7 @@ static bool gather(struct sph_system *s, double dt) {
   return true;
 }
 
-/* Carries the state over dt, with one evaluation of the forces at its end. */
+/* Advances the state by dt, with one evaluation of the forces at the end. */
 static bool advance(struct sph_system *s, double dt) {
   s->dt = dt;
   for (size_t k = 0; k < s->block_count; k++) {
@@ -152,11 +154,11 @@ static bool advance(struct sph_system *s, double dt) {
 
 bool sph_system_step_begin(struct sph_system *s) {
   if (s->in.method.gradient_correction && !advance(s, 0))
-    return false; /* forces need the correction of the pass before */
+    return false; /* the forces need the correction of the previous pass */
   return advance(s, 0);
 }
 
-/* The length of the next step, from what the blocks found at the last evaluation; not beyond `until`. */
+/* The next step, s, from the limits that the blocks found at the last evaluation; not beyond `until`. */
 static double choose_step(const struct sph_system *s, double until, int *limiter) {
   double inverse = 0;
   *limiter = SPH_LIMIT_COURANT;
