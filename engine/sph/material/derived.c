@@ -29,7 +29,7 @@ double sph_derived_bulk_density(const struct sph_material *m) {
   return sph_derived_porous(m) ? m->density / m->porosity.distention : m->density;
 }
 
-/* Pressure answers with A, whatever K is. */
+/* The pressure responds with A, even where K is given. */
 double sph_derived_longitudinal_speed(const struct sph_material *m, bool strength) {
   const double shear2 = strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
   double bulk2 = m->tillotson.A / m->density;

@@ -49,8 +49,8 @@ static double within(double value, double low, double high) {
   return value < low ? low : value > high ? high : value;
 }
 
-/* What the elastic branch adds to `rest` up to P, for an end `alpha` that is itself unknown: Simpson's rule with the
- * middle by Hermite (Lobatto IIIA), and its derivatives. */
+/* Change of alpha on the elastic branch from `rest` at 0 to a trial `alpha` at P, and its derivatives: Simpson's rule
+ * with the middle by Hermite (Lobatto IIIA). */
 struct elastic {
   double change, by_alpha, by_pressure;
 };
@@ -87,7 +87,7 @@ double sph_palpha_elastic(const struct sph_palpha_law *law, double rest, double 
 double sph_palpha_rest(const struct sph_palpha_law *law, double alpha, double p) {
   double rest = alpha;
   for (int i = 0; i < 100; i++) {
-    /* by symmetry: alpha is where the branch from `rest` at P comes to, going back to 0 */
+    /* by symmetry: the branch from alpha at P back to 0 ends at `rest` */
     struct elastic e = elastic_change(law, alpha, rest, -p);
     double next = within(rest - (rest - alpha - e.change) / (1 - e.by_alpha), 1, law->given.distention);
     if (fabs(next - rest) < 1e-15)
@@ -136,16 +136,16 @@ static status check_curve(const struct sph_palpha *g, struct error *error) {
   return STATUS_OK;
 }
 
-/* Is the branch with this alpha_e sound up to alpha_0, that is, stays h > 0? (h = c_e/c_s at alpha_e.) */
+/* Is the branch with this alpha_e valid up to alpha_0: does h stay above 0? (h = c_e/c_s at alpha_e.) */
 static bool set_stiffness(struct sph_palpha_law *law, double ratio, double elastic_distention) {
   law->elastic_distention = elastic_distention;
   law->stiffness_slope = ratio < 1 ? (1 - ratio) / (elastic_distention - 1) : 0;
   return elastic_distention > 1 && law->stiffness_slope * (law->given.distention - 1) < 1;
 }
 
-/* Does the one step from 0 to P_e end where many small ones do, within a hundredth of the pores? It does not when h
- * grows many times over on the way: then the step would close what the branch leaves open. (Above P_e the branch is
- * stiffer.) */
+/* Does one step from 0 to P_e give the alpha of many small steps, within a hundredth of the pores? Where h grows many
+ * times over on the way it does not, and the one step would close pores that the branch leaves open. (Above P_e the
+ * branch is stiffer.) */
 static bool followed(const struct sph_palpha_law *law) {
   enum { STEPS = 256 };
   const double first = law->given.distention, pressure = law->given.elastic_pressure;

@@ -9,7 +9,7 @@
  *            below P_e, and when matter that was crushed is unloaded and loaded again. Pores open again on their own
  * way back.
  *
- * What is remembered of a particle is its *rest distention*: alpha on its elastic branch at P = 0. It never rises,
+ * The memory of a particle is its *rest distention*: alpha on its elastic branch at P = 0. It never rises,
  * whatever the path; everything else is a function of (rest, rho, u). (The papers integrate alpha-dot, which must know
  * whether a particle is being loaded; a code that takes the crush slope on reloading crushes the same pores twice. Here
  * the crush curve is a bound, alpha <= alpha_crush(P), and (alpha, P) is solved for, so that a jump past P_s in one
@@ -22,7 +22,7 @@
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
 
-/* Ready for use: with what follows from it and from the solid. */
+/* A law: the values given, the solid, and constants that follow from both. */
 struct sph_palpha_law {
   struct sph_palpha given; /* material.h */
   struct sph_tillotson solid;

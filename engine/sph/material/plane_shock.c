@@ -26,8 +26,8 @@ static double distention_at(const struct matter *m, double pressure) {
   return pressure > m->law->given.elastic_pressure ? fmin(elastic, sph_palpha_crush(m->law, pressure)) : elastic;
 }
 
-/* Of matter that the front takes from `ahead` to a pressure: density by halving, as P_s(alpha rho, u(rho)) rises with
- * rho. */
+/* The front that takes matter from the state `ahead` to a pressure. The density is found by halving, because
+ * P_s(alpha rho, u(rho)) rises with rho. */
 static struct sph_front front_to(const struct matter *m, const struct sph_front *ahead, double pressure) {
   struct sph_front f = {.pressure = pressure, .distention = distention_at(m, pressure)};
   const struct sph_tillotson *t = &m->material->tillotson;
@@ -79,7 +79,7 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
   out->has_shock = !out->has_precursor || piston > out->precursor.velocity;
   if (out->has_shock) {
     out->shock = front_of(&m, out->has_precursor ? &out->precursor : &rest, piston);
-    if (out->has_precursor && !(out->shock.speed < out->precursor.speed)) { /* it has swallowed the precursor */
+    if (out->has_precursor && !(out->shock.speed < out->precursor.speed)) { /* the shock has overtaken the precursor */
       out->has_precursor = false;
       out->precursor = none;
       out->shock = front_of(&m, &rest, piston);

@@ -1,10 +1,12 @@
-/* R of the stress before the pair loop, f^n (R_i + R_j) in it: pairs_kernels_tension.h, pairs_kernels_sum.h.
+/* Artificial stress against clumping in tension: a term of the pair loop. pairs_kernels_tension.h makes R from the
+ * stress of each particle, pairs_kernels_sum.h adds f^n (R_i + R_j) to each pair.
  *
- * With the factor f^n of each pair R is conjugate to no gradient that a particle knows, so that its power is no sigma :
- * eps: the pair loop sums it pair by pair, and half of it goes to each of the two particles' internal energies, as the
- * work of any other stress does. Total energy is conserved then. R pushes the more the nearer two are, and so it can
- * take more than was stored: a particle whose internal energy would fall below zero is held there, which is booked
- * (energy.clamped). */
+ *   method.artificial_stress   Monaghan's epsilon; 0: none
+ *
+ * The factor f^n belongs to a pair, so that R is conjugate to no velocity gradient and its power is not sigma : eps.
+ * The pair loop sums the power pair by pair, and each of the two particles gets half of it as internal energy. Total
+ * energy is then conserved. R grows as two particles come close, and it can take more energy than was stored: the
+ * internal energy of a particle is then held at zero, and the ledger counts the difference (energy.clamped). */
 #include "engine/sph/modules/ranges.h"
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {

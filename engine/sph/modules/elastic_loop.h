@@ -19,8 +19,8 @@ RANGE_HOOK void elastic_predict(struct sph_system *s, const struct sph_solid *bo
   }
 }
 
-/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the latter]; with the gradient
- * correction eps of the uncorrected gradient, which is conjugate to the forces (pairs.h). */
+/* du/dt = (damaged sigma : eps)/rho + viscous heating [BA95 eq. 4, which lacks the heating]. With the gradient
+ * correction eps is that of the uncorrected gradient, which is conjugate to the forces (pairs.h). */
 RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_solid *body, struct sph_block *b,
                                      bool published) {
   const double half = 0.5 * s->dt, material_two_mu = 2 * body->physics.material.shear_modulus;
@@ -45,7 +45,7 @@ RANGE_INLINE void elastic_rates_loop(struct sph_system *s, const struct sph_soli
     const double two_mu = published ? effective[i] : material_two_mu;
     const double wxy = 0.5 * (g1[k] - g3[k]), wxz = 0.5 * (g2[k] - g6[k]), wyz = 0.5 * (g5[k] - g7[k]);
     const double xx = sxx[i], xy = sxy[i], xz = sxz[i], yy = syy[i], yz = syz[i], zz = -(xx + yy);
-    const double axx = factor[i] * xx, ayy = factor[i] * yy; /* what acts */
+    const double axx = factor[i] * xx, ayy = factor[i] * yy; /* damaged */
     const double work = term[i] * divergence + axx * exx + ayy * eyy - (axx + ayy) * ezz +
                         2 * (factor[i] * xy * exy + factor[i] * xz * exz + factor[i] * yz * eyz);
     const double heat = (power ? power[k] : density[i] * work) + heating[k];

@@ -3,10 +3,10 @@
  * Local strain (eq. 21) of the damaged stress: eps = sigma_t/((1-D) E), with sigma_t the largest principal value of
  * (1-D) S - P (P < 0: (1-D) P). The factors cancel:  E eps = lambda(S) - P                where P < 0,
  *                                                    E eps = lambda(S) - P/(1-D)          elsewhere.
- * lambda(S) <= 2 sqrt(J2/3) tells, without principal axes, which particles can have no open flaw: nearly all. For the
+ * Most particles can have no open flaw: the bound lambda(S) <= 2 sqrt(J2/3) shows it without principal axes. For the
  * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
- * of it. (Where the two larger values meet, rounding of det S makes that 1e-8 of |S|, as with acos.) */
+ * of it. (Where the two larger values are equal, rounding of det S makes the error 1e-8 of |S|, as with acos.) */
 #ifndef CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
 #define CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
 
@@ -53,8 +53,8 @@ RANGE_HOOK void fracture_damage_predict(struct sph_system *s, const struct sph_s
     d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
 }
 
-/* One particle whose strain (times E) is known. Its list is looked up only when the strain has left the bracket between
- * two thresholds. */
+/* Rate and cap of the damage of one particle whose strain (times E) is known. Its list of flaws is searched only when
+ * the strain has left the bracket between two thresholds. */
 RANGE_INLINE void fracture_open(struct sph_system *s, const struct sph_solid *body, size_t i, double young,
                                 double stress) {
   if (!(stress >= s->c.open_from[i] && stress < s->c.open_below[i])) {
@@ -69,7 +69,7 @@ RANGE_INLINE void fracture_open(struct sph_system *s, const struct sph_solid *bo
   }
   s->c.damage_rate[i] = fracture_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
   if (s->c.damage[i] >= 1)
-    s->c.weakest[i] = INFINITY; /* nothing left to open */
+    s->c.weakest[i] = INFINITY; /* no flaw is left to open */
 }
 
 RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {

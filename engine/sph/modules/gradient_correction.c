@@ -25,6 +25,6 @@ const struct sph_module sph_gradient_correction_module = {
     .when = "gradient_correction is asked for",
     .on = on,
     .columns = columns,
-    .bytes_in_pairs = 92, /* wider records, also of what foreign particles get: measured */
+    .bytes_in_pairs = 92, /* wider records; measured */
     .cost = 65,
 };

@@ -1,12 +1,12 @@
 /* The modules of the solid, in the order in which they act within a stage. This is the only list of them: the
  * descriptors (modules.c) and the loops of every CPU class (ranges_body.h, which defines SPH_MODULE_LOOPS) follow.
  *
- *   elastic      first: its stress is what the others act on
+ *   elastic             first, because the others act on its stress
  *   tillotson, palpha   the last of them that is on sets the pressure
- *   yield        sets the yield limit; a later law that is on replaces it
- *   tension_limit   after the pressure that it bounds, after the yield limit that it lowers
- *   weibull, fracture   the stress that opens flaws is one that the solid can bear
- *   the rest are options of the pair loop and have no loops here
+ *   yield               sets the yield limit; a later law that is on replaces it
+ *   tension_limit       after the modules that set the pressure and the yield limit, which it bounds
+ *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
+ *   the rest            options of the pair loop, without loops here
  *
  * To add a module: NAME.c with its descriptor, NAME_loop.h with its loops, and a line in each of the two lists below.
  * Values that it needs of a material are rows of material/material.h. */

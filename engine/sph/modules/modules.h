@@ -1,5 +1,5 @@
-/* Physics modules of the solid, as descriptors. Off means absent: a body that does not have a module is never called
- * for it, and columns that no body needs are not allocated. The scene decides; nobody flips switches.
+/* Physics modules of the solid, as descriptors. Off means absent: the loops of a module run only on bodies that have
+ * it, and columns that no body needs are not allocated. The scene decides which modules a body has.
  *
  * A module owns its physics: NAME.c has its description, columns, checks and what it prepares, NAME_loop.h its loops
  * over particles, compiled once per CPU class (ranges.h). It acts on other modules only through columns and through
@@ -9,8 +9,8 @@
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
  *
- * A step runs, block by block, the stages in order and within a stage the modules in the order of list.h; the pair loop
- * stands before `rates`. */
+ * A step runs the stages in order, block by block, and within a stage the modules in the order of list.h. The pair loop
+ * runs before SPH_RATES. */
 #ifndef CLAST_ENGINE_SPH_MODULES_MODULES_H
 #define CLAST_ENGINE_SPH_MODULES_MODULES_H
 
@@ -35,10 +35,10 @@ enum sph_stage {
   SPH_STAGES
 };
 
-/* Of the modules that set the same quantity the last that is on acts; the others are off. */
+/* Where several modules that set the same quantity are on, the last of them acts and the others are off. */
 enum sph_module_sets { SPH_SETS_NOTHING, SPH_SETS_PRESSURE, SPH_SETS_YIELD_LIMIT };
 
-/* Members of struct sph_columns, `count` of them from `first` on. */
+/* `count` members of struct sph_columns from `first` on, their first value, and which bodies need them. */
 struct sph_column_need {
   size_t first, count;                                 /* SPH_COLUMNS_OF(member); a count of 0 ends a list */
   double initial;                                      /* of all particles, other bodies' too */
@@ -50,9 +50,9 @@ struct sph_solid;
 
 struct sph_module {
   const char *name;   /* "yield" */
-  const char *doc;    /* what it models, for a person */
+  const char *doc;    /* what it models, for `clast explain` */
   const char *source; /* paper and equation */
-  const char *when;   /* the condition that turns it on, for a person */
+  const char *when;   /* the condition that turns it on, for `clast explain` */
   bool (*on)(const struct sph_body_physics *body, const struct sph_inputs *inputs);
   enum sph_module_sets sets;
   const struct sph_column_need *columns; /* NULL: none */

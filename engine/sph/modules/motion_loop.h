@@ -9,12 +9,13 @@
 
 #include "engine/sph/modules/range_tools.h"
 
-/* (1 + e)^(1/3) for the small change of density in a step: within e^4/24, and the step keeps |e| below 0.1. */
+/* (1 + e)^(1/3) for the small change e of density in a step. The error is below e^4/24; |e| stays below 0.1. */
 RANGE_INLINE double motion_cube_root(double e) {
   return 1 + e * (1.0 / 3 - e * (1.0 / 9 - e * (5.0 / 81)));
 }
 
-/* Internal energy does not fall below zero, density not below the body's bound. What the first puts in is booked. */
+/* Holds internal energy at or above zero and density at or above the body's bound. The ledger counts the energy that
+ * this adds. */
 RANGE_INLINE void motion_clamp(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   double *energy = s->c.energy, *density = s->c.density;
   const double lowest = body->lowest_density;
@@ -103,12 +104,12 @@ RANGE_HOOK void motion_output_damaged(struct sph_system *s, const struct sph_sol
   motion_output(s, b, true);
 }
 
-/* The step damps what would grow from step to step where rate times dt is above 1 (v' = v - rate dt v*: the roots of
- * its two time levels leave the unit circle there). */
+/* Largest rate times dt of damping. Above 1 the velocity would grow from step to step (v' = v - rate dt v*: the roots
+ * of the two time levels leave the unit circle). */
 static const double MOTION_DAMPING_SHARE = 0.9;
 
-/* Held freedoms keep their velocity: the force that takes is the hold's, and its power is booked, half with the old and
- * half with the new acceleration, as the step itself uses them. Damping likewise. */
+/* Held freedoms keep their velocity. The ledger counts the power of the force that holds them, half with the old and
+ * half with the new acceleration, as the step uses them. Damping likewise. */
 RANGE_HOOK void motion_hold(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
   double *const a[3] = {b->sums->ax, b->sums->ay, b->sums->az};
@@ -159,7 +160,7 @@ RANGE_HOOK void motion_fluid_rates(struct sph_system *s, const struct sph_solid 
 
 enum { MOTION_ENERGY_SHARE_INVERSE = 5, MOTION_DENSITY_SHARE_INVERSE = 10 };
 
-/* v by half the change of the accelerations. */
+/* Adds half the change of the acceleration to v. */
 RANGE_INLINE void motion_correct_velocity(struct sph_system *s, struct sph_block *b) {
   const double half = 0.5 * s->dt;
   const size_t low = b->low, n = b->high - b->low;
@@ -177,7 +178,7 @@ RANGE_INLINE void motion_correct_velocity(struct sph_system *s, struct sph_block
   }
 }
 
-/* The first particle, by place, that is no longer finite or beyond 1e30. */
+/* Finds the first particle that is no longer finite, or beyond 1e30. */
 RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block *b, const double *courant) {
   for (size_t i = b->high; i-- > b->low;) {
     const double all = fabs(s->c.x[i]) + fabs(s->c.y[i]) + fabs(s->c.z[i]) + fabs(s->c.ax[i]) + fabs(s->c.ay[i]) +
@@ -224,10 +225,10 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
     const double left = damaged ? 1 - d[i] * d[i] * d[i] : 1;
     const double c2 = c[i] * c[i], fast = strength ? sqrt(c2 + shear * left / before) : c[i];
     const double inverse = 1 / size;
-    /* Debris without neighbours (signal < 0) has nobody to send a wave to: hot, it would halve the step of all. It must
-     * only not fly past where it would find some. Nor must a body much faster than sound leap into another, which it
-     * sees only when they touch: nobody flies farther than h/2 a step. (That binds above some three times the speed of
-     * sound.) */
+    /* Debris without neighbours (signal < 0) sends no waves; hot, it would halve the step of all particles. It must
+     * only not fly past others. A body much faster than sound must not leap into another one, because it feels it only
+     * in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of sound).
+     */
     const double flight = sqrt(vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
     courant[k] = (signal[k] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[k], step * flight)) *
                  inverse;

@@ -4,8 +4,9 @@
  *   material.porosity.*        the crush curve and the elastic branch; curve: none and distention 1 are a solid
  *   fidelity.distention_step   largest change of alpha in a step
  *
- * It sets the pressure. What it publishes: the density of the solid between the pores, the effective 2 mu f/alpha, the
- * yield limit of the body, Y/alpha, and damage by closed pores, to which it adds the damage by flaws. */
+ * It sets the pressure. It publishes the density of the solid between the pores and the effective 2 mu f/alpha; it
+ * turns the yield limit of the solid into that of the body, Y/alpha; it adds damage by closed pores to damage by flaws.
+ */
 #include <math.h>
 #include <stdlib.h>
 
@@ -69,7 +70,7 @@ static size_t bytes_prepared(const void *prepared) {
   return sizeof(struct sph_palpha_law);
 }
 
-/* Distention as given (or alpha_0), at the pressure that goes with it; the damage given is that of all causes. */
+/* Distention as the particles have it (or alpha_0), at its pressure. Their damage is that of all causes. */
 static void fill(struct sph_system *s, const struct sph_solid *body, const struct sph_particles *p) {
   const struct sph_palpha_law *law = body->prepared[SPH_MODULE_palpha];
   for (size_t i = body->first; i < body->last; i++) {

@@ -1,9 +1,9 @@
 /* P-alpha over a range: (alpha, P), sound speed, f, the deviator's change with alpha, damage by compaction.
  *
- * Nearly all particles are on their elastic branch in cold or compressed matter, and alpha moves little in a step: two
- * Newton steps from the last alpha are done for all, without branches, so that they vectorise; the others (crushing,
- * hot, far off) are done again by sph_palpha_update. An elastic particle is accepted when it missed by less than 1e-9
- * before the second step, as there. */
+ * Nearly all particles are on their elastic branch in cold or compressed matter, and alpha moves little in a step. Two
+ * Newton steps from the last alpha are made for all particles, without branches, so that they vectorise. The other
+ * particles (crushing, hot, far off) are computed again by sph_palpha_update. An elastic particle is accepted when the
+ * error before the second step is below 1e-9, as there. */
 #ifndef CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
 #define CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
 
@@ -53,7 +53,7 @@ RANGE_INLINE struct palpha_try palpha_step(const struct palpha_constants t, doub
   return r;
 }
 
-/* dalpha/dP on a particle's branch gives what f needs; as at the end of sph_palpha_update. */
+/* f from dalpha/dP on the particle's branch; as at the end of sph_palpha_update. */
 RANGE_INLINE double palpha_shear_factor(const struct palpha_try *t, double rho) {
   const double below = range_larger(t->next + t->slope * (t->pressure - rho * t->by_density), t->next);
   const double adiabatic = t->slope / below * (t->next * t->by_density + t->pressure / (rho * rho) * t->by_energy);
@@ -79,7 +79,7 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
                solid_density = law->solid_density;
   const bool quadratic = law->given.curve == SPH_CRUSH_QUADRATIC;
   const double range = 1 / (high_pressure - low_pressure);
-  /* two-power: not here, all above P_e that have pores go to sph_palpha_update */
+  /* two-power: sph_palpha_update computes all particles above P_e that have pores */
   const double pores = quadratic ? law->elastic_distention - 1 : 0, never = quadratic ? 0 : -1;
   const double *density = s->c.density, *energy = s->c.energy;
   double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor;
@@ -174,9 +174,9 @@ RANGE_HOOK void palpha_yield(struct sph_system *s, const struct sph_solid *body,
     limit[k] /= alpha[k];
 }
 
-/* |dalpha| <= distention_step a step, by dalpha/dt = (f - 1) (alpha/rho) drho/dt; matter that a Courant step may bring
- * onto the crush curve is taken as already crushing in full (f = 0). In a shock the rate grows by up to a quarter
- * within a step: three quarters are planned. */
+/* |dalpha| <= distention_step in a step, by dalpha/dt = (f - 1) (alpha/rho) drho/dt. Matter that a Courant step may
+ * bring onto the crush curve counts as crushing already (f = 0). In a shock the rate grows by up to a quarter within a
+ * step, so that the limit uses three quarters of distention_step. */
 RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8];
   const double *alpha = s->c.distention, *rest = s->c.rest_distention, *f = s->c.shear_factor, *density = s->c.density;

@@ -1,5 +1,5 @@
-/* What all range loops share. They are plain loops that GCC vectorises: one particle's result depends on nothing else,
- * so the width of the vectors changes no bit but through contraction to FMA. */
+/* Tools of all range loops. These are plain loops that GCC vectorises. The result of a particle depends on no other
+ * particle of the loop, so that the width of the vectors changes bits only through contraction to FMA. */
 #ifndef CLAST_ENGINE_SPH_MODULES_RANGE_TOOLS_H
 #define CLAST_ENGINE_SPH_MODULES_RANGE_TOOLS_H
 

@@ -1,7 +1,7 @@
 /* The loops over particles, compiled once per CPU class and chosen at run time.
  *
  * Bits are promised for one class (contraction to FMA differs), so the class is recorded with a run. The environment
- * variable CLAST_CPU=baseline|v3|v4 asks for a class; one that this machine does not have is not used. */
+ * variable CLAST_CPU=baseline|v3|v4 asks for a class; a class that this machine does not have is not used. */
 #ifndef CLAST_ENGINE_SPH_MODULES_RANGES_H
 #define CLAST_ENGINE_SPH_MODULES_RANGES_H
 
@@ -9,9 +9,9 @@
 
 struct sph_ranges {
   const sph_hook *module[SPH_MODULES]; /* SPH_STAGES loops of each; NULL: the module has none */
-  /* What every body has, whatever its modules (motion_loop.h). */
+  /* Loops of every body, whatever its modules (motion_loop.h). */
   sph_hook predict;                                       /* x v rho u h */
-  sph_hook output_fluid, output_whole, output_damaged;    /* what the pair loop takes */
+  sph_hook output_fluid, output_whole, output_damaged;    /* columns that the pair loop reads */
   sph_hook hold;                                          /* held freedoms and damping: the new accelerations */
   sph_hook fluid_rates;                                   /* u */
   sph_hook correct_fluid, correct_whole, correct_damaged; /* v rho h, and the limits of the time step */

@@ -1,4 +1,5 @@
-/* The bound of tension where no flaws are, and torn matter: both fall with the expansion of the solid matter. */
+/* The bound of tension in bodies without flaws. It falls with the expansion of the solid matter, and the yield limit
+ * with it. */
 #ifndef CLAST_ENGINE_SPH_MODULES_TENSION_LIMIT_LOOP_H
 #define CLAST_ENGINE_SPH_MODULES_TENSION_LIMIT_LOOP_H
 

@@ -1,5 +1,6 @@
-/* Tillotson pressure and sound speed over a range. Nearly all matter is cold or compressed: that branch is computed for
- * all (no transcendental function in it), and the few hot, expanded particles are done again by the general form. */
+/* Tillotson pressure and sound speed over a range. Nearly all matter is cold or compressed. That branch, which has no
+ * transcendental function, is computed for all particles; the few hot, expanded ones are computed again by the general
+ * form. */
 #ifndef CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
 #define CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
 

@@ -1,8 +1,8 @@
-/* The flaws of one body as the step needs them: which thresholds does a strain exceed? Exact: every threshold of every
- * particle, ascending. Compact: (lowest, exponent, number) per particle, with
+/* The flaws of one body, as thresholds of strain per particle. Exact: every threshold of every particle, ascending.
+ * Compact: (lowest, exponent, number) per particle, with
  *   n(eps) = min(total, floor((eps/lowest)^q)),  q = ln(total)/ln(highest/lowest),
- * a power law that counts 1 at the lowest and all at the highest threshold; that is how codes of this kind save memory
- * (Benz & Asphaug 1994). Thresholds are strains here: those that no double holds are infinite (never open) or 0. */
+ * a power law that counts 1 at the lowest and all at the highest threshold; so codes of this kind save memory (Benz &
+ * Asphaug 1994). A threshold beyond the range of a double is infinite (it never opens) or 0. */
 #ifndef CLAST_ENGINE_SPH_MODULES_WEIBULL_H
 #define CLAST_ENGINE_SPH_MODULES_WEIBULL_H
 
@@ -20,7 +20,7 @@ size_t sph_weibull_bytes(const struct sph_weibull_lists *lists);
 
 double sph_weibull_lowest(const struct sph_weibull_lists *lists, size_t particle);
 uint32_t sph_weibull_total(const struct sph_weibull_lists *lists, size_t particle);
-/* How many are open; it stays so while bracket[0] <= strain < bracket[1]. */
+/* Number of open flaws; the same for every strain with bracket[0] <= strain < bracket[1]. */
 uint32_t sph_weibull_active(const struct sph_weibull_lists *lists, size_t particle, double strain, double bracket[2]);
 
 #endif
