@@ -232,7 +232,7 @@ static const struct field rows[] = {
         .source = "BA95 section 4.4 (1 h)"),
     CHOICE(fragments.link_h, link_h,
            .choice_docs = "of the body at rest\nas it is at the end, where debris has expanded",
-           .doc = "The smoothing length meant there."),
+           .doc = "The smoothing length that fragments.link_length multiplies."),
     SWITCH(
         fragments.veneer, 1,
         .doc =
@@ -257,24 +257,25 @@ static const struct field rows[] = {
                 "stop.quiet_growth for this long, counted from the first damage; unless given, the time of two such "
                 "waves."),
     REAL(stop.quiet_growth, "1", 1e-3, 0, 1, .flags = FIELD_ABOVE_MINIMUM, .when = "target.fracture=auto|on",
-         .doc = "See stop.quiet_time: a share of the body's volume."),
+         .doc = "Fracture counts as over when the mean damage grows by less than this during stop.quiet_time."),
 
     COUNT(fidelity.particles, 10000, 1, 2e9, .when = "kind=impact|stretch|vibration|collision",
-          .doc = "Particles of the target (of a collision: of each body), within what its lattice allows."),
+          .doc =
+              "Number of particles of the target, or of each body of a collision; the lattice may change it a little."),
     COUNT(fidelity.points, 400, 1, 1e6, .when = "kind=piston",
-          .doc = "Width of the plate over the particle spacing. Sideways it is as thick as its lattice needs."),
+          .doc = "Width of the plate over the particle spacing. The lattice decides the thickness sideways."),
     REAL(fidelity.projectile_spacing, "1", 0.5, 1e-3, 1e3, .when = "kind=impact",
          .doc = "Particle spacing of the projectile over the target's where it hits."),
     SWITCH(fidelity.graded, 0, .when = "kind=impact", .doc = "Particles are finer near the point of impact."),
     REAL(fidelity.fine_spacing, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
-         .doc = "Spacing there; half of the uniform one unless given."),
+         .doc = "Particle spacing near the point of impact; half of the uniform one unless given."),
     REAL(fidelity.fine_radius, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "fidelity.graded=true",
-         .doc = "Distance up to which it holds; four fine spacings unless given."),
+         .doc = "Distance from the point of impact up to which fine_spacing holds; four fine spacings unless given."),
     REAL(fidelity.smoothing, "1", SPH_BODIES_H, 0.7, 3,
          .doc = "Smoothing length h over the particle spacing (V/n)^(1/3). The default has 56 neighbours within 2h on "
                 "lattices, and a "
                 "kernel sum within 1 % of what it stands for; others err by some per cent at any resolution."),
-    REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Time step over h/(c + viscous)."),
+    REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Courant number: the time step over h/(c + viscous term)."),
     REAL(fidelity.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
          .doc = "Largest change of D^(1/3) in a time step."),
     REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material.porosity.curve=quadratic|two-power",
