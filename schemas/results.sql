@@ -253,9 +253,9 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   mean_damage REAL, -- [1] Mean damage D of the target at the end, weighted by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.
   mean_distention REAL, -- [1] Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.
-  largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its layer of broken particles over the target's mass, with the static strength.
-  largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its layer of broken particles over the target's mass, with the static strength.
-  largest_dynamic_fraction REAL, -- [1] M_1/M with the layer of broken particles and without the static strength.
+  largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, with the static strength.
+  largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static strength.
+  largest_dynamic_fraction REAL, -- [1] M_1/M with the damaged layer and without the static strength.
   largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.
   largest_axis_short REAL, -- [1] Shortest over longest axis of the same ellipsoid. 1 is a sphere.
   largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass.
@@ -290,7 +290,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   peak_stress REAL, -- [Pa] Stretch: largest mean axial stress between the grips.
   peak_strain REAL, -- [1] Stretch: strain (strain rate times time) at the largest stress.
   peak_time REAL, -- [s] Stretch: time of the largest stress.
-  cracks REAL, -- [1] Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static strength and without layers of broken particles. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.
+  cracks REAL, -- [1] Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
   rebound REAL, -- [1] Collision: speed of separation of the bodies over their speed of approach.
   shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.
@@ -853,7 +853,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'compaction_reach', 'm', 'Impact: l
 
 INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without layers of broken particles. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 1);
 
@@ -893,13 +893,13 @@ INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its layer of broken particles over the target''s mass, with the static strength.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its damaged layer over the target''s mass, with the static strength.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M with the layer of broken particles and without the static strength.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M with the damaged layer and without the static strength.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its layer of broken particles over the target''s mass, with the static strength.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'limited_courant', '1', 'Share of the steps limited by the speed of sound and viscosity, or by a damped side.', 1);
 
@@ -1071,7 +1071,7 @@ INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistic
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without layers of broken particles. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 0);
 
@@ -1147,15 +1147,15 @@ INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over 
 
 INSERT INTO column_doc VALUES ('runs', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its layer of broken particles over the target''s mass, with the static strength.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_bare_fraction', '1', 'M_1/M of the core: mass of the largest fragment without its damaged layer over the target''s mass, with the static strength.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M with the layer of broken particles and without the static strength.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M with the damaged layer and without the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its layer of broken particles over the target''s mass, with the static strength.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
 

@@ -10,7 +10,7 @@
 
 #include "schemas/status.h"
 
-/* A particle's part in its fragment: unbroken, in the layer of broken particles at its surface, a broken
+/* A particle's part in its fragment: unbroken, in the damaged layer at its surface, a broken
  * particle on its own, or of a body that has no fragments (a projectile). The numbers are those of the file. */
 enum picture_part { PICTURE_CORE, PICTURE_LAYER, PICTURE_DUST, PICTURE_LEFT_OUT, PICTURE_PARTS };
 

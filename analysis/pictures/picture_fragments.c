@@ -58,38 +58,55 @@ static void cover(double view[4], const double point[2]) {
   }
 }
 
-/* All cells; but if distant ones would shrink the picture much, all large fragments and 96 % of the cells. */
-static status choose_view(const struct picture_body *body, double view[4]) {
-  double *along = malloc((body->cells + 1) * sizeof *along);
-  struct grouping grouping;
-  status code = group(body, &grouping);
-  if (!code && !along)
-    code = STATUS_MEMORY;
-  double all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, bulk[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (size_t i = 0; i < body->cells && !code; i++) {
+static const double nothing[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+
+/* The views that hold all cells, and all cells of large fragments. */
+static void cover_cells(const struct picture_body *body, const struct grouping *grouping, double all[4],
+                        double large[4]) {
+  memcpy(all, nothing, sizeof nothing);
+  memcpy(large, nothing, sizeof nothing);
+  for (size_t i = 0; i < body->cells; i++) {
     uint32_t f = body->fragment[i];
-    bool large = grouping.start[f + 1] - grouping.start[f] >= LARGE;
+    bool is_large = grouping->start[f + 1] - grouping->start[f] >= LARGE;
     for (uint32_t v = body->first_vertex[i]; v < body->first_vertex[i + 1]; v++) {
       cover(all, body->vertex[v]);
-      if (large)
-        cover(bulk, body->vertex[v]);
+      if (is_large)
+        cover(large, body->vertex[v]);
     }
   }
-  for (int axis = 0; axis < 2 && !code; axis++) {
+}
+
+/* Extends a view to 96 % of the cells along each axis. centre: work space for a number per cell. */
+static void cover_most(const struct picture_body *body, double *centre, double view[4]) {
+  for (int axis = 0; axis < 2; axis++) {
     for (size_t i = 0; i < body->cells; i++) {
-      double centre[2];
-      centre_of(body, i, centre);
-      along[i] = centre[axis];
+      double both[2];
+      centre_of(body, i, both);
+      centre[i] = both[axis];
     }
-    qsort(along, body->cells, sizeof *along, sample_ascending);
+    qsort(centre, body->cells, sizeof *centre, sample_ascending);
     size_t out = body->cells / 50;
-    bulk[axis] = fmin(bulk[axis], along[out]);
-    bulk[axis + 2] = fmax(bulk[axis + 2], along[body->cells - 1 - out]);
+    view[axis] = fmin(view[axis], centre[out]);
+    view[axis + 2] = fmax(view[axis + 2], centre[body->cells - 1 - out]);
   }
-  free(along);
+}
+
+/* All cells; but if distant ones would shrink the picture much, all large fragments and 96 % of the cells. */
+static status choose_view(const struct picture_body *body, double view[4]) {
+  double *centre = malloc((body->cells + 1) * sizeof *centre), all[4], bulk[4];
+  struct grouping grouping;
+  status code = group(body, &grouping);
+  if (!code && !centre)
+    code = STATUS_MEMORY;
+  if (!code) {
+    cover_cells(body, &grouping, all, bulk);
+    cover_most(body, centre, bulk);
+  }
+  free(centre);
   grouping_free(&grouping);
   if (code)
     return code;
+
   bool near = all[2] - all[0] <= 1.25 * (bulk[2] - bulk[0]) && all[3] - all[1] <= 1.25 * (bulk[3] - bulk[1]);
   memcpy(view, near ? all : bulk, 4 * sizeof *view);
   double margin = 0.02 * fmax(view[2] - view[0], view[3] - view[1]);

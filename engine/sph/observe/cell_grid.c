@@ -186,6 +186,15 @@ static void visit_buckets(const struct visit *visit, const struct item *item, in
   }
 }
 
+/* One cell, at its image inside the box where an axis is periodic. */
+static void visit_cell(const struct visit *visit, const struct item *item, int number, bool own,
+                       const struct level *level, const int64_t cell[3]) {
+  int64_t at[3];
+  for (int d = 0; d < 3; d++)
+    at[d] = level->wrap[d] ? (cell[d] + level->wrap[d]) % level->wrap[d] : cell[d];
+  visit_buckets(visit, item, number, own, bucket_of(visit->t, number, at), 1);
+}
+
 /* The cells round an item. A pair of two levels is found from its finer item, because the coarser cells hold the reach
  * of both. On the item's own level only the cells that follow its own are visited. */
 static void visit_level(const struct visit *visit, const struct item *item, int number, const struct level *level) {
@@ -207,13 +216,9 @@ static void visit_level(const struct visit *visit, const struct item *item, int 
         visit_buckets(visit, item, number, false, row, (size_t)count);
         continue;
       }
-      for (int c = first; c <= high[0]; c++) {
-        int64_t at[3] = {home[0] + c, home[1] + b, home[2] + a};
-        for (int d = 0; visit->periodic && d < 3; d++)
-          if (level->wrap[d])
-            at[d] = (at[d] + level->wrap[d]) % level->wrap[d];
-        visit_buckets(visit, item, number, own && c == 0, bucket_of(visit->t, number, at), 1);
-      }
+      for (int c = first; c <= high[0]; c++)
+        visit_cell(visit, item, number, own && c == 0, level,
+                   (const int64_t[3]){home[0] + c, home[1] + b, home[2] + a});
     }
 }
 

@@ -46,14 +46,14 @@ static const struct field rows[] = {
                 "pores.",
          .source = "Jutzi, Benz & Michel 2008"),
     SHARE(largest.bare_fraction,
-          .doc = "M_1/M of the core: mass of the largest fragment without its layer of broken particles over "
+          .doc = "M_1/M of the core: mass of the largest fragment without its damaged layer over "
                  "the target's mass, with the static strength.",
           .source = "BA95 section 4.4"),
     SHARE(largest.veneer_fraction,
-          .doc = "M_1/M: mass of the largest fragment with its layer of broken particles over the target's mass, with "
+          .doc = "M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with "
                  "the static strength.",
           .source = "BA95 section 4.4"),
-    SHARE(largest.dynamic_fraction, .doc = "M_1/M with the layer of broken particles and without the static strength."),
+    SHARE(largest.dynamic_fraction, .doc = "M_1/M with the damaged layer and without the static strength."),
     SHARE(largest.axis_middle,
           .doc = "Middle over longest axis of the ellipsoid that has the moments of inertia of the "
                  "largest fragment."),
@@ -120,7 +120,7 @@ static const struct field rows[] = {
     REAL(cracks, "1", 0,
          .doc =
              "Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static "
-             "strength and without layers of broken particles. Overlapping cracks joined by broken rock do not count, "
+             "strength and without damaged layers. Overlapping cracks joined by broken rock do not count, "
              "even if the rod no longer carries load."),
     REAL(frequency, "1/s", 0, .doc = "Vibration: frequency of the first mode, from its zero crossings."),
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed of separation of the bodies over their speed of approach."),

@@ -131,7 +131,7 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   unsigned_column(file, AT("fragment"), n, fragments->label, integers,
                   "number of its fragment by descending mass; -1: none");
   snapshot_file_data(file, AT("part"), SNAPSHOT_FILE_BYTE, n, 0, fragments->part, "1",
-                     "0 core of a fragment, 1 its layer of broken particles, 2 dust, 3 of a body without fragments");
+                     "0 core of a fragment, 1 its damaged layer, 2 dust, 3 of a body without fragments");
   if (flaws)
     unsigned_column(file, AT("flaws"), n, flaws, integers, "number of flaws");
   COLUMNS(file, "fragments", fragments->count, fragments->fragments, fragment_columns);

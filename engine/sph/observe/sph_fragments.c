@@ -1,4 +1,4 @@
-/* Fragments of SPH particles: cores, their layers of broken particles, dust. */
+/* Fragments of SPH particles: cores, their damaged layers, dust. */
 #include "engine/sph/observe/sph_fragments.h"
 
 #include <math.h>

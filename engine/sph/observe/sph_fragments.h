@@ -5,13 +5,13 @@
  *      exceeds the static strength of its body. This anticipates the end state, in which the last cracks open slowly.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
- *   3. Layer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of two at
- *      the same distance the one of the heavier core decides, then the one of the core with the lower first particle.
- *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The layer itself links
- *      nothing.
+ *   3. Damaged layer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of
+ * two at the same distance the one of the heavier core decides, then the one of the core with the lower first particle.
+ *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The damaged layer itself
+ * links nothing.
  *   4. Dust: every other broken particle is a fragment of its own, below the resolution.
  *
- * A core is thus a fragment without its layer of broken particles. The input fragments.veneer switches step 3 on.
+ * A core is thus a fragment without its damaged layer. The input fragments.veneer switches step 3 on.
  *
  * A pure function of the particles as a system reads them back. The fragments depend on positions and states, not on
  * the numbering of particles, except that fragments of exactly the same mass are numbered by their first particle. */
