@@ -113,20 +113,10 @@ struct picture_curve {
 status picture_curves(const char *path, double width, const char *title, const char *x_label, const char *y_label,
                       size_t count, const struct picture_curve *curve, struct error *error);
 
-struct picture_axis {
-  const char *label;
-  size_t count;
-  const double *values; /* ascending, distinct */
-};
-/* Heat map: value[j * x.count + i] at (x.values[i], y.values[j]). The tile of a NaN is white and crossed. */
-status picture_map(const char *path, double width, const char *title, const char *quantity,
-                   const struct picture_axis *x, const struct picture_axis *y, const double *value,
-                   struct error *error);
-
-/* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row; a place
- * without a point is like a NaN. Of two points at one place the later one counts. At most 10 000 tiles (STATUS_USAGE).
- */
-status picture_map_points(const char *path, double width, const char *title, const char *quantity, const char *x_label,
-                          const char *y_label, size_t count, const double (*points)[3], struct error *error);
+/* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. The tile of
+ * a NaN, or of a place without a point, is white and crossed. Of two points at one place the later one counts. At most
+ * 10 000 tiles (STATUS_USAGE). */
+status picture_map(const char *path, double width, const char *title, const char *quantity, const char *x_label,
+                   const char *y_label, size_t count, const double (*points)[3], struct error *error);
 
 #endif

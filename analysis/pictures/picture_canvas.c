@@ -154,7 +154,8 @@ double picture_canvas_round_length(double length) {
   return part >= 2 ? 2 * decade : decade;
 }
 
-void picture_canvas_length_text(double metres, char *text, size_t size) {
+/* "5 cm", "2 m", "500 µm". */
+static void length_text(double metres, char *text, size_t size) {
   if (metres >= 1000)
     snprintf(text, size, "%g km", metres / 1000);
   else if (metres >= 1)
@@ -224,7 +225,7 @@ void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_
                               double font) {
   char text[32];
   double metres = picture_canvas_round_length(0.24 * available / points_per_metre), length = metres * points_per_metre;
-  picture_canvas_length_text(metres, text, sizeof text);
+  length_text(metres, text, sizeof text);
   cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
   cairo_rectangle(cairo, x, y - 0.28 * font, length, 0.28 * font);
   cairo_fill(cairo);

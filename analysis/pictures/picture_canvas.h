@@ -39,8 +39,6 @@ enum { PICTURE_CANVAS_SERIES = 8 };
 void picture_canvas_series(cairo_t *cairo, size_t series, double alpha);
 /* The largest of 1, 2, 5 x 10^n that is at most `length`. */
 double picture_canvas_round_length(double length);
-/* "5 cm", "2 m", "500 µm". */
-void picture_canvas_length_text(double metres, char *text, size_t size);
 /* 10 with a raised exponent. */
 void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent);
 

@@ -8,6 +8,12 @@
 #include "analysis/pictures/picture_frame.h"
 #include "analysis/statistics/sample.h"
 
+struct axis {
+  const char *label;
+  size_t count;
+  const double *values; /* ascending, distinct */
+};
+
 /* Where things stand on the page. */
 struct layout {
   cairo_t *cairo;
@@ -16,19 +22,12 @@ struct layout {
   double low, high; /* range of the values */
 };
 
-static bool bad_axis(const struct picture_axis *axis) {
-  for (size_t i = 0; i < axis->count; i++)
-    if (!isfinite(axis->values[i]))
-      return true;
-  return axis->count == 0;
-}
-
 static void tick_text(double value, char text[64]) {
   snprintf(text, 64, "%.4g", value);
 }
 
 /* The widest of an axis' numbers. */
-static double tick_width(cairo_t *cairo, double font, const struct picture_axis *axis) {
+static double tick_width(cairo_t *cairo, double font, const struct axis *axis) {
   double widest = 0;
   for (size_t j = 0; j < axis->count; j++) {
     char text[64];
@@ -73,7 +72,7 @@ static void draw_tile(const struct layout *l, double x, double y, double value) 
 }
 
 /* The frame and as many numbers beside it as fit. */
-static void draw_axes(const struct layout *l, const struct picture_axis *x, const struct picture_axis *y) {
+static void draw_axes(const struct layout *l, const struct axis *x, const struct axis *y) {
   cairo_set_source_rgb(l->cairo, 0.2, 0.2, 0.2);
   cairo_set_line_width(l->cairo, 0.08 * l->font);
   cairo_rectangle(l->cairo, l->left, l->top, l->wide, l->tall);
@@ -94,11 +93,9 @@ static void draw_axes(const struct layout *l, const struct picture_axis *x, cons
   }
 }
 
-status picture_map(const char *path, double width, const char *title, const char *quantity,
-                   const struct picture_axis *x, const struct picture_axis *y, const double *value,
-                   struct error *error) {
-  if (bad_axis(x) || bad_axis(y))
-    return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", path);
+/* value[j * x->count + i] belongs to (x->values[i], y->values[j]). */
+static status draw(const char *path, double width, const char *title, const char *quantity, const struct axis *x,
+                   const struct axis *y, const double *value, struct error *error) {
   double range[2];
   picture_frame_range(x->count * y->count, value, range);
   if (!(range[1] >= range[0]))
@@ -146,9 +143,11 @@ static size_t place(size_t count, const double *values, double value) {
   return (size_t)(found - values); /* every value is on the axis, which was made from them */
 }
 
-status picture_map_points(const char *path, double width, const char *title, const char *quantity, const char *x_label,
-                          const char *y_label, size_t count, const double (*points)[3], struct error *error) {
+status picture_map(const char *path, double width, const char *title, const char *quantity, const char *x_label,
+                   const char *y_label, size_t count, const double (*points)[3], struct error *error) {
   enum { MOST_TILES = 10000 };
+  if (count == 0)
+    return status_fail(error, STATUS_USAGE, "%s: an axis of the map is empty or not finite", path);
   double *xs = malloc((count + 1) * sizeof *xs), *ys = malloc((count + 1) * sizeof *ys), *value = NULL;
   status code = xs && ys ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: no memory for the map", path);
   for (size_t i = 0; i < count && !code; i++)
@@ -156,8 +155,7 @@ status picture_map_points(const char *path, double width, const char *title, con
       code = status_fail(error, STATUS_USAGE, "%s: a point of the map has no place on its axes", path);
   if (code)
     goto cleanup;
-  struct picture_axis x = {x_label, distinct(count, points, 0, xs), xs},
-                      y = {y_label, distinct(count, points, 1, ys), ys};
+  struct axis x = {x_label, distinct(count, points, 0, xs), xs}, y = {y_label, distinct(count, points, 1, ys), ys};
   if (x.count * y.count > MOST_TILES) {
     code = status_fail(error, STATUS_USAGE, "%s: %zu x %zu tiles are too many for a map; choose axes with fewer values",
                        path, x.count, y.count);
@@ -172,7 +170,7 @@ status picture_map_points(const char *path, double width, const char *title, con
     value[i] = NAN;
   for (size_t i = 0; i < count; i++)
     value[place(y.count, ys, points[i][1]) * x.count + place(x.count, xs, points[i][0])] = points[i][2];
-  code = picture_map(path, width, title, quantity, &x, &y, value, error);
+  code = draw(path, width, title, quantity, &x, &y, value, error);
 cleanup:
   free(xs);
   free(ys);

@@ -60,8 +60,8 @@ static status draw(struct store *store, const struct options *options, const cha
     char title[128];
     snprintf(title, sizeof title, "%s%s, %s over seeds%s", quantity->exponent ? "exponent " : "", options->quantity,
              quantity->exponent ? "pooled" : "mean", quantity->over_other_inputs ? " and other inputs" : "");
-    code = picture_map_points(path, WIDTH, title, options->quantity, quantity->column[0], quantity->column[1],
-                              map.count, (const double(*)[3])map.points, error);
+    code = picture_map(path, WIDTH, title, options->quantity, quantity->column[0], quantity->column[1], map.count,
+                       (const double(*)[3])map.points, error);
   }
   free(map.points);
   return code;
@@ -102,8 +102,6 @@ const struct command map_command = {
     .examples = "clast map out.db map.png -x strain -y angle\nclast map out.db beta.svg -x strain -y angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -199,29 +199,30 @@ static void spectra_are_drawn(void **state) {
 
 static void maps_are_drawn(void **state) {
   (void)state;
-  double xs[6], ys[4], value[24];
-  for (int i = 0; i < 6; i++)
-    xs[i] = 0.01 * (i + 1);
-  for (int j = 0; j < 4; j++)
-    ys[j] = j + 1;
-  for (int i = 0; i < 24; i++)
-    value[i] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
-  value[7] = NAN;
-  struct picture_axis x = {"threshold.strain", 6, xs}, y = {"beam.threshold.angle (deg)", 4, ys};
-  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", &x, &y, value, NULL),
+  double points[24][3];
+  for (int i = 0; i < 24; i++) {
+    points[i][0] = 0.01 * (i % 6 + 1);
+    points[i][1] = i / 6 + 1;
+    points[i][2] = 1.6 + 0.03 * (i % 6) + 0.1 * (i / 6);
+  }
+  points[7][2] = NAN;
+  const char *const x = "threshold.strain", *const y = "beam.threshold.angle (deg)";
+  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", x, y, 24,
+                               (const double(*)[3])points, NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
   const double loose[5][3] = {{2, 0.1, 5}, {1, 0.1, 4}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
-  assert_int_equal(picture_map_points(at("loose.png"), 600, NULL, "M_1/M", "x", "y", 5, loose, NULL), STATUS_OK);
+  assert_int_equal(picture_map(at("loose.png"), 600, NULL, "M_1/M", "x", "y", 5, loose, NULL), STATUS_OK);
   const double nowhere[1][3] = {{NAN, 1, 1}};
-  assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 1, nowhere, NULL), STATUS_USAGE);
-  assert_int_equal(picture_map_points(at("none.png"), 600, NULL, "M_1/M", "x", "y", 0, loose, NULL), STATUS_USAGE);
+  assert_int_equal(picture_map(at("none.png"), 600, NULL, "M_1/M", "x", "y", 1, nowhere, NULL), STATUS_USAGE);
+  assert_int_equal(picture_map(at("none.png"), 600, NULL, "M_1/M", "x", "y", 0, loose, NULL), STATUS_USAGE);
   for (int i = 0; i < 24; i++)
-    value[i] = NAN;
-  assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", &x, &y, value, NULL), STATUS_USAGE);
+    points[i][2] = NAN;
+  assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", x, y, 24, (const double(*)[3])points, NULL),
+                   STATUS_USAGE);
 }
 
 static void profiles_are_drawn(void **state) {
