@@ -128,24 +128,6 @@ static void turn_in_plane(size_t n, const struct fragment_member *members, const
     fragments[k].spin[2] /= fragments[k].moment_of_inertia;
 }
 
-status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error) {
-  *out = NULL;
-  *count = 0;
-  if (n == 0)
-    return STATUS_OK;
-  uint32_t *labels = label ? label : malloc(n * sizeof *labels);
-  if (!labels)
-    return no_memory(n, error);
-  status code = gather(n, members, link_count, links, labels, out, count, error);
-  if (!code)
-    turn_in_plane(n, members, labels, *count, *out);
-  if (!label)
-    free(labels);
-  return code;
-}
-
 /* One rotation that makes a[p][q] zero; axes are the rows of `axis` (Golub & Van Loan, section 8.5). */
 static void rotate(double a[3][3], double axis[3][3], int p, int q) {
   if (a[p][q] == 0)
@@ -253,9 +235,9 @@ static status turn_in_space(size_t n, const struct fragment_member *members, con
   return STATUS_OK;
 }
 
-status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
-                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
-                            struct error *error) {
+static status find(bool in_space, size_t n, const struct fragment_member *members, size_t link_count,
+                   const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                   struct error *error) {
   *out = NULL;
   *count = 0;
   if (n == 0)
@@ -264,8 +246,10 @@ status fragments_find_space(size_t n, const struct fragment_member *members, siz
   if (!labels)
     return no_memory(n, error);
   status code = gather(n, members, link_count, links, labels, out, count, error);
-  if (!code)
+  if (!code && in_space)
     code = turn_in_space(n, members, labels, *count, *out, error);
+  else if (!code)
+    turn_in_plane(n, members, labels, *count, *out);
   if (!label)
     free(labels);
   if (!code)
@@ -274,4 +258,16 @@ status fragments_find_space(size_t n, const struct fragment_member *members, siz
   *out = NULL;
   *count = 0;
   return code;
+}
+
+status fragments_find_plane(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error) {
+  return find(false, n, members, link_count, links, label, out, count, error);
+}
+
+status fragments_find_space(size_t n, const struct fragment_member *members, size_t link_count,
+                            const uint32_t (*links)[2], uint32_t *label, struct fragment **out, size_t *count,
+                            struct error *error) {
+  return find(true, n, members, link_count, links, label, out, count, error);
 }
