@@ -122,32 +122,39 @@ static void add_beams(struct snapshot_file *file, const struct dem_run *run) {
 }
 
 /* Outlines of the present grains, as VTK reads them: one cell per grain. */
+struct cell_row {
+  double mass, velocity[3], spin;
+};
+#define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(cell_row, member, width, __VA_ARGS__)
+static const struct snapshot_file_column cell_columns[] = {
+    COLUMN(mass, 0, "kg m-1", "mass per metre of thickness"),
+    COLUMN(velocity, 3, "m s-1", "velocity of the centre of mass"),
+    COLUMN(spin, 0, "rad s-1", "angular velocity"),
+};
+#undef COLUMN
+
 struct outlines {
   size_t points, cells;
-  double *point, *mass, *velocity, *spin; /* 3 per point; 1, 3, 1 per cell */
+  double (*point)[3];
+  struct cell_row *cell;
   int64_t *offset, *connectivity, *fragment, *grain;
   unsigned char *type;
 };
 
 static bool allocate_outlines(struct outlines *o, size_t points, size_t cells) {
-  *o = (struct outlines){.point = malloc(points * 3 * sizeof *o->point),
-                         .mass = malloc(cells * sizeof *o->mass),
-                         .velocity = malloc(cells * 3 * sizeof *o->velocity),
-                         .spin = malloc(cells * sizeof *o->spin),
+  *o = (struct outlines){.point = malloc(points * sizeof *o->point),
+                         .cell = malloc(cells * sizeof *o->cell),
                          .offset = malloc((cells + 1) * sizeof *o->offset),
                          .connectivity = malloc(points * sizeof *o->connectivity),
                          .fragment = malloc(cells * sizeof *o->fragment),
                          .grain = malloc(cells * sizeof *o->grain),
                          .type = malloc(cells)};
-  return o->point && o->mass && o->velocity && o->spin && o->offset && o->connectivity && o->fragment && o->grain &&
-         o->type;
+  return o->point && o->cell && o->offset && o->connectivity && o->fragment && o->grain && o->type;
 }
 
 static void free_outlines(struct outlines *o) {
   free(o->point);
-  free(o->mass);
-  free(o->velocity);
-  free(o->spin);
+  free(o->cell);
   free(o->offset);
   free(o->connectivity);
   free(o->fragment);
@@ -165,7 +172,7 @@ static void fill_outlines(struct outlines *o, const struct dem_run *run, const u
       continue;
     size_t corners = dem_system_outline(run->system, i, OUTLINE_CORNERS, corner);
     for (size_t k = 0; k < corners && k < OUTLINE_CORNERS && o->points < capacity; k++) {
-      double *point = &o->point[3 * o->points];
+      double *point = o->point[o->points];
       point[0] = corner[k].x;
       point[1] = corner[k].y;
       point[2] = 0;
@@ -175,11 +182,7 @@ static void fill_outlines(struct outlines *o, const struct dem_run *run, const u
     const size_t c = o->cells++;
     o->offset[c + 1] = (int64_t)o->points;
     o->type[c] = VTK_POLYGON;
-    o->mass[c] = g.mass;
-    o->spin[c] = g.spin;
-    o->velocity[3 * c] = g.vx;
-    o->velocity[3 * c + 1] = g.vy;
-    o->velocity[3 * c + 2] = 0;
+    o->cell[c] = (struct cell_row){g.mass, {g.vx, g.vy, 0}, g.spin};
     o->grain[c] = i;
     o->fragment[c] = (int64_t)label[i];
   }
@@ -205,11 +208,7 @@ static void outlines(struct snapshot_file *file, const struct dem_run *run, cons
                      "number of its fragment by descending mass");
   snapshot_file_data(file, "VTKHDF/CellData/grain", SNAPSHOT_FILE_INTEGER, cells, 0, o.grain, "1",
                      "index into /grains");
-  snapshot_file_data(file, "VTKHDF/CellData/mass", SNAPSHOT_FILE_REAL, cells, 0, o.mass, "kg m-1",
-                     "mass per metre of thickness");
-  snapshot_file_data(file, "VTKHDF/CellData/velocity", SNAPSHOT_FILE_REAL, cells, 3, o.velocity, "m s-1",
-                     "velocity of the centre of mass");
-  snapshot_file_data(file, "VTKHDF/CellData/spin", SNAPSHOT_FILE_REAL, cells, 0, o.spin, "rad s-1", "angular velocity");
+  COLUMNS("VTKHDF/CellData", cells, o.cell, cell_columns);
   free_outlines(&o);
 }
 
