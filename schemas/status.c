@@ -1,4 +1,4 @@
-/* Names of statuses, and filling errors. */
+/* Meanings of statuses, and filling errors. */
 #include "schemas/status.h"
 
 #include <stdarg.h>
@@ -15,19 +15,9 @@ status status_fail(struct error *error, status code, const char *format, ...) {
   return code;
 }
 
-const char *status_name(status code) {
-  switch (code) {
-#define STATUS_NAME(constant, value, name, meaning)                                                                    \
-  case constant: return name;
-    STATUS_LIST(STATUS_NAME)
-#undef STATUS_NAME
-  }
-  return "unknown";
-}
-
 const char *status_meaning(status code) {
   switch (code) {
-#define STATUS_MEANING(constant, value, name, meaning)                                                                 \
+#define STATUS_MEANING(constant, value, meaning)                                                                       \
   case constant: return meaning;
     STATUS_LIST(STATUS_MEANING)
 #undef STATUS_MEANING

@@ -5,20 +5,20 @@
 #ifndef CLAST_SCHEMAS_STATUS_H
 #define CLAST_SCHEMAS_STATUS_H
 
-/* X(constant, pinned value, one-word name, meaning) */
+/* X(constant, pinned value, meaning) */
 #define STATUS_LIST(X)                                                                                                 \
-  X(STATUS_OK, 0, "ok", "done")                                                                                        \
-  X(STATUS_FAILED_RUNS, 1, "failed_runs", "the campaign finished, but some runs failed")                               \
-  X(STATUS_USAGE, 64, "usage", "the command line is wrong")                                                            \
-  X(STATUS_CONTENT, 65, "content", "a file's content is wrong")                                                        \
-  X(STATUS_MISSING, 66, "missing", "an input file is missing")                                                         \
-  X(STATUS_INTERNAL, 70, "internal", "a bug in clast")                                                                 \
-  X(STATUS_MEMORY, 71, "memory", "the system refused memory, a process or another resource")                           \
-  X(STATUS_IO, 74, "io", "reading or writing failed (read-only, disk full, locked)")                                   \
-  X(STATUS_STOPPED, 75, "stopped", "stopped early; the same command resumes")
+  X(STATUS_OK, 0, "done")                                                                                              \
+  X(STATUS_FAILED_RUNS, 1, "the campaign finished, but some runs failed")                                              \
+  X(STATUS_USAGE, 64, "the command line is wrong")                                                                     \
+  X(STATUS_CONTENT, 65, "a file's content is wrong")                                                                   \
+  X(STATUS_MISSING, 66, "an input file is missing")                                                                    \
+  X(STATUS_INTERNAL, 70, "a bug in clast")                                                                             \
+  X(STATUS_MEMORY, 71, "the system refused memory, a process or another resource")                                     \
+  X(STATUS_IO, 74, "reading or writing failed (read-only, disk full, locked)")                                         \
+  X(STATUS_STOPPED, 75, "stopped early; the same command resumes")
 
 typedef enum status {
-#define STATUS_ENUM(constant, value, name, meaning) constant = value,
+#define STATUS_ENUM(constant, value, meaning) constant = value,
   STATUS_LIST(STATUS_ENUM)
 #undef STATUS_ENUM
 } status;
@@ -34,7 +34,6 @@ struct error {
  */
 status status_fail(struct error *error, status code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-const char *status_name(status code);
 const char *status_meaning(status code);
 
 #endif

@@ -32,7 +32,7 @@ void sample_add(struct sample_moments *moments, double value) {
 }
 
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level) {
-  struct sample_summary summary = {moments->n, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+  struct sample_summary summary = {moments->n, NAN, NAN, NAN, NAN};
   if (summary.n > 0)
     summary.mean = moments->mean;
   if (summary.n < 2)
@@ -71,30 +71,8 @@ static struct sample_moments moments_in_two_passes(size_t n, const double *value
 }
 
 struct sample_summary sample_summarise(size_t n, const double *values, double level) {
-  struct sample_moments moments = moments_in_two_passes(n, values);
-  struct sample_summary summary = sample_summarise_moments(&moments, level);
-  if (summary.n == 0)
-    return summary;
-
-  double *sorted = malloc(summary.n * sizeof *sorted);
-  summary.minimum = HUGE_VAL;
-  summary.maximum = -HUGE_VAL;
-  size_t m = 0;
-  for (size_t i = 0; i < n; i++) {
-    if (isnan(values[i]))
-      continue;
-    summary.minimum = fmin(summary.minimum, values[i]);
-    summary.maximum = fmax(summary.maximum, values[i]);
-    if (sorted)
-      sorted[m++] = values[i];
-  }
-  if (!sorted)
-    return summary;
-
-  qsort(sorted, m, sizeof *sorted, sample_ascending);
-  summary.median = m % 2 ? sorted[m / 2] : sorted[m / 2 - 1] / 2 + sorted[m / 2] / 2;
-  free(sorted);
-  return summary;
+  const struct sample_moments moments = moments_in_two_passes(n, values);
+  return sample_summarise_moments(&moments, level);
 }
 
 /* Percentile by linear interpolation between order statistics. */

@@ -22,12 +22,11 @@ struct sample_summary {
   size_t n;
   double mean, standard_deviation, standard_error;
   double half_width; /* of the confidence interval of the mean, by Student's t */
-  double minimum, median, maximum;
 };
 /* NaN values are left out; n counts the others. level: 0.95 for a 95 % interval. What so few values cannot tell is NaN:
  * everything for n = 0, the scatter for n = 1. Two passes, no cancellation. */
 struct sample_summary sample_summarise(size_t n, const double *values, double level);
-/* The same from running moments; minimum, median and maximum are NaN. */
+/* The same from running moments. */
 struct sample_summary sample_summarise_moments(const struct sample_moments *moments, double level);
 
 /* Two-sided quantile of Student's t for a mean of n values: its interval's half width is this times its standard error.

@@ -197,14 +197,14 @@ static struct cost minimise(enum tempered_kind kind, size_t count, const struct 
 }
 
 struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct tempered_group *groups) {
-  const struct tempered none = {NAN, NAN, NAN, NAN, NAN};
+  const struct tempered none = {NAN, NAN, NAN, NAN};
   double weight, mean_h;
   struct power_law pure = fit_pure(count, groups, &mean_h, &weight);
   if (!isfinite(pure.beta) || !isfinite(mean_h))
     return none;
   double k = pure.beta - 1, s = 0.1 / mean_h;
   if (pure_is_best(kind, count, groups, k))
-    return (struct tempered){pure.beta, pure.standard_error, 0, NAN, pure.log_likelihood};
+    return (struct tempered){pure.beta, pure.standard_error, 0, pure.log_likelihood};
 
   struct cost here = minimise(kind, count, groups, weight, &k, &s);
   double determinant = here.kk * here.ss - here.ks * here.ks;
@@ -213,7 +213,6 @@ struct tempered tempered_fit(enum tempered_kind kind, size_t count, const struct
   return (struct tempered){.beta = k + 1,
                            .standard_error = sqrt(here.ss / determinant / weight),
                            .rate = s,
-                           .rate_error = sqrt(here.kk / determinant / weight),
                            .log_likelihood = -here.value * weight};
 }
 

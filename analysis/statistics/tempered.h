@@ -19,7 +19,6 @@ enum tempered_kind { TEMPERED_CUTOFF, TEMPERED_LOGNORMAL };
 struct tempered {
   double beta, standard_error; /* NaN when there is no fit; for the lognormal, the local exponent at m = a */
   double rate;                 /* s; 0 = the pure power law is the best of the family */
-  double rate_error;           /* NaN at s = 0 */
   double log_likelihood;       /* of u, natural log */
 };
 

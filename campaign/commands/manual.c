@@ -138,7 +138,7 @@ void manual_write(FILE *out) {
     group = command->group;
     print_command(command, out);
   }
-#define EXIT_ENTRY(constant, value, name, meaning) {#value, meaning},
+#define EXIT_ENTRY(constant, value, meaning) {#value, meaning},
   static const struct entry exits[] = {STATUS_LIST(EXIT_ENTRY)};
   print_entries("EXIT STATUS", sizeof exits / sizeof exits[0], exits, out);
   print_entries("ENVIRONMENT", sizeof environment / sizeof environment[0], environment, out);

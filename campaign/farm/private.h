@@ -25,7 +25,7 @@ static inline int64_t farm_sleep_longer(int64_t sleep_ns) {
 }
 
 struct farm_hello {
-  int32_t slots, frame_version;
+  int32_t slots;
   char host[FARM_HOST_SIZE];
 };
 

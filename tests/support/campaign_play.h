@@ -229,7 +229,7 @@ static status play_once(struct play *play, const struct campaign *campaign, cons
   status closed = store_close(store, code == STATUS_OK ? &error : NULL);
   code = code != STATUS_OK ? code : closed;
   if (code != STATUS_OK && code != STATUS_STOPPED && code != STATUS_FAILED_RUNS)
-    fprintf(stderr, "play: %s: %s\n", status_name(code), error.message);
+    fprintf(stderr, "play: %s: %s\n", status_meaning(code), error.message);
   free(play->says);
   play->says = strdup(error.message);
   return code;

@@ -87,8 +87,13 @@ static void sound(const struct sphere *s) {
 
 static void summary(const char *name, size_t n, const double *values) {
   struct sample_summary s = sample_summarise(n, values, 0.95);
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (size_t i = 0; i < n; i++) {
+    least = fmin(least, values[i]);
+    most = fmax(most, values[i]);
+  }
   print_message("%-24s %.4f +- %.4f (95 %%), scatter %.4f, from %.4f to %.4f\n", name, s.mean, s.half_width,
-                s.standard_deviation, s.minimum, s.maximum);
+                s.standard_deviation, least, most);
 }
 
 static void pinned(const char *what, double value, double expected, double tolerance) {

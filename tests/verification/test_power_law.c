@@ -135,7 +135,7 @@ static void pure_sample_needs_no_factor(void **state) {
     u[i] = -log((i + 0.5) / 200) * 0.4 + (i < 5 ? 2 : 0);
   struct tempered_group group = tempered_group(TEMPERED_CUTOFF, 200, u, HUGE_VAL);
   struct tempered fit = tempered_fit(TEMPERED_CUTOFF, 1, &group);
-  assert_true(fit.rate == 0 && isnan(fit.rate_error));
+  assert_true(fit.rate == 0);
   double mean = 0;
   for (int i = 0; i < 200; i++)
     mean += u[i] / 200;

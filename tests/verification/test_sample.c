@@ -26,15 +26,14 @@ static void summaries_are_exact(void **state) {
   const double values[] = {1e9 + 1, NAN, 1e9 + 2, 1e9 + 5, 1e9 + 4, NAN, 1e9 + 3};
   struct sample_summary s = sample_summarise(7, values, 0.95);
   assert_int_equal(s.n, 5);
-  assert_true(s.mean == 1e9 + 3 && s.median == 1e9 + 3 && s.minimum == 1e9 + 1 && s.maximum == 1e9 + 5);
+  assert_true(s.mean == 1e9 + 3);
   assert_true(fabs(s.standard_deviation - sqrt(2.5)) < 1e-15 * 4);
   /* Student t, 4 degrees of freedom, 97.5 %: 2.776445105 (tables). */
   assert_true(fabs(s.half_width / (2.776445105198 * sqrt(0.5)) - 1) < 1e-10);
   s = sample_summarise(1, values, 0.95);
-  assert_true(s.n == 1 && s.mean == 1e9 + 1 && s.median == s.mean && isnan(s.standard_deviation) &&
-              isnan(s.half_width));
+  assert_true(s.n == 1 && s.mean == 1e9 + 1 && isnan(s.standard_deviation) && isnan(s.half_width));
   s = sample_summarise(0, NULL, 0.95);
-  assert_true(s.n == 0 && isnan(s.mean) && isnan(s.minimum));
+  assert_true(s.n == 0 && isnan(s.mean));
 
   struct sample_moments moments = {0};
   s = sample_summarise_moments(&moments, 0.95);
@@ -44,7 +43,7 @@ static void summaries_are_exact(void **state) {
   s = sample_summarise_moments(&moments, 0.95);
   assert_int_equal(s.n, 5);
   /* Running means round to a unit in the last place of 1e9, 1.2e-7. */
-  assert_true(fabs(s.mean - 1e9 - 3) < 1e-6 && fabs(s.standard_deviation - sqrt(2.5)) < 1e-6 && isnan(s.median));
+  assert_true(fabs(s.mean - 1e9 - 3) < 1e-6 && fabs(s.standard_deviation - sqrt(2.5)) < 1e-6);
 }
 
 /* The shortest prefix n0, n0 + SAMPLE_BATCH, ... at which a campaign stops; 0: none up to n. */

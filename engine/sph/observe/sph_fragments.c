@@ -229,14 +229,6 @@ static void measure_shape(const struct search *s, double ratio[2]) {
   ratio[1] = sqrt(shortest / longest);
 }
 
-/* Kinetic energy of a member in the frame of the largest fragment; 0 if it is not finite. */
-static double energy_of(const struct search *s, const struct fragment_member *m) {
-  const double *frame = s->out->fragments[0].velocity;
-  double x = m->velocity[0] - frame[0], y = m->velocity[1] - frame[1], z = m->velocity[2] - frame[2];
-  double energy = 0.5 * m->mass * (x * x + y * y + z * z);
-  return isfinite(energy) ? energy : 0;
-}
-
 static void note_core(struct sph_fragments *out, double core) {
   if (core > out->core_second)
     out->core_second = core;
@@ -256,8 +248,6 @@ static void sum_up(struct search *s) {
     out->mass += p->mass[i];
     if (out->part[i] == SPH_FRAGMENTS_DUST)
       out->dust_mass += p->mass[i];
-    if (s->label[k] != 0)
-      out->ejected_energy += energy_of(s, &s->member[k]);
     if (s->core_mass[i] > p->mass[i])
       out->resolved++;
     note_core(out, s->core_mass[i]);

@@ -56,10 +56,8 @@ struct sph_fragments {
   double mass;      /* kg, of all particles that are not left out */
   double dust_mass; /* kg */
   double core_largest, core_second; /* kg, the two heaviest cores */
-  double axis_ratio[2];  /* shape of fragment 0, from the inertia tensor: middle and shortest over longest axis of the
-                          * ellipsoid of the same tensor; NaN for less than four particles or flat ones */
-  double ejected_energy; /* J, kinetic energy of all that is finite outside fragment 0, in the frame of its centre of
-                            mass */
+  double axis_ratio[2]; /* shape of fragment 0, from the inertia tensor: middle and shortest over longest axis of the
+                         * ellipsoid of the same tensor; NaN for less than four particles or flat ones */
 };
 
 /* A particle whose position, velocity or h is not finite is dust. In periodic directions a fragment is measured from
