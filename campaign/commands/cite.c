@@ -76,8 +76,6 @@ const struct command cite_command = {
     .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

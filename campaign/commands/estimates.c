@@ -166,8 +166,6 @@ const struct command estimates_command = {
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = option_rows,
-    .option_count = sizeof option_rows / sizeof option_rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, option_rows),
     .run = run,
 };

@@ -220,8 +220,6 @@ const struct command explain_command = {
         "inputs and results.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct explain_options),
+    COMMAND_OPTIONS(struct explain_options, rows),
     .run = run,
 };

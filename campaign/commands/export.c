@@ -89,8 +89,6 @@ const struct command export_command = {
     .examples = "clast export out.db handover.db\nclast export out.db tables --csv",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = option_rows,
-    .option_count = sizeof option_rows / sizeof option_rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, option_rows),
     .run = run,
 };

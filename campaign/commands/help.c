@@ -62,8 +62,6 @@ const struct command help_command = {
     .doc = "Lists the commands, or prints one command's usage, options, examples and exit codes, or the manual page.",
     .examples = "clast help run\nclast help --man | man -l -",
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

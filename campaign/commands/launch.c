@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "campaign/commands/estimates.h"
 #include "campaign/driver/driver.h"

@@ -74,8 +74,6 @@ const struct command materials_command = {
            "campaign can vary it (target.material.weibull.m).",
     .examples = "clast materials\nclast materials basalt",
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

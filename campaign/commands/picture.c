@@ -221,8 +221,6 @@ const struct command picture_command = {
         "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

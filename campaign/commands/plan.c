@@ -72,8 +72,6 @@ const struct command plan_command = {
     .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

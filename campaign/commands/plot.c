@@ -198,8 +198,6 @@ const struct command plot_command = {
         "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

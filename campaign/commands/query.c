@@ -96,8 +96,6 @@ const struct command query_command = {
     .examples = "clast query out.db \"select replicate, largest_fraction from runs order by 2 limit 5\"\n"
                 "clast query --list",
     .maximum_arguments = 2,
-    .options = rows_of_options,
-    .option_count = sizeof rows_of_options / sizeof rows_of_options[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows_of_options),
     .run = run,
 };

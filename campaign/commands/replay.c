@@ -144,8 +144,6 @@ const struct command replay_command = {
     .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -126,8 +126,6 @@ const struct command retry_command = {
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .has_runs = true,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -1,7 +1,5 @@
 /* `clast run CAMPAIGN`: runs or resumes a campaign, alone or under mpirun and srun. */
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
@@ -51,8 +49,6 @@ const struct command run_command = {
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .has_runs = true,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

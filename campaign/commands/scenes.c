@@ -69,8 +69,6 @@ const struct command scenes_command = {
         "it, and use the file as SCENE of any command.",
     .examples = "clast scenes\nclast scenes disc-explosion > my-disc.yaml",
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

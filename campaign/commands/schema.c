@@ -41,8 +41,6 @@ const struct command schema_command = {
     .examples = "clast schema campaign > campaign.schema.json\nclast schema scene --engine dem > scene.schema.json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

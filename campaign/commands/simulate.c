@@ -1,11 +1,9 @@
 /* `clast simulate SCENE`: one run, without a store. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "analysis/pictures/picture_canvas.h"
-#include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
@@ -193,8 +191,6 @@ const struct command simulate_command = {
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .has_runs = true,
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

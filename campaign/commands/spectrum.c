@@ -177,8 +177,6 @@ const struct command spectrum_command = {
     .examples = "clast spectrum out.db --point 1 --plot\nclast spectrum out.db --csv --picture spectrum.svg",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = option_rows,
-    .option_count = sizeof option_rows / sizeof option_rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, option_rows),
     .run = run,
 };

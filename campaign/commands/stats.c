@@ -73,8 +73,6 @@ const struct command stats_command = {
         "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = rows_of_options,
-    .option_count = sizeof rows_of_options / sizeof rows_of_options[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows_of_options),
     .run = run,
 };

@@ -37,8 +37,6 @@ const struct command status_command = {
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
-    .options = option_rows,
-    .option_count = sizeof option_rows / sizeof option_rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, option_rows),
     .run = run,
 };

@@ -55,8 +55,6 @@ const struct command version_command = {
     .summary = "version, commit, compiler and libraries (also: clast --version)",
     .doc = "Prints what this program was built from and with. The same facts are stored with every campaign.",
     .examples = "clast --version\nclast version --json",
-    .options = rows,
-    .option_count = sizeof rows / sizeof rows[0],
-    .options_size = sizeof(struct options),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -1,7 +1,6 @@
 /* Walks the points of every kind of design. */
 #include "campaign/design/design.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 #include "engine/random.h"

@@ -1,5 +1,4 @@
 /* Results in: stores what a run or an attempt gave, and updates its point. */
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -1,5 +1,4 @@
 /* Runs out: chooses the next run of the campaign and makes the farm's task from it. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -78,6 +78,9 @@ struct command {
   /* Prints data on stdout, remarks on stderr; an error is returned, not printed. */
   status (*run)(const struct command_line *line, struct error *error);
 };
+/* The options of a command: their struct and their rows (an array). */
+#define COMMAND_OPTIONS(type_, rows_)                                                                                  \
+  .options = (rows_), .option_count = sizeof(rows_) / sizeof(rows_)[0], .options_size = sizeof(type_)
 
 enum { OPTION_STRUCT_MAXIMUM = 4096 }; /* no options struct is larger */
 
