@@ -1,7 +1,6 @@
 /* SQLite errors as statuses with remedies, and statements bound from tables of columns. */
 #include "db/sql.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>

@@ -3,7 +3,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 status ask_campaign_progress(struct store *store, const struct query_sink *sink, struct error *error) {

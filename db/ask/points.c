@@ -1,7 +1,6 @@
 /* Lists of points, as typed questions. */
 #include "db/ask/points.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -1,5 +1,4 @@
 /* SQL functions on our own connection: SQLite has no median, no standard deviation and none of our statistics. */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

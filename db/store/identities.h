@@ -4,7 +4,6 @@
 #define CLAST_DB_STORE_IDENTITIES_H
 
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
 struct identities_entry;

@@ -2,8 +2,6 @@
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
-#include <math.h>
-
 #include "db/sql.h"
 #include "db/store/identities.h"
 #include "db/store/store.h"

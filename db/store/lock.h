@@ -5,7 +5,6 @@
 #define CLAST_DB_STORE_LOCK_H
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "schemas/status.h"
 

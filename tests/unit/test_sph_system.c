@@ -1,8 +1,6 @@
 /* The moving solid: conservation over a collision that breaks, ledger, limits and rates by hand, what is absent. */
 #include "tests/support/sph_collision.h"
 
-#include "engine/sph/modules/ranges.h"
-
 static void conserved(void **state) {
   (void)state;
   struct collision c = collide(1000);

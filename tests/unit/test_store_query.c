@@ -10,7 +10,6 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/statistics/sample.h"
-#include "analysis/statistics/spectrum.h"
 #include "db/store/views.h"
 #include "tests/support/store_fixture.h"
 

@@ -1,6 +1,5 @@
 /* The stability limit of the time step: 2 / omega_max of the network at rest, by power iteration on M^-1 K without ever
  * building K. Contacts of bonded pairs count as springs across the common side's middle. */
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
