@@ -38,6 +38,16 @@ static void write_value(const struct field *row, const struct field_value *value
   }
 }
 
+static bool is_written(const struct field_table *table, const struct field *row, const void *object) {
+  struct field_value value;
+  if (!field_is_active(table, row, object))
+    return false;
+  if (!(row->flags & FIELD_SILENT_DEFAULT))
+    return true;
+  field_get(row, object, &value);
+  return strcmp(value.text, row->choices[0]) != 0;
+}
+
 char *field_identity(const struct field_table *table, const void *object) {
   char *text = NULL;
   size_t size = 0, count = 0;
@@ -48,7 +58,7 @@ char *field_identity(const struct field_table *table, const void *object) {
     return NULL;
   }
   for (size_t i = 0; i < table->count; i++)
-    if (field_is_active(table, &table->rows[i], object))
+    if (is_written(table, &table->rows[i], object))
       rows[count++] = &table->rows[i];
   qsort(rows, count, sizeof *rows, by_path);
 

@@ -40,6 +40,17 @@ struct sph_palpha {
   double exponent_low, exponent_high;               /* n1, n2 */
 };
 
+/* Yield stress of rock under pressure (modules/pressure_strength.c). */
+enum sph_pressure_strength_law { SPH_PRESSURE_STRENGTH_NONE, SPH_PRESSURE_STRENGTH_LUNDBORG };
+struct sph_pressure_strength {
+  int law;                /* enum sph_pressure_strength_law; none: nothing else here counts */
+  double intact_cohesion; /* Pa, Y_0; this and the others bound sqrt(J2) */
+  double intact_friction; /* 1, mu_i */
+  double intact_limit;    /* Pa, Y_M */
+  double broken_cohesion; /* Pa, Y_d0 */
+  double broken_friction; /* 1, mu_d */
+};
+
 struct sph_material {
   double density; /* kg/m^3 at rest */
   struct sph_tillotson tillotson;
@@ -50,6 +61,7 @@ struct sph_material {
   double tension_limit; /* Pa: lowest pressure is -tension_limit where no flaws limit tension; NaN = off */
   struct sph_weibull weibull;
   struct sph_palpha porosity;
+  struct sph_pressure_strength pressure_strength;
 };
 
 #define SPH_MATERIAL_OFF   FIELD_MAY_BE_OFF
@@ -138,5 +150,31 @@ struct sph_material {
   "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"                                                     \
   "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice"
 #define SPH_POROSITY_CURVE_DOC "Crush curve: how pores far below the resolution close under pressure (P-alpha)."
+
+/* Yield stress under pressure: the values that go with the choice pressure_strength.law. They have defaults:
+ * R(member, unit, default, minimum, maximum, flags, doc, source). */
+#define SPH_PRESSURE_STRENGTH_ROWS(R)                                                                                  \
+  R(pressure_strength.intact_cohesion, "Pa", 90e6, 0, 1e15, 0, "Y_0: bound of sqrt(J2) of intact rock at P = 0.",      \
+    "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015")                                                      \
+  R(pressure_strength.intact_friction, "1", 2, 0, 100, 0, "mu_i: internal friction of intact rock.",                   \
+    "Lundborg 1968; Collins, Melosh & Ivanov 2004")                                                                    \
+  R(pressure_strength.intact_limit, "Pa", 1.5e9, 0, 1e15, SPH_MATERIAL_ABOVE,                                          \
+    "Y_M: bound of sqrt(J2) of intact rock at high pressure, above intact_cohesion.",                                  \
+    "Lundborg 1968; 1.5 GPa: granite, Jutzi 2015")                                                                     \
+  R(pressure_strength.broken_cohesion, "Pa", 0, 0, 1e15, 0, "Y_d0: bound of sqrt(J2) of broken rock at P = 0.",        \
+    "Collins, Melosh & Ivanov 2004")                                                                                   \
+  R(pressure_strength.broken_friction, "1", 0.8, 0, 100, 0,                                                            \
+    "mu_d: friction of broken rock. 0, with broken_cohesion 0: broken rock bears no shear.",                           \
+    "Collins, Melosh & Ivanov 2004; 0.8: Jutzi 2015")
+
+#define SPH_PRESSURE_STRENGTH_LAWS                                                                                     \
+  { "none", "lundborg", NULL }
+#define SPH_PRESSURE_STRENGTH_LAW_DOCS                                                                                 \
+  "yield_stress at any pressure, and (1 - D) of the deviator acts\n"                                                   \
+  "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through the yield "       \
+  "stress "                                                                                                            \
+  "alone; yield_stress is not used, melt_energy is"
+#define SPH_PRESSURE_STRENGTH_LAW_DOC    "Yield stress under pressure."
+#define SPH_PRESSURE_STRENGTH_LAW_SOURCE "Collins, Melosh & Ivanov 2004; Jutzi 2015"
 
 #endif

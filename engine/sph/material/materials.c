@@ -28,7 +28,22 @@
 #define WHEN_POROSITY  "porosity.curve=quadratic|two-power"
 #define WHEN_TWO_POWER "porosity.curve=two-power"
 
+/* A value that has a default. */
+#define DEFAULTED(member_, unit_, default_, low_, high_, flags_, doc_, source_)                                        \
+  {.path = #member_,                                                                                                   \
+   .kind = FIELD_REAL,                                                                                                 \
+   .unit = unit_,                                                                                                      \
+   .offset = offsetof(struct sph_material, member_),                                                                   \
+   .minimum = low_,                                                                                                    \
+   .maximum = high_,                                                                                                   \
+   .number = default_,                                                                                                 \
+   .flags = flags_,                                                                                                    \
+   .when = "pressure_strength.law=lundborg",                                                                           \
+   .doc = doc_,                                                                                                        \
+   .source = source_},
+
 static const char *const curves[] = SPH_POROSITY_CURVES;
+static const char *const laws[] = SPH_PRESSURE_STRENGTH_LAWS;
 static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW){.path = "porosity.curve",
                                                            .kind = FIELD_CHOICE,
                                                            .offset = offsetof(struct sph_material, porosity.curve),
@@ -36,7 +51,15 @@ static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW){.path = "porosity.cur
                                                            .choice_docs = SPH_POROSITY_CURVE_DOCS,
                                                            .doc = SPH_POROSITY_CURVE_DOC,
                                                            .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
-                                    SPH_POROSITY_ROWS(ROW)};
+                                    SPH_POROSITY_ROWS(
+                                        ROW){.path = "pressure_strength.law",
+                                             .kind = FIELD_CHOICE,
+                                             .offset = offsetof(struct sph_material, pressure_strength.law),
+                                             .choices = laws,
+                                             .choice_docs = SPH_PRESSURE_STRENGTH_LAW_DOCS,
+                                             .doc = SPH_PRESSURE_STRENGTH_LAW_DOC,
+                                             .source = SPH_PRESSURE_STRENGTH_LAW_SOURCE},
+                                    SPH_PRESSURE_STRENGTH_ROWS(DEFAULTED)};
 
 const struct field_table
     sph_materials_table = FIELD_TABLE(rows, struct sph_material, "sph material",

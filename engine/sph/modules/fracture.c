@@ -51,7 +51,7 @@ static const struct sph_column_need columns[] = {{SPH_COLUMNS_OF(damage), 0, NUL
 const struct sph_module sph_fracture_module = {
     .name = "fracture",
     .doc = "Damage grows from open flaws, D^(1/3) at n^p c_g/R_s up to its cap, and takes tension and shear away: "
-           "(1-D) S, and (1-D) P where P < 0. It never heals.",
+           "(1-D) S (unless damage acts through the yield stress), and (1-D) P where P < 0. It never heals.",
     .source = "Grady & Kipp 1980; Benz & Asphaug 1995, sections 3 and 4.3",
     .when = "a body whose material has Weibull parameters",
     .on = on,

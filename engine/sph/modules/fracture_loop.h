@@ -3,6 +3,8 @@
  * Local strain (eq. 21) of the damaged stress: eps = sigma_t/((1-D) E), with sigma_t the largest principal value of
  * (1-D) S - P (P < 0: (1-D) P). The factors cancel:  E eps = lambda(S) - P                where P < 0,
  *                                                    E eps = lambda(S) - P/(1-D)          elsewhere.
+ * D is here the damage that scales the deviator. Where a module publishes 0 for it, damage does not soften the rock in
+ * shear: S is 2 mu times an elastic strain at any damage, and E eps = lambda(S) - P, the stress without damage.
  * Most particles can have no open flaw: the bound lambda(S) <= 2 sqrt(J2/3) shows it without principal axes. For the
  * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
@@ -73,7 +75,7 @@ RANGE_INLINE void fracture_open(struct sph_system *s, const struct sph_solid *bo
 }
 
 RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = s->c.damage;
+  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = range_shear_damage(s, body);
   const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
   const double *yz = s->c.stress[4];
   double *rate = s->c.damage_rate;

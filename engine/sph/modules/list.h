@@ -3,7 +3,7 @@
  *
  *   elastic             first, because the others act on its stress
  *   tillotson, palpha   the last of them that is on sets the pressure
- *   yield               sets the yield limit; a later law that is on replaces it
+ *   yield, pressure_strength   the last of them that is on sets the yield limit
  *   tension_limit       after the modules that set the pressure and the yield limit, which it bounds
  *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
  *   the rest            options of the pair loop, without loops here
@@ -15,6 +15,7 @@
 #include "engine/sph/modules/elastic_loop.h"
 #include "engine/sph/modules/fracture_loop.h"
 #include "engine/sph/modules/palpha_loop.h"
+#include "engine/sph/modules/pressure_strength_loop.h"
 #include "engine/sph/modules/tension_limit_loop.h"
 #include "engine/sph/modules/tillotson_loop.h"
 #include "engine/sph/modules/yield_loop.h"
@@ -26,6 +27,7 @@
   WITH_LOOPS(tillotson)                                                                                                \
   WITH_LOOPS(palpha)                                                                                                   \
   WITH_LOOPS(yield)                                                                                                    \
+  WITH_LOOPS(pressure_strength)                                                                                        \
   WITH_LOOPS(tension_limit)                                                                                            \
   WITHOUT(weibull)                                                                                                     \
   WITH_LOOPS(fracture)                                                                                                 \

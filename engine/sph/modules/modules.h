@@ -8,6 +8,7 @@
  *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
+ *   shear_damage   damage that scales the deviator, where it is not all damage (range_tools.h)
  *
  * A step runs the stages in order, block by block, and within a stage the modules in the order of list.h. The pair loop
  * runs before SPH_RATES. */

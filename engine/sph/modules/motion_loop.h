@@ -81,9 +81,9 @@ RANGE_HOOK void motion_output_fluid(struct sph_system *s, const struct sph_solid
     term[i] = -pressure[i] / (density[i] * density[i]);
 }
 
-/* Of the stored stress (1-D) S acts, and (1-D) P where P < 0. */
-RANGE_INLINE void motion_output(struct sph_system *s, struct sph_block *b, bool damaged) {
-  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage;
+/* Of the stored stress (1-D) S acts, and (1-D) P where P < 0. `published`: D of the deviator is another one. */
+RANGE_INLINE void motion_output(struct sph_system *s, struct sph_block *b, bool damaged, bool published) {
+  const double *pressure = s->c.pressure, *density = s->c.density, *d = s->c.damage, *of_shear = s->c.shear_damage;
   double *term = s->c.pressure_term, *factor = s->c.stress_factor;
   RANGE_LOOP
   for (size_t i = b->low; i < b->high; i++) {
@@ -91,17 +91,19 @@ RANGE_INLINE void motion_output(struct sph_system *s, struct sph_block *b, bool 
     const double left = damaged ? range_larger(1 - d[i] * d[i] * d[i], 0) : 1;
     const double share = damaged ? left * inverse : inverse, p = pressure[i];
     term[i] = -p * (p < 0 ? share : inverse);
-    factor[i] = share;
+    factor[i] = published ? range_larger(1 - of_shear[i] * of_shear[i] * of_shear[i], 0) * inverse : share;
   }
 }
 
 RANGE_HOOK void motion_output_whole(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   (void)body;
-  motion_output(s, b, false);
+  motion_output(s, b, false, false);
 }
 RANGE_HOOK void motion_output_damaged(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  (void)body;
-  motion_output(s, b, true);
+  if (sph_solid_has(body, SPH_COLUMN(shear_damage)))
+    motion_output(s, b, true, true);
+  else
+    motion_output(s, b, true, false);
 }
 
 /* Largest rate times dt of damping. Above 1 the velocity would grow from step to step (v' = v - rate dt v*: the roots
@@ -190,7 +192,8 @@ RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block 
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
+ *             (D that scales S) and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side
+ *             (motion_hold)
  *   force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
@@ -202,7 +205,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   motion_correct_velocity(s, b);
   const double *xx = b->sums->gradient[0], *yy = b->sums->gradient[4], *zz = b->sums->gradient[8],
                *signal = b->sums->signal;
-  const double *c = s->c.sound_speed, *d = s->c.damage, *ax = s->c.ax, *ay = s->c.ay, *az = s->c.az;
+  const double *c = s->c.sound_speed, *d = range_shear_damage(s, body), *ax = s->c.ax, *ay = s->c.ay, *az = s->c.az;
   const double *energy_rate = s->c.energy_rate, *energy = s->c.energy, *h0 = s->c.h_initial;
   const double *x = s->c.x, *y = s->c.y, *z = s->c.z, *vx = s->c.vx, *vy = s->c.vy, *vz = s->c.vz;
   double *density = s->c.density, *density_rate = s->c.density_rate, *h = s->c.h;

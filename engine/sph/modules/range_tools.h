@@ -22,6 +22,11 @@ RANGE_INLINE double range_smaller(double a, double b) {
   return a < b ? a : b;
 }
 
+/* D^(1/3) that scales the deviator: all damage, unless a module publishes another. */
+RANGE_INLINE const double *range_shear_damage(const struct sph_system *s, const struct sph_solid *body) {
+  return sph_solid_has(body, SPH_COLUMN(shear_damage)) ? s->c.shear_damage : s->c.damage;
+}
+
 /* Largest of n values that are not negative (n <= SPH_BLOCK); eight running maxima, so that it vectorises. */
 RANGE_INLINE double range_largest(const double *value, size_t n) {
   double most[8] = {0};

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/sph/material/derived.h"
 #include "engine/sph/observe/observe.h"
 
 enum { SAMPLES = 400 }; /* over the whole run: a sample costs about a tenth of a step */
@@ -25,9 +26,9 @@ static double axial_stress(const struct sph_run *run, const struct sph_particles
     if (fabs(run->start->z[i]) > half)
       continue;
     double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0; /* not sph_particles_damage(): other last bits */
-    double part = p->mass[i] / p->density[i];
+    double part = p->mass[i] / p->density[i], shear = sph_derived_shear_left(&run->inputs.target.material, d);
     double pressure = p->pressure[i] < 0 ? (1 - d) * p->pressure[i] : p->pressure[i];
-    sum += part * (-pressure + (p->stress[5] ? (1 - d) * p->stress[5][i] : 0));
+    sum += part * (-pressure + (p->stress[5] ? shear * p->stress[5][i] : 0));
     volume += part;
   }
   return volume > 0 ? sum / volume : 0;

@@ -34,12 +34,12 @@ static bool is_left_out(const struct sph_fragments_options *options, const struc
 }
 
 /* Largest tension of the damaged stress, Pa: step 1 compares it with the static strength. */
-static double tension(const struct sph_particles *p, size_t i, double damage) {
+static double tension(const struct sph_particles *p, size_t i, double damage, bool whole_shear) {
   double left = 1 - damage, pressure = p->pressure[i] < 0 ? left * p->pressure[i] : p->pressure[i];
   if (!p->stress[0])
     return -pressure;
-  return left * sph_fracture_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i], p->stress[3][i],
-                                             p->stress[4][i], p->stress[5][i]) -
+  return (whole_shear ? 1 : left) * sph_fracture_largest_tension(p->stress[0][i], p->stress[1][i], p->stress[2][i],
+                                                                 p->stress[3][i], p->stress[4][i], p->stress[5][i]) -
          pressure;
 }
 
@@ -48,7 +48,8 @@ static bool is_unbroken(struct search *s, size_t i) {
   double damage = sph_particles_damage(p, i);
   if (p->damage_cbrt && !(damage < s->options->damage))
     return false;
-  if (!s->options->bodies || !(tension(p, i, damage) > s->options->bodies[p->body[i]].static_strength))
+  if (!s->options->bodies ||
+      !(tension(p, i, damage, s->options->whole_shear) > s->options->bodies[p->body[i]].static_strength))
     return true;
   s->out->broken++;
   return false;

@@ -22,6 +22,7 @@ static const char *const crack_radii[] = {"volume", "support", NULL};
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
 static const char *const curves[] = SPH_POROSITY_CURVES;
+static const char *const strength_laws[] = SPH_PRESSURE_STRENGTH_LAWS;
 static const char *const flaw_lists[] = {"exact", "compact", NULL};
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
@@ -63,6 +64,30 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
    .when = exists,                                                                                                     \
    .doc = SPH_POROSITY_CURVE_DOC " The named material's unless given.",                                                \
    .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
+#define MATERIAL_STRENGTH(B)                                                                                           \
+  {.path = #B ".material.pressure_strength.law",                                                                       \
+   .kind = FIELD_CHOICE,                                                                                               \
+   .offset = offsetof(struct sph_inputs, B.material.pressure_strength.law),                                            \
+   .choices = strength_laws,                                                                                           \
+   .flags = FIELD_DERIVED | FIELD_SILENT_DEFAULT,                                                                      \
+   .choice_docs = SPH_PRESSURE_STRENGTH_LAW_DOCS,                                                                      \
+   .when = #B ".strength=true",                                                                                        \
+   .doc = SPH_PRESSURE_STRENGTH_LAW_DOC " The named material's unless given.",                                         \
+   .source = SPH_PRESSURE_STRENGTH_LAW_SOURCE},
+#define MATERIAL_STRENGTH_ROW(B, member_, unit_, default_, low_, high_, flags_, doc_, source_)                         \
+  {.path = #B ".material." #member_,                                                                                   \
+   .kind = FIELD_REAL,                                                                                                 \
+   .unit = unit_,                                                                                                      \
+   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
+   .minimum = low_,                                                                                                    \
+   .maximum = high_,                                                                                                   \
+   .number = default_,                                                                                                 \
+   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
+   .when = #B ".material.pressure_strength.law=lundborg",                                                              \
+   .doc = doc_ " The named material's value unless given.",                                                            \
+   .source = source_},
+#define TARGET_STRENGTH(...)     MATERIAL_STRENGTH_ROW(target, __VA_ARGS__)
+#define PROJECTILE_STRENGTH(...) MATERIAL_STRENGTH_ROW(projectile, __VA_ARGS__)
 #define TARGET_MATERIAL(...)     MATERIAL_ROW(target, NULL, __VA_ARGS__)
 #define PROJECTILE_MATERIAL(...) MATERIAL_ROW(projectile, "kind=impact", __VA_ARGS__)
 
@@ -132,11 +157,12 @@ static const struct field rows[] = {
                 "back keeps about 3 %."),
     BODY_MATTER(target, NULL, "basalt"),
     SPH_MATERIAL_ROWS(TARGET_MATERIAL) MATERIAL_PORES(target, NULL) SPH_POROSITY_ROWS(TARGET_MATERIAL)
+        MATERIAL_STRENGTH(target) SPH_PRESSURE_STRENGTH_ROWS(TARGET_STRENGTH)
 
-        CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
-               .choice_docs =
-                   "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
-               .doc = "What decides the projectile's size."),
+            CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
+                   .choice_docs =
+                       "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
+                   .doc = "What decides the projectile's size."),
     REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .doc = "Mass of the projectile."),
     REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
          .doc = "Q: kinetic energy of the projectile over the target's mass; its mass follows from that and from the "
@@ -156,11 +182,12 @@ static const struct field rows[] = {
     BODY_SIZES(projectile, 0.0035),
     BODY_MATTER(projectile, "kind=impact", "nylon"),
     SPH_MATERIAL_ROWS(PROJECTILE_MATERIAL) MATERIAL_PORES(projectile, "kind=impact")
-        SPH_POROSITY_ROWS(PROJECTILE_MATERIAL)
+        SPH_POROSITY_ROWS(PROJECTILE_MATERIAL) MATERIAL_STRENGTH(projectile)
+            SPH_PRESSURE_STRENGTH_ROWS(PROJECTILE_STRENGTH)
 
-            REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
-                 .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
-                 .source = "BA95 section 5.1"),
+                REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+                     .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
+                     .source = "BA95 section 5.1"),
     REAL(stretch.grip, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
          .doc = "Length of each end that is held and pulled; a twentieth of the rod unless given, three spacings at "
                 "least."),
