@@ -161,6 +161,30 @@ static void a_name_gives_the_values(void **state) {
   assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
 }
 
+/* The law of yield under pressure is in the identity only where it is on: a run without it is the run that it was. */
+static void pressure_strength(void **state) {
+  (void)state;
+  const struct sph_inputs off = good("kind: impact"),
+                          named = good("target: {material: {pressure_strength: {law: none}}}"),
+                          on = good("target: {material: {pressure_strength: {law: lundborg, broken_friction: 0}}}");
+  char *without = field_identity(&sph_inputs, &off), *none = field_identity(&sph_inputs, &named),
+       *with = field_identity(&sph_inputs, &on);
+  assert_null(strstr(without, "pressure_strength"));
+  assert_string_equal(without, none);
+  assert_non_null(strstr(with, "target.material.pressure_strength.law=lundborg\n"));
+  assert_non_null(strstr(with, "target.material.pressure_strength.broken_friction=0x0p+0\n"));
+  assert_null(strstr(with, "projectile.material.pressure_strength"));
+  free(without);
+  free(none);
+  free(with);
+  const struct sph_pressure_strength *granite = &on.target.material.pressure_strength;
+  assert_true(granite->intact_cohesion == 90e6 && granite->intact_friction == 2 && granite->intact_limit == 1.5e9);
+  assert_true(granite->broken_cohesion == 0 && off.target.material.pressure_strength.broken_friction == 0.8);
+  refused("target: {material: {pressure_strength: {law: lundborg, intact_limit: 90 MPa}}}",
+          "not above intact_cohesion");
+  accepted("target: {material: {pressure_strength: {law: lundborg}}}");
+}
+
 static void missing_values_are_named(void **state) {
   (void)state;
   refused("target: {material: {name: custom, density: 1000}}", "target.material.tillotson.A is needed");
@@ -298,6 +322,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(table_is_whole),
                                      cmocka_unit_test(every_material_is_sound),
                                      cmocka_unit_test(a_name_gives_the_values),
+                                     cmocka_unit_test(pressure_strength),
                                      cmocka_unit_test(missing_values_are_named),
                                      cmocka_unit_test(what_cannot_be_run_is_refused),
                                      cmocka_unit_test(sizes_follow),

@@ -114,7 +114,7 @@ static void triaxial_cell(void **state) {
     print_message("%5.0f MPa: sqrt(J2) %7.1f intact, %7.1f half, %7.1f MPa broken; off by at most %.2g kPa\n",
                   pressures[k] / 1e6, bears[0] / 1e6, bears[1] / 1e6, bears[2] / 1e6,
                   fmax(miss[0], fmax(miss[1], miss[2])) / 1e3);
-    assert_true(bears[2] <= bears[0] + arithmetic()); /* Y_d <= Y_i: binds from 1.3 GPa on */
+    assert_true(bears[2] <= bears[0] + arithmetic()); /* Y_d <= Y_i: binds from 1.23 GPa on */
     assert_true(bears[0] < 1.5e9 + arithmetic());
   }
   print_message("worst %.3g kPa of %.3g\n", worst / 1e3, arithmetic() / 1e3);
