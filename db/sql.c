@@ -108,6 +108,23 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
   return result;
 }
 
+char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second) {
+  sqlite3_stmt *statement = NULL;
+  char *list = sqlite3_mprintf("");
+  if (sqlite3_prepare_v2(db, sql, -1, &statement, NULL) != SQLITE_OK)
+    return list;
+  sql_bind_text(statement, 1, first);
+  if (second)
+    sql_bind_text(statement, 2, second);
+  while (list && sqlite3_step(statement) == SQLITE_ROW) {
+    char *longer = sqlite3_mprintf("%s, \"%w\"", list, sqlite3_column_text(statement, 0));
+    sqlite3_free(list);
+    list = longer;
+  }
+  sqlite3_finalize(statement);
+  return list;
+}
+
 void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text) {
   const char *place = (const char *)object + row->offset;
   switch (row->kind) {

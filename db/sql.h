@@ -24,6 +24,9 @@ status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const 
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
 /* First column of the first row as an integer; `otherwise` when there is no row or it is NULL. */
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
+/* The first column of all rows, each quoted as a name, with a comma before it; first and second are the texts ?1 and ?2
+ * (NULL: there is no ?2). To be freed by sqlite3_free(); NULL when memory is out, empty when the text is no SQL. */
+char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second);
 
 /* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
  * Texts are bound by reference: *object must live until the statement has run. */

@@ -205,20 +205,20 @@ static bool read_linked(struct reading *r, document_node *node) {
   return good;
 }
 
-/* The forms that are mappings: a key tells which form it is. */
+/* The forms that are mappings: the first key tells which form it is. */
 static bool read_form(struct reading *r) {
-  static const char *const forms[] = {"from", "log", "uniform", "log_uniform", "normal", "lognormal", "linked", NULL};
-  static const char *const keys[][4] = {{"from", "to", "n", NULL},
-                                        {"log", "n", NULL},
-                                        {"uniform", NULL},
-                                        {"log_uniform", NULL},
-                                        {"normal", "truncated", NULL},
-                                        {"lognormal", "truncated", NULL},
-                                        {"linked", "factor", "offset", "values"}};
-  int form = -1, found = 0;
+  enum form { SPACED, SPACED_LOG, UNIFORM, UNIFORM_LOG, NORMAL, LOGNORMAL, LINKED, FORMS } form = FORMS;
+  static const char *const keys[FORMS][5] = {[SPACED] = {"from", "to", "n"},
+                                             [SPACED_LOG] = {"log", "n"},
+                                             [UNIFORM] = {"uniform"},
+                                             [UNIFORM_LOG] = {"log_uniform"},
+                                             [NORMAL] = {"normal", "truncated"},
+                                             [LOGNORMAL] = {"lognormal", "truncated"},
+                                             [LINKED] = {"linked", "factor", "offset", "values"}};
+  int found = 0;
   document_node *node = NULL;
-  for (int i = 0; forms[i]; i++) {
-    document_node *here = document_key(r->node, forms[i]);
+  for (enum form i = SPACED; i < FORMS; i++) {
+    document_node *here = document_key(r->node, keys[i][0]);
     if (here) {
       form = i;
       node = here;
@@ -229,29 +229,26 @@ static bool read_form(struct reading *r) {
     return wrong(r, NULL,
                  "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
                  "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
-  const char *known[5] = {NULL};
-  for (int k = 0; k < 4 && keys[form][k]; k++) {
-    known[k] = keys[form][k];
-    document_key(r->node, known[k]); /* marks the keys as known, wherever the reading below may end */
-  }
-  document_unknown_keys(r->node, r->path, known);
-  if (form != 6 && !is_number(r->axis->row))
+  for (int k = 0; keys[form][k]; k++)
+    document_key(r->node, keys[form][k]); /* marks the keys as known, wherever the reading below may end */
+  document_unknown_keys(r->node, r->path, keys[form]);
+  if (form != LINKED && !is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");
   double a = 0, b = 0;
   switch (form) {
-  case 0: {
+  case SPACED: {
     document_node *to = document_key(r->node, "to");
     if (!to)
       return wrong(r, NULL, "'to' is missing");
     return read_own(r, node, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
   }
-  case 1: return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
-  case 2:
-  case 3:
-    r->axis->kind = form == 2 ? DESIGN_AXIS_UNIFORM : DESIGN_AXIS_LOG_UNIFORM;
-    return read_pair(r, node, form == 3, &r->axis->a, &r->axis->b);
-  case 4: return read_normal(r, node);
-  case 5: return read_lognormal(r, node);
+  case SPACED_LOG: return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
+  case UNIFORM:
+  case UNIFORM_LOG:
+    r->axis->kind = form == UNIFORM ? DESIGN_AXIS_UNIFORM : DESIGN_AXIS_LOG_UNIFORM;
+    return read_pair(r, node, form == UNIFORM_LOG, &r->axis->a, &r->axis->b);
+  case NORMAL: return read_normal(r, node);
+  case LOGNORMAL: return read_lognormal(r, node);
   default: return read_linked(r, node);
   }
 }

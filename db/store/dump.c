@@ -48,19 +48,9 @@ static status print_rows(sqlite3 *db, const char *sql, int64_t run_id, const cha
 
 /* The deterministic columns of a table, each with a comma before it. sqlite3_free() it. */
 static char *list_columns(sqlite3 *db, const char *table) {
-  sqlite3_stmt *statement = NULL;
-  char *list = sqlite3_mprintf("");
-  if (sql_prepare(db, "SELECT column_name FROM column_doc WHERE table_name = ?1 AND deterministic ORDER BY column_name",
-                  &statement, doing, NULL) == STATUS_OK) {
-    sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
-    while (list && sqlite3_step(statement) == SQLITE_ROW) {
-      char *longer = sqlite3_mprintf("%s, \"%w\"", list, sqlite3_column_text(statement, 0));
-      sqlite3_free(list);
-      list = longer;
-    }
-  }
-  sqlite3_finalize(statement);
-  return list;
+  return sql_name_list(
+      db, "SELECT column_name FROM column_doc WHERE table_name = ?1 AND deterministic ORDER BY column_name", table,
+      NULL);
 }
 
 /* SELECT `before` and the deterministic columns of `table` for one run. */

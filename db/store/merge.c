@@ -10,24 +10,10 @@ static const char doing[] = "merging";
 /* The columns of a table that both stores have, without the column `but`, each with a comma before it. sqlite3_free()
  * it. */
 static char *common_columns(sqlite3 *db, const char *table, const char *but) {
-  sqlite3_stmt *statement = NULL;
-  char *list = sqlite3_mprintf("");
-  int code =
-      sqlite3_prepare_v2(db,
-                         "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') b "
-                         "USING (name) WHERE name <> ?2",
-                         -1, &statement, NULL);
-  if (code == SQLITE_OK) {
-    sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
-    sqlite3_bind_text(statement, 2, but, -1, SQLITE_STATIC);
-    while (list && sqlite3_step(statement) == SQLITE_ROW) {
-      char *longer = sqlite3_mprintf("%s, \"%w\"", list, sqlite3_column_text(statement, 0));
-      sqlite3_free(list);
-      list = longer;
-    }
-  }
-  sqlite3_finalize(statement);
-  return list;
+  return sql_name_list(db,
+                       "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') b "
+                       "USING (name) WHERE name <> ?2",
+                       table, but);
 }
 
 /* Adds the points, inputs, axes, campaigns and sessions that are missing. The temporary tables merge_point and
