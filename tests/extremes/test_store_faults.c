@@ -18,23 +18,9 @@
 
 #include "db/store/internal.h"
 #include "schemas/clock.h"
-#include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
+#include "tests/support/store_checks.h"
 
 enum { M = 2, K = 2, RUNS = 1500 };
-
-static double number(struct store *store, const char *sql) {
-  double value = 0;
-  OK(query_number(store, sql, 0, NULL, &value, &error));
-  return value;
-}
 
 static status fill(const char *path, int64_t runs, struct error *e) {
   struct store *store = NULL;

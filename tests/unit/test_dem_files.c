@@ -5,24 +5,7 @@
 #include <unistd.h>
 
 #include "engine/dem/run/run.h"
-
-static char folder[] = "/tmp/clast_dem_files_XXXXXX";
-
-static const char *in_folder(const char *name) {
-  static char path[200];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  return rmdir(folder); /* fails when a test or a failed write left anything behind */
-}
+#include "tests/support/folder.h"
 
 static struct dem_inputs small(bool gear) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",

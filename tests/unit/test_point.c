@@ -7,15 +7,7 @@
 
 #include "analysis/analysis.h"
 #include "db/ask/point.h"
-#include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
+#include "tests/support/store_checks.h"
 
 enum { RUNS = 8, FAILED = 3 };
 
@@ -45,15 +37,13 @@ static struct store *fill(char path[64], int64_t *point) {
   return store;
 }
 
-static double number(struct store *store, const char *format, ...) {
+static double number_of(struct store *store, const char *format, ...) {
   char sql[512];
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(sql, sizeof sql, format, arguments);
   va_end(arguments);
-  double value = 0;
-  OK(query_number(store, sql, 0, NULL, &value, &error));
-  return value;
+  return number(store, sql);
 }
 
 /* The same statistics three times: in C from the masses, in the views' plain SQL, and in the question of spectra. */
@@ -86,12 +76,12 @@ static void views_and_c_agree(void **state) {
   assert_near(number(store, "SELECT count(*) FROM spectra"), (double)count, 0);
   for (size_t i = 0; i < count; i++) {
     double width = bins[i].upper - bins[i].lower, n = (double)point.runs.count;
-    double mean = number(store, "SELECT count_mean FROM spectra WHERE bin = %d", bins[i].bin);
-    double scatter = number(store, "SELECT count_sd FROM spectra WHERE bin = %d", bins[i].bin);
-    double error_of_mean = number(store,
-                                  "SELECT pooled_error(runs, count, count_squared) FROM (SELECT %zu AS runs, "
-                                  "count, count_squared FROM point_spectrum WHERE bin = %d)",
-                                  point.runs.count, bins[i].bin);
+    double mean = number_of(store, "SELECT count_mean FROM spectra WHERE bin = %d", bins[i].bin);
+    double scatter = number_of(store, "SELECT count_sd FROM spectra WHERE bin = %d", bins[i].bin);
+    double error_of_mean = number_of(store,
+                                     "SELECT pooled_error(runs, count, count_squared) FROM (SELECT %zu AS runs, "
+                                     "count, count_squared FROM point_spectrum WHERE bin = %d)",
+                                     point.runs.count, bins[i].bin);
     assert_near(mean / width, bins[i].density, 1e-13 * bins[i].density);
     assert_near(scatter / sqrt(n) / width, bins[i].standard_error, 1e-13 * bins[i].density);
     assert_near(error_of_mean / width, bins[i].standard_error, 1e-13 * bins[i].density);

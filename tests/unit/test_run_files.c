@@ -14,25 +14,7 @@
 #include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 #include "engine/restart.h"
-#include "tests/support/sweep.h"
-
-static char folder[] = "/tmp/clast_run_files_XXXXXX";
-
-static const char *in_folder(const char *name) {
-  static char path[200];
-  snprintf(path, sizeof path, "%s/%.100s", folder, name);
-  return path;
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  return sweep(folder); /* whatever a test or a failed write left behind */
-}
+#include "tests/support/folder.h"
 
 static struct dem_inputs disc(bool gear) {
   return DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m", "stop.end_time=1 ms",

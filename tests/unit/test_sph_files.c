@@ -6,24 +6,7 @@
 
 #include "analysis/pictures/picture_cloud.h"
 #include "engine/sph/run/run.h"
-
-static char folder[] = "/tmp/clast_sph_files_XXXXXX";
-
-static const char *in_folder(const char *name) {
-  static char path[200];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  return rmdir(folder); /* fails when a test or a failed write left anything behind */
-}
+#include "tests/support/folder.h"
 
 static struct sph_inputs impact(void) {
   return SPH_CASE("basalt-sphere", "fidelity.particles=700", "stop.end_time=25 us");

@@ -11,15 +11,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "db/store/views.h"
-#include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
+#include "tests/support/store_checks.h"
 
 enum { M = 3, K = 2, RUNS = 25 };
 
@@ -40,12 +32,6 @@ static int forget(void **state) {
   char path[64];
   fixture_path(path, "query");
   return 0;
-}
-
-static double number(struct store *store, const char *sql) {
-  double value = 0;
-  OK(query_number(store, sql, 0, NULL, &value, &error));
-  return value;
 }
 
 struct rows {

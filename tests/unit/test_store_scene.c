@@ -9,15 +9,7 @@
 #include <sqlite3.h>
 
 #include "analysis/statistics/estimates.h"
-#include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
+#include "tests/support/store_checks.h"
 
 static void line(void *context, const char *text) {
   size_t used = strlen(context);

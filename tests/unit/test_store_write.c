@@ -10,21 +10,7 @@
 
 #include "analysis/statistics/spectrum.h"
 #include "db/store/internal.h"
-#include "tests/support/store_fixture.h"
-
-static struct error error;
-#define OK(call)                                                                                                       \
-  do {                                                                                                                 \
-    error.message[0] = 0;                                                                                              \
-    if ((call) != STATUS_OK)                                                                                           \
-      fail_msg("%s: %s", #call, error.message);                                                                        \
-  } while (0)
-
-static double number(struct store *store, const char *sql) {
-  double value = 0;
-  OK(query_number(store, sql, 0, NULL, &value, &error));
-  return value;
-}
+#include "tests/support/store_checks.h"
 
 static struct store *writer(const char *path) {
   struct store *store = NULL;
