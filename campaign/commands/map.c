@@ -5,7 +5,6 @@
 #include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/quantity.h"
-#include "engine/outcome.h"
 
 enum { WIDTH = 900, MOST_GROUPS = 10000 };
 
@@ -82,13 +81,9 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("x", 'x', "AXIS", struct options, x, NULL,
-                    "Varied input on the horizontal axis: a path or its unique ending."),
+    QUANTITY_AXIS_OPTION(struct options, x),
     OPTION_ROW_TEXT("y", 'y', "AXIS", struct options, y, NULL, "Varied input on the vertical axis."),
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
-                    "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "
-                    "point: beta, or "
-                    "beta_METHOD_WINDOW (beta_binned_from_2)."),
+    QUANTITY_OPTION(struct options, quantity),
 };
 
 const struct command map_command = {

@@ -7,7 +7,6 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/quantity.h"
 #include "db/ask/columns.h"
-#include "engine/outcome.h"
 
 enum { WIDTH = 900, MOST_LINES = 8, MOST_MEANS = 1000, RESAMPLES = 1000, LABEL = 600 };
 
@@ -173,14 +172,10 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("x", 'x', "AXIS", struct options, x, NULL,
-                    "Varied input on the horizontal axis: a path or its unique ending."),
+    QUANTITY_AXIS_OPTION(struct options, x),
     OPTION_ROW_TEXT("by", 'b', "AXIS", struct options, by, NULL,
                     "Another varied input, with one line for each of its values, at most 8."),
-    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
-                    "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "
-                    "point: beta, or "
-                    "beta_METHOD_WINDOW (beta_binned_from_2)."),
+    QUANTITY_OPTION(struct options, quantity),
 };
 
 const struct command plot_command = {

@@ -4,7 +4,18 @@
 #define CLAST_CAMPAIGN_COMMANDS_QUANTITY_H
 
 #include "analysis/statistics/exponent.h"
+#include "campaign/terminal/option.h"
 #include "db/ask/query.h"
+#include "engine/outcome.h"
+
+/* Options of both commands: the input on the horizontal axis, and the quantity. */
+#define QUANTITY_AXIS_OPTION(type_, member_)                                                                           \
+  OPTION_ROW_TEXT("x", 'x', "AXIS", type_, member_, NULL,                                                              \
+                  "Varied input on the horizontal axis: a path or its unique ending.")
+#define QUANTITY_OPTION(type_, member_)                                                                                \
+  OPTION_ROW_TEXT("quantity", 'q', "NAME", type_, member_, OUTCOME_DEFAULT,                                            \
+                  "Quantity to draw: a result (a column of the view runs), or an exponent fitted to the runs of a "    \
+                  "point: beta, or beta_METHOD_WINDOW (beta_binned_from_2).")
 
 struct quantity_choice {
   const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */
