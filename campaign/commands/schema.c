@@ -2,17 +2,42 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign_schema.h"
+#include "campaign/document/campaign.h"
 #include "engine/scene.h"
+#include "schemas/json_schema.h"
 
 struct options {
   const char *engine;
 };
 
+/* document/campaign.schema.in.json, embedded by CMakeLists.txt. It holds the keys that have several forms (vary, set,
+ * design, keep, seeds); the plain keys are filled in from their tables. A value stands there as number, string or
+ * boolean: its unit and range are checked by the input's own row when the document is read. */
+extern const char campaign_schema_template[];
+
+/* Writes the part of the template that ends at `mark` and returns what follows the mark. */
+static const char *write_until(const char *text, const char *mark) {
+  const char *end = strstr(text, mark);
+  if (!end)
+    return text;
+  fwrite(text, 1, (size_t)(end - text), stdout);
+  return end + strlen(mark);
+}
+
+static void write_campaign_schema(void) {
+  const char *rest = write_until(campaign_schema_template, "@REQUIRED@");
+  json_schema_required(&campaign_table, stdout);
+  rest = write_until(rest, "@DESIGN@");
+  json_schema_properties(&campaign_design_table, 4, stdout);
+  rest = write_until(rest, "@KEYS@");
+  json_schema_properties(&campaign_table, 2, stdout);
+  fputs(rest, stdout);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (strcmp(line->arguments[0], "campaign") == 0) {
-    campaign_schema_write(stdout);
+    write_campaign_schema();
     return STATUS_OK;
   }
   if (strcmp(line->arguments[0], "scene") != 0)

@@ -95,18 +95,10 @@ static status introduce(struct farm *farm, struct error *error) {
   return STATUS_OK;
 }
 
-status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
-  const int64_t start = clock_ns();
-  status result = STATUS_MEMORY;
-  struct farm *farm = calloc(1, sizeof *farm);
-  if (!farm)
-    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
-  *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
-  struct farm_options *const o = &farm->options;
-  if (o->slots < 0 || o->slots > 4096) {
-    result = status_fail(error, STATUS_USAGE, "%d slots asked for: from 1 to 4096, or 0 for one per core", o->slots);
-    goto cleanup;
-  }
+/* Fills in what the caller left at zero. */
+static status complete_options(struct farm_options *o, struct error *error) {
+  if (o->slots < 0 || o->slots > 4096)
+    return status_fail(error, STATUS_USAGE, "%d slots asked for: from 1 to 4096, or 0 for one per core", o->slots);
   if (o->slots == 0)
     o->slots = o->use_mpi ? 1 : usable_cores();
   if (!(o->grace_s > 0))
@@ -115,7 +107,19 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
     o->drain_s = 120;
   if (!(o->lost_after_s > 0))
     o->lost_after_s = 60;
-  result = farm_pool_start(o, work, &farm->pool, error); /* forks: before MPI and its threads */
+  return STATUS_OK;
+}
+
+status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error) {
+  const int64_t start = clock_ns();
+  struct farm *farm = calloc(1, sizeof *farm);
+  if (!farm)
+    return status_fail(error, STATUS_MEMORY, "no memory for the farm");
+  *farm = (struct farm){.options = *options, .ranks = 1, .signals = -1};
+  struct farm_options *const o = &farm->options;
+  status result = complete_options(o, error);
+  if (result == STATUS_OK)
+    result = farm_pool_start(o, work, &farm->pool, error); /* forks: before MPI and its threads */
   if (result == STATUS_OK)
     result = watch_signals(farm, error);
   if (result != STATUS_OK)

@@ -138,12 +138,8 @@ static bool overtakes(const struct farm_link *link, const struct message *messag
   return false;
 }
 
-status farm_link_drain(struct farm_link *link,
-                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
-                                      struct error *error),
-                       void *context, int *count, struct error *error) {
-  status result = STATUS_OK;
-  *count = 0;
+static int drop_sent(struct farm_link *link) {
+  int count = 0;
   for (struct message **at = &link->sending; *at;) {
     struct message *message = *at;
     if (!done(message)) {
@@ -153,8 +149,17 @@ status farm_link_drain(struct farm_link *link,
     *at = message->next;
     farm_frame_free(&message->bytes);
     free(message);
-    ++*count;
+    count++;
   }
+  return count;
+}
+
+status farm_link_drain(struct farm_link *link,
+                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                                      struct error *error),
+                       void *context, int *count, struct error *error) {
+  status result = STATUS_OK;
+  *count = drop_sent(link);
   for (bool any = true; any;) {
     result = receive(link, &any, error);
     if (result != STATUS_OK)

@@ -52,15 +52,34 @@ static status check(const struct sph_body *bodies, size_t count, struct error *e
   return STATUS_OK;
 }
 
+/* The particles of body b, at its points and from the index `first` on. */
+static struct sph_range fill(const struct sph_body *body, size_t b, const struct sph_points *from, size_t first,
+                             struct sph_particles *p) {
+  const double wide = isnan(body->h_over_spacing) ? SPH_BODIES_H : body->h_over_spacing;
+  struct sph_range range = {.first = first, .n = from->n, .spacing = from->spacing, .nearest = from->nearest};
+  range.h = wide * from->spacing;
+  range.mass = body->density * sph_shape_volume(&body->shape);
+  for (size_t i = 0; i < from->n; i++) {
+    const double share = from->share ? from->share[i] : 1;
+    p->x[first + i] = from->x[i];
+    p->y[first + i] = from->y[i];
+    p->z[first + i] = from->z[i];
+    p->mass[first + i] = range.mass / (double)from->n * share;
+    p->density[first + i] = body->density;
+    p->h[first + i] = range.h * (from->share ? cbrt(share) : 1);
+    p->body[first + i] = (uint8_t)b;
+  }
+  return range;
+}
+
 status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, struct sph_particles **out,
                        struct sph_range *ranges, struct error *error) {
   *out = NULL;
-  struct sph_points *points = NULL;
   struct sph_particles *p = NULL;
   status code = check(bodies, count, error);
   if (code)
     return code;
-  points = calloc(count, sizeof *points);
+  struct sph_points *points = calloc(count, sizeof *points);
   if (!points)
     return status_fail(error, STATUS_MEMORY, "no memory for %zu bodies", count);
   size_t n = 0;
@@ -75,24 +94,10 @@ status sph_bodies_make(const struct sph_body *bodies, size_t count, int arrays, 
     goto cleanup;
   size_t first = 0;
   for (size_t b = 0; b < count; b++) {
-    const struct sph_points *from = &points[b];
-    const double wide = isnan(bodies[b].h_over_spacing) ? SPH_BODIES_H : bodies[b].h_over_spacing;
-    struct sph_range range = {.first = first, .n = from->n, .spacing = from->spacing, .nearest = from->nearest};
-    range.h = wide * from->spacing;
-    range.mass = bodies[b].density * sph_shape_volume(&bodies[b].shape);
-    for (size_t i = 0; i < from->n; i++) {
-      const double share = from->share ? from->share[i] : 1;
-      p->x[first + i] = from->x[i];
-      p->y[first + i] = from->y[i];
-      p->z[first + i] = from->z[i];
-      p->mass[first + i] = range.mass / (double)from->n * share;
-      p->density[first + i] = bodies[b].density;
-      p->h[first + i] = range.h * (from->share ? cbrt(share) : 1);
-      p->body[first + i] = (uint8_t)b;
-    }
+    const struct sph_range range = fill(&bodies[b], b, &points[b], first, p);
     if (ranges)
       ranges[b] = range;
-    first += from->n;
+    first += range.n;
   }
   *out = p;
 cleanup:

@@ -274,21 +274,21 @@ static struct sph_shape hull(const struct sph_shape *s) {
   return h;
 }
 
-/* The depth of overlap is the least push along any direction that separates two hulls. Tries the directions of faces
- * and edges and a cover of the sphere, then searches about the best. */
-static double depth(const struct sph_shape *a, const struct sph_shape *b) {
-  double try[64][3], fa[3][3], fb[3][3], d[3];
-  int count = 0;
+enum { DIRECTIONS = 64 };
+
+/* Directions that may separate two hulls, of any length: those of faces and edges, of the centres (d), and a cover of
+ * the sphere. */
+static void directions(const struct sph_shape *a, const struct sph_shape *b, const double d[3],
+                       double try[DIRECTIONS][3]) {
+  double fa[3][3], fb[3][3];
   sph_shape_frame(a, fa);
   sph_shape_frame(b, fb);
-  for (int k = 0; k < 3; k++)
-    d[k] = b->centre[k] - a->centre[k];
   for (int i = 0; i < 3; i++)
     for (int k = 0; k < 3; k++) {
       try[i][k] = fa[k][i];
       try[3 + i][k] = fb[k][i];
     }
-  count = 6;
+  int count = 6;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++, count++)
       for (int k = 0; k < 3; k++)
@@ -296,15 +296,23 @@ static double depth(const struct sph_shape *a, const struct sph_shape *b) {
   for (int k = 0; k < 3; k++)
     try[count][k] = d[k];
   count++;
-  for (int i = 0; count < 64; i++, count++) { /* an even cover of half the sphere */
+  for (int i = 0; count < DIRECTIONS; i++, count++) { /* an even cover of half the sphere */
     const double z = (i + 0.5) / 48, across = sqrt(1 - z * z), turn = 2.399963229728653 * i;
     try[count][0] = across * cos(turn);
     try[count][1] = across * sin(turn);
     try[count][2] = z;
   }
-  double best = -INFINITY, u[3] = {0, 0, 1}, v[3];
+}
+
+/* The depth of overlap is the least push along any direction that separates two hulls. Tries some directions, then
+ * searches about the best. */
+static double depth(const struct sph_shape *a, const struct sph_shape *b) {
+  double try[DIRECTIONS][3], d[3], best = -INFINITY, u[3] = {0, 0, 1}, v[3];
+  for (int k = 0; k < 3; k++)
+    d[k] = b->centre[k] - a->centre[k];
+  directions(a, b, d, try);
 #define PART(v) (fabs(dot(v, d)) - sph_shape_reach(a, v) - sph_shape_reach(b, v))
-  for (int i = 0; i < count; i++)
+  for (int i = 0; i < DIRECTIONS; i++)
     if (unit(try[i], v) > 1e-9 && PART(v) > best) {
       best = PART(v);
       for (int k = 0; k < 3; k++)
