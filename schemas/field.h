@@ -47,8 +47,9 @@ struct field {
                        * active only then; given otherwise, it is refused */
   const char *doc;    /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
-  int main_rank; /* results only: place among the main results, from 1; 0: not a main result. A change of them needs
-                  * a migration of table run (its CHECK and its index) */
+  int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
+                  * and the index of table run that they were made with: a step of db/store/migrate.c would renew them
+                  */
 };
 
 struct field_table {

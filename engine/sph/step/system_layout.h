@@ -111,7 +111,7 @@ struct sph_progress {
 struct sph_ranges; /* ranges.h */
 
 struct sph_system {
-  struct sph_inputs in; /* viscosity, method, fracture and fidelity of it */
+  struct sph_inputs in; /* a copy of all; the step itself reads viscosity, method, fracture and fidelity */
   struct sph_domain domain;
   double highest_h; /* over its first value: SPH_HIGHEST_H, or less in a thin periodic box */
   struct sph_progress now;
