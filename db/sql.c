@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 static const char *remedy(int code) {
   switch (code & 0xff) {
   case SQLITE_FULL:
@@ -209,8 +211,7 @@ static char *insert_sql(const struct sql_insert *insert, const char *table) {
       fputs(", ?", out);
   }
   fputs(")", out);
-  fclose(out);
-  return sql;
+  return text_close(out, &sql);
 }
 
 status sql_insert_prepare(sqlite3 *db, struct sql_insert *insert, const char *table, size_t column_count,

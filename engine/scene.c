@@ -255,11 +255,7 @@ char *scene_json(const struct scene *scene) {
   fputc(',', out);
   field_json_members(scene->kind->inputs, scene->inputs, out);
   fputc('}', out);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }
 
 void scene_schema(const struct engine_kind *kind, FILE *out) {

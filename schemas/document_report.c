@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/text.h"
 
 enum { SHOWN = 120, BEFORE = 70 }; /* bytes of a long line that are shown, and of these before the error */
 
@@ -161,11 +162,7 @@ char *document_report_text(struct document *document) {
   if (shown < document->error_count)
     fprintf(out, "%.60s: error: and %zu more; correct the ones above first\n", document->name,
             document->error_count - shown);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  if (size && text[size - 1] == '\n')
+  if (text_close(out, &text) && size && text[size - 1] == '\n')
     text[size - 1] = 0; /* messages end without a line end */
   return text;
 }

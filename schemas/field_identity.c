@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "schemas/field.h"
+#include "schemas/text.h"
 
 static int by_path(const void *a, const void *b) {
   const struct field *const *left = a, *const *right = b;
@@ -70,9 +71,5 @@ char *field_identity(const struct field_table *table, const void *object) {
     fputc('\n', out);
   }
   free(rows);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }

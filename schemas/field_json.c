@@ -1,7 +1,6 @@
 /* An object as nested JSON. */
 #include <inttypes.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "schemas/field.h"
@@ -67,9 +66,5 @@ char *field_json(const struct field_table *table, const void *object) {
   fputc('{', out);
   write_level(table, object, "", 0, out);
   fputc('}', out);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }

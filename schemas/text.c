@@ -3,6 +3,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 static size_t utf8_claimed_length(unsigned char first) {
@@ -57,6 +58,14 @@ void text_json_string(const char *text, FILE *out) {
     left -= length;
   }
   fputc('"', out);
+}
+
+char *text_close(FILE *out, char **text) {
+  if (fclose(out) != 0) {
+    free(*text);
+    *text = NULL;
+  }
+  return *text;
 }
 
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out) {

@@ -13,6 +13,10 @@ size_t text_utf8_length(const char *text, size_t left);
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 
+/* Closes the stream that open_memstream made for *text. Returns the text, which the caller frees; NULL (and *text is
+ * freed and NULL) when memory ran out. */
+char *text_close(FILE *out, char **text);
+
 /* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The
  * cursor is at column `at`, which is at most `indent`. */
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out);

@@ -294,9 +294,5 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   fputs(", \"model\": ", out);
   text_json_string(plan->model ? plan->model : "", out);
   fputs("}\n", out);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }

@@ -74,9 +74,5 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
     text_json_string(argv[i], out);
   }
   fputs("]}", out);
-  if (fclose(out) != 0) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }

@@ -130,8 +130,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   for (size_t i = 0; i < axes->count; i++)
     fprintf(out, "\"%s\", ", axes->name[i]);
   fputs("engine, results_version", out);
-  fclose(out);
-  return sql;
+  return text_close(out, &sql);
 }
 
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,

@@ -3,6 +3,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "schemas/text.h"
 
 static const char writing[] = "writing estimates";
 
@@ -74,8 +75,7 @@ static char *prefix_sql(int64_t point_id, int64_t prefix) {
   fprintf(out, "UPDATE run SET surplus = replicate >= %lld, counts = ", (long long)prefix);
   schema_write_counts(inside, out);
   fprintf(out, " WHERE point_id = %lld AND surplus <> (replicate >= %lld)", (long long)point_id, (long long)prefix);
-  fclose(out);
-  return sql;
+  return text_close(out, &sql);
 }
 
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error) {

@@ -5,6 +5,7 @@
 
 #include "engine/dem/lattice/assemble.h"
 #include "engine/dem/run/run.h"
+#include "schemas/text.h"
 
 enum { MEASURED_UP_TO = 20000 }; /* grains; larger bodies are not built for a description */
 
@@ -155,9 +156,5 @@ char *dem_describe_scene(const struct dem_inputs *in) {
   else
     body(in, out);
   fprintf(out, "  at most %.3g steps of %.3g grains\n", dem_inputs_end_time(in) / in->fidelity.time_step, grains);
-  if (fclose(out)) {
-    free(text);
-    return NULL;
-  }
-  return text;
+  return text_close(out, &text);
 }
