@@ -45,8 +45,7 @@ static status run(const struct command_line *line, struct error *error) {
   }
 
   struct table *table = table_new(format, stdout);
-  table_column(table, "what", NULL);
-  table_column(table, "source", NULL);
+  table_columns(table, (const char *const[]){"what", "source", NULL});
   table_text(table, scene->kind->name);
   table_text(table, scene->kind->doc);
   for (size_t i = 0; i < scene->kind->inputs->count; i++)

@@ -87,8 +87,7 @@ static void headings(struct printing *printing) {
   table_column(table, "failed", NULL);
   table_column(table, people ? "M_1/M" : "largest_fraction_mean", NULL);
   table_column(table, people ? "+-95%" : "largest_fraction_hw95", NULL);
-  table_column(table, "window", NULL);
-  table_column(table, "fragments", NULL);
+  table_columns(table, (const char *const[]){"window", "fragments", NULL});
   for (int m = 0; m < METHODS; m++) {
     char name[64];
     const char *method = exponent_method_names[methods[m]];

@@ -71,11 +71,7 @@ static status list_paths(const struct explain_options *options, struct error *er
   const struct field_table *list[TABLES_MAXIMUM];
   size_t count = tables(list);
   struct table *table = table_new(format, stdout);
-  table_column(table, "of", NULL);
-  table_column(table, "path", NULL);
-  table_column(table, "unit", NULL);
-  table_column(table, "default", NULL);
-  table_column(table, "meaning", NULL);
+  table_columns(table, (const char *const[]){"of", "path", "unit", "default", "meaning", NULL});
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < list[i]->count; k++) {
       const struct field *row = &list[i]->rows[k];
@@ -129,10 +125,7 @@ static void explain_inputs(const struct scene *scene, FILE *out) {
 static status list_inputs(const struct scene *scene, enum table_format format, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
   struct table *table = table_new(format, stdout);
-  table_column(table, "path", NULL);
-  table_column(table, "value", NULL);
-  table_column(table, "unit", NULL);
-  table_column(table, "meaning", NULL);
+  table_columns(table, (const char *const[]){"path", "value", "unit", "meaning", NULL});
   for (size_t i = 0; i < inputs->count; i++)
     if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
       results_row(table, &inputs->rows[i], scene->inputs);

@@ -16,9 +16,7 @@ struct options {
 
 static status list_canned(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);
-  table_column(table, "name", NULL);
-  table_column(table, "with", NULL);
-  table_column(table, "answers", NULL);
+  table_columns(table, (const char *const[]){"name", "with", "answers", NULL});
   if (format != TABLE_TEXT)
     table_column(table, "sql", NULL);
   for (size_t i = 0; i < ask_canned_count(); i++) {

@@ -45,9 +45,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
                                 const struct run_result *result, enum table_format format,
                                 struct replay_compare *comparison, struct error *error) {
   struct table *table = table_new(format, stdout);
-  table_column(table, "result", NULL);
-  table_column(table, "stored", NULL);
-  table_column(table, "recomputed", NULL);
+  table_columns(table, (const char *const[]){"result", "stored", "recomputed", NULL});
   status code = replay_compare(store, run_id, kind, result, table, comparison, error);
   if (format == TABLE_TEXT && comparison->different == 0) {
     table_drop(table);

@@ -55,8 +55,7 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
   const struct field_table *tables[] = {&outcome_table, kind->results};
   const void *objects[] = {&result->outcome, result->result};
   struct table *table = table_new(format, stdout);
-  table_column(table, "engine", NULL);
-  table_column(table, "seed", NULL);
+  table_columns(table, (const char *const[]){"engine", "seed", NULL});
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
       heading(table, &tables[t]->rows[i]);
@@ -83,10 +82,7 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
 
 static status print_long(const struct engine_kind *kind, const struct run_result *result, struct error *error) {
   struct table *table = table_new(TABLE_TEXT, stdout);
-  table_column(table, "result", NULL);
-  table_column(table, "value", NULL);
-  table_column(table, "unit", NULL);
-  table_column(table, "meaning", NULL);
+  table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
   list(table, &outcome_table, &result->outcome);
   list(table, kind->results, result->result);
   status code = table_end(table, error);
@@ -94,11 +90,7 @@ static status print_long(const struct engine_kind *kind, const struct run_result
     return code;
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
   table = table_new(TABLE_TEXT, stdout);
-  table_column(table, "method", NULL);
-  table_column(table, "window", NULL);
-  table_column(table, "fragments", NULL);
-  table_column(table, "beta", NULL);
-  table_column(table, "error", NULL);
+  table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", "error", NULL});
   for (size_t i = 0; i < result->estimate_count; i++) {
     table_text(table, exponent_method_names[result->estimates[i].fit.method]);
     table_text(table, estimates_window_names[result->estimates[i].window]);

@@ -38,9 +38,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code ? code : status_fail(error, STATUS_USAGE, "%s is a file, not a built-in scene", line->arguments[0]);
   }
   struct table *table = table_new(format, stdout);
-  table_column(table, "name", NULL);
-  table_column(table, "engine", NULL);
-  table_column(table, "what", NULL);
+  table_columns(table, (const char *const[]){"name", "engine", "what", NULL});
   for (size_t i = 0; !code && i < scene_builtin_count(); i++) {
     struct scene *scene = NULL;
     char what[256];

@@ -74,6 +74,11 @@ void table_column(struct table *table, const char *name, const char *unit) {
   table->column_count++;
 }
 
+void table_columns(struct table *table, const char *const *names) {
+  for (; *names; names++)
+    table_column(table, *names, NULL);
+}
+
 /* Characters, not bytes: continuation bytes of UTF-8 do not count. */
 static size_t width_of(const char *text) {
   size_t width = 0;

@@ -22,6 +22,8 @@ struct table *table_new(enum table_format format, FILE *out);
 
 /* Before the first cell. unit: NULL or "1" for none. Texts are copied. */
 void table_column(struct table *table, const char *name, const char *unit);
+/* Several without a unit; NULL ends the names. */
+void table_columns(struct table *table, const char *const *names);
 
 void table_text(struct table *table, const char *text); /* NULL: missing */
 void table_real(struct table *table, double number);
