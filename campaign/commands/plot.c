@@ -97,8 +97,8 @@ static void label_lines(struct plot *plot, const char *by) {
   const bool two = plot->quantity.axes == 2;
   for (size_t i = 0; i < plot->count; i++) {
     struct line *line = &plot->line[i];
-    char input[sizeof line->value + 400] = "";
     char version[40] = "";
+    char input[LABEL - sizeof version] = "";
     if (two && *line->value)
       snprintf(input, sizeof input, "%s = %s", by, line->value);
     else if (two)
