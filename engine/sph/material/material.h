@@ -2,13 +2,25 @@
  * that are on decide which of them a scene needs; a value that is not given is NaN, and the module that needs it
  * refuses it.
  *
- * To add a value: a member of struct sph_material (or of a struct in it) and a row. SPH_MATERIAL_ROWS(R) is R(member,
- * unit, minimum, maximum, flags, need, doc, source) for every one. The documents of engine/sph/material/builtin/ are
- * read through them (materials.c), and each body of a scene has them as inputs (scene/inputs.c), there with the named
- * material's values as defaults. `need` says what needs the value: ALWAYS, STRENGTH, FRACTURE, POROSITY, TWO_POWER (a
- * crush curve). Flags: OFF, it may be off; LOG; ABOVE its minimum. */
+ * To add a value or a choice: a member of struct sph_material (or of a struct in it) and a row, both here. The
+ * documents of engine/sph/material/builtin/ are read through the rows (materials.c), and each body of a scene has them
+ * as inputs (scene/inputs.c), there with the named material's values as defaults. SPH_MATERIAL_ROWS(VALUE, CHOICE,
+ * CHOICE_VALUE) has every row, of one of three kinds:
+ *
+ * VALUE(member, unit, minimum, maximum, flags, need, doc, source): a number.
+ *
+ * CHOICE(member, choices, flags, need, name, choice_docs, doc, source): a word. The first one is the default, and no
+ * value counts with it. `name` is what messages call the choice.
+ *
+ * CHOICE_VALUE(member, unit, default, minimum, maximum, flags, when, doc, source): a number that counts only with
+ * certain words of a choice: `when` is "path=word|word". With default NAN the material must give it.
+ *
+ * `need` says which bodies use it: ALWAYS, STRENGTH, FRACTURE. Flags: OFF, it may be off; ABOVE its minimum; SILENT, a
+ * choice that came later (FIELD_SILENT_DEFAULT). */
 #ifndef CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
 #define CLAST_ENGINE_SPH_MATERIAL_MATERIAL_H
+
+#include <math.h>
 
 #include "schemas/field.h"
 
@@ -64,117 +76,118 @@ struct sph_material {
   struct sph_pressure_strength pressure_strength;
 };
 
-#define SPH_MATERIAL_OFF   FIELD_MAY_BE_OFF
-#define SPH_MATERIAL_ABOVE FIELD_ABOVE_MINIMUM
+#define SPH_MATERIAL_OFF          FIELD_MAY_BE_OFF
+#define SPH_MATERIAL_ABOVE        FIELD_ABOVE_MINIMUM
+#define SPH_MATERIAL_SILENT       FIELD_SILENT_DEFAULT
+#define SPH_MATERIAL_CHOICES(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-#define SPH_MATERIAL_ROWS(R)                                                                                           \
-  R(density, "kg/m^3", 1e-3, 1e6, 0, ALWAYS, "rho_0: density at rest.", NULL)                                          \
-  R(tillotson.A, "Pa", 1, 1e15, 0, ALWAYS, "Tillotson's A: bulk modulus at rest.",                                     \
-    "Tillotson 1962; Melosh 1989, appendix II")                                                                        \
-  R(tillotson.B, "Pa", 0, 1e15, 0, ALWAYS, "Tillotson's B: quadratic term in compression.",                            \
-    "Melosh 1989, appendix II")                                                                                        \
-  R(tillotson.a, "1", 0, 100, 0, ALWAYS,                                                                               \
-    "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure "                                      \
-    "does not depend on energy.",                                                                                      \
-    "Melosh 1989, appendix II")                                                                                        \
-  R(tillotson.b, "1", 0, 100, 0, ALWAYS, "Tillotson's b: a + b is the Grueneisen coefficient at rest.",                \
-    "Melosh 1989, appendix II")                                                                                        \
-  R(tillotson.alpha, "1", 0, 1e3, 0, ALWAYS, "Tillotson's alpha: decay in hot expansion.", "Melosh 1989, appendix II") \
-  R(tillotson.beta, "1", 0, 1e3, 0, ALWAYS, "Tillotson's beta: decay in hot expansion.", "Melosh 1989, appendix II")   \
-  R(tillotson.E0, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Tillotson's reference energy.", "Melosh 1989, appendix II")          \
-  R(tillotson.E_iv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of incipient vaporisation.", "Melosh 1989, appendix II")    \
-  R(tillotson.E_cv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of complete vaporisation, above E_iv.",                     \
-    "Melosh 1989, appendix II")                                                                                        \
-  R(bulk_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,                                                           \
-    "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",                             \
-    "Benz & Asphaug 1995, eq. 21")                                                                                     \
-  R(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH, "mu: shear modulus.", "Benz & Asphaug 1995, eq. 6")      \
-  R(yield_stress, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, STRENGTH,                                      \
-    "Y_0: von Mises yield stress of cold matter; with pores of the solid between them, and the porous body yields at " \
-    "Y_0/alpha. off: elastic at any stress.",                                                                          \
-    "Benz & Asphaug 1995, eq. 9; Jutzi, Benz & Michel 2008")                                                           \
-  R(melt_energy, "J/kg", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,                                                          \
-    "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",               \
-    "Benz & Asphaug 1995, section 2")                                                                                  \
-  R(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF, ALWAYS,                                                            \
-    "Largest tension of matter without flaws (lowest pressure is minus this). It falls with expansion, to none at "    \
-    "0.9 of "                                                                                                          \
-    "the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) of it. With pores it is that of the porous "  \
-    "body, as strengths are measured (our choice); of the solid's value give that over alpha_0. off: no limit, down "  \
-    "to "                                                                                                              \
-    "-A and beyond.",                                                                                                  \
-    NULL)                                                                                                              \
-  R(weibull.m, "1", 1, 200, SPH_MATERIAL_OFF, FRACTURE,                                                                \
-    "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all flaws alike. off: "   \
-    "no "                                                                                                              \
-    "flaws.",                                                                                                          \
-    "Benz & Asphaug 1995, eq. 11")                                                                                     \
-  R(weibull.k, "1/m^3", 1, 1e200, SPH_MATERIAL_OFF, FRACTURE,                                                          \
-    "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.", "Benz & Asphaug 1995, eq. 11")
+/* The solid itself. */
+#define SPH_SOLID_ROWS(VALUE)                                                                                          \
+  VALUE(density, "kg/m^3", 1e-3, 1e6, 0, ALWAYS, "rho_0: density at rest.", NULL)                                      \
+  VALUE(tillotson.A, "Pa", 1, 1e15, 0, ALWAYS, "Tillotson's A: bulk modulus at rest.",                                 \
+        "Tillotson 1962; Melosh 1989, appendix II")                                                                    \
+  VALUE(tillotson.B, "Pa", 0, 1e15, 0, ALWAYS, "Tillotson's B: quadratic term in compression.",                        \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.a, "1", 0, 100, 0, ALWAYS,                                                                           \
+        "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure does not depend on energy.",       \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.b, "1", 0, 100, 0, ALWAYS, "Tillotson's b: a + b is the Grueneisen coefficient at rest.",            \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.alpha, "1", 0, 1e3, 0, ALWAYS, "Tillotson's alpha: decay in hot expansion.",                         \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.beta, "1", 0, 1e3, 0, ALWAYS, "Tillotson's beta: decay in hot expansion.",                           \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.E0, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Tillotson's reference energy.", "Melosh 1989, appendix II")      \
+  VALUE(tillotson.E_iv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of incipient vaporisation.",                            \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(tillotson.E_cv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of complete vaporisation, above E_iv.",                 \
+        "Melosh 1989, appendix II")                                                                                    \
+  VALUE(bulk_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,                                                       \
+        "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",                         \
+        "Benz & Asphaug 1995, eq. 21")                                                                                 \
+  VALUE(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH, "mu: shear modulus.", "Benz & Asphaug 1995, eq. 6")  \
+  VALUE(yield_stress, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, STRENGTH,                                  \
+        "Y_0: von Mises yield stress of cold matter; with pores of the solid between them, and the porous body "       \
+        "yields at Y_0/alpha. off: elastic at any stress.",                                                            \
+        "Benz & Asphaug 1995, eq. 9; Jutzi, Benz & Michel 2008")                                                       \
+  VALUE(melt_energy, "J/kg", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,                                                      \
+        "Energy at which the yield stress has fallen to zero, linearly. off: it does not depend on energy.",           \
+        "Benz & Asphaug 1995, section 2")                                                                              \
+  VALUE(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF, ALWAYS,                                                        \
+        "Largest tension of matter without flaws (lowest pressure is minus this). It falls with expansion, to none "   \
+        "at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) of it. With pores it is that "  \
+        "of the porous body, as strengths are measured (our choice); of the solid's value give that over alpha_0. "    \
+        "off: no limit, down to -A and beyond.",                                                                       \
+        NULL)                                                                                                          \
+  VALUE(weibull.m, "1", 1, 200, SPH_MATERIAL_OFF, FRACTURE,                                                            \
+        "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all flaws alike. "    \
+        "off: no flaws.",                                                                                              \
+        "Benz & Asphaug 1995, eq. 11")                                                                                 \
+  VALUE(weibull.k, "1/m^3", 1, 1e200, SPH_MATERIAL_OFF, FRACTURE,                                                      \
+        "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.", "Benz & Asphaug 1995, eq. 11")
 
-/* Pores (P-alpha): the values that go with the choice porosity.curve. */
-#define SPH_POROSITY_ROWS(R)                                                                                           \
-  R(porosity.distention, "1", 1, 100, 0, POROSITY,                                                                     \
-    "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the bit. In a "      \
-    "scene "                                                                                                           \
-    "porosity.fraction may be given instead.",                                                                         \
-    "Herrmann 1969")                                                                                                   \
-  R(porosity.fraction, "1", 0, 0.99, SPH_MATERIAL_OFF, POROSITY,                                                       \
-    "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)                     \
-  R(porosity.elastic_pressure, "Pa", 0, 1e15, 0, POROSITY, "P_e: from here on pores are crushed for good.",            \
-    "Jutzi, Benz & Michel 2008")                                                                                       \
-  R(porosity.solid_pressure, "Pa", 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY, "P_s: from here on all pores are closed.",   \
-    "Jutzi, Benz & Michel 2008")                                                                                       \
-  R(porosity.sound_speed, "m/s", 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, POROSITY,                              \
-    "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way elastically, and "    \
-    "the "                                                                                                             \
-    "solid's speed is taken.",                                                                                         \
-    "Herrmann 1969; Jutzi, Benz & Michel 2008")                                                                        \
-  R(porosity.elastic_distention, "1", 1, 100, SPH_MATERIAL_ABOVE, TWO_POWER,                                           \
-    "alpha_e: where the crush curve begins, at P_e. A body of lower alpha_0 keeps it until it meets the curve.",       \
-    "Jutzi et al. 2009")                                                                                               \
-  R(porosity.transition_distention, "1", 1, 100, 0, TWO_POWER,                                                         \
-    "alpha_t: below it, and above P_t, the first power law "                                                           \
-    "has ended.",                                                                                                      \
-    "Jutzi et al. 2009")                                                                                               \
-  R(porosity.transition_pressure, "Pa", 0, 1e15, SPH_MATERIAL_ABOVE, TWO_POWER,                                        \
-    "P_t: where the first power law ends.", "Jutzi et al. 2009")                                                       \
-  R(porosity.exponent_low, "1", 1, 100, 0, TWO_POWER, "n1: exponent of the law between P_e and P_t.",                  \
-    "Jutzi et al. 2009")                                                                                               \
-  R(porosity.exponent_high, "1", 1, 100, 0, TWO_POWER, "n2: exponent of the law up to P_s.", "Jutzi et al. 2009")
+/* Pores (P-alpha). */
+#define SPH_POROSITY_ON        "porosity.curve=quadratic|two-power"
+#define SPH_POROSITY_TWO_POWER "porosity.curve=two-power"
+#define SPH_POROSITY_ROWS(CHOICE, CHOICE_VALUE)                                                                        \
+  CHOICE(porosity.curve, SPH_MATERIAL_CHOICES("none", "quadratic", "two-power"), 0, ALWAYS, "crush curve",             \
+         "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"                                              \
+         "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",                    \
+         "Crush curve: how pores far below the resolution close under pressure (P-alpha).",                            \
+         "Herrmann 1969; Jutzi, Benz & Michel 2008")                                                                   \
+  CHOICE_VALUE(porosity.distention, "1", NAN, 1, 100, 0, SPH_POROSITY_ON,                                              \
+               "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "     \
+               "bit. In a scene porosity.fraction may be given instead.",                                              \
+               "Herrmann 1969")                                                                                        \
+  CHOICE_VALUE(porosity.fraction, "1", NAN, 0, 0.99, SPH_MATERIAL_OFF, SPH_POROSITY_ON,                                \
+               "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)          \
+  CHOICE_VALUE(porosity.elastic_pressure, "Pa", NAN, 0, 1e15, 0, SPH_POROSITY_ON,                                      \
+               "P_e: from here on pores are crushed for good.", "Jutzi, Benz & Michel 2008")                           \
+  CHOICE_VALUE(porosity.solid_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, SPH_POROSITY_ON,                       \
+               "P_s: from here on all pores are closed.", "Jutzi, Benz & Michel 2008")                                 \
+  CHOICE_VALUE(porosity.sound_speed, "m/s", NAN, 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, SPH_POROSITY_ON,       \
+               "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "          \
+               "elastically, and the solid's speed is taken.",                                                         \
+               "Herrmann 1969; Jutzi, Benz & Michel 2008")                                                             \
+  CHOICE_VALUE(                                                                                                        \
+      porosity.elastic_distention, "1", NAN, 1, 100, SPH_MATERIAL_ABOVE, SPH_POROSITY_TWO_POWER,                       \
+      "alpha_e: where the crush curve begins, at P_e. A body of lower alpha_0 keeps it until it meets the curve.",     \
+      "Jutzi et al. 2009")                                                                                             \
+  CHOICE_VALUE(porosity.transition_distention, "1", NAN, 1, 100, 0, SPH_POROSITY_TWO_POWER,                            \
+               "alpha_t: below it, and above P_t, the first power law has ended.", "Jutzi et al. 2009")                \
+  CHOICE_VALUE(porosity.transition_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, SPH_POROSITY_TWO_POWER,           \
+               "P_t: where the first power law ends.", "Jutzi et al. 2009")                                            \
+  CHOICE_VALUE(porosity.exponent_low, "1", NAN, 1, 100, 0, SPH_POROSITY_TWO_POWER,                                     \
+               "n1: exponent of the law between P_e and P_t.", "Jutzi et al. 2009")                                    \
+  CHOICE_VALUE(porosity.exponent_high, "1", NAN, 1, 100, 0, SPH_POROSITY_TWO_POWER,                                    \
+               "n2: exponent of the law up to P_s.", "Jutzi et al. 2009")
 
-/* The choice itself: names and what they mean, for both tables. */
-#define SPH_POROSITY_CURVES                                                                                            \
-  { "none", "quadratic", "two-power", NULL }
-#define SPH_POROSITY_CURVE_DOCS                                                                                        \
-  "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"                                                     \
-  "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice"
-#define SPH_POROSITY_CURVE_DOC "Crush curve: how pores far below the resolution close under pressure (P-alpha)."
+/* Yield stress under pressure. */
+#define SPH_PRESSURE_STRENGTH_ON "pressure_strength.law=lundborg"
+#define SPH_PRESSURE_STRENGTH_ROWS(CHOICE, CHOICE_VALUE)                                                               \
+  CHOICE(pressure_strength.law, SPH_MATERIAL_CHOICES("none", "lundborg"), SPH_MATERIAL_SILENT, STRENGTH, "yield law",  \
+         "yield_stress at any pressure, and (1 - D) of the deviator acts\n"                                            \
+         "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through the "      \
+         "yield stress alone; yield_stress is not used, melt_energy is",                                               \
+         "Yield stress under pressure.", "Collins, Melosh & Ivanov 2004; Jutzi 2015")                                  \
+  CHOICE_VALUE(pressure_strength.intact_cohesion, "Pa", 90e6, 0, 1e15, 0, SPH_PRESSURE_STRENGTH_ON,                    \
+               "Y_0: bound of sqrt(J2) of intact rock at P = 0.",                                                      \
+               "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015")                                           \
+  CHOICE_VALUE(pressure_strength.intact_friction, "1", 2, 0, 100, 0, SPH_PRESSURE_STRENGTH_ON,                         \
+               "mu_i: internal friction of intact rock.", "Lundborg 1968; Collins, Melosh & Ivanov 2004")              \
+  CHOICE_VALUE(pressure_strength.intact_limit, "Pa", 1.5e9, 0, 1e15, SPH_MATERIAL_ABOVE, SPH_PRESSURE_STRENGTH_ON,     \
+               "Y_M: bound of sqrt(J2) of intact rock at high pressure, above intact_cohesion.",                       \
+               "Lundborg 1968; 1.5 GPa: granite, Jutzi 2015")                                                          \
+  CHOICE_VALUE(pressure_strength.broken_cohesion, "Pa", 0, 0, 1e15, 0, SPH_PRESSURE_STRENGTH_ON,                       \
+               "Y_d0: bound of sqrt(J2) of broken rock at P = 0.", "Collins, Melosh & Ivanov 2004")                    \
+  CHOICE_VALUE(pressure_strength.broken_friction, "1", 0.8, 0, 100, 0, SPH_PRESSURE_STRENGTH_ON,                       \
+               "mu_d: friction of broken rock. 0, with broken_cohesion 0: broken rock bears no shear.",                \
+               "Collins, Melosh & Ivanov 2004; 0.8: Jutzi 2015")
 
-/* Yield stress under pressure: the values that go with the choice pressure_strength.law. They have defaults:
- * R(member, unit, default, minimum, maximum, flags, doc, source). */
-#define SPH_PRESSURE_STRENGTH_ROWS(R)                                                                                  \
-  R(pressure_strength.intact_cohesion, "Pa", 90e6, 0, 1e15, 0, "Y_0: bound of sqrt(J2) of intact rock at P = 0.",      \
-    "Collins, Melosh & Ivanov 2004; 90 MPa: granite, Jutzi 2015")                                                      \
-  R(pressure_strength.intact_friction, "1", 2, 0, 100, 0, "mu_i: internal friction of intact rock.",                   \
-    "Lundborg 1968; Collins, Melosh & Ivanov 2004")                                                                    \
-  R(pressure_strength.intact_limit, "Pa", 1.5e9, 0, 1e15, SPH_MATERIAL_ABOVE,                                          \
-    "Y_M: bound of sqrt(J2) of intact rock at high pressure, above intact_cohesion.",                                  \
-    "Lundborg 1968; 1.5 GPa: granite, Jutzi 2015")                                                                     \
-  R(pressure_strength.broken_cohesion, "Pa", 0, 0, 1e15, 0, "Y_d0: bound of sqrt(J2) of broken rock at P = 0.",        \
-    "Collins, Melosh & Ivanov 2004")                                                                                   \
-  R(pressure_strength.broken_friction, "1", 0.8, 0, 100, 0,                                                            \
-    "mu_d: friction of broken rock. 0, with broken_cohesion 0: broken rock bears no shear.",                           \
-    "Collins, Melosh & Ivanov 2004; 0.8: Jutzi 2015")
-
-#define SPH_PRESSURE_STRENGTH_LAWS                                                                                     \
-  { "none", "lundborg", NULL }
-#define SPH_PRESSURE_STRENGTH_LAW_DOCS                                                                                 \
-  "yield_stress at any pressure, and (1 - D) of the deviator acts\n"                                                   \
-  "intact rock follows Lundborg, broken rock keeps friction, and damage acts on the deviator through the yield "       \
-  "stress "                                                                                                            \
-  "alone; yield_stress is not used, melt_energy is"
-#define SPH_PRESSURE_STRENGTH_LAW_DOC    "Yield stress under pressure."
-#define SPH_PRESSURE_STRENGTH_LAW_SOURCE "Collins, Melosh & Ivanov 2004; Jutzi 2015"
+/* All, in the order of the tables. */
+#define SPH_MATERIAL_ROWS(VALUE, CHOICE, CHOICE_VALUE)                                                                 \
+  SPH_SOLID_ROWS(VALUE)                                                                                                \
+  SPH_POROSITY_ROWS(CHOICE, CHOICE_VALUE)                                                                              \
+  SPH_PRESSURE_STRENGTH_ROWS(CHOICE, CHOICE_VALUE)
 
 #endif

@@ -8,28 +8,8 @@
 #include "schemas/document.h"
 #include "schemas/text.h"
 
-/* What may be off is off unless given; all else must be given. */
-#define ROW(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                                 \
-  {.path = #member_,                                                                                                   \
-   .kind = FIELD_REAL,                                                                                                 \
-   .unit = unit_,                                                                                                      \
-   .offset = offsetof(struct sph_material, member_),                                                                   \
-   .minimum = low_,                                                                                                    \
-   .maximum = high_,                                                                                                   \
-   .number = NAN,                                                                                                      \
-   .flags = (flags_) | ((flags_)&FIELD_MAY_BE_OFF ? 0 : FIELD_REQUIRED),                                               \
-   .when = WHEN_##need_,                                                                                               \
-   .doc = doc_,                                                                                                        \
-   .source = source_},
-
-#define WHEN_ALWAYS    NULL
-#define WHEN_STRENGTH  NULL
-#define WHEN_FRACTURE  NULL
-#define WHEN_POROSITY  "porosity.curve=quadratic|two-power"
-#define WHEN_TWO_POWER "porosity.curve=two-power"
-
-/* A value that has a default. */
-#define DEFAULTED(member_, unit_, default_, low_, high_, flags_, doc_, source_)                                        \
+/* What may be off is off unless given; what else has no default must be given. */
+#define REAL(member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                                      \
   {.path = #member_,                                                                                                   \
    .kind = FIELD_REAL,                                                                                                 \
    .unit = unit_,                                                                                                      \
@@ -37,29 +17,23 @@
    .minimum = low_,                                                                                                    \
    .maximum = high_,                                                                                                   \
    .number = default_,                                                                                                 \
+   .flags = (flags_) | (isnan((double)(default_)) && !((flags_)&FIELD_MAY_BE_OFF) ? FIELD_REQUIRED : 0),               \
+   .when = when_,                                                                                                      \
+   .doc = doc_,                                                                                                        \
+   .source = source_},
+#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
+  REAL(member_, unit_, NAN, low_, high_, flags_, NULL, doc_, source_)
+#define CHOICE(member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)                                   \
+  {.path = #member_,                                                                                                   \
+   .kind = FIELD_CHOICE,                                                                                               \
+   .offset = offsetof(struct sph_material, member_),                                                                   \
+   .choices = choices_,                                                                                                \
+   .choice_docs = choice_docs_,                                                                                        \
    .flags = flags_,                                                                                                    \
-   .when = "pressure_strength.law=lundborg",                                                                           \
    .doc = doc_,                                                                                                        \
    .source = source_},
 
-static const char *const curves[] = SPH_POROSITY_CURVES;
-static const char *const laws[] = SPH_PRESSURE_STRENGTH_LAWS;
-static const struct field rows[] = {SPH_MATERIAL_ROWS(ROW){.path = "porosity.curve",
-                                                           .kind = FIELD_CHOICE,
-                                                           .offset = offsetof(struct sph_material, porosity.curve),
-                                                           .choices = curves,
-                                                           .choice_docs = SPH_POROSITY_CURVE_DOCS,
-                                                           .doc = SPH_POROSITY_CURVE_DOC,
-                                                           .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
-                                    SPH_POROSITY_ROWS(
-                                        ROW){.path = "pressure_strength.law",
-                                             .kind = FIELD_CHOICE,
-                                             .offset = offsetof(struct sph_material, pressure_strength.law),
-                                             .choices = laws,
-                                             .choice_docs = SPH_PRESSURE_STRENGTH_LAW_DOCS,
-                                             .doc = SPH_PRESSURE_STRENGTH_LAW_DOC,
-                                             .source = SPH_PRESSURE_STRENGTH_LAW_SOURCE},
-                                    SPH_PRESSURE_STRENGTH_ROWS(DEFAULTED)};
+static const struct field rows[] = {SPH_MATERIAL_ROWS(VALUE, CHOICE, REAL)};
 
 const struct field_table
     sph_materials_table = FIELD_TABLE(rows, struct sph_material, "sph material",

@@ -21,8 +21,6 @@ static const char *const caps[] = {"ba95", "count", "none", NULL};
 static const char *const crack_radii[] = {"volume", "support", NULL};
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
-static const char *const curves[] = SPH_POROSITY_CURVES;
-static const char *const strength_laws[] = SPH_PRESSURE_STRENGTH_LAWS;
 static const char *const flaw_lists[] = {"exact", "compact", NULL};
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
@@ -37,44 +35,7 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
 /* ---- rows of a body, written once: B is `target` or `projectile`, `exists` the condition under which it is there ----
  */
 
-#define MATERIAL_ROW(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                      \
-  {.path = #B ".material." #member_,                                                                                   \
-   .kind = FIELD_REAL,                                                                                                 \
-   .unit = unit_,                                                                                                      \
-   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
-   .minimum = low_,                                                                                                    \
-   .maximum = high_,                                                                                                   \
-   .number = NAN,                                                                                                      \
-   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
-   .when = WHEN_##need_(B, exists_ALWAYS),                                                                             \
-   .doc = doc_ " The named material's value unless given.",                                                            \
-   .source = source_},
-#define WHEN_ALWAYS(B, exists)    exists
-#define WHEN_STRENGTH(B, exists)  #B ".strength=true"
-#define WHEN_FRACTURE(B, exists)  #B ".fracture=auto|on"
-#define WHEN_POROSITY(B, exists)  #B ".material.porosity.curve=quadratic|two-power"
-#define WHEN_TWO_POWER(B, exists) #B ".material.porosity.curve=two-power"
-#define MATERIAL_PORES(B, exists)                                                                                      \
-  {.path = #B ".material.porosity.curve",                                                                              \
-   .kind = FIELD_CHOICE,                                                                                               \
-   .offset = offsetof(struct sph_inputs, B.material.porosity.curve),                                                   \
-   .choices = curves,                                                                                                  \
-   .flags = FIELD_DERIVED,                                                                                             \
-   .choice_docs = SPH_POROSITY_CURVE_DOCS,                                                                             \
-   .when = exists,                                                                                                     \
-   .doc = SPH_POROSITY_CURVE_DOC " The named material's unless given.",                                                \
-   .source = "Herrmann 1969; Jutzi, Benz & Michel 2008"},
-#define MATERIAL_STRENGTH(B)                                                                                           \
-  {.path = #B ".material.pressure_strength.law",                                                                       \
-   .kind = FIELD_CHOICE,                                                                                               \
-   .offset = offsetof(struct sph_inputs, B.material.pressure_strength.law),                                            \
-   .choices = strength_laws,                                                                                           \
-   .flags = FIELD_DERIVED | FIELD_SILENT_DEFAULT,                                                                      \
-   .choice_docs = SPH_PRESSURE_STRENGTH_LAW_DOCS,                                                                      \
-   .when = #B ".strength=true",                                                                                        \
-   .doc = SPH_PRESSURE_STRENGTH_LAW_DOC " The named material's unless given.",                                         \
-   .source = SPH_PRESSURE_STRENGTH_LAW_SOURCE},
-#define MATERIAL_STRENGTH_ROW(B, member_, unit_, default_, low_, high_, flags_, doc_, source_)                         \
+#define MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                          \
   {.path = #B ".material." #member_,                                                                                   \
    .kind = FIELD_REAL,                                                                                                 \
    .unit = unit_,                                                                                                      \
@@ -83,13 +44,33 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
    .maximum = high_,                                                                                                   \
    .number = default_,                                                                                                 \
    .flags = (flags_) | FIELD_DERIVED,                                                                                  \
-   .when = #B ".material.pressure_strength.law=lundborg",                                                              \
+   .when = when_,                                                                                                      \
    .doc = doc_ " The named material's value unless given.",                                                            \
    .source = source_},
-#define TARGET_STRENGTH(...)     MATERIAL_STRENGTH_ROW(target, __VA_ARGS__)
-#define PROJECTILE_STRENGTH(...) MATERIAL_STRENGTH_ROW(projectile, __VA_ARGS__)
-#define TARGET_MATERIAL(...)     MATERIAL_ROW(target, NULL, __VA_ARGS__)
-#define PROJECTILE_MATERIAL(...) MATERIAL_ROW(projectile, "kind=impact", __VA_ARGS__)
+#define MATERIAL_VALUE(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                    \
+  MATERIAL_REAL(B, member_, unit_, NAN, low_, high_, flags_, WHEN_##need_(B, exists_ALWAYS), doc_, source_)
+#define MATERIAL_CHOICE_VALUE(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                  \
+  MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, #B ".material." when_, doc_, source_)
+#define MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)        \
+  {.path = #B ".material." #member_,                                                                                   \
+   .kind = FIELD_CHOICE,                                                                                               \
+   .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
+   .choices = choices_,                                                                                                \
+   .flags = (flags_) | FIELD_DERIVED,                                                                                  \
+   .choice_docs = choice_docs_,                                                                                        \
+   .when = WHEN_##need_(B, exists_ALWAYS),                                                                             \
+   .doc = doc_ " The named material's unless given.",                                                                  \
+   .source = source_},
+#define WHEN_ALWAYS(B, exists)   exists
+#define WHEN_STRENGTH(B, exists) #B ".strength=true"
+#define WHEN_FRACTURE(B, exists) #B ".fracture=auto|on"
+
+#define TARGET_VALUE(...)            MATERIAL_VALUE(target, NULL, __VA_ARGS__)
+#define TARGET_CHOICE(...)           MATERIAL_CHOICE(target, NULL, __VA_ARGS__)
+#define TARGET_CHOICE_VALUE(...)     MATERIAL_CHOICE_VALUE(target, __VA_ARGS__)
+#define PROJECTILE_VALUE(...)        MATERIAL_VALUE(projectile, "kind=impact", __VA_ARGS__)
+#define PROJECTILE_CHOICE(...)       MATERIAL_CHOICE(projectile, "kind=impact", __VA_ARGS__)
+#define PROJECTILE_CHOICE_VALUE(...) MATERIAL_CHOICE_VALUE(projectile, __VA_ARGS__)
 
 #define BODY_SIZES(B, shape_)                                                                                          \
   REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                          \
@@ -156,13 +137,12 @@ static const struct field rows[] = {
                 "it and "
                 "back keeps about 3 %."),
     BODY_MATTER(target, NULL, "basalt"),
-    SPH_MATERIAL_ROWS(TARGET_MATERIAL) MATERIAL_PORES(target, NULL) SPH_POROSITY_ROWS(TARGET_MATERIAL)
-        MATERIAL_STRENGTH(target) SPH_PRESSURE_STRENGTH_ROWS(TARGET_STRENGTH)
+    SPH_MATERIAL_ROWS(TARGET_VALUE, TARGET_CHOICE, TARGET_CHOICE_VALUE)
 
-            CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
-                   .choice_docs =
-                       "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
-                   .doc = "What decides the projectile's size."),
+        CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
+               .choice_docs =
+                   "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
+               .doc = "What decides the projectile's size."),
     REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .doc = "Mass of the projectile."),
     REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
          .doc = "Q: kinetic energy of the projectile over the target's mass; its mass follows from that and from the "
@@ -181,13 +161,11 @@ static const struct field rows[] = {
     CHOICE(projectile.shape, shapes, .when = "impact.projectile=size", .doc = "The projectile's outline."),
     BODY_SIZES(projectile, 0.0035),
     BODY_MATTER(projectile, "kind=impact", "nylon"),
-    SPH_MATERIAL_ROWS(PROJECTILE_MATERIAL) MATERIAL_PORES(projectile, "kind=impact")
-        SPH_POROSITY_ROWS(PROJECTILE_MATERIAL) MATERIAL_STRENGTH(projectile)
-            SPH_PRESSURE_STRENGTH_ROWS(PROJECTILE_STRENGTH)
+    SPH_MATERIAL_ROWS(PROJECTILE_VALUE, PROJECTILE_CHOICE, PROJECTILE_CHOICE_VALUE)
 
-                REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
-                     .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
-                     .source = "BA95 section 5.1"),
+        REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
+             .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
+             .source = "BA95 section 5.1"),
     REAL(stretch.grip, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED | FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
          .doc = "Length of each end that is held and pulled; a twentieth of the rod unless given, three spacings at "
                 "least."),
@@ -305,7 +283,7 @@ static const struct field rows[] = {
     REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Courant number: the time step over h/(c + viscous term)."),
     REAL(fidelity.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
          .doc = "Largest change of D^(1/3) in a time step."),
-    REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material.porosity.curve=quadratic|two-power",
+    REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material." SPH_POROSITY_ON,
          .doc = "Largest change of a porous particle's distention in a time step.",
          .source = "Jutzi, Benz & Michel 2008"),
     REAL(fidelity.skin, "1", 0.05, 0, 1,

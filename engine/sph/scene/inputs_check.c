@@ -5,6 +5,7 @@
 
 #include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
+#include "engine/sph/material/materials.h"
 #include "engine/sph/material/plane_shock.h"
 #include "engine/sph/modules/modules.h"
 #include "engine/sph/scene/derived.h"
@@ -14,52 +15,69 @@
 
 /* ---- materials ---- */
 
-enum need { ALWAYS, STRENGTH, FRACTURE, POROSITY, TWO_POWER };
+/* Who needs each row of sph_materials_table, in its order. */
+enum need { ALWAYS, STRENGTH, FRACTURE, BY_CHOICE };
 static const struct {
-  const char *name;
-  size_t offset;
   enum need need;
-  bool may_be_off;
-} values[] = {
-#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
-  {#member_, offsetof(struct sph_material, member_), need_, ((flags_)&FIELD_MAY_BE_OFF) != 0},
-    SPH_MATERIAL_ROWS(VALUE) SPH_POROSITY_ROWS(VALUE)};
+  const char *choice_name; /* of a choice: what messages call it */
+} needs[] = {
+#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
+#define CHOICE(member_, choices_, flags_, need_, name_, ...)             {need_, name_},
+#define CHOICE_VALUE(...)                                                {BY_CHOICE, NULL},
+    SPH_MATERIAL_ROWS(VALUE, CHOICE, CHOICE_VALUE)};
 
+static bool has(const struct sph_body_inputs *body, enum need need) {
+  switch (need) {
+  case STRENGTH: return body->strength;
+  case FRACTURE: return body->strength && body->fracture == SPH_FRACTURE_ON;
+  case ALWAYS:
+  case BY_CHOICE: break;
+  }
+  return true;
+}
+
+/* Whether the body cannot do without the value of row k. Flaws and shear_modulus may be off, but not where they are
+ * used. */
 static bool needed(size_t k, const struct sph_body_inputs *body) {
-  if (values[k].need == FRACTURE)
-    return body->strength && body->fracture == SPH_FRACTURE_ON;
-  if (values[k].need == STRENGTH)
-    return body->strength && strcmp(values[k].name, "shear_modulus") == 0;
-  if (values[k].need >= POROSITY && body->material.porosity.curve == SPH_CRUSH_NONE)
+  const struct field *row = &sph_materials_table.rows[k];
+  const struct field *choice = field_controller(&sph_materials_table, row);
+  if (!has(body, needs[k].need) || (choice && !has(body, needs[choice - sph_materials_table.rows].need)))
     return false;
-  if (values[k].need == TWO_POWER && body->material.porosity.curve != SPH_CRUSH_TWO_POWER)
-    return false;
-  return !values[k].may_be_off;
+  if (needs[k].need == FRACTURE || strcmp(row->path, "shear_modulus") == 0)
+    return true;
+  return !(row->flags & FIELD_MAY_BE_OFF) && field_is_active(&sph_materials_table, row, &body->material);
+}
+
+static status refuse_missing(size_t k, const char *body_name, const char *material, struct error *error) {
+  const struct field *row = &sph_materials_table.rows[k];
+  const struct field *choice = field_controller(&sph_materials_table, row);
+  char reason[100] = "", remedy[200] = "name another material";
+  switch (needs[k].need) {
+  case ALWAYS: break;
+  case STRENGTH:
+    snprintf(reason, sizeof reason, " because the body has strength");
+    snprintf(remedy, sizeof remedy, "set %s.strength: false", body_name);
+    break;
+  case FRACTURE:
+    snprintf(reason, sizeof reason, " because fracture is on");
+    snprintf(remedy, sizeof remedy, "set %s.fracture: off", body_name);
+    break;
+  case BY_CHOICE:
+    snprintf(reason, sizeof reason, " by the %s", needs[choice - sph_materials_table.rows].choice_name);
+    snprintf(remedy, sizeof remedy, "set %s.material.%s: %s", body_name, choice->path, choice->choices[0]);
+    break;
+  }
+  REFUSE("%s.material.%s is needed%s, and the material '%s' has none: give it, or %s", body_name, row->path, reason,
+         material, remedy);
 }
 
 static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
-  const char *name = builtin_material_names[body->material_name];
   const struct sph_material *m = &body->material;
-  for (size_t k = 0; k < sizeof values / sizeof values[0]; k++) {
-    double value;
-    memcpy(&value, (const char *)m + values[k].offset, sizeof value);
-    if (!isnan(value) || !needed(k, body))
-      continue;
-    const char *remedy = "give it, or name another material";
-    char text[200];
-    if (values[k].need != ALWAYS) {
-      snprintf(text, sizeof text, "give it, or set %s.%s", body_name,
-               values[k].need == STRENGTH   ? "strength: false"
-               : values[k].need == FRACTURE ? "fracture: off"
-                                            : "material.porosity.curve: none");
-      remedy = text;
-    }
-    REFUSE("%s.material.%s is needed%s, and the material '%s' has none: %s", body_name, values[k].name,
-           values[k].need == FRACTURE   ? " because fracture is on"
-           : values[k].need == STRENGTH ? " because the body has strength"
-           : values[k].need >= POROSITY ? " by the crush curve"
-                                        : "",
-           name, remedy);
+  for (size_t k = 0; k < sph_materials_table.count; k++) {
+    struct field_value value;
+    field_get(&sph_materials_table.rows[k], m, &value);
+    if (value.kind == FIELD_REAL && isnan(value.number) && needed(k, body))
+      return refuse_missing(k, body_name, builtin_material_names[body->material_name], error);
   }
   if (!(m->tillotson.E_cv > m->tillotson.E_iv))
     REFUSE(
