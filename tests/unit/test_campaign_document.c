@@ -242,7 +242,7 @@ static void examples_are_ready_to_run(void **state) {
     seen++;
   }
   closedir(folder);
-  assert_int_equal(seen, 10);
+  assert_int_equal(seen, 11);
 }
 
 int main(void) {
