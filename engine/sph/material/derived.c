@@ -29,10 +29,6 @@ double sph_derived_bulk_density(const struct sph_material *m) {
   return sph_derived_porous(m) ? m->density / m->porosity.distention : m->density;
 }
 
-double sph_derived_shear_left(const struct sph_material *m, double damage) {
-  return m->pressure_strength.law == SPH_PRESSURE_STRENGTH_NONE ? 1 - damage : 1;
-}
-
 /* The pressure responds with A, even where K is given. */
 double sph_derived_longitudinal_speed(const struct sph_material *m, bool strength) {
   const double shear2 = strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;

@@ -12,8 +12,6 @@ double sph_derived_poisson_ratio(const struct sph_material *material);
 double sph_derived_crack_speed(const struct sph_material *material);  /* m/s, c_g = 0.4 sqrt((K + 4 mu/3)/rho_0) */
 bool sph_derived_porous(const struct sph_material *material);         /* a crush curve and a distention above 1 */
 double sph_derived_bulk_density(const struct sph_material *material); /* kg/m^3 of a body at rest, pores included */
-/* Share of the deviator that acts at this damage: 1 - D, or 1 where damage acts through the yield stress. */
-double sph_derived_shear_left(const struct sph_material *material, double damage);
 /* m/s, longitudinal, of a body at rest. */
 double sph_derived_longitudinal_speed(const struct sph_material *material, bool strength);
 

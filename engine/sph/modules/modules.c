@@ -1,6 +1,9 @@
 /* Which modules a body has, and what they need. */
 #include "engine/sph/modules/modules.h"
 
+#include "engine/sph/scene/derived.h"
+#include "engine/sph/step/system_layout.h"
+
 static const struct sph_module *const list[SPH_MODULES] = {
 #define ADDRESS(name) &sph_##name##_module,
     SPH_MODULE_LIST(ADDRESS, ADDRESS)};
@@ -36,6 +39,11 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
   for (size_t m = 0; m < SPH_MODULES; m++)
     if (modules >> m & 1 && list[m]->set_up)
       list[m]->set_up(body, particles, first, last);
+}
+
+bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs) {
+  const struct sph_body_physics physics = sph_derived_physics(body, NULL);
+  return !(sph_modules_columns(sph_modules_of(&physics, inputs), &physics) >> SPH_COLUMN(shear_damage) & 1);
 }
 
 size_t sph_modules_bytes_in_pairs(uint64_t modules) {

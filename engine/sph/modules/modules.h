@@ -86,6 +86,9 @@ uint64_t sph_modules_columns(uint64_t modules, const struct sph_body_physics *bo
 /* What the modules of a body give its particles at rest. */
 void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_inputs *inputs,
                         struct sph_particles *particles, size_t first, size_t last);
+/* Does damage scale the deviator of a body by 1 - D? Not where a module publishes the damage that does (shear_damage).
+ */
+bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs);
 /* Bytes per particle that they add to the pair loop's records. */
 size_t sph_modules_bytes_in_pairs(uint64_t modules);
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "engine/sph/material/derived.h"
+#include "engine/sph/modules/modules.h"
 #include "engine/sph/observe/observe.h"
 
 enum { SAMPLES = 400 }; /* over the whole run: a sample costs about a tenth of a step */
@@ -21,12 +21,13 @@ status sph_protocol_record_start(struct sph_run *run, struct error *error) {
 
 /* Mean axial stress that the damaged solid bears between the grips, weighted by volume. */
 static double axial_stress(const struct sph_run *run, const struct sph_particles *p) {
+  const bool scales_shear = sph_modules_damage_scales_shear(&run->inputs.target, &run->inputs);
   double half = run->inputs.target.length / 2 - run->inputs.stretch.grip, sum = 0, volume = 0;
   for (size_t i = 0; i < p->n; i++) {
     if (fabs(run->start->z[i]) > half)
       continue;
     double d = p->damage_cbrt ? pow(p->damage_cbrt[i], 3) : 0; /* not sph_particles_damage(): other last bits */
-    double part = p->mass[i] / p->density[i], shear = sph_derived_shear_left(&run->inputs.target.material, d);
+    double part = p->mass[i] / p->density[i], shear = scales_shear ? 1 - d : 1;
     double pressure = p->pressure[i] < 0 ? (1 - d) * p->pressure[i] : p->pressure[i];
     sum += part * (-pressure + (p->stress[5] ? shear * p->stress[5][i] : 0));
     volume += part;

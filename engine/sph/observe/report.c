@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/sph/material/derived.h"
+#include "engine/sph/modules/modules.h"
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 
@@ -22,7 +23,7 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   options.damage = in->fragments.damage;
   options.link_length = in->fragments.link_length;
   options.layer = layer;
-  options.whole_shear = sph_derived_shear_left(&in->target.material, 1) > 0;
+  options.whole_shear = !sph_modules_damage_scales_shear(&in->target, in);
   options.h = in->fragments.link_h == INITIAL_H ? run->start->h : NULL;
   memcpy(options.periodic, run->periodic, sizeof options.periodic);
   options.bodies = bodies;

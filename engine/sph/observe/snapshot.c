@@ -124,7 +124,7 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   }
   if (p->stress[0])
     tensor(file, AT("deviator"), n, p->stress, values, "Pa",
-           "deviatoric stress, undamaged: (1 - damage) of it acts, or all of it with pressure_strength");
+           "deviatoric stress, undamaged: (1 - damage) of it acts, or all of it where the yield law has the damage");
   for (size_t i = 0; i < n; i++)
     integers[i] = p->body[i];
   snapshot_file_data(file, AT("body"), SNAPSHOT_FILE_INTEGER, n, 0, integers, "1",

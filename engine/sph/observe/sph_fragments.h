@@ -32,7 +32,7 @@ struct sph_fragments_options {
   double damage;      /* 0..1: a particle is unbroken when its D is below; without damage all are */
   double link_length; /* over the mean h of the two: 1 in BA95 */
   bool layer;         /* step 3 */
-  bool whole_shear;   /* damage does not scale the deviator (sph_derived_shear_left): of the static strength */
+  bool whole_shear;   /* damage does not scale the deviator (sph_modules_damage_scales_shear): of the static strength */
   bool across_bodies; /* particles of two bodies may be friends. Off by default: bodies that touch are not bonded */
   const double *h;    /* m, by particle: the initial smoothing lengths, so that expanding matter does not link farther.
                        * NULL: the current ones. Borrowed */
