@@ -55,13 +55,16 @@ struct snapshot_file_column {
  * that is not the member's. */
 #define SNAPSHOT_FILE_COLUMN(struct_, member_, width_, units_, long_name_)                                             \
   SNAPSHOT_FILE_COLUMN_NAMED(#member_, struct_, member_, width_, units_, long_name_)
-#define SNAPSHOT_FILE_COLUMN_NAMED(name_, struct_, member_, width_, units_, long_name_)                                  \
-  {                                                                                                                      \
+/* clang-format off */
+#define SNAPSHOT_FILE_COLUMN_NAMED(name_, struct_, member_, width_, units_, long_name_)                                \
+  {                                                                                                                    \
     name_, units_, long_name_, width_, offsetof(struct struct_, member_),                                              \
     _Generic(((struct struct_ *)0)->member_, double : SNAPSHOT_FILE_DOUBLE, double * : SNAPSHOT_FILE_DOUBLE,           \
              uint32_t : SNAPSHOT_FILE_UINT32, uint32_t * : SNAPSHOT_FILE_UINT32, uint64_t : SNAPSHOT_FILE_UINT64,      \
-             bool : SNAPSHOT_FILE_BOOL) \
+             bool : SNAPSHOT_FILE_BOOL)                                                                                \
   }
+/* clang-format on */
+
 /* Writes `count` columns of `rows` structs, `size` bytes each. */
 void snapshot_file_columns(struct snapshot_file *file, const char *group, size_t rows, const void *structs, size_t size,
                            size_t count, const struct snapshot_file_column *column);

@@ -29,8 +29,7 @@ struct sph_columns {
   double *stress[5], *stress_rate[5];
   double *stress_factor; /* (1-D)/rho^2, D that scales the deviator: the pair loop multiplies the stress by it */
   double *two_mu;        /* Pa, effective 2 mu in bodies whose modules publish it; others have the material's */
-  double
-      *shear_damage; /* D^(1/3) that scales the deviator in bodies whose modules publish it; in others `damage` does */
+  double *shear_damage;  /* D^(1/3) that scales the deviator, where modules publish it; elsewhere `damage` does */
   /* fracture */
   double *damage;                   /* D^(1/3), of all causes */
   double *flaw_damage;              /* D^(1/3) by flaws, where `damage` has other causes, too */
