@@ -7,6 +7,7 @@
 
 #include "analysis/analysis.h"
 #include "db/ask/point.h"
+#include "db/ask/resolution.h"
 #include "tests/support/store_checks.h"
 
 enum { RUNS = 8, FAILED = 3 };
@@ -44,6 +45,22 @@ static double number_of(struct store *store, const char *format, ...) {
   vsnprintf(sql, sizeof sql, format, arguments);
   va_end(arguments);
   return number(store, sql);
+}
+
+/* The scene that a study of the resolution is asked for is the point's. */
+static void resolution_names_the_scene(void **state) {
+  (void)state;
+  char path[64];
+  int64_t id;
+  struct store *store = fill(path, &id);
+  struct ask_resolution found;
+  OK(ask_resolution(store, id, "largest_fraction", &found, &error));
+  assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
+  assert_true(isnan(found.half_width));
+  assert_string_equal(found.scene, "made-up");
+  OK(ask_resolution(store, id + 1, "largest_fraction", &found, &error));
+  assert_string_equal(found.scene, "SCENE");
+  OK(store_close(store, &error));
 }
 
 /* The same statistics three times: in C from the masses, in the views' plain SQL, and in the question of spectra. */
@@ -171,6 +188,7 @@ static void runs_that_count_in_order(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(runs_that_count_in_order), cmocka_unit_test(views_and_c_agree),
+                                     cmocka_unit_test(resolution_names_the_scene)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

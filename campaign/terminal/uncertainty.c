@@ -1,0 +1,35 @@
+/* Words for the errors of a mean. */
+#include "campaign/terminal/uncertainty.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { MOST_DECIMALS = 15 };
+
+void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]) {
+  if (!isfinite(half_width)) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g (one run: no interval)", mean);
+    return;
+  }
+  /* One digit of the error, two after a leading 1: rounding moves it by at most a quarter. */
+  double leading = floor(log10(half_width));
+  if (half_width < 2 * pow(10, leading))
+    leading--;
+  if (half_width == 0 || leading < -MOST_DECIMALS || leading > MOST_DECIMALS) {
+    snprintf(text, UNCERTAINTY_TEXT, "%.4g +- %.2g (seeds, 95 %%)", mean, half_width);
+    return;
+  }
+  const int decimals = leading < 0 ? (int)-leading : 0;
+  snprintf(text, UNCERTAINTY_TEXT, "%.*f +- %.*f (seeds, 95 %%)", decimals, mean, decimals, half_width);
+}
+
+void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
+  switch (resolution->verdict) {
+  case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "+- %.2g (resolution)", resolution->half_width); return;
+  case ASK_RESOLUTION_DIVERGES:
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
+    return;
+  case ASK_RESOLUTION_NOT_STUDIED: break;
+  }
+  snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->scene);
+}

@@ -1,0 +1,19 @@
+/* The two errors of a mean in words: what other seeds may change, and what a finer resolution may change. */
+#ifndef CLAST_CAMPAIGN_TERMINAL_UNCERTAINTY_H
+#define CLAST_CAMPAIGN_TERMINAL_UNCERTAINTY_H
+
+#include <stddef.h>
+
+#include "db/ask/resolution.h"
+
+enum { UNCERTAINTY_TEXT = 256 };
+
+/* "0.349 +- 0.003 (seeds, 95 %)"; "0.349 (one run: no interval)" when half_width is NaN. The error has
+ * one digit, or two after a leading 1; the mean has as many decimals. */
+void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEXT]);
+
+/* "+- 0.06 (resolution)", "resolution: not studied; `clast converge SCENE` measures it", or
+ * "resolution: does not converge (`clast converge SCENE`)". */
+void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]);
+
+#endif
