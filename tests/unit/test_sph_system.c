@@ -116,6 +116,57 @@ static void limits_by_hand(void **state) {
   let_go(&c);
 }
 
+enum { BOOSTED_STEPS = 30 };
+
+/* A piece of debris at 20 km/s, far from the collision, sets the step. Positions are seen from the moving frame. */
+static struct sph_particles *seen_in_flight(const double boost[3], double step[BOOSTED_STEPS], double *time) {
+  struct collision c = collide(1000);
+  const size_t lonely = c.particles->n - 1;
+  c.particles->z[lonely] = 0.1;
+  c.particles->vz[lonely] = 2e4;
+  for (size_t i = 0; i < c.particles->n; i++) {
+    c.particles->vx[i] += boost[0];
+    c.particles->vy[i] += boost[1];
+    c.particles->vz[i] += boost[2];
+  }
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  for (int k = 0; k < BOOSTED_STEPS; k++) {
+    case_steps(s, 1);
+    step[k] = sph_system_last_step(s);
+  }
+  *time = sph_system_time(s);
+  struct sph_particles *now = c.particles;
+  sph_system_read(s, now);
+  for (size_t i = 0; i < now->n; i++) {
+    now->x[i] -= boost[0] * *time;
+    now->y[i] -= boost[1] * *time;
+    now->z[i] -= boost[2] * *time;
+  }
+  c.particles = NULL;
+  sph_system_free(s);
+  let_go(&c);
+  return now;
+}
+
+/* Galilean invariance: an observer who flies by sees the same steps and the same motion. */
+static void boosted(void **state) {
+  (void)state;
+  const double rest[3] = {0, 0, 0}, boost[3] = {100, -60, 80};
+  double step[2][BOOSTED_STEPS], time[2], apart = 0, uneven = 0;
+  struct sph_particles *at_rest = seen_in_flight(rest, step[0], &time[0]);
+  struct sph_particles *flying = seen_in_flight(boost, step[1], &time[1]);
+  for (int k = 0; k < BOOSTED_STEPS; k++)
+    uneven = fmax(uneven, fabs(step[1][k] / step[0][k] - 1));
+  for (size_t i = 0; i < at_rest->n; i++)
+    apart = fmax(apart, fabs(at_rest->x[i] - flying->x[i]) + fabs(at_rest->y[i] - flying->y[i]) +
+                            fabs(at_rest->z[i] - flying->z[i]));
+  print_message("steps differ by %.1e, places by %.1e of the spacing\n", uneven, apart / spacing);
+  assert_true(time[0] * 2e4 > 2 * spacing);
+  assert_true(uneven < 1e-9 && apart < 1e-9 * spacing); /* rounding: 1e-16, grown by the blow and by the lists' order */
+  sph_particles_free(at_rest);
+  sph_particles_free(flying);
+}
+
 /* h^3 rho keeps while matter is squeezed and expands, within the bounds of h. */
 static void h_follows_density(void **state) {
   (void)state;
@@ -378,6 +429,7 @@ int main(void) {
       cmocka_unit_test(growth_ends_at_the_cap),
       cmocka_unit_test(ledger_by_hand),
       cmocka_unit_test(limits_by_hand),
+      cmocka_unit_test(boosted),
       cmocka_unit_test(h_follows_density),
       cmocka_unit_test(fast_damping),
       cmocka_unit_test(slack_is_never_overrated),

@@ -192,8 +192,8 @@ RANGE_INLINE void motion_find_lost(const struct sph_system *s, struct sph_block 
 
 /* Corrects v, rho and h by half the change of rates, clamps, and finds the limits of the next step:
  *   Courant   cfl h / (c_L + 0.6 (alpha c + beta max mu))    Monaghan 1992; c_L^2 = c^2 + 4/3 mu (1-D)/rho
- *             (D that scales S) and h / (2 |v|): nobody leaps into another body; and 0.9 over the rate of a damped side
- *             (motion_hold)
+ *             (D that scales S) and h / (2 |w|), w: velocity in the frame of the centre of mass at the start: nobody
+ *             leaps into another body; and 0.9 over the rate of a damped side (motion_hold)
  *   force     cfl sqrt(h/|a|)
  *   energy    a fifth of (u + c^2/100)/|du/dt|
  *   density   a tenth of 1/|div v|
@@ -212,6 +212,7 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
   const double h_low = SPH_LOWEST_H, h_high = s->highest_h;
   const double shear = strength ? 4.0 / 3 * body->physics.material.shear_modulus : 0;
   const double alpha = 0.6 * s->in.viscosity.alpha, beta = 0.6 * s->in.viscosity.beta, step = 2 * s->in.fidelity.cfl;
+  const double drift_x = s->drift[0], drift_y = s->drift[1], drift_z = s->drift[2];
   double courant[SPH_BLOCK], force[SPH_BLOCK], heat[SPH_BLOCK], squeeze[SPH_BLOCK], growth[SPH_BLOCK];
   int64_t lost = 0;
   RANGE_LOOP
@@ -232,7 +233,8 @@ RANGE_INLINE void motion_correct(struct sph_system *s, const struct sph_solid *b
      * only not fly past others. A body much faster than sound must not leap into another one, because it feels it only
      * in contact: no particle flies farther than h/2 in a step (this binds above about three times the speed of sound).
      */
-    const double flight = sqrt(vx[i] * vx[i] + vy[i] * vy[i] + vz[i] * vz[i]);
+    const double wx = vx[i] - drift_x, wy = vy[i] - drift_y, wz = vz[i] - drift_z;
+    const double flight = sqrt(wx * wx + wy * wy + wz * wz);
     courant[k] = (signal[k] < 0 ? flight : range_larger(fast + alpha * c[i] + beta * signal[k], step * flight)) *
                  inverse;
     const double pull2 = ax[i] * ax[i] + ay[i] * ay[i] + az[i] * az[i];

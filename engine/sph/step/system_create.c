@@ -101,6 +101,17 @@ static void bound_h(struct sph_system *s, const struct sph_particles *p) {
     s->highest_h = fmax(1, fmin(s->highest_h, most / (p->h[i] * (1 + s->in.fidelity.skin))));
 }
 
+/* The frame in which a particle is fast or slow: without it the time step would depend on the observer. */
+static void find_drift(struct sph_system *s, const struct sph_particles *p) {
+  const double *const v[3] = {p->vx, p->vy, p->vz};
+  double mass = 0;
+  for (size_t i = 0; i < p->n; i++)
+    mass += p->mass[i];
+  for (int k = 0; k < 3; k++)
+    for (size_t i = 0; i < p->n; i++)
+      s->drift[k] += p->mass[i] / mass * v[k][i];
+}
+
 static void find_bodies(struct sph_system *s, const struct sph_particles *p, const struct sph_body_physics *bodies) {
   for (size_t i = 0; i < p->n; i++) {
     struct sph_solid *b = &s->solid[p->body[i]];
@@ -137,6 +148,7 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
     return code;
 
   bound_h(s, p);
+  find_drift(s, p);
   sph_system_columns_fill(s, p);
   if (!sph_system_step_begin(s))
     return status_fail(error, s->fault == SPH_FAULT_MEMORY ? STATUS_MEMORY : STATUS_CONTENT, "at the start: %s",

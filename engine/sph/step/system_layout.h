@@ -113,6 +113,7 @@ struct sph_system {
   struct sph_inputs in; /* a copy of all; the step itself reads viscosity, method, fracture and fidelity */
   struct sph_domain domain;
   double highest_h; /* over its first value: SPH_HIGHEST_H, or less in a thin periodic box */
+  double drift[3];  /* m/s, of the centre of mass at the start: limits of the step take speeds from it */
   struct sph_progress now;
   size_t n, stride; /* particles; doubles from one column to the next */
   struct sph_columns c;
