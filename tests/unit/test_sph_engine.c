@@ -245,8 +245,7 @@ static void stop_rules(void **state) {
   assert_true(ran.outcome.time == 2e-5);
   free(ran.fragments);
 
-  inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms",
-                 "fragments.static_strength=off"); /* nothing breaks: one piece */
+  inputs = SMALL("impact.speed=1 m/s", "stop.end_time=10 ms"); /* nothing breaks: one piece */
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
   assert_true(ran.results.sph.fracture_ceased && isnan(ran.results.sph.first_damage));
@@ -265,6 +264,23 @@ static void stop_rules(void **state) {
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "energy.clamped"));
   free(ran.fragments);
+}
+
+/* The static strength breaks what cracks have entered. A body that cannot crack, and one whose flaws are all stronger
+ * than the blow, stay whole, however they ring. */
+static void sound_matter_stays_whole(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {SMALL("target.fracture=off"),
+                                     SMALL("target.material.weibull.m=100", "target.material.weibull.k=1e200 1/m^3")};
+  for (int c = 0; c < 2; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    print_message("M_1/M %.3f, without static strength %.3f, undamaged %.3f\n", ran.outcome.largest_fraction,
+                  ran.results.sph.largest.dynamic_fraction, ran.results.sph.undamaged_fraction);
+    assert_true(ran.results.sph.largest.dynamic_fraction > 0.9);
+    assert_true(ran.outcome.largest_fraction >
+                ran.results.sph.largest.dynamic_fraction - (c == 0 ? 1e-9 : 0.02)); /* near the crater cracks grow */
+    free(ran.fragments);
+  }
 }
 
 /* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
@@ -571,6 +587,7 @@ int main(void) {
                                      cmocka_unit_test(stretch_and_vibration_start),
                                      cmocka_unit_test(chunks_and_restarts_do_not_matter),
                                      cmocka_unit_test(stop_rules),
+                                     cmocka_unit_test(sound_matter_stays_whole),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(no_angle_of_nowhere),

@@ -1,9 +1,9 @@
 /* Pinned hashes of three small runs of engine sph: what to do when they change is said in tests/support/golden.h. */
 #include "tests/support/golden.h"
 
-enum { RESULTS_VERSION = 5 };
-#define GOLDEN_SPHERE "11c3db2817bfbc5b886464fc6a6ea8c9"
-#define GOLDEN_ROD    "8c38a318f473131409e68ca9404982a8"
+enum { RESULTS_VERSION = 6 };
+#define GOLDEN_SPHERE "2ed2adb07151c9130262a14f96f06ee9"
+#define GOLDEN_ROD    "7ce82e815a8f3d5768d908b6ca807e2e"
 #define GOLDEN_RINGS  "afef6015b2971ed38d03ba0a44e3a789"
 
 static int changed(const char *name, const struct sph_inputs *inputs, const char *pinned) {

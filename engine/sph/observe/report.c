@@ -15,6 +15,8 @@ enum { INITIAL_H = 0, ROD_PARTS = 100 };
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error) {
   const struct sph_inputs *in = &run->inputs;
+  if (!sph_derived_cracks(&in->target)) /* pores that closed are damage, too, but no crack */
+    static_strength = NAN;
   const struct sph_fragments_body bodies[SPH_RUN_BODIES] = {
       {.static_strength = static_strength},
       {.left_out = sph_derived_has_intruder(in), .static_strength = static_strength},

@@ -48,9 +48,9 @@ static bool is_unbroken(struct search *s, size_t i) {
   double damage = sph_particles_damage(p, i);
   if (p->damage_cbrt && !(damage < s->options->damage))
     return false;
-  if (!s->options->bodies ||
+  if (!s->options->bodies || !(damage > 0) ||
       !(tension(p, i, damage, s->options->whole_shear) > s->options->bodies[p->body[i]].static_strength))
-    return true;
+    return true; /* without damage there is no crack that could open */
   s->out->broken++;
   return false;
 }

@@ -1,8 +1,9 @@
 /* Fragments of a cracked body of SPH particles, before the fragments have flown apart. Benz & Asphaug 1995 section 4.4
  * [BA95]:
  *
- *   1. Static strength: a particle breaks whose largest tension (principal value of the damaged stress, pressure in it)
- *      exceeds the static strength of its body. This anticipates the end state, in which the last cracks open slowly.
+ *   1. Static strength: a damaged particle breaks whose largest tension (principal value of the damaged stress,
+ * pressure in it) exceeds the static strength of its body. This anticipates the end state, in which the last cracks
+ * open slowly. Sound matter (D = 0) has no crack that could open, and stays whole; BA95 does not ask for damage.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
  *   3. Damaged layer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of

@@ -220,10 +220,10 @@ static const struct field rows[] = {
         .source = "BA95 eq. 18 for off"),
 
     REAL(fragments.static_strength, "Pa", NAN, 0, 1e15, .flags = FIELD_DERIVED | FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
-         .doc = "At the end particles under more tension than this count as broken. Unless given: Young's modulus "
-                "times the mean "
-                "strength of the weakest flaw of the whole target. off: no such pass.",
-         .source = "BA95 section 4.4"),
+         .doc = "At the end damaged particles under more tension than this count as broken: their cracks would still "
+                "open. Sound particles stay whole, and so does a target that cannot crack. Unless given: Young's "
+                "modulus times the mean strength of the weakest flaw of the whole target. off: no such pass.",
+         .source = "BA95 section 4.4; that the particle is damaged is our condition"),
     REAL(fragments.damage, "1", 1, 0, 1, .flags = FIELD_ABOVE_MINIMUM,
          .doc = "Particles with this damage or more do not join fragments.",
          .source = "BA95 section 4.4 (fully damaged)"),
