@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
@@ -175,7 +176,8 @@ status farm_server_start(const struct farm_slot_setup *setup, pid_t *server, int
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0)
     return status_fail(error, STATUS_MEMORY, "cannot make a socket pair for the fork server: %s", strerror(errno));
-  fflush(NULL); /* or the children would print what is still buffered once more */
+  malloc_trim(0); /* each run is forked from here on: it would copy the pages' table of freed memory, too */
+  fflush(NULL);   /* or the children would print what is still buffered once more */
   const pid_t self = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
