@@ -283,6 +283,26 @@ static void sound_matter_stays_whole(void **state) {
   }
 }
 
+/* A body with next to no pores breaks as the solid does. */
+static void few_pores_change_nothing(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {SMALL("stop.end_time=10 us"),
+                                     SMALL("stop.end_time=10 us", "target.material.porosity.curve=quadratic",
+                                           "target.material.porosity.distention=1.0000001",
+                                           "target.material.porosity.elastic_pressure=5 MPa",
+                                           "target.material.porosity.solid_pressure=300 MPa",
+                                           "target.material.porosity.sound_speed=off")};
+  double damage[2];
+  for (int c = 0; c < 2; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    damage[c] = ran.results.sph.mean_damage;
+    free(ran.fragments);
+  }
+  print_message("damage of the solid %.6f, with pores of 1e-7 %.6f\n", damage[0], damage[1]);
+  assert_true(damage[0] > 0.05);
+  assert_true(fabs(damage[1] - damage[0]) < 1e-3 * damage[0]); /* 1e-7, and steps that the pores limit */
+}
+
 /* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
  * not see a figure that is ten times too small. */
 static void figures_by_hand(void **state) {
@@ -588,6 +608,7 @@ int main(void) {
                                      cmocka_unit_test(chunks_and_restarts_do_not_matter),
                                      cmocka_unit_test(stop_rules),
                                      cmocka_unit_test(sound_matter_stays_whole),
+                                     cmocka_unit_test(few_pores_change_nothing),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(no_angle_of_nowhere),

@@ -324,6 +324,26 @@ static void solid_limit(void **state) {
   }
 }
 
+/* alpha_0 -> 1: closing ever fewer pores does ever less harm, without a jump; a body of many pores is as the law says.
+ */
+static void few_pores_do_little_harm(void **state) {
+  (void)state;
+  double last = 1;
+  for (double pores = 0.1; pores > 1e-9; pores /= 1.01) {
+    struct sph_palpha given = porous_aluminium;
+    given.distention = 1 + pores;
+    given.sound_speed = NAN;
+    struct sph_palpha_law law = law_of(&given, &aluminium);
+    const double all = sph_palpha_damage_cbrt(&law, 1);
+    near(sph_palpha_damage_cbrt(&law, 1 + pores), 0, 0, "damage of a fresh body");
+    assert_true(all <= last && all > 0.97 * last);
+    if (pores > 0.0101)
+      near(all, 1, 0, "damage of many closed pores");
+    last = all;
+  }
+  assert_true(last < 1e-6);
+}
+
 /* Heat at constant bulk density raises P, so it crushes; cooling back does not open the pores again. */
 static void heat(void **state) {
   (void)state;
@@ -475,6 +495,7 @@ int main(void) {
                                      cmocka_unit_test(load_unload_reload),
                                      cmocka_unit_test(jump),
                                      cmocka_unit_test(solid_limit),
+                                     cmocka_unit_test(few_pores_do_little_harm),
                                      cmocka_unit_test(heat),
                                      cmocka_unit_test(compaction_damage),
                                      cmocka_unit_test(sound_speeds),

@@ -98,7 +98,10 @@ double sph_palpha_rest(const struct sph_palpha_law *law, double alpha, double p)
 }
 
 double sph_palpha_damage_cbrt(const struct sph_palpha_law *law, double rest) {
-  double closed = within(1 - (rest - 1) / (law->given.distention - 1), 0, 1);
+  const double pores = law->given.distention - 1, full = 0.01; /* closing of less than that breaks only a part */
+  double closed = within(1 - (rest - 1) / pores, 0, 1);
+  if (pores < full)
+    closed *= pores / full;
   const double d = 0.01;
   return closed == 0 ? 0 : (cbrt(closed + d) - cbrt(d)) / (cbrt(1 + d) - cbrt(d));
 }

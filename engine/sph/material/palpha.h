@@ -48,7 +48,8 @@ double sph_palpha_rest(const struct sph_palpha_law *law, double distention, doub
 
 /* Damage by compaction, as D^(1/3): x = 1 - (rest-1)/(alpha_0-1) is the share of the pores that is closed for good,
  * D^(1/3) = [(x+d)^(1/3) - d^(1/3)] / [(1+d)^(1/3) - d^(1/3)], d = 0.01 [JBM08]. (By `rest`: elastic change harms
- * nothing.) */
+ * nothing.) The share alone would break a body of next to no pores: where alpha_0 - 1 is below 0.01, x is the closed
+ * volume over 0.01 of the solid's, so that alpha_0 -> 1 is the solid (our choice). */
 double sph_palpha_damage_cbrt(const struct sph_palpha_law *law, double rest);
 
 struct sph_palpha_state {
