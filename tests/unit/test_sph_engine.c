@@ -310,7 +310,8 @@ static void figures_by_hand(void **state) {
   const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0",
                                            "viscosity.beta=0",          /* no heat: u is clamped */
                                            "fidelity.precision=float"), /* momentum that can be seen to be lost */
-                                     SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us"),
+                                     SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us",
+                                              "target.turned=false"),
                                      SPH_CASE("colliding-cylinders", "fidelity.particles=300",
                                               "stop.end_time=0.6 ms", /* they have stopped each other */
                                               "fidelity.precision=float")};
@@ -432,6 +433,34 @@ static void seeds_move_flaws(void **state) {
   free(c.fragments);
 }
 
+/* Each seed is a specimen of its own unless a scene says otherwise: another lattice, other strengths of the flaws. */
+static void seeds_are_specimens(void **state) {
+  (void)state;
+  static const char *const torn[] = {"disruption", "solid-ice", "pumice-sphere"};
+  for (size_t k = 0; k < sizeof torn / sizeof *torn; k++) {
+    const struct sph_inputs inputs = SPH_CASE(torn[k], "fidelity.particles=1500", "fidelity.projectile_spacing=0.2");
+    struct sph_run *run[2];
+    double place[2] = {0, 0}, weakest[2] = {HUGE_VAL, HUGE_VAL};
+    for (int r = 0; r < 2; r++) {
+      assert_int_equal(sph_run_create(&inputs, (uint64_t)r + 1, &run[r], NULL), STATUS_OK);
+      for (size_t i = 0; i < run[r]->targets; i++) {
+        place[r] += fabs(run[r]->start->x[i]);
+        weakest[r] = fmin(weakest[r], run[r]->system->c.weakest[i]);
+      }
+    }
+    assert_true(fabs(place[0] / place[1] - 1) > 1e-9);
+    assert_true(fabs(weakest[0] / weakest[1] - 1) > 1e-6);
+    for (size_t body = 0; body < 2; body++) /* the projectile, too */
+      assert_true(run[0]->start->x[run[0]->range[body].first] != run[1]->start->x[run[1]->range[body].first]);
+    sph_run_free(run[0]);
+    sph_run_free(run[1]);
+  }
+  /* a slab that repeats stands along its axes; the papers' choices are in their scenes */
+  assert_false(SPH_CASE("colliding-cylinders", NULL).target.turned);
+  assert_int_equal(SPH_CASE("basalt-sphere", NULL).fracture.draw, SPH_FLAWS_RANKED);
+  assert_int_equal(SPH_CASE("tensile-rod", NULL).fracture.draw, SPH_FLAWS_RANKED);
+}
+
 static void more_than_memory_is_refused(void **state) {
   (void)state;
   struct sph_inputs inputs = SPH_CASE("disruption", "fidelity.particles=1900000000");
@@ -498,8 +527,10 @@ static void empty_layers_are_refused(void **state) {
   const struct {
     struct sph_inputs inputs;
     const char *word;
-  } cases[] = {{SPH_CASE("tensile-rod", "fidelity.particles=1500", "stretch.grip=0.1 mm"), "stretch.grip"},
-               {SPH_CASE("porous-target", "fidelity.particles=1500", "sides.depth=1 mm"), "sides.depth"}};
+  } cases[] = {{SPH_CASE("tensile-rod", "fidelity.particles=1500", "stretch.grip=0.1 mm", "target.turned=false"),
+                "stretch.grip"},
+               {SPH_CASE("porous-target", "fidelity.particles=1500", "sides.depth=1 mm", "target.turned=false"),
+                "sides.depth"}};
   for (int c = 0; c < 2; c++) {
     void *run;
     struct error error = {0};
@@ -613,6 +644,7 @@ int main(void) {
                                      cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(no_angle_of_nowhere),
                                      cmocka_unit_test(seeds_move_flaws),
+                                     cmocka_unit_test(seeds_are_specimens),
                                      cmocka_unit_test(more_than_memory_is_refused),
 #ifndef __SANITIZE_ADDRESS__
                                      cmocka_unit_test(memory_that_runs_out_is_no_result),

@@ -6,6 +6,7 @@
 
 #include "engine/builtin.h"
 #include "engine/sph/body/bodies.h"
+#include "engine/sph/body/flaws.h"
 #include "engine/sph/material/fracture.h"
 #include "engine/sph/pairs/pairs.h"
 
@@ -95,8 +96,11 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
          .choice_docs =                                                                                                \
              "hexagonal close packing\nsimple cubic\nrandom points pushed apart until the density is uniform",         \
          .doc = "How particles stand at the start."),                                                                  \
-      SWITCH(B.turned, 0, .when = exists,                                                                              \
-             .doc = "Orientation and offset of the lattice are drawn from the seed, instead of along the axes."),      \
+      SWITCH(B.turned, 0, .flags = FIELD_DERIVED, .when = exists,                                                      \
+             .doc =                                                                                                    \
+                 "Orientation and offset of the lattice are drawn from the seed, so that each seed is a specimen of "  \
+                 "its own; on in impacts and stretched rods unless given. false: along the axes, the same for all "    \
+                 "seeds, which makes scatter 2 to 100 times too small."),                                              \
       SWITCH(B.strength, 1, .when = exists,                                                                            \
              .doc = "The body resists shear (Hooke, von Mises). false: a fluid; stress and strength are not stored."), \
       CHOICE(B.fracture, fractures, .when = #B ".strength=true",                                                       \
@@ -183,9 +187,10 @@ static const struct field rows[] = {
          .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
          .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
 
-    CHOICE(fracture.draw, draws, .when = "target.fracture=auto|on",
-           .choice_docs = "eps_j = (j/kV)^(1/m): a seed only moves the flaws about\n"
-                          "the body's flaw strengths are a draw themselves",
+    CHOICE(fracture.draw, draws, .number = SPH_FLAWS_POISSON, .when = "target.fracture=auto|on",
+           .choice_docs = "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
+                          "small\n"
+                          "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
            .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
     CHOICE(fracture.growth, growths, .when = "target.fracture=auto|on",
            .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",

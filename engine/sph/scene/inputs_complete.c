@@ -71,6 +71,11 @@ static double plate_time(const struct sph_inputs *in) {
 void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   complete_material(in, &in->target, "basalt", given);
   complete_material(in, &in->projectile, "nylon", given);
+  const bool specimens = in->kind == SPH_IMPACT || in->kind == SPH_STRETCH;
+  if (FREE(target.turned))
+    in->target.turned = specimens;
+  if (FREE(projectile.turned))
+    in->projectile.turned = specimens;
   double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
   if (FREE(sides.depth))
     in->sides.depth = 0.1 * fmin(in->target.width, fmin(in->target.depth, in->target.height));
