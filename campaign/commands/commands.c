@@ -7,6 +7,7 @@ static const struct command *const all[] = {
     /* running */ &run_command,
     &plan_command,
     &simulate_command,
+    &converge_command,
     &retry_command,
     /* scenes and inputs */ &scenes_command,
     &materials_command,

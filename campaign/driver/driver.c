@@ -256,8 +256,7 @@ static status manage(struct driver *driver, struct farm *farm, struct driver_sum
   return code != STATUS_OK ? code : session;
 }
 
-/* The other ranks wait for the manager: they end with this farm that has no task. */
-static void release_ranks(struct farm *farm) {
+void driver_release_ranks(struct farm *farm) {
   const struct farm_manager nobody = {.next = no_task, .report = no_report, .tick = no_tick};
   struct error ignored;
   farm_run(farm, &nobody, &ignored);
@@ -283,7 +282,7 @@ status driver_run(const struct campaign *campaign, struct farm *farm, const stru
   if (code == STATUS_OK)
     code = manage(driver, farm, summary, error);
   else
-    release_ranks(farm);
+    driver_release_ranks(farm);
   driver_free(driver);
 
   /* What was committed stays. An error on closing is the last word only when all else went well. */

@@ -51,7 +51,10 @@ void driver_farm_options(const struct campaign *campaign, struct farm_options *o
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error);
 
-/* The parts of driver_run, for tests that take the farm's place. */
+/* When the manager cannot begin: the other ranks wait for it, and end with a farm that has no task. */
+void driver_release_ranks(struct farm *farm);
+
+/* The parts of driver_run, for tests that take the farm's place and for studies that run one campaign after another. */
 struct driver;
 status driver_open(const struct campaign *campaign, struct store *store, const struct driver_options *options,
                    struct driver **out, struct error *error);

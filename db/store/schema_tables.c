@@ -1,6 +1,7 @@
 /* The tables of db/store/schema.h that are not results of one engine. */
 #include "db/store/schema.h"
 
+#include "analysis/statistics/convergence.h"
 #include "analysis/statistics/estimates.h"
 #include "engine/outcome.h"
 
@@ -144,6 +145,18 @@ static const struct schema_column attempt[] = {
     {"failed_at", "REAL NOT NULL", "s", "when, seconds since 1970-01-01 UTC"},
 };
 
+static const struct schema_column convergence[] = {
+    {"base_point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the scene studied, as a point"},
+    {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
+    {"level", "INTEGER NOT NULL", NULL, "number of the level, from 0, coarse to fine"},
+    {"point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the level, as a point: its runs are in run"},
+};
+
+static const struct schema_column convergence_limit[] = {
+    {"base_point_id", "INTEGER NOT NULL REFERENCES point (point_id)", NULL, "the scene studied, as a point"},
+    {"results_version", "INTEGER NOT NULL", NULL, "version of the engine's results"},
+};
+
 static const struct schema_column holder[] = {
     {"holder_id", "INTEGER PRIMARY KEY CHECK (holder_id = 1)", NULL, "always 1"},
     {"host", "TEXT NOT NULL", NULL, "machine of the process that last opened the store for writing"},
@@ -188,6 +201,10 @@ const struct schema_table schema_tables[] = {
     TABLE(point_estimate, "Estimates pooled over the runs of a point that count.",
           CLUSTERED("point_id, results_version, ordinal"), .fields = &estimates_table),
     TABLE(attempt, "Attempts that failed: limits, crashes, lost workers.", ROWID),
+    TABLE(convergence, "Studies of convergence (clast converge): the levels of each knob, for each quantity.",
+          CLUSTERED("base_point_id, results_version, knob, quantity, level"), .fields = &convergence_table),
+    TABLE(convergence_limit, "Order and limit of each knob of a study, for each quantity.",
+          CLUSTERED("base_point_id, results_version, knob, quantity"), .fields = &convergence_limit_table),
     TABLE(holder, "The process that holds the store for writing, for the message of a refusal.", ROWID),
 };
 const size_t schema_tables_count = sizeof schema_tables / sizeof schema_tables[0];

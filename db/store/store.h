@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 
+#include "analysis/statistics/convergence.h"
 #include "analysis/statistics/estimates.h"
 #include "engine/outcome.h"
 #include "engine/scene.h"
@@ -86,6 +87,18 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
 /* After a decision of a stopping rule: the point's replicates below `prefix` are its statistics, the others are
  * surplus. The running sums follow. Joins the open batch. */
 status store_set_prefix(struct store *store, int64_t point_id, int64_t prefix, struct error *error);
+
+/* One knob of a study, for one quantity. All is borrowed for the call. */
+struct store_convergence {
+  int64_t base_point_id;
+  int results_version;
+  size_t count; /* of levels */
+  const int64_t *point_ids;
+  const struct convergence_row *rows;
+  const struct convergence_limit_row *limit;
+};
+/* Replaces what the store has of this scene, knob and quantity. Joins the open batch. */
+status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 status store_tick(struct store *store, struct error *error);  /* commit when the batch is older than 1 s */

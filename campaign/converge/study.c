@@ -1,0 +1,257 @@
+/* What the runs of a study tell: values from the store, rows of levels, errors over knobs. The runs are study_rounds.c.
+ */
+#include "campaign/converge/study.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/statistics/sample.h"
+
+#define CONFIDENCE 0.95
+#define NOTHING    ((double)NAN)
+
+status study_add(struct study *study, const struct scene *base, struct knob_ladder *levels, struct error *error) {
+  struct study_ladder *grown = realloc(study->ladder, (study->ladder_count + 1) * sizeof *grown);
+  if (grown)
+    study->ladder = grown;
+  struct study_ladder ladder = {.levels = *levels, .base = base, .end = "not begun"};
+  const size_t room = (size_t)study->rule.most_seeds;
+  bool good = grown != NULL;
+  *levels = (struct knob_ladder){0};
+  for (size_t q = 0; q < study->quantity_count; q++)
+    for (size_t l = 0; l < ladder.levels.count; l++) {
+      ladder.values[q][l] = malloc(room * sizeof(double));
+      good = good && ladder.values[q][l];
+      for (size_t s = 0; ladder.values[q][l] && s < room; s++)
+        ladder.values[q][l][s] = NAN;
+    }
+  for (size_t l = 0; l < ladder.levels.count; l++)
+    ladder.cpu[l] = ladder.wall[l] = NAN;
+  if (grown)
+    study->ladder[study->ladder_count++] = ladder;
+  return good ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a study");
+}
+
+void study_clear(struct study *study) {
+  for (size_t i = 0; i < study->ladder_count; i++) {
+    struct study_ladder *ladder = &study->ladder[i];
+    for (size_t q = 0; q < STUDY_QUANTITIES; q++)
+      for (size_t l = 0; l < KNOB_LEVELS; l++)
+        free(ladder->values[q][l]);
+    knob_ladder_clear(&ladder->levels);
+  }
+  free(study->ladder);
+  study->ladder = NULL;
+  study->ladder_count = 0;
+}
+
+/* ---- what was found ---- */
+
+size_t study_reference(const struct study_ladder *ladder) {
+  size_t finest = 0; /* the finest that was not left out, where the reference was */
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    if (ladder->left_out[l])
+      continue;
+    if (ladder->levels.level[l].reference)
+      return l;
+    finest = l;
+  }
+  return finest;
+}
+
+/* The next finer level that was run; count: there is none. */
+static size_t next_finer(const struct study_ladder *ladder, size_t level) {
+  for (size_t l = level + 1; l < ladder->levels.count; l++)
+    if (!ladder->left_out[l])
+      return l;
+  return ladder->levels.count;
+}
+
+static void find_level(const struct study_ladder *ladder, size_t quantity, size_t l, size_t n,
+                       struct convergence_row *row) {
+  const struct knob_level *level = &ladder->levels.level[l];
+  const size_t reference = study_reference(ladder), finer = next_finer(ladder, l);
+  double *const *values = ladder->values[quantity];
+  const struct sample_summary summary = sample_summarise(n, values[l], CONFIDENCE);
+  row->base = level->base;
+  row->reference = l == reference;
+  row->step = level->step;
+  row->n = (int64_t)summary.n;
+  row->mean = summary.mean;
+  row->half_width = summary.half_width;
+  row->deviation = summary.standard_deviation;
+  row->skew = convergence_skew(n, values[l]);
+  row->cpu = ladder->cpu[l];
+  row->paired = ladder->levels.knob->pairs;
+  const struct convergence_difference bias = convergence_bias(n, values[l], values[reference], row->paired, CONFIDENCE);
+  const bool zero = row->reference && row->n > 0;
+  row->bias = zero ? 0 : bias.value;
+  row->bias_half_width = zero ? 0 : bias.half_width;
+  row->error = fabs(row->bias) + row->bias_half_width;
+  if (finer == ladder->levels.count)
+    return;
+
+  const struct convergence_correlation r = convergence_correlate(n, values[l], values[finer], CONFIDENCE);
+  row->correlation = r.value;
+  row->correlation_low = r.low;
+  row->correlation_high = r.high;
+  row->cost_ratio = ladder->cpu[l] / ladder->cpu[finer];
+  row->break_even = convergence_break_even(row->cost_ratio);
+  row->gain = convergence_gain(r.value, row->cost_ratio);
+}
+
+/* Order and limit from the three finest levels that were run. */
+static void find_limit(const struct study_ladder *ladder, size_t quantity, size_t n,
+                       struct convergence_limit_row *row) {
+  const double *values[3];
+  double h[3];
+  size_t found = 0;
+  for (size_t l = ladder->levels.count; l-- > 0 && found < 3;)
+    if (!ladder->left_out[l] && !isnan(ladder->levels.level[l].step)) {
+      h[2 - found] = ladder->levels.level[l].step;
+      values[2 - found] = ladder->values[quantity][l];
+      found++;
+    }
+  struct convergence_limit limit =
+      {.verdict = CONVERGENCE_TOO_FEW, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING, NOTHING};
+  if (found == 3)
+    limit = convergence_extrapolate(h, n, values, ladder->levels.knob->pairs, CONFIDENCE);
+  row->verdict = limit.verdict;
+  row->order = limit.order;
+  row->order_low = limit.order_low;
+  row->order_high = limit.order_high;
+  row->limit = limit.limit;
+  row->limit_low = limit.limit_low;
+  row->limit_high = limit.limit_high;
+}
+
+void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
+                struct study_found *found) {
+  const char *path = study->quantity[quantity].row->path;
+  const size_t n = (size_t)ladder->seeds;
+  *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
+  for (size_t l = 0; l < found->count; l++) {
+    struct convergence_row *row = &found->rows[l];
+    field_defaults(&convergence_table, row);
+    snprintf(row->knob, sizeof row->knob, "%s", ladder->levels.knob->name);
+    snprintf(row->quantity, sizeof row->quantity, "%s", path);
+    snprintf(row->setting, sizeof row->setting, "%s", ladder->levels.level[l].setting);
+    find_level(ladder, quantity, l, n, row);
+  }
+  field_defaults(&convergence_limit_table, &found->limit);
+  snprintf(found->limit.knob, sizeof found->limit.knob, "%s", ladder->levels.knob->name);
+  snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", path);
+  find_limit(ladder, quantity, n, &found->limit);
+}
+
+static double error_at_base(const struct study_found *found) {
+  for (size_t l = 0; l < found->count; l++)
+    if (found->rows[l].base && isfinite(found->rows[l].error))
+      return found->rows[l].error;
+  return 0;
+}
+
+static void mark_frontier(size_t count, struct study_found *found) {
+  enum { MOST = STUDY_KNOBS * KNOB_LEVELS };
+  double cost[MOST] = {0}, error[MOST] = {0};
+  bool on[MOST];
+  size_t n = 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++, n++) {
+      cost[n] = found[i].rows[l].cpu;
+      error[n] = found[i].rows[l].error;
+    }
+  convergence_frontier(n, cost, error, on);
+  n = 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++)
+      found[i].rows[l].frontier = on[n++];
+}
+
+static void combine(size_t count, struct study_found *found) {
+  double own[STUDY_KNOBS] = {0};
+  for (size_t i = 0; i < count; i++)
+    own[i] = found[i].adds ? error_at_base(&found[i]) : 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t other = 0; other < count; other++)
+      for (size_t l = 0; other != i && l < found[i].count; l++)
+        found[i].rows[l].error += own[other];
+  mark_frontier(count, found);
+}
+
+size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found) {
+  size_t count = 0;
+  for (size_t i = from; i < study->ladder_count && study->ladder[i].base == study->ladder[from].base; i++)
+    if (count < STUDY_KNOBS)
+      study_find(study, &study->ladder[i], quantity, &found[count++]);
+  combine(count, found);
+  return count;
+}
+
+static status store_found(const struct study_ladder *ladder, const struct study_found *found, struct store *store,
+                          struct error *error) {
+  const struct store_convergence rows = {.base_point_id = ladder->base_point,
+                                         .results_version = ladder->base->kind->results_version,
+                                         .count = found->count,
+                                         .point_ids = ladder->point,
+                                         .rows = found->rows,
+                                         .limit = &found->limit};
+  return store_set_convergence(store, &rows, error);
+}
+
+status study_store(const struct study *study, struct store *store, struct error *error) {
+  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
+  status code = found ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the rows of a study");
+  for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
+    for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
+      count = study_of_scene(study, from, q, found);
+      for (size_t i = 0; code == STATUS_OK && i < count; i++)
+        code = store_found(&study->ladder[from + i], &found[i], store, error);
+    }
+  free(found);
+  return code;
+}
+
+/* ---- values from the store ---- */
+
+struct reading {
+  double *values;
+  int64_t first, count;
+  double cpu, wall;
+  size_t runs;
+};
+
+static void take_run(void *context, const struct store_point_run *run) {
+  struct reading *reading = context;
+  const int64_t s = (int64_t)(run->seed - (uint64_t)reading->first);
+  if (s < 0 || s >= reading->count)
+    return;
+  reading->values[s] = outcome_is_usable(run->state) ? run->value : NOTHING;
+  reading->cpu += run->cpu_s;
+  reading->wall += run->wall_s;
+  reading->runs++;
+}
+
+static status read_level(const struct study *study, struct study_ladder *ladder, size_t l, struct store *store,
+                         struct error *error) {
+  const struct scene *scene = ladder->levels.level[l].scene;
+  status code = store_add_point(store, 0, scene, 0, NULL, &ladder->point[l], error);
+  for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
+    struct reading reading = {.values = ladder->values[q][l],
+                              .first = study->limits.first_seed,
+                              .count = study->rule.most_seeds};
+    code = store_point_runs(store, ladder->point[l], scene->kind, study->quantity[q].row, study->quantity[q].of_outcome,
+                            take_run, &reading, error);
+    ladder->cpu[l] = reading.runs ? reading.cpu / (double)reading.runs : NOTHING;
+    ladder->wall[l] = reading.runs ? reading.wall / (double)reading.runs : NOTHING;
+  }
+  return code;
+}
+
+status study_read(const struct study *study, struct study_ladder *ladder, struct store *store, struct error *error) {
+  status code = store_add_point(store, 0, ladder->base, 0, NULL, &ladder->base_point, error);
+  for (size_t l = 0; code == STATUS_OK && l < ladder->levels.count; l++)
+    code = read_level(study, ladder, l, store, error);
+  return code;
+}

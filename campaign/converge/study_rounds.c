@@ -1,0 +1,392 @@
+/* The rounds of a study: which levels run next with how many seeds, and the runs of a round as a campaign. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/converge/study.h"
+#include "campaign/driver/pooling.h"
+#include "schemas/clock.h"
+#include "schemas/text.h"
+
+struct rounds { /* of one farm_run */
+  struct study *study;
+  const struct driver_options *options;
+  struct store *store;
+  double begin;
+  double seconds, work; /* of the levels that have run: their ratio predicts the others */
+
+  /* The round under way. */
+  struct study_ladder *ladder;
+  int64_t seeds;
+  bool probe;                /* one seed of the cheapest level, because nothing has run yet */
+  struct campaign *campaign; /* owned */
+  struct driver *driver;     /* NULL: between two rounds */
+  struct farm_manager calls; /* of the driver */
+  int out;                   /* tasks on slots */
+  struct error error;        /* of a callback that cannot return one */
+};
+
+static double work_of(const struct scene *scene) {
+  return scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+}
+
+/* Wall time of a run of the level, s: measured, or by the engine's measure of work from the ladder's other levels,
+ * or from other ladders. NaN: nothing has run. */
+static double predict(const struct rounds *rounds, const struct study_ladder *ladder, size_t level) {
+  if (!isnan(ladder->wall[level]))
+    return ladder->wall[level];
+  double seconds = 0, work = 0;
+  for (size_t l = 0; l < ladder->levels.count; l++)
+    if (!isnan(ladder->wall[l])) {
+      seconds += ladder->wall[l];
+      work += work_of(ladder->levels.level[l].scene);
+    }
+  const double rate = work > 0 ? seconds / work : rounds->seconds / rounds->work;
+  return rate * work_of(ladder->levels.level[level].scene);
+}
+
+static double seconds_left(const struct rounds *rounds) {
+  return rounds->study->rule.seconds - (clock_s() - rounds->begin);
+}
+
+/* Is every bias of every quantity known to the wanted width? */
+static bool is_narrow(const struct study *study, const struct study_ladder *ladder) {
+  if (isnan(study->rule.within))
+    return true;
+  struct study_found found;
+  for (size_t q = 0; q < study->quantity_count; q++) {
+    study_find(study, ladder, q, &found);
+    const double scale = study->rule.relative ? fabs(found.rows[study_reference(ladder)].mean) : 1;
+    for (size_t l = 0; l < found.count; l++)
+      if (!ladder->left_out[l] && !(found.rows[l].bias_half_width <= study->rule.within * scale))
+        return false;
+  }
+  return true;
+}
+
+/* Wall time on one slot that a level still needs for its first `seeds` seeds, s. */
+static double cost_of(const struct rounds *rounds, const struct study_ladder *ladder, size_t level, int64_t seeds) {
+  int64_t missing = 0;
+  for (int64_t s = 0; s < seeds; s++)
+    missing += isnan(ladder->values[0][level][s]);
+  return missing ? (double)missing * predict(rounds, ladder, level) : 0;
+}
+
+static double wall_time(const struct rounds *rounds, const struct study_ladder *ladder, int64_t seeds) {
+  double seconds = 0;
+  for (size_t l = 0; l < ladder->levels.count; l++)
+    seconds += ladder->left_out[l] ? 0 : cost_of(rounds, ladder, l, seeds);
+  return seconds / fmax(1, rounds->options->slots);
+}
+
+/* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left: as much as
+ * each of those that wait for their first round. Returns how many levels are left. */
+static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
+  size_t count = ladder->levels.count, waiting = 0;
+  for (size_t i = 0; i < rounds->study->ladder_count; i++)
+    waiting += rounds->study->ladder[i].seeds == 0 && !rounds->study->ladder[i].done;
+  const double share = seconds_left(rounds) / (double)waiting;
+  for (; count > 0 && wall_time(rounds, ladder, seeds) > share; count--) {
+    size_t worst = ladder->levels.count;
+    for (size_t l = 0; l < ladder->levels.count; l++)
+      if (!ladder->left_out[l] &&
+          (worst == ladder->levels.count || cost_of(rounds, ladder, l, seeds) > cost_of(rounds, ladder, worst, seeds)))
+        worst = l;
+    ladder->left_out[worst] = true;
+  }
+  return count;
+}
+
+static void end_ladder(struct study_ladder *ladder, const char *why) {
+  ladder->done = true;
+  ladder->end = why;
+}
+
+static const char budget[] = "the time given is spent";
+
+/* How many seeds the ladder gets next. 0: it is done. */
+static int64_t next_seeds(const struct rounds *rounds, struct study_ladder *ladder) {
+  const struct study_rule *rule = &rounds->study->rule;
+  if (ladder->seeds == 0) {
+    if (fit_levels(rounds, ladder, rule->first_seeds) >= 2)
+      return rule->first_seeds;
+    end_ladder(ladder, budget);
+    return 0;
+  }
+  int64_t seeds = 2 * ladder->seeds < rule->most_seeds ? 2 * ladder->seeds : rule->most_seeds;
+  while (seeds > ladder->seeds && wall_time(rounds, ladder, seeds) > seconds_left(rounds))
+    seeds--;
+  if (seeds > ladder->seeds)
+    return seeds;
+  end_ladder(ladder, budget);
+  return 0;
+}
+
+/* The ladder with the fewest seeds that is not done, and its next number of seeds. NULL: all are done. */
+static struct study_ladder *choose_ladder(struct rounds *rounds) {
+  for (;;) {
+    struct study_ladder *next = NULL;
+    for (size_t i = 0; i < rounds->study->ladder_count; i++) {
+      struct study_ladder *ladder = &rounds->study->ladder[i];
+      if (!ladder->done && (!next || ladder->seeds < next->seeds))
+        next = ladder;
+    }
+    if (!next)
+      return NULL;
+    rounds->probe = isnan(predict(rounds, next, 0));
+    rounds->seeds = rounds->probe ? 1 : next_seeds(rounds, next);
+    if (rounds->seeds > 0)
+      return next;
+  }
+}
+
+/* ---- a round as a campaign ---- */
+
+static size_t cheapest_level(const struct study_ladder *ladder) {
+  size_t best = 0;
+  for (size_t l = 1; l < ladder->levels.count; l++)
+    if (work_of(ladder->levels.level[l].scene) < work_of(ladder->levels.level[best].scene))
+      best = l;
+  return best;
+}
+
+/* The inputs of the knob as axes, whose i-th values are the i-th level. Inputs that are inactive are none. */
+static status make_axes(const struct rounds *rounds, struct campaign *campaign, struct error *error) {
+  const struct knob_ladder *levels = &rounds->ladder->levels;
+  const struct engine_kind *kind = rounds->ladder->base->kind;
+  const size_t cheapest = cheapest_level(rounds->ladder);
+  campaign->axes = calloc(KNOB_INPUTS, sizeof *campaign->axes);
+  if (!campaign->axes)
+    return status_fail(error, STATUS_MEMORY, "no memory for a round");
+  for (size_t i = 0; i < KNOB_INPUTS && levels->knob->inputs[i].path; i++) {
+    const struct field *row = field_find(kind->inputs, levels->knob->inputs[i].path, error);
+    if (!row)
+      return STATUS_INTERNAL;
+    if (!field_is_active(kind->inputs, row, rounds->ladder->base->inputs))
+      continue;
+    struct design_axis *axis = &campaign->axes[campaign->axis_count++];
+    *axis = (struct design_axis){.row = row, .kind = DESIGN_AXIS_LEVELS, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+    axis->levels = calloc(levels->count, sizeof *axis->levels);
+    if (!axis->levels)
+      return status_fail(error, STATUS_MEMORY, "no memory for a round");
+    for (size_t l = 0; l < levels->count; l++)
+      if (rounds->probe ? l == cheapest : !rounds->ladder->left_out[l])
+        field_get(row, levels->level[l].scene->inputs, &axis->levels[axis->level_count++]);
+  }
+  return STATUS_OK;
+}
+
+static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
+  fprintf(out, " ");
+  field_json_value(row, value, out);
+}
+
+/* The round as a campaign's document: what `clast run` would do, for the store. JSON values are YAML. */
+static char *document(const struct rounds *rounds, const struct campaign *campaign) {
+  const struct scene *base = rounds->ladder->base;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  fprintf(out, "# Written by clast converge: levels of %s.\nname: ", rounds->ladder->levels.knob->name);
+  text_json_string(campaign->name, out);
+  fputs("\nscene: ", out);
+  text_json_string(rounds->study->scene_reference, out);
+  const char *before = "\nset:";
+  for (size_t i = 0; i < base->kind->inputs->count; i++) {
+    const struct field *row = &base->kind->inputs->rows[i];
+    struct field_value value;
+    if (!base->overridden[i])
+      continue;
+    field_get(row, base->inputs, &value);
+    fprintf(out, "%s\n  %s:", before, row->path);
+    write_value(row, &value, out);
+    before = "";
+  }
+  fputs("\ndesign: list\nvary:", out);
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    const struct design_axis *axis = &campaign->axes[i];
+    fprintf(out, "\n  %s: [", axis->row->path);
+    for (size_t l = 0; l < axis->level_count; l++) {
+      fputs(l ? "," : "", out);
+      write_value(axis->row, &axis->levels[l], out);
+    }
+    fputs("]", out);
+  }
+  fprintf(out, "\nquantity: %s\nseeds: {first: %lld, per_point: %lld}\nstore: ", campaign->quantity,
+          (long long)campaign->first_seed, (long long)campaign->per_point);
+  text_json_string(campaign->store, out);
+  fputs("\n", out);
+  return text_close(out, &text);
+}
+
+static status make_campaign(struct rounds *rounds, struct error *error) {
+  const struct study *study = rounds->study;
+  struct campaign *campaign = rounds->campaign = calloc(1, sizeof *campaign);
+  if (!campaign)
+    return status_fail(error, STATUS_MEMORY, "no memory for a round");
+  *campaign = study->limits;
+  campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
+  campaign->per_point = rounds->seeds;
+  snprintf(campaign->quantity, sizeof campaign->quantity, "%s", study->quantity[0].row->path);
+  snprintf(campaign->name, sizeof campaign->name, "%.200s %s", study->limits.name, rounds->ladder->levels.knob->name);
+  campaign->scene = scene_copy(rounds->ladder->base);
+  if (!campaign->scene)
+    return status_fail(error, STATUS_MEMORY, "no memory for a round");
+  status code = make_axes(rounds, campaign, error);
+  if (code != STATUS_OK)
+    return code;
+  campaign->text = document(rounds, campaign);
+  return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
+}
+
+static status begin_round(struct rounds *rounds, struct error *error) {
+  status code = make_campaign(rounds, error);
+  if (code == STATUS_OK)
+    code = driver_open(rounds->campaign, rounds->store, rounds->options, &rounds->driver, error);
+  if (code == STATUS_OK)
+    rounds->calls = driver_manager(rounds->driver);
+  return code;
+}
+
+static void learn(struct rounds *rounds) {
+  rounds->seconds = rounds->work = 0;
+  for (size_t i = 0; i < rounds->study->ladder_count; i++)
+    for (size_t l = 0; l < rounds->study->ladder[i].levels.count; l++) {
+      const struct study_ladder *ladder = &rounds->study->ladder[i];
+      if (isnan(ladder->wall[l]))
+        continue;
+      rounds->seconds += ladder->wall[l];
+      rounds->work += work_of(ladder->levels.level[l].scene);
+    }
+}
+
+static void judge(struct rounds *rounds) {
+  struct study *study = rounds->study;
+  struct study_ladder *ladder = rounds->ladder;
+  if (rounds->probe)
+    return;
+  ladder->seeds = rounds->seeds;
+  ladder->narrow = is_narrow(study, ladder);
+  if (ladder->narrow)
+    end_ladder(ladder,
+               isnan(study->rule.within) ? "one round was asked for" : "every bias is known to the wanted width");
+  else if (study->budget_spent)
+    end_ladder(ladder, budget);
+  else if (ladder->seeds >= study->rule.most_seeds)
+    end_ladder(ladder, "the most seeds allowed have run");
+}
+
+/* `outcome`: of the round's session in the store. */
+static status end_round(struct rounds *rounds, const char *outcome, struct error *error) {
+  struct driver_summary summary;
+  status code = driver_end(rounds->driver, error);
+  driver_summarise(rounds->driver, &summary);
+  rounds->study->runs_done += summary.runs_done;
+  rounds->study->runs_failed += summary.runs_failed;
+  rounds->study->cpu_s += summary.cpu_s;
+  driver_free(rounds->driver);
+  rounds->driver = NULL;
+  campaign_free(rounds->campaign);
+  rounds->campaign = NULL;
+  if (code == STATUS_OK)
+    code = store_end_session(rounds->store, summary.session_id, outcome, error);
+  if (code == STATUS_OK)
+    code = study_read(rounds->study, rounds->ladder, rounds->store, error);
+  learn(rounds);
+  judge(rounds);
+  return code;
+}
+
+/* ---- the farm's callbacks ---- */
+
+static bool next_task(void *context, struct farm_task *task) {
+  struct rounds *rounds = context;
+  struct error *error = &rounds->error;
+  while (error->status == STATUS_OK) {
+    rounds->study->budget_spent |= seconds_left(rounds) < 0;
+    if (rounds->driver) {
+      if (!rounds->study->budget_spent && rounds->calls.next(rounds->calls.context, task)) {
+        rounds->out++;
+        return true;
+      }
+      if (rounds->out > 0)
+        return false;
+      error->status = end_round(rounds, "finished", error);
+      continue;
+    }
+    rounds->ladder = choose_ladder(rounds);
+    if (!rounds->ladder)
+      return false;
+    error->status = begin_round(rounds, error);
+  }
+  return false;
+}
+
+static status take_report(void *context, const struct farm_report *report, struct error *error) {
+  struct rounds *rounds = context;
+  rounds->out--;
+  return rounds->calls.report(rounds->calls.context, report, error);
+}
+
+static status tick(void *context, int running, struct error *error) {
+  struct rounds *rounds = context;
+  if (rounds->error.status != STATUS_OK) {
+    *error = rounds->error;
+    return rounds->error.status;
+  }
+  return rounds->driver ? rounds->calls.tick(rounds->calls.context, running, error) : STATUS_OK;
+}
+
+static void stopping(void *context, int signal_number) {
+  struct rounds *rounds = context;
+  if (rounds->driver)
+    rounds->calls.stopping(rounds->calls.context, signal_number);
+}
+
+static status run_rounds(struct rounds *rounds, struct farm *farm, struct error *error) {
+  struct study *study = rounds->study;
+  for (size_t i = 0; i < study->ladder_count; i++) {
+    status code = study_read(study, &study->ladder[i], rounds->store, error);
+    if (code != STATUS_OK)
+      return code;
+  }
+  learn(rounds);
+  const struct farm_manager manager = {rounds, next_task, take_report, tick, stopping};
+  status code = farm_run(farm, &manager, error);
+  if (code == STATUS_OK && rounds->error.status != STATUS_OK) {
+    *error = rounds->error;
+    code = rounds->error.status;
+  }
+  struct error ignored;
+  if (rounds->driver)
+    (void)end_round(rounds, code == STATUS_STOPPED ? "stopped" : "failed", &ignored);
+  if (code == STATUS_OK)
+    code = pooling_store(rounds->store, 0, error);
+  return code == STATUS_OK ? study_store(study, rounds->store, error) : code;
+}
+
+status study_run(struct study *study, struct farm *farm, const struct driver_options *options, struct error *error) {
+  if (farm_rank(farm) != 0)
+    return farm_run(farm, NULL, error);
+  struct driver_options own = *options;
+  own.slots = farm_slots_total(farm);
+  struct rounds rounds = {.study = study, .options = &own, .begin = clock_s()};
+  char warning[1024] = "";
+  status code = store_open_writer(own.store_path, &rounds.store, warning, sizeof warning, error);
+  if (code == STATUS_OK && warning[0] && own.note)
+    own.note(own.note_context, warning);
+  if (code == STATUS_OK)
+    code = run_rounds(&rounds, farm, error);
+  else
+    driver_release_ranks(farm);
+  campaign_free(rounds.campaign);
+  struct error closing = {0};
+  const status closed = store_close(rounds.store, &closing);
+  if (closed != STATUS_OK && code == STATUS_OK) {
+    *error = closing;
+    code = closed;
+  }
+  return code;
+}

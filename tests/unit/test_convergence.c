@@ -1,0 +1,139 @@
+/* Known answers of the statistics of a convergence study: bias, order, limit, break-even, gain, frontier. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+
+#include "analysis/analysis.h"
+#include "analysis/statistics/convergence.h"
+
+#define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void biases(void **state) {
+  (void)state;
+  /* Differences 1, 2, 3: mean 2, s = 1, half width t(2, .975) / sqrt 3 = 4.302653 / 1.732051 = 2.484138. */
+  const double level[4] = {11, 22, 33, NAN}, reference[4] = {10, 20, 30, 40};
+  struct convergence_difference d = convergence_bias(4, level, reference, true, 0.95);
+  assert_int_equal(d.n, 3);
+  NEAR(d.value, 2, 1e-12);
+  NEAR(d.half_width, 2.484138, 1e-6);
+
+  /* Welch: {1,2,3} and {2,4,6,8}: s^2/n 1/3 and 5/3; freedom 4/(1/18 + 25/27) = 4.07547; t(.975) = 2.756285 there (by integration). */
+  const double a[4] = {1, 2, 3, NAN}, b[4] = {2, 4, 6, 8};
+  d = convergence_bias(4, a, b, false, 0.95);
+  NEAR(d.value, -3, 1e-12);
+  NEAR(d.half_width / sqrt(2), 2.756285, 1e-6);
+  assert_true(isnan(convergence_bias(1, a, b, false, 0.95).half_width));
+  /* Equal bits: the bias is zero, known exactly. */
+  d = convergence_bias(4, b, b, true, 0.95);
+  assert_true(d.value == 0 && d.half_width == 0);
+}
+
+static void skews(void **state) {
+  (void)state;
+  const double values[5] = {0, 0, NAN, 0, 4}; /* mean 1, s = 2: (3 (-1/2)^3 + (3/2)^3) / 4 = 0.75 */
+  NEAR(convergence_skew(5, values), 0.75, 1e-12);
+  assert_true(isnan(convergence_skew(2, values)));
+}
+
+static void correlations(void **state) {
+  (void)state;
+  const double x[5] = {1, 2, 3, 4, 5}, y[5] = {1, 3, 2, 5, 4}, flat[5] = {1, 1, 1, 1, 1};
+  const struct convergence_correlation r = convergence_correlate(5, x, y, 0.95);
+  NEAR(r.value, 0.8, 1e-12);
+  NEAR(r.low, tanh(atanh(0.8) - 1.959964 / sqrt(2)), 1e-6);
+  NEAR(r.high, tanh(atanh(0.8) + 1.959964 / sqrt(2)), 1e-6);
+  assert_true(isnan(convergence_correlate(5, x, flat, 0.95).value));
+  assert_true(isnan(convergence_correlate(3, x, y, 0.95).value));
+
+  NEAR(convergence_break_even(0.25), 0.8, 1e-12);
+  NEAR(convergence_gain(0.8, 0.25), 1, 1e-12);
+  NEAR(convergence_gain(0.6, 0.25), 1, 0); /* below break-even plain Monte Carlo is used */
+  NEAR(convergence_gain(1, 0.25), 4, 1e-12);
+  /* x^3 by x^2 on U(0,1) at a tenth of the cost: rho^2 = 35/36. Two-model control variate, budget 100 at cost 1:
+   * variance of x^3 is 9/112, so 9/11200/gain = 8.0357e-4/gain. */
+  const double rho = sqrt(35.0 / 36), gain = convergence_gain(rho, 0.1);
+  NEAR(1 / gain, pow(sqrt(1.0 / 36) + sqrt(0.1 * 35 / 36), 2), 1e-12);
+}
+
+static void orders(void **state) {
+  (void)state;
+  double order, limit;
+  for (double p = 0.25; p < 5; p *= 1.7) {
+    const double h[3] = {1, 0.6, 0.25}, f[3] = {7 - 3 * pow(h[0], p), 7 - 3 * pow(h[1], p), 7 - 3 * pow(h[2], p)};
+    assert_true(convergence_solve(h, f, &order, &limit));
+    NEAR(order, p, 1e-8);
+    NEAR(limit, 7, 1e-8);
+  }
+  const double h[3] = {4, 2, 1};
+  assert_false(convergence_solve(h, (const double[3]){0, 1, 2}, &order, &limit)); /* a logarithm */
+  assert_false(convergence_solve(h, (const double[3]){0, 1, 3}, &order, &limit)); /* grows */
+  assert_false(convergence_solve(h, (const double[3]){0, 1, 0}, &order, &limit)); /* turns back */
+  assert_false(convergence_solve(h, (const double[3]){0, 1, 1}, &order, &limit)); /* is there */
+}
+
+enum { SEEDS = 12 };
+static struct convergence_limit study(const double mean[3], double scatter, bool paired) {
+  /* A fixed spread of seeds with mean zero; levels that do not pair see it in another order. */
+  static const double spread[SEEDS] = {-1.4, 1.4, -0.3, 0.3, 0.8, -0.8, 1.1, -1.1, 0.05, -0.05, -0.6, 0.6};
+  static const double h[3] = {4, 2, 1};
+  double values[3][SEEDS];
+  for (size_t level = 0; level < 3; level++)
+    for (size_t s = 0; s < SEEDS; s++)
+      values[level][s] = mean[level] + scatter * spread[paired ? s : (s * (2 * level + 5) + level) % SEEDS];
+  return convergence_extrapolate(h, SEEDS, (const double *const[3]){values[0], values[1], values[2]}, paired, 0.95);
+}
+
+static void limits(void **state) {
+  (void)state;
+  const double second[3] = {1 + 16, 1 + 4, 1 + 1};
+  struct convergence_limit found = study(second, 5, true); /* a scatter that pairs is no error at all */
+  assert_int_equal(found.verdict, CONVERGENCE_ORDER);
+  NEAR(found.order, 2, 1e-9);
+  NEAR(found.limit, 1, 1e-9);
+  assert_true(found.order_low <= found.order && found.order <= found.order_high);
+
+  found = study(second, 0.3, false);
+  assert_int_equal(found.verdict, CONVERGENCE_ORDER);
+  assert_true(found.limit_low < 1 && 1 < found.limit_high && found.limit_high - found.limit_low < 2);
+  assert_true(found.order_low < 2 && 2 < found.order_high);
+
+  assert_int_equal(study((const double[3]){0, 1, 2.5}, 0.3, false).verdict, CONVERGENCE_NO_ORDER);
+  assert_int_equal(study((const double[3]){0, 1, 1.1}, 1, false).verdict, CONVERGENCE_UNCHANGED);
+  assert_int_equal(study((const double[3]){0, 1, 1.98}, 0.3, false).verdict, CONVERGENCE_UNSURE);
+  assert_true(isnan(study((const double[3]){0, 1, 2.5}, 0.3, false).limit));
+}
+
+static void frontiers(void **state) {
+  (void)state;
+  const double cost[6] = {1, 2, 3, 4, 2, 0.5}, error[6] = {5, 3, 3, 1, 4, NAN};
+  bool on[6];
+  convergence_frontier(6, cost, error, on);
+  assert_true(on[0] && on[1] && !on[2] && on[3] && !on[4] && !on[5]);
+}
+
+static void resolutions(void **state) {
+  (void)state;
+  struct convergence_row level = {.mean = 0.5, .bias = -0.1, .bias_half_width = 0.02};
+  struct convergence_limit_row limit = {.verdict = CONVERGENCE_ORDER,
+                                        .limit = 0.7,
+                                        .limit_low = 0.65,
+                                        .limit_high = 0.75};
+  NEAR(convergence_resolve(&level, &limit).error, 0.25, 1e-12);
+  assert_false(convergence_resolve(&level, &limit).at_least);
+  limit.verdict = CONVERGENCE_NO_ORDER;
+  NEAR(convergence_resolve(&level, &limit).error, 0.12, 1e-12);
+  assert_true(convergence_resolve(&level, &limit).at_least);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(biases),       cmocka_unit_test(skews),
+                                     cmocka_unit_test(correlations), cmocka_unit_test(orders),
+                                     cmocka_unit_test(limits),       cmocka_unit_test(frontiers),
+                                     cmocka_unit_test(resolutions)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
