@@ -198,6 +198,52 @@ CREATE INDEX attempt_identity ON attempt (identity);
 
 CREATE INDEX attempt_point ON attempt (point_id);
 
+CREATE TABLE convergence ( -- Studies of convergence (clast converge): the levels of each knob, for each quantity.
+  base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
+  results_version INTEGER NOT NULL, -- version of the engine's results
+  level INTEGER NOT NULL, -- number of the level, from 0, coarse to fine
+  point_id INTEGER NOT NULL REFERENCES point (point_id), -- the level, as a point: its runs are in run
+  knob TEXT, -- What was made coarser or finer (`clast converge --list`).
+  quantity TEXT, -- Result of the runs. Its unit is that of mean, scatter, bias and error.
+  setting TEXT, -- Value of the knob's first input at this level.
+  base INTEGER, -- 1: the scene's own setting.
+  reference INTEGER, -- 1: the finest level, or the choice that the others are compared with.
+  paired INTEGER, -- 1: levels are compared seed by seed.
+  step REAL, -- Size that goes to zero as the knob gets finer, such as particles^(-1/3). Off: none.
+  n INTEGER, -- [1] Seeds with a usable result.
+  mean REAL, -- Mean over seeds.
+  half_width REAL, -- Half width of the 95 % interval of the mean (Student's t).
+  deviation REAL, -- Standard deviation between seeds.
+  skew REAL, -- Skewness over seeds. Off for fewer than three.
+  cpu REAL, -- [s] Mean processor time of a run.
+  bias REAL, -- Mean of this level less that of the reference.
+  bias_half_width REAL, -- Half width of the 95 % interval of the bias.
+  correlation REAL, -- Pearson's correlation over seeds with the next finer level.
+  correlation_low REAL, -- Lower end of its 95 % interval (Fisher).
+  correlation_high REAL, -- Upper end of it.
+  cost_ratio REAL, -- w: processor time of a run over that of the next finer level.
+  break_even REAL, -- 2 sqrt(w)/(1 + w): correlation from which a control variate would save time.
+  gain REAL, -- Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing.
+  error REAL, -- |bias| and its half width, and those of the other knobs at the scene's own setting. Off where it is not known.
+  frontier INTEGER, -- 1: no level studied is both cheaper and nearer (Pareto).
+  PRIMARY KEY (base_point_id, results_version, knob, quantity, level)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE convergence_limit ( -- Order and limit of each knob of a study, for each quantity.
+  base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
+  results_version INTEGER NOT NULL, -- version of the engine's results
+  knob TEXT, -- What was made coarser or finer.
+  quantity TEXT, -- Result of the runs. Its unit is that of the limit.
+  verdict TEXT, -- What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure
+  measured_order REAL, -- p of limit + a step^p through the three finest levels.
+  measured_order_low REAL, -- Lower end of the 95 % interval of the order.
+  measured_order_high REAL, -- Upper end of it.
+  extrapolated REAL, -- Extrapolated value at step 0.
+  extrapolated_low REAL, -- Lower end of its 95 % interval.
+  extrapolated_high REAL, -- Upper end of it.
+  PRIMARY KEY (base_point_id, results_version, knob, quantity)
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE holder ( -- The process that holds the store for writing, for the message of a refusal.
   holder_id INTEGER PRIMARY KEY CHECK (holder_id = 1), -- always 1
   host TEXT NOT NULL, -- machine of the process that last opened the store for writing
@@ -568,6 +614,82 @@ INSERT INTO column_doc VALUES ('column_doc', 'meaning', NULL, 'what the column h
 INSERT INTO column_doc VALUES ('column_doc', 'table_name', NULL, 'table or view', 0);
 
 INSERT INTO column_doc VALUES ('column_doc', 'unit', NULL, 'SI unit; NULL where there is none', 0);
+
+INSERT INTO column_doc VALUES ('convergence', 'base', NULL, '1: the scene''s own setting.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'base_point_id', NULL, 'the scene studied, as a point', 0);
+
+INSERT INTO column_doc VALUES ('convergence', 'bias', NULL, 'Mean of this level less that of the reference.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'bias_half_width', NULL, 'Half width of the 95 % interval of the bias.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'break_even', NULL, '2 sqrt(w)/(1 + w): correlation from which a control variate would save time.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'correlation', NULL, 'Pearson''s correlation over seeds with the next finer level.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'correlation_high', NULL, 'Upper end of it.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'correlation_low', NULL, 'Lower end of its 95 % interval (Fisher).', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'cost_ratio', NULL, 'w: processor time of a run over that of the next finer level.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'cpu', 's', 'Mean processor time of a run.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'deviation', NULL, 'Standard deviation between seeds.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'error', NULL, '|bias| and its half width, and those of the other knobs at the scene''s own setting. Off where it is not known.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'frontier', NULL, '1: no level studied is both cheaper and nearer (Pareto).', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'gain', NULL, 'Plain Monte Carlo''s cost over that of the best control variate; 1: it saves nothing.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'half_width', NULL, 'Half width of the 95 % interval of the mean (Student''s t).', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'knob', NULL, 'What was made coarser or finer (`clast converge --list`).', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'level', NULL, 'number of the level, from 0, coarse to fine', 0);
+
+INSERT INTO column_doc VALUES ('convergence', 'mean', NULL, 'Mean over seeds.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'n', '1', 'Seeds with a usable result.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'paired', NULL, '1: levels are compared seed by seed.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'point_id', NULL, 'the level, as a point: its runs are in run', 0);
+
+INSERT INTO column_doc VALUES ('convergence', 'quantity', NULL, 'Result of the runs. Its unit is that of mean, scatter, bias and error.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'reference', NULL, '1: the finest level, or the choice that the others are compared with.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('convergence', 'setting', NULL, 'Value of the knob''s first input at this level.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'skew', NULL, 'Skewness over seeds. Off for fewer than three.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'step', NULL, 'Size that goes to zero as the knob gets finer, such as particles^(-1/3). Off: none.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'base_point_id', NULL, 'the scene studied, as a point', 0);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated', NULL, 'Extrapolated value at step 0.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated_high', NULL, 'Upper end of it.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'extrapolated_low', NULL, 'Lower end of its 95 % interval.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'knob', NULL, 'What was made coarser or finer.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order', NULL, 'p of limit + a step^p through the three finest levels.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL, 'Upper end of it.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_low', NULL, 'Lower end of the 95 % interval of the order.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result of the runs. Its unit is that of the limit.', 1);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'results_version', NULL, 'version of the engine''s results', 0);
+
+INSERT INTO column_doc VALUES ('convergence_limit', 'verdict', NULL, 'What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 1);
 

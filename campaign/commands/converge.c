@@ -210,9 +210,9 @@ static void note_lines(const struct options *options, const char *text) {
 /* A knob that does not apply is said and left out when a group was asked for, and refused when it was named. */
 static status add_knob(struct subject *subject, const struct options *options, const struct scene *scene,
                        const struct knob *knob, const char *settings, bool named, struct error *error) {
-  struct knob_ladder levels;
+  struct ladder levels;
   char *notes = NULL;
-  status code = knob_ladder_make(knob, scene, settings, &levels, &notes, error);
+  status code = ladder_make(knob, scene, settings, &levels, &notes, error);
   if (code == STATUS_OK)
     note_lines(options, notes);
   free(notes);
@@ -476,7 +476,7 @@ static status study_with_farm(struct subject *subject, const struct options *opt
                                         .note = note,
                                         .note_context = (void *)options};
   const double begin = clock_s();
-  code = facts ? study_run(study, farm, &driver, error) : status_fail(error, STATUS_MEMORY, "out of memory");
+  code = facts ? study_rounds_run(study, farm, &driver, error) : status_fail(error, STATUS_MEMORY, "out of memory");
   free(facts);
   if (manager && !options->launch.quiet && (code == STATUS_OK || code == STATUS_STOPPED))
     print_summary(study, clock_s() - begin);
@@ -522,7 +522,8 @@ static const struct option_row rows[] = {
                     "What is made coarser and finer: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with "
                     "levels of your own. May be given several times. Default: the group resolution."),
     OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, NULL,
-                    "Results to study, comma-separated. Default: the campaign's main quantity, or largest_fraction."),
+                    "Results to study, comma-separated. Default: the campaign's main quantity, or " OUTCOME_DEFAULT
+                    "."),
     OPTION_ROW_LIST("set", 's', "PATH=VALUE", struct options, set,
                     "An input of the scene. May be given several times."),
     OPTION_ROW_TEXT("within", 0, "WIDTH", struct options, within, "5 %",

@@ -11,14 +11,14 @@
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
 
-status study_add(struct study *study, const struct scene *base, struct knob_ladder *levels, struct error *error) {
+status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error) {
   struct study_ladder *grown = realloc(study->ladder, (study->ladder_count + 1) * sizeof *grown);
   if (grown)
     study->ladder = grown;
   struct study_ladder ladder = {.levels = *levels, .base = base, .end = "not begun"};
   const size_t room = (size_t)study->rule.most_seeds;
   bool good = grown != NULL;
-  *levels = (struct knob_ladder){0};
+  *levels = (struct ladder){0};
   for (size_t q = 0; q < study->quantity_count; q++)
     for (size_t l = 0; l < ladder.levels.count; l++) {
       ladder.values[q][l] = malloc(room * sizeof(double));
@@ -39,7 +39,7 @@ void study_clear(struct study *study) {
     for (size_t q = 0; q < STUDY_QUANTITIES; q++)
       for (size_t l = 0; l < KNOB_LEVELS; l++)
         free(ladder->values[q][l]);
-    knob_ladder_clear(&ladder->levels);
+    ladder_clear(&ladder->levels);
   }
   free(study->ladder);
   study->ladder = NULL;
@@ -70,7 +70,7 @@ static size_t next_finer(const struct study_ladder *ladder, size_t level) {
 
 static void find_level(const struct study_ladder *ladder, size_t quantity, size_t l, size_t n,
                        struct convergence_row *row) {
-  const struct knob_level *level = &ladder->levels.level[l];
+  const struct ladder_level *level = &ladder->levels.level[l];
   const size_t reference = study_reference(ladder), finer = next_finer(ladder, l);
   double *const *values = ladder->values[quantity];
   const struct sample_summary summary = sample_summarise(n, values[l], CONFIDENCE);
@@ -197,7 +197,7 @@ static status store_found(const struct study_ladder *ladder, const struct study_
                                          .point_ids = ladder->point,
                                          .rows = found->rows,
                                          .limit = &found->limit};
-  return store_set_convergence(store, &rows, error);
+  return store_convergence_set(store, &rows, error);
 }
 
 status study_store(const struct study *study, struct store *store, struct error *error) {

@@ -5,13 +5,13 @@
  *
  *     study_add(study, base, &levels, &error);          // a knob of a scene; several
  *     farm_start(...);
- *     study_run(study, farm, &options, &error);         // every rank
+ *     study_rounds_run(study, farm, &options, &error);         // every rank
  *     study_of_scene(study, 0, 0, found);               // rank 0: what was found */
 #ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_H
 #define CLAST_CAMPAIGN_CONVERGE_STUDY_H
 
 #include "analysis/statistics/convergence.h"
-#include "campaign/converge/knob.h"
+#include "campaign/converge/ladder.h"
 #include "campaign/document/campaign.h"
 #include "campaign/driver/driver.h"
 
@@ -24,7 +24,7 @@ struct study_quantity {
 
 /* One knob of one scene, and the values of its runs. */
 struct study_ladder {
-  struct knob_ladder levels;
+  struct ladder levels;
   const struct scene *base; /* borrowed */
   int64_t base_point;       /* in the store; 0 before study_run */
   int64_t point[KNOB_LEVELS];
@@ -58,12 +58,13 @@ struct study {
 };
 
 /* Takes the ladder (also on errors). STATUS_MEMORY. */
-status study_add(struct study *study, const struct scene *base, struct knob_ladder *levels, struct error *error);
+status study_add(struct study *study, const struct scene *base, struct ladder *levels, struct error *error);
 void study_clear(struct study *study);
 
 /* Every rank calls it. On rank 0 all rounds are run and the values of all ladders are read. STATUS_OK also when the
  * budget is spent; STATUS_STOPPED after a signal: the same command goes on. */
-status study_run(struct study *study, struct farm *farm, const struct driver_options *options, struct error *error);
+status study_rounds_run(struct study *study, struct farm *farm, const struct driver_options *options,
+                        struct error *error);
 
 /* What a ladder tells of a quantity: one row per level, NaN where runs are missing. */
 struct study_found {

@@ -152,7 +152,7 @@ static size_t cheapest_level(const struct study_ladder *ladder) {
 
 /* The inputs of the knob as axes, whose i-th values are the i-th level. Inputs that are inactive are none. */
 static status make_axes(const struct rounds *rounds, struct campaign *campaign, struct error *error) {
-  const struct knob_ladder *levels = &rounds->ladder->levels;
+  const struct ladder *levels = &rounds->ladder->levels;
   const struct engine_kind *kind = rounds->ladder->base->kind;
   const size_t cheapest = cheapest_level(rounds->ladder);
   campaign->axes = calloc(KNOB_INPUTS, sizeof *campaign->axes);
@@ -367,7 +367,8 @@ static status run_rounds(struct rounds *rounds, struct farm *farm, struct error 
   return code == STATUS_OK ? study_store(study, rounds->store, error) : code;
 }
 
-status study_run(struct study *study, struct farm *farm, const struct driver_options *options, struct error *error) {
+status study_rounds_run(struct study *study, struct farm *farm, const struct driver_options *options,
+                        struct error *error) {
   if (farm_rank(farm) != 0)
     return farm_run(farm, NULL, error);
   struct driver_options own = *options;

@@ -59,7 +59,7 @@ static status replace(struct store *store, const struct store_convergence *study
   return result == STATUS_OK ? add_limit(store, study, error) : result;
 }
 
-status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error) {
+status store_convergence_set(struct store *store, const struct store_convergence *study, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;

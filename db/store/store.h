@@ -98,7 +98,7 @@ struct store_convergence {
   const struct convergence_limit_row *limit;
 };
 /* Replaces what the store has of this scene, knob and quantity. Joins the open batch. */
-status store_set_convergence(struct store *store, const struct store_convergence *study, struct error *error);
+status store_convergence_set(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
 status store_tick(struct store *store, struct error *error);  /* commit when the batch is older than 1 s */

@@ -21,7 +21,8 @@ static void biases(void **state) {
   NEAR(d.value, 2, 1e-12);
   NEAR(d.half_width, 2.484138, 1e-6);
 
-  /* Welch: {1,2,3} and {2,4,6,8}: s^2/n 1/3 and 5/3; freedom 4/(1/18 + 25/27) = 4.07547; t(.975) = 2.756285 there (by integration). */
+  /* Welch: {1,2,3} and {2,4,6,8}: s^2/n 1/3 and 5/3; freedom 4/(1/18 + 25/27) = 4.07547; t(.975) = 2.756285 there (by
+   * integration). */
   const double a[4] = {1, 2, 3, NAN}, b[4] = {2, 4, 6, 8};
   d = convergence_bias(4, a, b, false, 0.95);
   NEAR(d.value, -3, 1e-12);

@@ -1,9 +1,12 @@
-/* Knobs: what a study of convergence makes coarser and finer. The list in knob.c is the only one: the inputs of a knob,
- * its ladder of levels, the engine, what it means. */
-#ifndef CLAST_CAMPAIGN_CONVERGE_KNOB_H
-#define CLAST_CAMPAIGN_CONVERGE_KNOB_H
+/* Knobs: inputs that make a run coarser or finer, or model more or less. The list in knob.c is the only one: the inputs
+ * of a knob, its ladder of levels, the engine, what it means. Studies of convergence (campaign/converge) turn them. */
+#ifndef CLAST_ENGINE_KNOB_H
+#define CLAST_ENGINE_KNOB_H
 
-#include "engine/scene.h"
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "schemas/status.h"
 
 enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12 };
 
@@ -36,25 +39,5 @@ size_t knob_count(void);
 const struct knob *knob_at(size_t index);
 /* NULL + STATUS_USAGE with the known names of this engine. */
 const struct knob *knob_find(const char *engine, const char *name, struct error *error);
-
-struct knob_level {
-  char setting[64];    /* value of the first input, in SI or by name */
-  struct scene *scene; /* owned: the base scene with this level, checked */
-  double step;         /* NaN: none */
-  bool base, reference;
-};
-struct knob_ladder {
-  const struct knob *knob;
-  struct knob_level level[KNOB_LEVELS]; /* coarse to fine */
-  size_t count;
-};
-
-/* The levels of a knob in a scene. settings: NULL, or a comma-separated list of values of the knob's first input, which
- * replaces the ladder; the scene's own setting is then a level only if it is among them. Levels that the scene refuses
- * are left out and said in *notes (malloc'd lines, may become NULL). STATUS_CONTENT: the knob does not apply to this
- * scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no value of the input. */
-status knob_ladder_make(const struct knob *knob, const struct scene *base, const char *settings,
-                        struct knob_ladder *ladder, char **notes, struct error *error);
-void knob_ladder_clear(struct knob_ladder *ladder);
 
 #endif

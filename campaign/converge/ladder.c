@@ -1,111 +1,17 @@
-/* The list of knobs, and the ladder of a knob in a scene. */
-#include "campaign/converge/knob.h"
+/* Makes the levels of a knob, sorts them and finds the reference. */
+#include "campaign/converge/ladder.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- the list ---- */
-
-const char *const knob_group_names[] = {"resolution", "part", "model"};
-
-/* Factors of particles and grains: a third of the number each, so that the spacing of an SPH body changes by 1.44. Time
- * steps: halves. */
-#define SPH(name_, group_, ...)                                                                                        \
-  { .name = name_, .engine = "sph", .group = KNOB_##group_, __VA_ARGS__ }
-#define DEM(name_, group_, ...)                                                                                        \
-  { .name = name_, .engine = "dem", .group = KNOB_##group_, __VA_ARGS__ }
-#define THIRDS .factors = {1.0 / 9, 1.0 / 3, 1, 3}
-#define HALVES .factors = {2, 1, 0.5, 0.25, 0.125}
-#define ON_OFF .choices = {"false", "true"}
-
-static const struct knob knobs[] = {
-    SPH("particles", RESOLUTION, .inputs = {{"fidelity.particles", 1}}, THIRDS, .step_power = -1.0 / 3,
-        .meaning = "number of particles of the target; the projectile's spacing follows"),
-    SPH("points", RESOLUTION, .inputs = {{"fidelity.points", 1}}, HALVES, .step_power = -1,
-        .meaning = "spacings along a plate"),
-    SPH("projectile", RESOLUTION, .inputs = {{"fidelity.projectile_spacing", 1}}, .factors = {2, 1.41, 1, 0.71},
-        .step_power = 1, .meaning = "particle spacing of the projectile over the target's"),
-    SPH("time_step", RESOLUTION,
-        .inputs = {{"fidelity.cfl", 1}, {"fidelity.damage_step", 1}, {"fidelity.distention_step", 1}}, HALVES,
-        .step_power = 1, .pairs = true, .meaning = "all limits of the time step together"),
-    SPH("courant", PART, .inputs = {{"fidelity.cfl", 1}}, HALVES, .step_power = 1, .pairs = true,
-        .meaning = "time step over what a wave needs through h"),
-    SPH("damage_step", PART, .inputs = {{"fidelity.damage_step", 1}}, .factors = {2, 1, 0.5, 0.25, 0.1},
-        .step_power = 1, .pairs = true, .meaning = "largest change of D^(1/3) in a time step"),
-    SPH("precision", RESOLUTION, .inputs = {{"fidelity.precision"}}, .choices = {"float", "double"}, .pairs = true,
-        .meaning = "arithmetic of the pair loop"),
-    SPH("flaw_list", RESOLUTION, .inputs = {{"fidelity.flaws"}}, .choices = {"compact", "exact"}, .pairs = true,
-        .meaning = "how a particle's flaws are stored"),
-    SPH("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.end_time", 1}}, .factors = {0.5, 1, 2, 4},
-        .pairs = true, .meaning = "how long no damage must grow until the run ends; the hard end moves with it"),
-
-    SPH("smoothing", MODEL, .inputs = {{"fidelity.smoothing", 1}}, .factors = {0.9, 1, 1.15, 1.3}, .pairs = true,
-        .meaning = "smoothing length over the spacing: number of neighbours"),
-    SPH("strength", MODEL, .inputs = {{"target.strength"}}, ON_OFF, .pairs = true,
-        .meaning = "the target resists shear"),
-    SPH("fracture", MODEL, .inputs = {{"target.fracture"}}, .choices = {"off"}, .pairs = true,
-        .meaning = "the target has flaws, from which cracks grow"),
-    SPH("porosity", MODEL, .inputs = {{"target.material.porosity.curve"}}, .choices = {"none"}, .pairs = true,
-        .meaning = "pores are crushed"),
-    SPH("pressure_strength", MODEL, .inputs = {{"target.material.pressure_strength.law"}}, .choices = {"none"},
-        .pairs = true, .meaning = "the yield limit grows with pressure"),
-    SPH("gradient_correction", MODEL, .inputs = {{"method.gradient_correction"}}, ON_OFF, .pairs = true,
-        .meaning = "velocity gradients exact for linear fields"),
-    SPH("artificial_stress", MODEL, .inputs = {{"method.artificial_stress"}}, .choices = {"0", "0.3"}, .pairs = true,
-        .meaning = "repulsion against clumping in tension"),
-    SPH("flaw_draw", MODEL, .inputs = {{"fracture.draw"}}, .choices = {"ranked", "poisson"},
-        .meaning = "flaw strengths by rank, or drawn"),
-
-    DEM("grains", RESOLUTION, .inputs = {{"grain.spacing", 1}}, .factors = {2, 1.41, 1, 0.71}, .step_power = 1,
-        .meaning = "mean size of a grain of a disc: half as many grains each"),
-    DEM("time_step", RESOLUTION, .inputs = {{"fidelity.time_step", 1}}, HALVES, .step_power = 1, .pairs = true,
-        .meaning = "time step"),
-    DEM("integrator", RESOLUTION, .inputs = {{"fidelity.integrator"}}, .choices = {"verlet", "gear"}, .pairs = true,
-        .meaning = "second order, or Gear's fifth"),
-    DEM("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.end_time", 1}}, .factors = {0.5, 1, 2, 4, 8},
-        .pairs = true, .meaning = "how long no beam must break until the run ends; the hard end moves with it"),
-
-    DEM("contact_law", MODEL, .inputs = {{"contact.law"}}, .choices = {"off", "printed", "conservative"}, .pairs = true,
-        .meaning = "repulsion of overlapping grains"),
-    DEM("contact_bonded", MODEL, .inputs = {{"contact.bonded"}}, ON_OFF, .pairs = true,
-        .meaning = "grains that a beam joins repel each other, too"),
-    DEM("breaking", MODEL, .inputs = {{"threshold.breaking"}}, ON_OFF, .pairs = true, .meaning = "beams may break"),
-};
-
-size_t knob_count(void) {
-  return sizeof knobs / sizeof knobs[0];
-}
-
-const struct knob *knob_at(size_t index) {
-  return &knobs[index];
-}
-
-const struct knob *knob_find(const char *engine, const char *name, struct error *error) {
-  char known[1024] = "";
-  size_t used = 0;
-  for (size_t i = 0; i < knob_count(); i++) {
-    if (strcmp(knobs[i].engine, engine) != 0)
-      continue;
-    if (strcmp(knobs[i].name, name) == 0)
-      return &knobs[i];
-    if (used < sizeof known)
-      used += (size_t)snprintf(known + used, sizeof known - used, ", %s", knobs[i].name);
-  }
-  status_fail(error, STATUS_USAGE, "engine %s has no knob '%.64s'; it has %s (`clast converge --list`)", engine, name,
-              known[0] ? known + 2 : "none");
-  return NULL;
-}
-
-/* ---- a ladder ---- */
-
 struct making {
   const struct knob *knob;
   const struct scene *base;
   const struct field *rows[KNOB_INPUTS]; /* NULL: the knob has no such input in this scene */
   struct field_value own[KNOB_INPUTS];
-  struct knob_ladder *ladder;
+  struct ladder *ladder;
   FILE *notes;
 };
 
@@ -177,8 +83,8 @@ static status set_inputs(const struct making *making, const struct field_value *
 
 /* Adds a level unless it is there already. One that the scene refuses becomes a note. */
 static status add_level(struct making *making, const struct field_value *value, struct error *error) {
-  struct knob_ladder *ladder = making->ladder;
-  struct knob_level level = {.step = NAN};
+  struct ladder *ladder = making->ladder;
+  struct ladder_level level = {.step = NAN};
   print_setting(making->rows[0], value, level.setting, sizeof level.setting);
   for (size_t i = 0; i < ladder->count; i++)
     if (strcmp(ladder->level[i].setting, level.setting) == 0)
@@ -245,18 +151,18 @@ static status add_choices(struct making *making, struct error *error) {
 }
 
 static int by_step(const void *a, const void *b) {
-  const double x = ((const struct knob_level *)a)->step, y = ((const struct knob_level *)b)->step;
+  const double x = ((const struct ladder_level *)a)->step, y = ((const struct ladder_level *)b)->step;
   return (x < y) - (x > y);
 }
 
 static int by_value(const void *a, const void *b) {
-  const double x = strtod(((const struct knob_level *)a)->setting, NULL);
-  const double y = strtod(((const struct knob_level *)b)->setting, NULL);
+  const double x = strtod(((const struct ladder_level *)a)->setting, NULL);
+  const double y = strtod(((const struct ladder_level *)b)->setting, NULL);
   return (x > y) - (x < y);
 }
 
 static void sort_levels(const struct making *making) {
-  struct knob_ladder *ladder = making->ladder;
+  struct ladder *ladder = making->ladder;
   if (making->knob->step_power != 0)
     qsort(ladder->level, ladder->count, sizeof *ladder->level, by_step);
   else if (making->knob->factors[0] > 0)
@@ -265,7 +171,7 @@ static void sort_levels(const struct making *making) {
 
 /* The finest level; of models the scene's own, which may be missing among the user's settings. */
 static void choose_reference(const struct making *making) {
-  struct knob_ladder *ladder = making->ladder;
+  struct ladder *ladder = making->ladder;
   size_t reference = ladder->count - 1;
   for (size_t i = 0; making->knob->group == KNOB_MODEL && i < ladder->count; i++)
     if (ladder->level[i].base)
@@ -273,9 +179,9 @@ static void choose_reference(const struct making *making) {
   ladder->level[reference].reference = true;
 }
 
-status knob_ladder_make(const struct knob *knob, const struct scene *base, const char *settings,
-                        struct knob_ladder *ladder, char **notes, struct error *error) {
-  *ladder = (struct knob_ladder){.knob = knob};
+status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
+                   char **notes, struct error *error) {
+  *ladder = (struct ladder){.knob = knob};
   *notes = NULL;
   size_t size = 0;
   struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = open_memstream(notes, &size)};
@@ -292,7 +198,7 @@ status knob_ladder_make(const struct knob *knob, const struct scene *base, const
   if (code == STATUS_OK && ladder->count < 2)
     code = status_fail(error, STATUS_CONTENT, "%s has fewer than two levels in this scene", knob->name);
   if (code != STATUS_OK) {
-    knob_ladder_clear(ladder);
+    ladder_clear(ladder);
     return code;
   }
   sort_levels(&making);
@@ -300,7 +206,7 @@ status knob_ladder_make(const struct knob *knob, const struct scene *base, const
   return STATUS_OK;
 }
 
-void knob_ladder_clear(struct knob_ladder *ladder) {
+void ladder_clear(struct ladder *ladder) {
   for (size_t i = 0; i < ladder->count; i++)
     scene_free(ladder->level[i].scene);
   ladder->count = 0;

@@ -1,0 +1,28 @@
+/* The ladder of a knob in a scene: its levels, coarse to fine, each as a scene that can be run. */
+#ifndef CLAST_CAMPAIGN_CONVERGE_LADDER_H
+#define CLAST_CAMPAIGN_CONVERGE_LADDER_H
+
+#include "engine/knob.h"
+#include "engine/scene.h"
+
+struct ladder_level {
+  char setting[64];    /* value of the first input, in SI or by name */
+  struct scene *scene; /* owned: the base scene with this level, checked */
+  double step;         /* NaN: none */
+  bool base, reference;
+};
+struct ladder {
+  const struct knob *knob;
+  struct ladder_level level[KNOB_LEVELS]; /* coarse to fine */
+  size_t count;
+};
+
+/* The levels of a knob in a scene. settings: NULL, or a comma-separated list of values of the knob's first input, which
+ * replaces the ladder; the scene's own setting is then a level only if it is among them. Levels that the scene refuses
+ * are left out and said in *notes (malloc'd lines, may become NULL). STATUS_CONTENT: the knob does not apply to this
+ * scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no value of the input. */
+status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
+                   char **notes, struct error *error);
+void ladder_clear(struct ladder *ladder);
+
+#endif

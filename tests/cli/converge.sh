@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# clast converge: a cheap study of each engine, its rows in the store, going on after it, and wrong command lines.
+. "$(dirname "$0")/lib.bash"
+
+disc=(disc-explosion --set body.diameter='8 cm' --set charge.energy='2 kJ/m' --set stop.end_time='1 ms')
+expect 0 "$clast" converge --list
+prints "particles"; prints "grains"
+expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=0.012,0.01069,0.009 -q largest_fraction,broken \
+  --seeds 4 --max-seeds 8 --within '0.01 %' --store disc.db --picture disc.png -j 2
+says "56 runs computed"; prints "most seeds allowed"; prints "grains"; [ -s disc.png ] || fail "no picture"
+same "$(number disc.db "select count(*) from convergence where n = 8")" 16 "levels of two knobs and two quantities"
+same "$(number disc.db "select count(*) from convergence_limit")" 4 "limits"
+# The bias that the study printed is the one of the runs themselves, seed by seed.
+python - <<'PY'
+import sqlite3, statistics
+db = sqlite3.connect('file:disc.db?mode=ro', uri=True)
+def values(point):
+    return [v for v, in db.execute('select largest_fraction from run where point_id = ? order by seed', (point,))]
+rows = db.execute("select knob, reference, point_id, bias, mean, n, paired, base from convergence"
+                  " where quantity = 'largest_fraction' order by knob, level").fetchall()
+checked = 0
+for knob in ('grains', 'time_step'):
+    mine = [r for r in rows if r[0] == knob]
+    reference, = [r for r in mine if r[1]]
+    assert sum(r[7] for r in mine) == 1, mine
+    for r in mine:
+        a, b = values(r[2]), values(reference[2])
+        assert r[5] == len(a) == 8 and abs(statistics.mean(a) - r[4]) < 1e-12, r
+        assert abs(statistics.mean(a) - statistics.mean(b) - r[3]) < 1e-12, r
+        checked += 1
+assert checked == 8, checked
+PY
+ok "mean and bias are those of the runs"
+# The same command computes nothing; a later one goes on.
+expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=0.012,0.01069,0.009 --seeds 4 --max-seeds 8 \
+  --within '0.01 %' --store disc.db --json -j 2
+says "0 runs computed"
+python -c "
+import json; rows = json.load(open('out'))
+assert len(rows) == 8 and {r['knob'] for r in rows} == {'time_step', 'grains'}, rows
+assert all(r['bias'] == 0 for r in rows if r['reference'])"
+ok "the table as JSON"
+expect 0 "$clast" check disc.db
+# The rounds are campaigns that clast run can repeat: every run is found.
+python - <<'PY'
+import sqlite3
+db = sqlite3.connect('file:disc.db?mode=ro', uri=True)
+text, = db.execute("select document from campaign where document like '%per_point: 8%' limit 1").fetchone()
+open('round.yaml', 'w').write(text)
+PY
+expect 0 "$clast" run round.yaml --store disc.db -j 2
+says "0 runs computed"
+
+# SPH: the lattice is turned with the seed, and one round is enough without a width.
+expect 0 "$clast" converge basalt-sphere --set fidelity.particles=300 --set stop.end_time='10 us' \
+  --knob particles=200,300,450 --knob precision --seeds 3 --within off --store ball.db -q mean_damage -j 2
+prints "precision"; prints "one round"
+same "$(number ball.db "select count(*) from run")" 12 "runs: 3 + 1 levels, 3 seeds"
+same "$(number ball.db "select count(*) from point_input where path = 'target.turned' and value = 0")" 0 "points with a lattice that is not turned"
+
+# A campaign: every point is studied.
+tiny tiny
+expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
+same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
+
+expect 64 "$clast" converge
+expect 64 "$clast" converge disc-explosion --knob particles
+says "grains"
+expect 64 "$clast" converge disc-explosion --knob grains=many,2
+expect 64 "$clast" converge disc-explosion --within wide
+expect 64 "$clast" converge disc-explosion -q largest_fraction,broken --within 0.1
+expect 64 "$clast" converge disc-explosion --set contact.friction
+expect 65 "$clast" converge block-impact --knob grains=0.01
+expect 66 "$clast" converge disc-explosoin
+[ ! -e block-impact-converge.db ] || fail "a refused study made a store"
+done_after 22

@@ -1,0 +1,196 @@
+/* Knobs name inputs that exist, ladders are ordered and have their reference, and findings are kept in the store. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sqlite3.h>
+
+#include "analysis/analysis.h"
+#include "campaign/converge/ladder.h"
+#include "tests/support/store_fixture.h"
+
+static struct error error;
+
+static struct scene *scene_of(const char *name) {
+  struct scene *scene = NULL;
+  assert_int_equal(scene_load(name, NULL, &scene, &error), STATUS_OK);
+  return scene;
+}
+
+static const struct knob *knob_of(const char *engine, const char *name) {
+  const struct knob *knob = knob_find(engine, name, &error);
+  assert_non_null(knob);
+  return knob;
+}
+
+static void every_knob_names_inputs_of_its_engine(void **state) {
+  (void)state;
+  assert_true(knob_count() > 15);
+  for (size_t i = 0; i < knob_count(); i++) {
+    const struct knob *knob = knob_at(i);
+    const struct engine_kind *kind = engine_find(knob->engine, &error);
+    assert_non_null(kind);
+    for (size_t j = 0; j < KNOB_INPUTS && knob->inputs[j].path; j++) {
+      const struct field *row = field_find(kind->inputs, knob->inputs[j].path, &error);
+      if (!row || strcmp(row->path, knob->inputs[j].path) != 0)
+        fail_msg("knob %s of %s: no input %s", knob->name, knob->engine, knob->inputs[j].path);
+      struct field_value value;
+      for (size_t c = 0; j == 0 && c < KNOB_LEVELS && knob->choices[c]; c++)
+        if (field_parse(row, knob->choices[c], &value, &error) != STATUS_OK)
+          fail_msg("knob %s of %s: %s", knob->name, knob->engine, error.message);
+    }
+    assert_true((knob->factors[0] > 0) != (knob->choices[0] != NULL));
+    for (size_t j = 0; j < i; j++) /* a name is one knob of an engine */
+      assert_true(strcmp(knob->name, knob_at(j)->name) != 0 || strcmp(knob->engine, knob_at(j)->engine) != 0);
+  }
+}
+
+/* Every knob of every built-in scene either has a ladder with one reference, steps that fall, and levels that differ,
+ * or says why it has none. */
+static void ladders_of_all_scenes(void **state) {
+  (void)state;
+  size_t made = 0, refused = 0;
+  for (size_t s = 0; s < scene_builtin_count(); s++) {
+    struct scene *scene = scene_of(scene_builtin_name(s));
+    for (size_t i = 0; i < knob_count(); i++) {
+      struct ladder ladder;
+      char *notes = NULL;
+      if (strcmp(knob_at(i)->engine, scene->kind->name) != 0)
+        continue;
+      error = (struct error){0};
+      status code = ladder_make(knob_at(i), scene, NULL, &ladder, &notes, &error);
+      free(notes);
+      if (code != STATUS_OK) {
+        assert_int_equal(code, STATUS_CONTENT);
+        assert_true(strlen(error.message) > 10);
+        refused++;
+        continue;
+      }
+      size_t references = 0, bases = 0;
+      for (size_t l = 0; l < ladder.count; l++) {
+        uint8_t one[16], other[16];
+        references += ladder.level[l].reference;
+        bases += ladder.level[l].base;
+        if (l == 0)
+          continue;
+        scene_identity(ladder.level[l - 1].scene, 1, one);
+        scene_identity(ladder.level[l].scene, 1, other);
+        assert_true(memcmp(one, other, 16) != 0);
+        if (!isnan(ladder.level[l].step))
+          assert_true(ladder.level[l].step < ladder.level[l - 1].step);
+      }
+      assert_int_equal(references, 1);
+      assert_int_equal(bases, 1);
+      if (knob_at(i)->group != KNOB_MODEL)
+        assert_true(ladder.level[ladder.count - 1].reference);
+      made++;
+      ladder_clear(&ladder);
+    }
+    scene_free(scene);
+  }
+  assert_true(made > 50 && refused > 10);
+}
+
+static void levels_of_ones_own(void **state) {
+  (void)state;
+  struct scene *scene = scene_of("basalt-sphere");
+  struct ladder ladder;
+  char *notes = NULL;
+  assert_int_equal(ladder_make(knob_of("sph", "particles"), scene, "3000,1000,93000", &ladder, &notes, &error),
+                   STATUS_OK);
+  assert_int_equal(ladder.count, 3);
+  assert_string_equal(ladder.level[0].setting, "1000");
+  assert_true(ladder.level[2].base && ladder.level[2].reference);
+  assert_true(fabs(ladder.level[0].step - 0.1) < 1e-12);
+  ladder_clear(&ladder);
+  free(notes);
+
+  /* Inputs that belong to a knob move together: halving the time step halves its other limits. */
+  assert_int_equal(ladder_make(knob_of("sph", "time_step"), scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  struct field_value own, finest;
+  const struct field *row = field_find(scene->kind->inputs, "fidelity.damage_step", &error);
+  field_get(row, scene->inputs, &own);
+  field_get(row, ladder.level[ladder.count - 1].scene->inputs, &finest);
+  assert_true(fabs(finest.number / own.number - 0.125) < 1e-3);
+  ladder_clear(&ladder);
+  free(notes);
+
+  const char *const wrong[] = {"1000", "1000,many", "1000,-3", ""};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    error = (struct error){0};
+    assert_true(ladder_make(knob_of("sph", "particles"), scene, wrong[i], &ladder, &notes, &error) != STATUS_OK);
+    assert_int_equal(ladder.count, 0);
+    free(notes);
+  }
+  assert_null(knob_find("dem", "particles", &error));
+  assert_non_null(strstr(error.message, "grains"));
+  scene_free(scene);
+}
+
+static int integer(struct store *store, const char *sql) {
+  double number = NAN;
+  assert_int_equal(query_number(store, sql, 0, NULL, &number, &error), STATUS_OK);
+  return (int)number;
+}
+
+static void findings_replace_earlier_ones(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct scene *scene = scene_of("disc-explosion");
+  assert_int_equal(store_open_writer(fixture_path(path, "converge"), &store, NULL, 0, &error), STATUS_OK);
+  int64_t point = 0;
+  assert_int_equal(store_add_point(store, 0, scene, 0, NULL, &point, &error), STATUS_OK);
+  struct convergence_row rows[2];
+  for (size_t i = 0; i < 2; i++) {
+    field_defaults(&convergence_table, &rows[i]);
+    strcpy(rows[i].knob, "time_step");
+    strcpy(rows[i].quantity, "largest_fraction");
+    snprintf(rows[i].setting, sizeof rows[i].setting, "%zu", i);
+  }
+  struct convergence_limit_row limit;
+  field_defaults(&convergence_limit_table, &limit);
+  strcpy(limit.knob, "time_step");
+  strcpy(limit.quantity, "largest_fraction");
+  limit.verdict = CONVERGENCE_NO_ORDER;
+  const int64_t points[2] = {point, point};
+  struct store_convergence study = {point, 3, 2, points, rows, &limit};
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence_limit WHERE verdict = 'no-order'"), 1);
+  study.count = 1;
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
+  strcpy(rows[0].quantity, "dust_fraction"); /* another quantity stays beside it */
+  strcpy(limit.quantity, "dust_fraction");
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 2);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+
+  /* A store of an earlier program has no such tables: they are made when it is opened for writing. */
+  sqlite3 *db = NULL;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db, "DROP TABLE convergence; DROP TABLE convergence_limit", NULL, NULL, NULL),
+                   SQLITE_OK);
+  sqlite3_close(db);
+  assert_int_equal(store_open_writer(path, &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+  assert_int_equal(integer(store, "SELECT count(*) FROM convergence"), 1);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  scene_free(scene);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_knob_names_inputs_of_its_engine),
+                                     cmocka_unit_test(ladders_of_all_scenes), cmocka_unit_test(levels_of_ones_own),
+                                     cmocka_unit_test(findings_replace_earlier_ones)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
