@@ -264,11 +264,15 @@ CREATE TABLE result_dem ( -- What this engine reports beyond the columns of tabl
   last_break REAL, -- [s] Time of the last break; off when none broke.
   energy_input REAL, -- [J/m] Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load.
   threshold_energy REAL, -- [J/m] Energy that would bring every beam to the stretching threshold.
-  stable_time_step REAL, -- [s] Stability limit 2/omega_max of the body as it starts.
+  stable_time_step REAL, -- [s] Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.
   sound_speed_extension REAL, -- [m/s] Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value).
   sound_speed_compression REAL, -- [m/s] Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave.
   overlap_share REAL, -- [1] Neighbour pairs that overlap over all neighbour pairs, at the end.
+  passing_share REAL, -- [1] Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which they pass through each other. Above 1 the model has no answer for them. Off without contacts.
+  late_breaks INTEGER, -- [1] Beams broken in the second half of the run's time.
+  largest_loss REAL, -- [1] How final the run is: M_1/M that the largest fragment lost in the second half of the run's time. Expect about as much in the next doubling of the time.
   energy_kinetic REAL, -- [J/m] Kinetic energy at the end.
+  energy_vibration REAL, -- [J/m] Part of the kinetic energy that is motion inside fragments: neither their translation nor their rotation. Without damping it does not decay, and breaks more beams.
   energy_beam REAL, -- [J/m] Energy stored in beams at the end.
   energy_contact REAL, -- [J/m] Energy stored in contacts at the end (printed law: work done on contacts, of which not all can return).
   energy_damping REAL, -- [J/m] Energy taken by damping.
@@ -400,7 +404,11 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   result_dem."sound_speed_extension",
   result_dem."sound_speed_compression",
   result_dem."overlap_share",
+  result_dem."passing_share",
+  result_dem."late_breaks",
+  result_dem."largest_loss",
   result_dem."energy_kinetic" AS "result_dem_energy_kinetic",
+  result_dem."energy_vibration",
   result_dem."energy_beam",
   result_dem."energy_contact",
   result_dem."energy_damping",
@@ -929,6 +937,8 @@ INSERT INTO column_doc VALUES ('result_dem', 'energy_input', 'J/m', 'Energy put 
 
 INSERT INTO column_doc VALUES ('result_dem', 'energy_kinetic', 'J/m', 'Kinetic energy at the end.', 1);
 
+INSERT INTO column_doc VALUES ('result_dem', 'energy_vibration', 'J/m', 'Part of the kinetic energy that is motion inside fragments: neither their translation nor their rotation. Without damping it does not decay, and breaks more beams.', 1);
+
 INSERT INTO column_doc VALUES ('result_dem', 'failure_strain', '1', 'Strain at the largest stress.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'final_strain', '1', 'Strain at the end of the loading.', 1);
@@ -937,9 +947,15 @@ INSERT INTO column_doc VALUES ('result_dem', 'first_break', 's', 'Time of the fi
 
 INSERT INTO column_doc VALUES ('result_dem', 'grains', '1', 'Grains, the explosive one left out.', 1);
 
+INSERT INTO column_doc VALUES ('result_dem', 'largest_loss', '1', 'How final the run is: M_1/M that the largest fragment lost in the second half of the run''s time. Expect about as much in the next doubling of the time.', 1);
+
 INSERT INTO column_doc VALUES ('result_dem', 'last_break', 's', 'Time of the last break; off when none broke.', 1);
 
+INSERT INTO column_doc VALUES ('result_dem', 'late_breaks', '1', 'Beams broken in the second half of the run''s time.', 1);
+
 INSERT INTO column_doc VALUES ('result_dem', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 1);
+
+INSERT INTO column_doc VALUES ('result_dem', 'passing_share', '1', 'Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which they pass through each other. Above 1 the model has no answer for them. Off without contacts.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'poisson_ratio', '1', 'nu: minus the slope of lateral against axial strain.', 1);
 
@@ -949,7 +965,7 @@ INSERT INTO column_doc VALUES ('result_dem', 'sound_speed_compression', 'm/s', '
 
 INSERT INTO column_doc VALUES ('result_dem', 'sound_speed_extension', 'm/s', 'Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice''s value).', 1);
 
-INSERT INTO column_doc VALUES ('result_dem', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 1);
+INSERT INTO column_doc VALUES ('result_dem', 'stable_time_step', 's', 'Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.', 1);
 
 INSERT INTO column_doc VALUES ('result_dem', 'stop_reason', NULL, 'Why the run ended. One of: running, quiet, end-time, strain, failure, fault', 1);
 
@@ -1233,6 +1249,8 @@ INSERT INTO column_doc VALUES ('runs', 'energy_friction', 'J/m', 'Energy taken b
 
 INSERT INTO column_doc VALUES ('runs', 'energy_internal', 'J', 'Internal energy at the end, elastic energy included.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'energy_vibration', 'J/m', 'Part of the kinetic energy that is motion inside fragments: neither their translation nor their rotation. Without damping it does not decay, and breaks more beams.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'energy_work_of_held', 'J', 'Work done by grips.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'engine', NULL, 'name of the engine', 0);
@@ -1275,11 +1293,15 @@ INSERT INTO column_doc VALUES ('runs', 'largest_dynamic_fraction', '1', 'M_1/M w
 
 INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'How final the run is: M_1/M that the largest fragment lost in the second half of the run''s time. Expect about as much in the next doubling of the time.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'last_break', 's', 'Time of the last break; off when none broke.', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'late_breaks', '1', 'Beams broken in the second half of the run''s time.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'limited_courant', '1', 'Share of the steps limited by the speed of sound and viscosity, or by a damped side.', 0);
 
@@ -1310,6 +1332,8 @@ INSERT INTO column_doc VALUES ('runs', 'neighbours', '1', 'Mean number of neighb
 INSERT INTO column_doc VALUES ('runs', 'overlap_share', '1', 'Neighbour pairs that overlap over all neighbour pairs, at the end.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'particles', '1', 'Number of particles in the target (in both bodies of a collision).', 0);
+
+INSERT INTO column_doc VALUES ('runs', 'passing_share', '1', 'Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which they pass through each other. Above 1 the model has no answer for them. Off without contacts.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
 
@@ -1397,7 +1421,7 @@ INSERT INTO column_doc VALUES ('runs', 'sound_speed_extension', 'm/s', 'Estimate
 
 INSERT INTO column_doc VALUES ('runs', 'specific_energy', 'J/kg', 'Q: kinetic energy of the projectile over the mass of the target; off without a projectile.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Stability limit 2/omega_max of the body as it starts.', 0);
+INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 0);
 

@@ -91,8 +91,9 @@ const struct engine_kind dem_engine = {
         "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "
         "names at each input.",
     /* 2: the reference side of a contact has a floor. 3: contacts that begin with a break (contact.bonded off) are in
-     * the ledger; grains too fast for the time step end a run. */
-    .results_version = 3,
+     * the ledger; grains too fast for the time step end a run. 4: Gear's first coefficients; thresholds by place;
+     * stop.least_time. */
+    .results_version = 4,
     .inputs = &dem_inputs,
     .results = &dem_results,
     .check = check,

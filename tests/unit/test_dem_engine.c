@@ -270,9 +270,66 @@ static void figures_by_hand(void **state) {
     for (size_t k = 0; k < ran.count; k++)
       translation += 0.5 * ran.fragments[k].mass *
                      (pow(ran.fragments[k].velocity[0], 2) + pow(ran.fragments[k].velocity[1], 2));
+    double rigid = translation;
+    for (size_t k = 0; k < ran.count; k++)
+      rigid += 0.5 * ran.fragments[k].moment_of_inertia * pow(ran.fragments[k].spin[2], 2);
+    assert_true(last.kinetic - rigid > 1e-3 * input); /* the rest of the kinetic energy is motion inside fragments */
+    assert_true(fabs(ran.results.dem.energy.vibration - (last.kinetic - rigid)) < 1e-12 * last.kinetic);
     assert_true(translation > 0 && fabs(ran.outcome.kinetic_energy_share / (translation / input) - 1) < 1e-12);
     free(ran.fragments);
     dem_run_free(run);
+  }
+}
+
+/* A run is complete when it is quiet, and not before its least time. */
+static void completed_needs_the_least_time(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small();
+  inputs.stop.quiet_time = 2e-5;
+  inputs.stop.least_time = 0;
+  struct ran paper = run_case_run(&dem_engine, &inputs, 3);
+  inputs.stop.least_time = 1e-3;
+  struct ran later = run_case_run(&dem_engine, &inputs, 3);
+  print_message("complete at %.4g s by the paper's rule, at %.4g s with a least time\n", paper.outcome.time,
+                later.outcome.time);
+  assert_int_equal(paper.outcome.state, OUTCOME_COMPLETED);
+  assert_int_equal(later.outcome.state, OUTCOME_COMPLETED);
+  assert_true(paper.outcome.time < 0.5e-3 && later.outcome.time > 1e-3 - 1e-9 && later.outcome.time < 2e-3);
+  assert_true(later.results.dem.broken > paper.results.dem.broken); /* what the paper's rule leaves out */
+  free(paper.fragments);
+  free(later.fragments);
+}
+
+/* How final a run is, against a run that ends at half of its time. */
+static void finality_is_what_broke_late(void **state) {
+  (void)state;
+  struct dem_inputs inputs = small();
+  inputs.stop.quiet_time = 1;
+  inputs.stop.end_time = 1e-3;
+  struct ran whole = run_case_run(&dem_engine, &inputs, 3);
+  inputs.stop.end_time = 0.5e-3;
+  struct ran half = run_case_run(&dem_engine, &inputs, 3);
+  const double loss = half.outcome.largest_fraction - whole.outcome.largest_fraction;
+  print_message("M_1/M %.4f at half of the time, %.4f at its end\n", half.outcome.largest_fraction,
+                whole.outcome.largest_fraction);
+  assert_true(loss > 0.005);
+  assert_true(fabs(whole.results.dem.largest_loss - loss) < 1e-12); /* sums of masses in other orders */
+  assert_int_equal(whole.results.dem.late_breaks, whole.results.dem.broken - half.results.dem.broken);
+  free(whole.fragments);
+  free(half.fragments);
+}
+
+/* Grains too fast for any overlap to stop them. At 400 m/s none is; 3 km/s is four times the speed of passing. */
+static void grains_that_pass_are_flagged(void **state) {
+  (void)state;
+  for (int fast = 0; fast < 2; fast++) {
+    struct dem_inputs block = DEM_CASE("block-impact", "body.columns=8", "body.rows=6", "stop.end_time=0.3 ms",
+                                       fast ? "impact.speed=3 km/s" : "impact.speed=400 m/s");
+    struct ran ran = run_case_run(&dem_engine, &block, 3);
+    print_message("passing_share %.3g; %s\n", ran.results.dem.passing_share, ran.outcome.message);
+    assert_int_equal(ran.results.dem.passing_share > 1, fast);
+    assert_int_equal(strstr(ran.outcome.message, "pass through each other") != NULL, fast);
+    free(ran.fragments);
   }
 }
 
@@ -354,6 +411,9 @@ int main(void) {
                                      cmocka_unit_test(what_cannot_run_is_refused),
                                      cmocka_unit_test(chunks_do_not_matter),
                                      cmocka_unit_test(stop_rules),
+                                     cmocka_unit_test(completed_needs_the_least_time),
+                                     cmocka_unit_test(finality_is_what_broke_late),
+                                     cmocka_unit_test(grains_that_pass_are_flagged),
                                      cmocka_unit_test(neighbour_lists_last),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(short_common_sides_do_not_blow_up),

@@ -100,14 +100,14 @@ static void oracle_free(struct oracle *o) {
 static const double tolerance = 1e-12; /* of spacing and spacing^2: asked for; rounding is some 1e-14 */
 
 /* Compare a tessellation (spacing 1, origin chosen so that world = lattice coordinates) with the oracle. */
-static void compare(const struct dem_tessellation *t, const struct oracle *o, uint32_t columns) {
+static void compare(const struct dem_tessellation *t, const struct oracle *o, uint32_t columns, uint32_t centre) {
   uint32_t *cell_of = malloc(o->n * sizeof *cell_of);
   memset(cell_of, 0xff, o->n * sizeof *cell_of);
   for (uint32_t c = 0; c < t->cell_count; c++)
-    cell_of[t->grid_y[c] * columns + t->grid_x[c]] = c;
+    cell_of[(t->grid_y[c] + centre) * columns + t->grid_x[c] + centre] = c;
   size_t pairs = 0;
   for (uint32_t c = 0; c < t->cell_count; c++) {
-    uint32_t i = t->grid_y[c] * columns + t->grid_x[c];
+    uint32_t i = (t->grid_y[c] + centre) * columns + t->grid_x[c] + centre;
     if (!(fabs(t->area[c] - (double)o->area[i]) <= tolerance))
       fail_msg("area of cell %u: %.17g, qhull %.17Lg", c, t->area[c], o->area[i]);
     for (int k = 0; o->side[i][k][0] >= 0; k++) {
@@ -119,8 +119,9 @@ static void compare(const struct dem_tessellation *t, const struct oracle *o, ui
   }
   assert_int_equal(pairs, t->pair_count);
   for (size_t p = 0; p < t->pair_count; p++) {
-    uint32_t a = t->pair[p][0], b = t->pair[p][1], i = t->grid_y[a] * columns + t->grid_x[a];
-    uint32_t j = t->grid_y[b] * columns + t->grid_x[b];
+    uint32_t a = t->pair[p][0], b = t->pair[p][1];
+    uint32_t i = (t->grid_y[a] + centre) * columns + t->grid_x[a] + centre;
+    uint32_t j = (t->grid_y[b] + centre) * columns + t->grid_x[b] + centre;
     assert_true(a < b);
     assert_true(p == 0 || t->pair[p - 1][0] < a || (t->pair[p - 1][0] == a && t->pair[p - 1][1] < b));
     bool found = false;
@@ -165,7 +166,7 @@ static void block_equals_qhull(void **state) {
         struct dem_tessellation *t;
         assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
         assert_int_equal(t->cell_count, n);
-        compare(t, &o, points.columns);
+        compare(t, &o, points.columns, points.centre);
         double sum = 0;
         for (size_t c = 0; c < n; c++)
           sum += t->area[c];
@@ -196,12 +197,13 @@ static void disc_equals_qhull(void **state) {
         oracle_make(&o, &points.point[0].x, n, n);
         struct dem_tessellation *t;
         assert_int_equal(dem_tessellation_make(&lattice, &t, NULL), STATUS_OK);
-        compare(t, &o, points.columns);
+        compare(t, &o, points.columns, points.centre);
         double area = 0;
         for (uint32_t c = 0; c < t->cell_count; c++) {
           assert_true(hypot(t->centroid[c].x, t->centroid[c].y) <= radii[r]);
           /* the centroid is nearer to its own point than to any other (it lies in its convex cell) */
-          double px = points.point[t->grid_y[c] * points.columns + t->grid_x[c]].x - middle;
+          double px = points.point[(t->grid_y[c] + points.centre) * points.columns + t->grid_x[c] + points.centre].x -
+                      middle;
           assert_true(fabs(px - t->centroid[c].x) < 1.5);
           area += t->area[c];
         }

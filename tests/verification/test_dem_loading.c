@@ -213,6 +213,85 @@ static void thresholds_are_weibulls(void **state) {
   dem_tessellation_free(t);
 }
 
+/* Thresholds of the pair of two lattice squares over the scene's, by their place in the bond blocks; false: no such
+ * pair. */
+static bool thresholds_at(const struct dem_tessellation *t, const struct dem_inputs *in, const struct dem_system *s,
+                          const uint64_t square[2], double factor[2]) {
+  for (size_t k = 0; k < t->pair_count; k++) {
+    uint64_t own[2];
+    for (int end = 0; end < 2; end++)
+      own[end] = dem_tessellation_square(t->grid_x[t->pair[k][end]], t->grid_y[t->pair[k][end]]);
+    if (!(own[0] == square[0] && own[1] == square[1]) && !(own[0] == square[1] && own[1] == square[0]))
+      continue;
+    const struct dem_bond_block *b = &s->bond[k / DEM_BLOCK];
+    const size_t lane = k % DEM_BLOCK;
+    factor[0] = 1.0 / sqrt(b->weight_strain[lane]) / b->length[lane] / in->threshold.strain;
+    factor[1] = 1.0 / b->weight_angle[lane] / in->threshold.angle;
+    return true;
+  }
+  return false;
+}
+
+/* The same body with its grains numbered from the last to the first. */
+static struct dem_tessellation *renumbered(const struct dem_tessellation *t) {
+  struct dem_tessellation *r = fixture_squares((uint32_t)t->cell_count, 2, 1.0, 0.0, true); /* room enough */
+  r->cell_count = r->pair_count = 0;
+  free(r->vertex);
+  r->vertex = calloc(t->first_vertex[t->cell_count], sizeof *r->vertex);
+  const uint32_t n = (uint32_t)t->cell_count;
+  for (uint32_t i = 0; i < n; i++) {
+    const uint32_t from = n - 1 - i, count = t->first_vertex[from + 1] - t->first_vertex[from];
+    r->first_vertex[i + 1] = r->first_vertex[i] + count;
+    memcpy(r->vertex + r->first_vertex[i], t->vertex + t->first_vertex[from], count * sizeof *r->vertex);
+    r->centroid[i] = t->centroid[from];
+    r->area[i] = t->area[from];
+    r->polar_moment[i] = t->polar_moment[from];
+    r->grid_x[i] = t->grid_x[from];
+    r->grid_y[i] = t->grid_y[from];
+  }
+  r->cell_count = n;
+  r->pair = realloc(r->pair, t->pair_count * sizeof *r->pair);
+  r->side = realloc(r->side, t->pair_count * sizeof *r->side);
+  for (size_t k = 0; k < t->pair_count; k++) {
+    r->pair[k][0] = n - 1 - t->pair[k][1];
+    r->pair[k][1] = n - 1 - t->pair[k][0];
+    r->side[k] = t->side[k];
+  }
+  r->pair_count = t->pair_count;
+  return r;
+}
+
+/* One seed gives a beam the same thresholds in a larger body, and whatever the numbers of its grains are. */
+static void thresholds_belong_to_places(void **state) {
+  (void)state;
+  struct dem_tessellation *t = fixture_disc(0.06, 0.01, 1.0, 2), *larger = fixture_disc(0.09, 0.01, 1.0, 2);
+  struct dem_tessellation *other = renumbered(t), *const bodies[2] = {larger, other};
+  struct dem_inputs in = fixture_inputs();
+  in.threshold.breaking = true;
+  in.threshold.modulus = 4.0;
+  struct dem_system *s = NULL;
+  assert_int_equal(dem_system_create(t, &in, 11, &s, NULL), STATUS_OK);
+  for (int b = 0; b < 2; b++) {
+    struct dem_system *there = NULL;
+    assert_int_equal(dem_system_create(bodies[b], &in, 11, &there, NULL), STATUS_OK);
+    for (size_t k = 0; k < t->pair_count; k++) {
+      const uint32_t *pair = t->pair[k];
+      const uint64_t square[2] = {dem_tessellation_square(t->grid_x[pair[0]], t->grid_y[pair[0]]),
+                                  dem_tessellation_square(t->grid_x[pair[1]], t->grid_y[pair[1]])};
+      double here[2], factor[2];
+      assert_true(thresholds_at(t, &in, s, square, here));
+      assert_true(thresholds_at(bodies[b], &in, there, square, factor));
+      for (int q = 0; q < 2; q++) /* roundings of positions; another draw differs by tenths */
+        fixture_near(factor[q], here[q], 1e-9, b ? "threshold, other numbers" : "threshold, larger body");
+    }
+    dem_system_free(there);
+  }
+  dem_system_free(s);
+  fixture_free(other);
+  dem_tessellation_free(larger);
+  dem_tessellation_free(t);
+}
+
 /* Squares face on, a tenth slower than the speed told to users and a tenth faster: they bounce, they pass. */
 static void grains_pass_where_said(void **state) {
   (void)state;
@@ -262,6 +341,7 @@ int main(void) {
                                      cmocka_unit_test(energy_of_two_discs_on_approach),
                                      cmocka_unit_test(grains_have_their_inertia),
                                      cmocka_unit_test(grains_pass_where_said),
-                                     cmocka_unit_test(thresholds_are_weibulls)};
+                                     cmocka_unit_test(thresholds_are_weibulls),
+                                     cmocka_unit_test(thresholds_belong_to_places)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

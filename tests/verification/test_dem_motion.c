@@ -151,8 +151,84 @@ static void integrators_have_their_order(void **state) {
   struct dem_tessellation *t = fixture_disc(0.06, 0.01069, 1.0, 5);
   const double verlet = order(DEM_VERLET, 0.5e-6, t), gear = order(DEM_GEAR, 0.5e-6, t);
   assert_true(verlet > 1.9 && verlet < 2.1);
-  assert_true(gear > 4.0); /* fifth-order predictor; positions are corrected to fourth order or better */
+  assert_true(gear > 5.5); /* sixth order; with the coefficient for forces of velocities it is 5.0 */
   dem_tessellation_free(t);
+}
+
+/* Distance of a damped pair to its exact place: two squares, pressed together, start at rest, and a linear spring and a
+ * linear dashpot drive them apart. All of it is a time in which they overlap. */
+static double damped_error(double time_step) {
+  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  struct dem_inputs in = fixture_inputs();
+  in.fidelity.integrator = DEM_GEAR;
+  in.fidelity.time_step = time_step;
+  in.contact.normal_damping = 2e4;
+  in.contact.damping_bonded = true;
+  struct dem_system *s = fixture_create(t, &in);
+  const double pressed = 1e-4, span = 16e-6;
+  fixture_place(s, 1, t->centroid[1].x - pressed, t->centroid[1].y, 0.0);
+  fixture_evaluate(s);
+  s->now.gear_started = 0;                                                          /* the evaluation was a step, too */
+  const double reduced = 0.5 * s->mass[0], square = s->c.fx[1] / pressed / reduced; /* both springs are linear */
+  const double decay = 0.5 * in.contact.normal_damping, w = sqrt(square - decay * decay);
+  for (int k = 0, steps = (int)lround(span / time_step); k < steps; k++)
+    assert_true(dem_system_step(s));
+  const double exact = -pressed * exp(-decay * span) * (cos(w * span) + decay / w * sin(w * span));
+  assert_true(exact < 0.0); /* they still overlap */
+  const double error = fabs(s->c.x[1] - s->c.x[0] - (t->centroid[1].x - t->centroid[0].x) - exact);
+  dem_system_free(s);
+  fixture_free(t);
+  return error;
+}
+
+static void gear_has_its_order_with_damping(void **state) {
+  (void)state;
+  const double coarse = damped_error(1e-6), fine = damped_error(0.5e-6);
+  print_message("          Gear, damped pair: %.2e m at 0.5 us, order %.2f\n", fine, log2(coarse / fine));
+  assert_true(log2(coarse / fine) > 4.5);
+}
+
+/* Growth of the energy of a free pair's fastest mode in one of its periods, at `share` of the longest stable step. */
+static double growth_per_period(int integrator, bool velocities, double share) {
+  struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
+  struct dem_inputs in = fixture_inputs();
+  in.contact.bonded = false; /* beams alone: a linear system */
+  in.contact.normal_damping = velocities ? 1e-9 : 0.0;
+  in.fidelity.integrator = integrator;
+  struct dem_system *s = fixture_create(t, &in);
+  const double limit = dem_system_stable_time_step(s);
+  in.fidelity.integrator = DEM_VERLET;
+  const double fastest = 2.0 / dem_system_stable_time_step(s);
+  in.fidelity.integrator = integrator;
+  in.fidelity.time_step = share * limit;
+  dem_system_set_velocity(s, 0, 1e-7, -2e-7, 3e-5);
+  dem_system_set_velocity(s, 1, -1e-7, 2e-7, -1e-5);
+  const double period = 2.0 * M_PI / fastest / in.fidelity.time_step; /* in steps */
+  double energy[2];
+  for (int half = 0; half < 2; half++) {
+    for (int k = 0; k < (int)(500.0 * period); k++)
+      assert_true(dem_system_step(s));
+    energy[half] = fixture_total(dem_system_ledger(s));
+  }
+  dem_system_free(s);
+  fixture_free(t);
+  return log(energy[1] / energy[0]) / 500.0;
+}
+
+/* The longest step told: Verlet's is the edge of stability. Gear's method of this order has no edge: its modes grow or
+ * fall as (h omega)^7, and the limit is where the fastest gains 1 % of its energy in a period. */
+static void stable_steps_are_stable(void **state) {
+  (void)state;
+  /* at h omega = 1.98 Verlet's energy swings by a factor 1/(1 - 0.99^2) = 50 and does not grow; ln 50 over 500 */
+  assert_true(fabs(growth_per_period(DEM_VERLET, false, 0.99)) < 0.008);
+  for (int velocities = 0; velocities < 2; velocities++) {
+    const double at = growth_per_period(DEM_GEAR, velocities, 1.0),
+                 below = growth_per_period(DEM_GEAR, velocities, 0.8);
+    print_message("          Gear, coefficient of %s: energy %+.2f %% a period at its longest step, %+.2f %% at 0.8\n",
+                  velocities ? "velocities" : "positions", 100.0 * at, 100.0 * below);
+    assert_true(at > 0.008 && at < 0.010); /* 0.95 % and 0.84 % by the eigenvalues of one step */
+    assert_true(below < 0.003);
+  }
 }
 
 /* One step from a made-up state: Pascal's triangle, and every coefficient of the corrector by its published value
@@ -160,8 +236,8 @@ static void integrators_have_their_order(void **state) {
 static void gear_has_its_coefficients(void **state) {
   (void)state;
   struct dem_tessellation *t = fixture_squares(2, 1, 0.01, 0.0, true);
-  const double published[2][6] = {{3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
-                                  {3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
+  const double published[2][6] = {{3.0 / 20.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0},
+                                  {3.0 / 16.0, 251.0 / 360.0, 1.0, 11.0 / 18.0, 1.0 / 6.0, 1.0 / 60.0}};
   for (int damped = 0; damped < 2; damped++) {
     struct dem_inputs in = fixture_inputs();
     in.fidelity.integrator = DEM_GEAR;
@@ -475,6 +551,8 @@ int main(void) {
                                      cmocka_unit_test(energy_is_conserved),
                                      cmocka_unit_test(integrators_have_their_order),
                                      cmocka_unit_test(gear_has_its_coefficients),
+                                     cmocka_unit_test(gear_has_its_order_with_damping),
+                                     cmocka_unit_test(stable_steps_are_stable),
                                      cmocka_unit_test(turning_grains_meet),
                                      cmocka_unit_test(gear_starts_with_the_derivatives),
                                      cmocka_unit_test(ledger_closes),

@@ -34,8 +34,8 @@ static void remove_beam(struct dem_system *s, struct dem_bond_block *block, int 
 }
 
 /* Energy that appears when a contact begins with a break, J/m. Where contacts act only between grains without a beam, a
- * pair that overlaps as its beam breaks gets its contact at full force: the contact's potential, and the work of the
- * second half kick of the Verlet step, which lacks the first half. The energy booked for the break is reduced by this;
+ * pair that overlaps as its beam breaks gets its contact at full force: the contact's potential, and the work of
+ * half a step, as for the beam (dem_breaking_lane). The energy booked for the break is reduced by this;
  * else the ledger would gain it. */
 static double contact_begins(const struct dem_system *s, int32_t pair) {
   if (s->in->contact.law != DEM_CONTACT_CONSERVATIVE || s->in->contact.bonded)
@@ -52,14 +52,11 @@ static double contact_begins(const struct dem_system *s, int32_t pair) {
   const double push = s->pair_contact[pair].stiffness * 0.5 * o.twice_area, fx = -push * o.chord_y,
                fy = push * o.chord_x;
   double energy = 0.25 * push * o.twice_area;
-  if (s->in->fidelity.integrator == DEM_VERLET) {
-    const double torque_i = push * o.moment + o.origin_x * fy - o.origin_y * fx;
-    const double torque_j = -push * o.moment - ((o.origin_x - dx) * fy - (o.origin_y - dy) * fx);
-    energy += 0.5 * s->in->fidelity.time_step *
-              (fx * (s->c.vx[i] - s->c.vx[j]) + fy * (s->c.vy[i] - s->c.vy[j]) + torque_i * s->c.spin[i] +
-               torque_j * s->c.spin[j]);
-  }
-  return energy;
+  const double torque_i = push * o.moment + o.origin_x * fy - o.origin_y * fx;
+  const double torque_j = -push * o.moment - ((o.origin_x - dx) * fy - (o.origin_y - dy) * fx);
+  const double power = fx * (s->c.vx[i] - s->c.vx[j]) + fy * (s->c.vy[i] - s->c.vy[j]) + torque_i * s->c.spin[i] +
+                       torque_j * s->c.spin[j];
+  return energy + 0.5 * s->in->fidelity.time_step * power;
 }
 
 void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int lane, double length, double ux,
@@ -69,17 +66,17 @@ void dem_breaking_lane(struct dem_system *s, struct dem_bond_block *block, int l
   const double stretch = length - block->length[lane], twist = theta_first - theta_second;
   double energy = 0.5 * block->axial[lane] * stretch * stretch + 0.5 * block->diagonal[lane] * twist * twist +
                   block->cross[lane] * theta_first * theta_second;
-  if (s->in->fidelity.integrator == DEM_VERLET) {
-    /* The second half of this step's kick lacks the beam: the work that the beam would have done is booked here. */
-    const uint32_t i = block->first[lane], j = block->second[lane];
-    const double m1 = block->diagonal[lane] * (theta_second - theta_first) - block->cross[lane] * theta_second;
-    const double m2 = block->diagonal[lane] * (theta_first - theta_second) - block->cross[lane] * theta_first;
-    const double tension = block->axial[lane] * stretch, shear = (m1 + m2) / length;
-    const double vx = s->c.vx[i] - s->c.vx[j], vy = s->c.vy[i] - s->c.vy[j];
-    const double power = (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] +
-                         m2 * s->c.spin[j];
-    energy += 0.5 * s->in->fidelity.time_step * power;
-  }
+  /* The work that the beam would have done in half a step is booked, too. Verlet: the second half of this step's kick
+   * lacks the beam. Gear: its velocities follow from Adams' formula of fifth order. Where a force ends, the weights of
+   * that formula (251, 646, -264, 106, -19)/720, summed over the next steps, take away the impulse of half a step. */
+  const uint32_t i = block->first[lane], j = block->second[lane];
+  const double m1 = block->diagonal[lane] * (theta_second - theta_first) - block->cross[lane] * theta_second;
+  const double m2 = block->diagonal[lane] * (theta_first - theta_second) - block->cross[lane] * theta_first;
+  const double tension = block->axial[lane] * stretch, shear = (m1 + m2) / length;
+  const double vx = s->c.vx[i] - s->c.vx[j], vy = s->c.vy[i] - s->c.vy[j];
+  const double power = (tension * ux - shear * uy) * vx + (tension * uy + shear * ux) * vy + m1 * s->c.spin[i] +
+                       m2 * s->c.spin[j];
+  energy += 0.5 * s->in->fidelity.time_step * power;
   s->now.broken_beam += energy - contact_begins(s, pair);
   const double strain = stretch / block->length[lane];
   s->log[s->now.break_count++] = (struct dem_break){

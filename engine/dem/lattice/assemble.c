@@ -110,17 +110,33 @@ static void window(struct dem_system *s, struct dem_bond_block *block, size_t la
   block->after_y[k][lane] = y[3] - my;
 }
 
-/* Thresholds of a beam: Weibull with the printed threshold as its scale, so that modulus -> infinity gives K99. */
-static double threshold(const struct dem_inputs *in, uint64_t seed, double scale, size_t pair, uint64_t draw) {
+/* Factors of the strain and the angle threshold of one pair: a Weibull law about 1, so that modulus -> infinity gives
+ * K99. The draws belong to the lattice squares of the two grains: a larger body of one seed, or other numbers of the
+ * grains, change nothing. */
+static void threshold_factors(const struct dem_inputs *in, const struct dem_tessellation *t, uint64_t seed, size_t pair,
+                              double factor[2]) {
+  factor[0] = factor[1] = 1.0;
   if (field_is_off(in->threshold.modulus))
-    return scale;
-  const double u = random_draw(seed, RANDOM_THRESHOLD, pair, draw);
-  return scale * pow(-log1p(-u), 1.0 / in->threshold.modulus);
+    return;
+  uint32_t a = t->pair[pair][0], b = t->pair[pair][1];
+  if (dem_tessellation_square(t->grid_x[b], t->grid_y[b]) < dem_tessellation_square(t->grid_x[a], t->grid_y[a])) {
+    const uint32_t swap = a;
+    a = b;
+    b = swap;
+  }
+  const uint64_t item = dem_tessellation_square(t->grid_x[a], t->grid_y[a]);
+  const uint64_t along = (t->grid_x[b] - t->grid_x[a]) & 0xffu, up = (t->grid_y[b] - t->grid_y[a]) & 0xffu;
+  const uint64_t body = t->joined_at > 0 && a >= t->joined_at;
+  for (uint64_t k = 0; k < 2; k++) {
+    const double u = random_draw(seed, RANDOM_THRESHOLD, item, body << 32 | up << 16 | along << 8 | k);
+    factor[k] = pow(-log1p(-u), 1.0 / in->threshold.modulus);
+  }
 }
 
 /* Constants of one beam: K99 eqs 7-12 with b = 2a and I = S^3/12, and the weights of the breaking rule, eq 13. */
-static void beam(const struct dem_inputs *in, uint64_t seed, size_t pair, double length, double side,
-                 struct dem_bond_block *block, size_t lane) {
+static void beam(const struct dem_inputs *in, const struct dem_tessellation *t, uint64_t seed, size_t pair,
+                 double length, struct dem_bond_block *block, size_t lane) {
+  const double side = t->side[pair];
   const double e = in->beam.young_modulus;
   const double a = length / (e * side), b = 2.0 * a;
   const double c = length * length * length / (e * side * side * side / 12.0);
@@ -132,9 +148,11 @@ static void beam(const struct dem_inputs *in, uint64_t seed, size_t pair, double
   if (!in->threshold.breaking)
     return;
 
-  const double strain = length * threshold(in, seed, in->threshold.strain, pair, 0);
+  double factor[2];
+  threshold_factors(in, t, seed, pair, factor);
+  const double strain = length * (in->threshold.strain * factor[0]);
   block->weight_strain[lane] = fmin(DBL_MAX, 1.0 / (strain * strain));
-  block->weight_angle[lane] = fmin(DBL_MAX, 1.0 / threshold(in, seed, in->threshold.angle, pair, 1));
+  block->weight_angle[lane] = fmin(DBL_MAX, 1.0 / (in->threshold.angle * factor[1]));
 }
 
 /* Contact of one pair, and its window where the pair has one. */
@@ -179,7 +197,7 @@ static status bond(struct dem_system *s, const struct dem_tessellation *t, uint6
   block->reference_x[lane] = dx / length;
   block->reference_y[lane] = dy / length;
   block->length[lane] = length; /* bond_rest makes these three the step's own to the last bit */
-  beam(s->in, seed, pair, length, side, block, lane);
+  beam(s->in, t, seed, pair, length, block, lane);
   contact(s, t, pair, block, lane);
   return STATUS_OK;
 }

@@ -10,10 +10,9 @@ enum { BEYOND = 6 }; /* squares around a disc: a cell reaches sqrt(2), its neigh
 
 status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_points *points, struct error *error) {
   *points = (struct dem_lattice_points){.columns = lattice->columns, .rows = lattice->rows, .walled = true};
-  uint32_t centre = 0; /* index of the square at a disc's centre */
   if (lattice->outline == DEM_OUTLINE_DISC) {
-    centre = (uint32_t)ceil(lattice->radius / lattice->spacing) + BEYOND;
-    points->columns = points->rows = 2 * centre + 1;
+    points->centre = (uint32_t)ceil(lattice->radius / lattice->spacing) + BEYOND;
+    points->columns = points->rows = 2 * points->centre + 1;
     points->walled = false;
   }
   points->point = malloc((size_t)points->columns * points->rows * sizeof *points->point);
@@ -24,7 +23,7 @@ status dem_lattice_fill(const struct dem_lattice *lattice, struct dem_lattice_po
     for (uint32_t column = 0; column < points->columns; column++) {
       /* An item is a square counted from the disc's centre or the block's corner: a larger body of one seed holds the
        * smaller one's points. */
-      uint64_t item = (uint64_t)(uint32_t)(row - centre) << 32 | (uint32_t)(column - centre);
+      uint64_t item = dem_tessellation_square(column - points->centre, row - points->centre);
       uint64_t bits[4];
       random_bits(lattice->seed, RANDOM_LATTICE, item, lattice->stream, bits);
       points->point[(size_t)row * points->columns +

@@ -15,6 +15,7 @@
 
 struct dem_lattice_points {
   uint32_t columns, rows;  /* squares */
+  uint32_t centre;         /* column and row of a disc's central square; 0 for a block */
   bool walled;             /* cells end at the rectangle [0, columns] x [0, rows] */
   struct dem_point *point; /* columns x rows, row by row */
 };

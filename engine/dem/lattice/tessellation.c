@@ -142,8 +142,8 @@ static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   if (b->lattice->outline == DEM_OUTLINE_DISC &&
       hypot(t->centroid[c].x - b->lattice->origin.x, t->centroid[c].y - b->lattice->origin.y) > b->lattice->radius)
     return true;
-  t->grid_x[c] = column;
-  t->grid_y[c] = row;
+  t->grid_x[c] = column - b->points.centre;
+  t->grid_y[c] = row - b->points.centre;
   b->number[i] = (uint32_t)c;
   t->cell_count++;
   t->first_vertex[c + 1] = (uint32_t)(start + n);
@@ -260,6 +260,7 @@ status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_
   }
   t->cell_count = cells;
   t->pair_count = pairs;
+  t->joined_at = na;
   const struct dem_tessellation *part[2] = {a, b};
   for (int p = 0; p < 2; p++) {
     uint32_t cell = p ? na : 0, vertex = p ? va : 0;

@@ -19,11 +19,18 @@ struct dem_tessellation {
   struct dem_point *centroid;
   double *area;              /* m^2 */
   double *polar_moment;      /* m^4: second moment of area about the centroid */
-  uint32_t *grid_x, *grid_y; /* the lattice square of the cell's point */
+  uint32_t *grid_x, *grid_y; /* the lattice square of the cell's point, counted from a block's lower left square or a
+                              * disc's central one; squares left of it and below it as 2^32 minus their distance */
   size_t pair_count;
   uint32_t (*pair)[2]; /* neighbours, first < second, sorted */
   double *side;        /* m, length of the common side of each pair */
+  size_t joined_at;    /* first cell of the second of two joined bodies; 0 for one body */
 };
+
+/* One number for a lattice square. A square of one seed has the same number in a body of any size. */
+static inline uint64_t dem_tessellation_square(uint32_t grid_x, uint32_t grid_y) {
+  return (uint64_t)grid_y << 32 | grid_x;
+}
 
 enum dem_outline { DEM_OUTLINE_DISC, DEM_OUTLINE_BLOCK };
 

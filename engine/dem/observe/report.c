@@ -5,11 +5,22 @@
 
 #include "engine/dem/run/run.h"
 
-/* Finds the fragments: the present grains, joined by the beams that hold. label[grain] (may be NULL) becomes the
- * fragment's number, UINT32_MAX for the explosive. */
-status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
-                            struct error *error) {
+/* Adds the link of a pair whose grains are both present. number[grain]: among the present, or UINT32_MAX. */
+static void add_link(const struct dem_run *run, size_t pair, const uint32_t *number, uint32_t (*link)[2],
+                     size_t *links) {
+  const uint32_t a = number[run->tessellation->pair[pair][0]], b = number[run->tessellation->pair[pair][1]];
+  if (a == UINT32_MAX || b == UINT32_MAX)
+    return;
+  link[*links][0] = a;
+  link[(*links)++][1] = b;
+}
+
+/* Finds the fragments of the time `when`: the present grains, joined by the beams that held then. Their motion is that
+ * of now. label[grain] (may be NULL) becomes the fragment's number, UINT32_MAX for the explosive. */
+static status fragments_of(const struct dem_run *run, double when, uint32_t *label, struct fragment **fragments,
+                           size_t *count, struct error *error) {
   const struct dem_tessellation *t = run->tessellation;
+  const struct dem_break *log;
   size_t n = t->cell_count, present = 0, links = 0;
   *fragments = NULL;
   *count = 0;
@@ -35,11 +46,10 @@ status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct f
                                                  .moment_of_inertia = g.moment_of_inertia};
   }
   for (size_t p = 0; p < t->pair_count; p++)
-    if (dem_system_beam_alive(run->system, p) && number[t->pair[p][0]] != UINT32_MAX &&
-        number[t->pair[p][1]] != UINT32_MAX) {
-      link[links][0] = number[t->pair[p][0]];
-      link[links++][1] = number[t->pair[p][1]];
-    }
+    if (dem_system_beam_alive(run->system, p))
+      add_link(run, p, number, link, &links);
+  for (size_t k = dem_system_breaks(run->system, &log); k > 0 && log[k - 1].time > when; k--)
+    add_link(run, log[k - 1].beam, number, link, &links);
   code = fragments_find_plane(present, member, links, (const uint32_t(*)[2])link, found, fragments, count, error);
   if (code)
     goto cleanup;
@@ -57,6 +67,41 @@ cleanup:
   return code;
 }
 
+status dem_report_fragments(const struct dem_run *run, uint32_t *label, struct fragment **fragments, size_t *count,
+                            struct error *error) {
+  return fragments_of(run, HUGE_VAL, label, fragments, count, error);
+}
+
+/* How final the run is: what broke in the second half of its time. */
+static status fill_finality(const struct dem_run *run, const struct outcome *outcome, struct dem_results *results,
+                            struct error *error) {
+  const double half = 0.5 * dem_system_time(run->system);
+  const struct dem_break *log;
+  size_t breaks = dem_system_breaks(run->system, &log), count;
+  for (size_t k = breaks; k > 0 && log[k - 1].time > half; k--)
+    results->late_breaks++;
+  struct fragment *then;
+  status code = fragments_of(run, half, NULL, &then, &count, error);
+  if (code)
+    return code;
+  if (count > 0)
+    results->largest_loss = fmax(0, then[0].mass / outcome->total_mass - outcome->largest_fraction);
+  free(then);
+  return STATUS_OK;
+}
+
+/* Motion inside fragments, J/m: their kinetic energy less that of translation and rotation. */
+static double vibration(size_t count, const struct fragment *fragments) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++) {
+    const struct fragment *f = &fragments[k];
+    const double *v = f->velocity;
+    sum += f->kinetic_energy - 0.5 * f->mass * (v[0] * v[0] + v[1] * v[1]) -
+           0.5 * f->moment_of_inertia * f->spin[2] * f->spin[2];
+  }
+  return fmax(0, sum); /* of single grains alone: rounding */
+}
+
 static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, double energy_input,
                          struct dem_results *results) {
   const struct dem_tessellation *t = run->tessellation;
@@ -69,8 +114,15 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
       .threshold_energy = NAN,
       .stable_time_step = run->stable_time_step,
       .overlap_share = dem_system_overlap_share(run->system),
-      .energy = {ledger->kinetic, ledger->beam, ledger->contact, ledger->damping, ledger->friction, ledger->broken_beam,
-                 ledger->external_work},
+      .passing_share = run->passing_speed > 0 ? dem_system_fastest_approach(run->system) / run->passing_speed
+                                              : (double)NAN,
+      .energy = {.kinetic = ledger->kinetic,
+                 .beam = ledger->beam,
+                 .contact = ledger->contact,
+                 .damping = ledger->damping,
+                 .friction = ledger->friction,
+                 .broken_beam = ledger->broken_beam,
+                 .external_work = ledger->external_work},
       .young_modulus = NAN,
       .poisson_ratio = NAN,
       .strength = NAN,
@@ -101,6 +153,15 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
+/* Says so when grains met too fast, unless the run has a fault: that message is worse. */
+static void warn_of_passing(const struct dem_run *run, struct outcome *outcome) {
+  const double fastest = dem_system_fastest_approach(run->system);
+  if (run->passing_speed > 0 && fastest > run->passing_speed && outcome->state <= OUTCOME_END_TIME)
+    snprintf(outcome->message, sizeof outcome->message,
+             "grains closed in at %.4g m/s: above %.4g m/s they pass through each other, and the model has no answer",
+             fastest, run->passing_speed);
+}
+
 static double not_infinite(double value) {
   return isfinite(value) ? value : (double)NAN;
 }
@@ -120,7 +181,16 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
                               .time_step = run->inputs.fidelity.time_step};
   snprintf(outcome->message, sizeof outcome->message, "%s",
            run->state.finished ? run->state.message : "not finished: results of a snapshot");
+  warn_of_passing(run, outcome);
   outcome_fragments(outcome, *count, *fragments);
+  results->energy.vibration = vibration(*count, *fragments);
+  code = fill_finality(run, outcome, results, error);
+  if (code) {
+    free(*fragments);
+    *fragments = NULL;
+    *count = 0;
+    return code;
+  }
   outcome->energy_error = input > 0 ? not_infinite(fabs(dem_run_closed(&ledger) - run->state.closed_start) / input)
                                     : (double)NAN;
   double momentum[2], magnitude, translation = 0;

@@ -32,13 +32,25 @@ static const struct field rows[] = {
     REAL(energy_input, "J/m", 0,
          .doc = "Energy put in: initial kinetic energy (collision: in the common frame), or the work of the load."),
     REAL(threshold_energy, "J/m", 0, .doc = "Energy that would bring every beam to the stretching threshold."),
-    REAL(stable_time_step, "s", 0, .doc = "Stability limit 2/omega_max of the body as it starts."),
+    REAL(stable_time_step, "s", 0,
+         .doc =
+             "Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`."),
     REAL(sound_speed_extension, "m/s", 0,
          .doc = "Estimate sqrt(E/rho): beams alone, aligned with the wave (the square lattice's value)."),
     REAL(sound_speed_compression, "m/s", 0,
          .doc = "Estimate sqrt((E + Y sqrt(pi)/2)/rho): beams and contacts, aligned with the wave."),
     REAL(overlap_share, "1", 0, .doc = "Neighbour pairs that overlap over all neighbour pairs, at the end."),
+    REAL(passing_share, "1", 0,
+         .doc = "Fastest approach of two near grains that no beam joins and whose paths meet, over the speed at which "
+                "they pass through each other. Above 1 the model has no answer for them. Off without contacts."),
+    COUNT(late_breaks, "Beams broken in the second half of the run's time."),
+    REAL(largest_loss, "1", 0,
+         .doc = "How final the run is: M_1/M that the largest fragment lost in the second half of the run's time. "
+                "Expect about as much in the next doubling of the time."),
     REAL(energy.kinetic, "J/m", 0, .doc = "Kinetic energy at the end."),
+    REAL(energy.vibration, "J/m", 0,
+         .doc = "Part of the kinetic energy that is motion inside fragments: neither their translation nor their "
+                "rotation. Without damping it does not decay, and breaks more beams."),
     REAL(energy.beam, "J/m", -HUGE_VAL, .doc = "Energy stored in beams at the end."),
     REAL(energy.contact, "J/m", -HUGE_VAL,
          .doc =

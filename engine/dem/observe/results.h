@@ -18,9 +18,11 @@ struct dem_results {
   int64_t grains, beams, broken, broken_stretch, broken_bend;
   double broken_share, first_break, last_break;
   double energy_input, threshold_energy, stable_time_step, sound_speed_extension, sound_speed_compression;
-  double overlap_share;
+  double overlap_share, passing_share;
+  int64_t late_breaks;
+  double largest_loss;
   struct {
-    double kinetic, beam, contact, damping, friction, broken_beam, external_work;
+    double kinetic, vibration, beam, contact, damping, friction, broken_beam, external_work;
   } energy;
   double young_modulus, poisson_ratio, strength, failure_strain, final_strain, upright_share, end_triangle_share;
 };

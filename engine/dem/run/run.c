@@ -99,11 +99,13 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
     goto cleanup;
   }
   run->stable_time_step = dem_system_stable_time_step(run->system);
+  run->passing_speed = dem_describe_passing_speed(inputs);
   if (inputs->fidelity.time_step > run->stable_time_step) {
-    code = status_fail(error, STATUS_CONTENT,
-                       "fidelity.time_step is %.4g s, but this body is unstable above %.4g s (2 over its highest "
-                       "frequency): give a shorter step, at most half of that for good energy",
-                       inputs->fidelity.time_step, run->stable_time_step);
+    code = status_fail(
+        error, STATUS_CONTENT,
+        "fidelity.time_step is %.4g s, but with fidelity.integrator %s this body is unstable above %.4g s: "
+        "give a shorter step, at most half of that for good energy",
+        inputs->fidelity.time_step, inputs->fidelity.integrator == DEM_GEAR ? "gear" : "verlet", run->stable_time_step);
     goto cleanup;
   }
   if ((code = dem_protocol_start(run, error)))
@@ -164,7 +166,8 @@ static void check_stop(struct dem_run *run) {
     return; /* loading.c ends these runs */
   const struct dem_break *log;
   bool broke = dem_system_breaks(run->system, &log) > 0;
-  if (broke && time - last >= run->inputs.stop.quiet_time - half_step)
+  double least = fmin(run->inputs.stop.least_time, run->inputs.stop.end_time);
+  if (broke && time >= least - half_step && time - last >= run->inputs.stop.quiet_time - half_step)
     dem_run_end(run, DEM_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
   else if (time >= run->inputs.stop.end_time - half_step) {
     if (broke)

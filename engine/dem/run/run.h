@@ -32,6 +32,7 @@ struct dem_run {
   struct dem_system *system;
   struct dem_state state;
   double stable_time_step;
+  double passing_speed; /* m/s: grains that close in faster pass through each other; 0 without contacts */
 
   uint32_t charge;     /* the explosive grain, or UINT32_MAX */
   unsigned char *held; /* by grain: bit 1 x, 2 y, 4 rotation */

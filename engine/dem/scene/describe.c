@@ -132,7 +132,7 @@ static void body(const struct dem_inputs *in, FILE *out) {
   else
     fprintf(out, "  energy put in: %.4g J/m; every beam at the strain threshold would hold %.4g J/m (ratio %.3g)\n",
             energy, needed, energy / needed);
-  fprintf(out, "  time step: %.4g s, stability limit 2/omega_max %.4g s (ratio %.2g)%s\n", step, limit, step / limit,
+  fprintf(out, "  time step: %.4g s, stability limit %.4g s (ratio %.2g)%s\n", step, limit, step / limit,
           step > limit ? ": UNSTABLE, will be refused" : "");
   dem_run_free(run);
 }

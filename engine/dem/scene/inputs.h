@@ -57,7 +57,7 @@ struct dem_inputs {
     double speed, impact_parameter; /* m/s; diameters */
   } collision;
   struct {
-    double quiet_time, end_time; /* s */
+    double quiet_time, least_time, end_time; /* s */
   } stop;
   struct {
     double time_step;    /* s */

@@ -4,9 +4,10 @@
  * v + dt a of the step's start (the velocity of the first kick carried on by another half step).
  *
  * Gear's predictor-corrector of fifth order in Nordsieck form: r_k = dt^k/k! d^k x/dt^k, k = 0..5; prediction by
- * Pascal's triangle, correction r_k += g_k (dt^2/2 a - r_2). g = {3/16, 251/360, 1, 11/18, 1/6, 1/60} for forces of
- * positions alone, 3/20 in the first place with velocity-dependent forces (Gear 1971, table 9.1; Allen & Tildesley
- * 1987, appendix E, table E.1). Damping sees predicted velocities, as in K99. */
+ * Pascal's triangle, correction r_k += g_k (dt^2/2 a - r_2). g = {3/20, 251/360, 1, 11/18, 1/6, 1/60} for forces of
+ * positions alone, 3/16 in the first place with velocity-dependent forces (Gear 1971, table 9.1; Allen & Tildesley
+ * 1987, appendix E, table E.1). Without velocities 3/20 gives order 6, 3/16 order 5. Damping sees predicted velocities,
+ * as in K99. */
 #ifndef CLAST_ENGINE_DEM_STEP_MOTION_RANGE_H
 #define CLAST_ENGINE_DEM_STEP_MOTION_RANGE_H
 
@@ -97,7 +98,7 @@ LANES_INLINE bool motion_gear_predict(struct dem_system *s, bool *moved_out) {
 
 LANES_INLINE void motion_gear_correct(struct dem_system *s) {
   struct dem_columns *c = &s->c;
-  const double dt = s->in->fidelity.time_step, position_share = s->velocities ? 3.0 / 20.0 : 3.0 / 16.0;
+  const double dt = s->in->fidelity.time_step, position_share = s->velocities ? 3.0 / 16.0 : 3.0 / 20.0;
   double *const velocity[3] = {c->vx, c->vy, c->spin}, *const position[3] = {c->x, c->y, c->angle};
   double *const force[3] = {c->fx, c->fy, c->torque};
   double *const mobility[3] = {c->mobility_x, c->mobility_y, c->mobility_angle};

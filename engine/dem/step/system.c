@@ -256,6 +256,10 @@ double dem_system_last_break(const struct dem_system *s) {
   return s->now.last_break;
 }
 
+double dem_system_fastest_approach(const struct dem_system *s) {
+  return s->now.fastest_approach;
+}
+
 size_t dem_system_outline(const struct dem_system *s, uint32_t grain, size_t capacity, struct dem_point *vertices) {
   struct dem_ring ring;
   dem_neighbours_ring(s, grain, s->c.x[grain], s->c.y[grain], &ring);

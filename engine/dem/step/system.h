@@ -57,7 +57,11 @@ bool dem_system_beam_alive(const struct dem_system *system, size_t beam);
 double dem_system_beam_strain(const struct dem_system *system, size_t beam);
 size_t dem_system_breaks(const struct dem_system *system, const struct dem_break **log);
 double dem_system_last_break(const struct dem_system *system); /* s; 0 before any */
-/* 2 / omega_max by power iteration on the initial beam network (and contacts), s: the stability limit of dt. */
+/* Largest speed so far, m/s, at which two grains without a beam between them came near each other on paths that meet:
+ * centres within a mean diameter. */
+double dem_system_fastest_approach(const struct dem_system *system);
+/* Longest stable time step, s: 2 / omega_max for Verlet, 0.54 / omega_max for Gear (why: system_stable.c), by power
+ * iteration on the beams and contacts at rest. NaN: no memory. */
 double dem_system_stable_time_step(const struct dem_system *system);
 /* Pairs that overlap now over the tessellation's neighbour pairs. */
 double dem_system_overlap_share(struct dem_system *system);

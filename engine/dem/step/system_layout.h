@@ -69,6 +69,7 @@ struct dem_sums {
 /* What changes from step to step and is no array. */
 struct dem_progress {
   double time, last_break;
+  double fastest_approach; /* m/s: largest speed so far of two near grains without a beam on paths that meet */
   uint64_t steps, rebuilds;
   double contact, damping, friction, broken_beam, external_work; /* booked so far, J/m (contact: printed law) */
   uint64_t break_count, bond_blocks, near_count;
