@@ -11,6 +11,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* A pipe or a device, such as /dev/stdout: it is written itself, and never replaced. */
+static bool is_special(const char *path) {
+  struct stat there;
+  return stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
+}
+
+static status write_special(const char *path, const char *what, const void *bytes, size_t size, struct error *error) {
+  FILE *file = fopen(path, "wb");
+  const bool good = file && fwrite(bytes, 1, size, file) == size && fflush(file) == 0;
+  const int why = errno;
+  if (file)
+    fclose(file);
+  return good ? STATUS_OK : status_fail(error, STATUS_IO, "cannot write the %s '%s': %s", what, path, strerror(why));
+}
+
 /* Opens a new file beside `path`: FILE.tmp, which its writer locks. A lock dies with its process, so the next writer
  * takes over the file that a killed writer left behind. Where another writer holds the lock, or the file system has no
  * locks, the name is FILE.PID.tmp. `size` is that of the buffer `temporary`. NULL: errno says why. */
@@ -29,6 +44,8 @@ static FILE *begin(const char *path, char *temporary, size_t size) {
 }
 
 status atomic_file_write(const char *path, const char *what, const void *bytes, size_t size, struct error *error) {
+  if (is_special(path))
+    return write_special(path, what, bytes, size, error);
   size_t length = strlen(path) + 32;
   char *temporary = malloc(length);
   if (!temporary)
@@ -48,6 +65,8 @@ status atomic_file_write(const char *path, const char *what, const void *bytes, 
 }
 
 status atomic_file_try(const char *path, const char *what, struct error *error) {
+  if (is_special(path) && access(path, W_OK) == 0)
+    return STATUS_OK;
   size_t length = strlen(path) + 32;
   char *temporary = malloc(length);
   if (!temporary)

@@ -1,5 +1,6 @@
 /* Files that exist whole or not at all: a file is written to a temporary name beside the target, flushed to the disk
- * and renamed. A process that is killed during a write leaves FILE.tmp; the next write of FILE takes it over. */
+ * and renamed. A process that is killed during a write leaves FILE.tmp; the next write of FILE takes it over. A pipe or
+ * a device is written itself. */
 #ifndef CLAST_ENGINE_ATOMIC_FILE_H
 #define CLAST_ENGINE_ATOMIC_FILE_H
 

@@ -50,6 +50,8 @@ static status parse_text(const struct field *row, const char *text, struct field
   if (strlen(text) >= FIELD_TEXT_SIZE)
     return status_fail(error, STATUS_CONTENT, "%s: expected at most %d bytes of text, got %zu", row->path,
                        FIELD_TEXT_SIZE - 1, strlen(text));
+  if (row->flags & FIELD_REQUIRED && !*text)
+    return status_fail(error, STATUS_CONTENT, "%s: expected text, got an empty one", row->path);
   field_copy_text(came->text, text);
   return STATUS_OK;
 }

@@ -63,7 +63,8 @@ static void type(const struct field *row, FILE *out) {
     fputc(']', out);
     break;
   case FIELD_TEXT: /* a plain 12 or true is text, too */
-    fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d", FIELD_TEXT_SIZE - 1);
+    fprintf(out, "\"type\": [\"string\", \"number\", \"boolean\"], %s\"maxLength\": %d",
+            row->flags & FIELD_REQUIRED ? "\"minLength\": 1, " : "", FIELD_TEXT_SIZE - 1);
     break;
   }
 }

@@ -133,8 +133,10 @@ static status run(const struct command_line *line, struct error *error) {
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
+  code = ask_points_known(store, options->point, error);
   const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
-  code = estimates_print(store, &choice, options->resamples, format, stdout, error);
+  if (!code)
+    code = estimates_print(store, &choice, options->resamples, format, stdout, error);
   if (!code && format == TABLE_TEXT)
     fputs(estimates_legend, stderr);
   store_close(store, NULL);

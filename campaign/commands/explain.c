@@ -153,7 +153,8 @@ static status set_input(struct scene *scene, const char *text, struct error *err
     return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
                        text);
   snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
-  return scene_set_text(scene, path, equals + 1, error);
+  const status code = scene_set_text(scene, path, equals + 1, error);
+  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
 }
 
 status explain_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {

@@ -18,10 +18,13 @@ static status write_view(struct store *store, const char *view, FILE *out, struc
   return rows_end(&rows, ask_columns_view(store, view, &sink, error), error);
 }
 
-/* Written under a temporary name and renamed: a file with its final name is whole. view NULL: the bits. */
+/* Written under a temporary name and renamed: a file with its final name is whole. A pipe or a device (/dev/stdout) is
+ * written itself. view NULL: the bits. */
 static status export_text(struct store *store, const char *path, const char *view, struct error *error) {
+  struct stat there;
+  const bool in_place = stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
   char temporary[4096];
-  if (snprintf(temporary, sizeof temporary, "%s.part", path) >= (int)sizeof temporary)
+  if (snprintf(temporary, sizeof temporary, "%s%s", path, in_place ? "" : ".part") >= (int)sizeof temporary)
     return status_fail(error, STATUS_USAGE, "the target's name is too long");
   FILE *out = fopen(temporary, "w");
   if (!out)
@@ -29,6 +32,8 @@ static status export_text(struct store *store, const char *path, const char *vie
   status code = view ? write_view(store, view, out, error) : store_dump(store, out, error);
   if (fclose(out) && !code)
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
+  if (in_place)
+    return code;
   if (!code && rename(temporary, path))
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
   if (code)

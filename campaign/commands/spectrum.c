@@ -143,7 +143,8 @@ static status run(const struct command_line *line, struct error *error) {
   code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  if (!options->plot)
+  code = ask_points_known(store, options->point, error);
+  if (code == STATUS_OK && !options->plot)
     code = print_rows(store, options, format, error);
   if (code == STATUS_OK && (options->picture || options->plot))
     code = draw(store, options, error);

@@ -45,6 +45,33 @@ status ask_points_count(struct store *store, const struct ask_points_choice *cho
   return run_written(store, out, &sql, &sink, error);
 }
 
+static status take_range(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)error;
+  int64_t *range = context;
+  for (size_t i = 0; i < count; i++)
+    range[i] = values[i].integer;
+  return STATUS_OK;
+}
+
+status ask_points_known(struct store *store, int64_t point, struct error *error) {
+  int64_t range[3] = {0}; /* points of this number: 1 or 0; lowest and highest number */
+  const struct query_sink sink = {.context = range, .row = take_range};
+  char sql[160];
+  if (point == 0)
+    return STATUS_OK;
+  snprintf(sql, sizeof sql,
+           "SELECT count(*) FILTER (WHERE point_id = %lld), ifnull(min(point_id), 0), ifnull(max(point_id), 0) FROM "
+           "point",
+           (long long)point);
+  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  if (code != STATUS_OK || range[0] > 0)
+    return code;
+  if (range[2] == 0)
+    return status_fail(error, STATUS_USAGE, "there is no point %lld: the store has no points yet", (long long)point);
+  return status_fail(error, STATUS_USAGE, "there is no point %lld: the store has the points %lld to %lld",
+                     (long long)point, (long long)range[1], (long long)range[2]);
+}
+
 struct rows {
   ask_points_each each;
   void *context;

@@ -27,6 +27,9 @@ struct ask_points_choice {
 status ask_points_count(struct store *store, const struct ask_points_choice *choice, int64_t *points,
                         struct error *error);
 
+/* STATUS_USAGE, with the numbers that there are, when the store has no point of this number. 0 is every point. */
+status ask_points_known(struct store *store, int64_t point, struct error *error);
+
 /* These points with the named input columns (ask_columns_axes), in the order of their numbers. Each point comes with
  * its newest results_version only (`newest`), or once for every results_version. */
 status ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest, size_t input_count,

@@ -96,13 +96,17 @@ static struct measured farm_over(const double *cost, int count, bool in_process,
     *(struct task_list **)manager->context = &list; /* what report() of the store's bench needs first */
     own.next = manager->next;
   }
-  if (farm_start(&(struct farm_options){.slots = SLOTS, .in_process = in_process}, task_work, &farm, &error) ==
-          STATUS_OK &&
-      farm_run(farm, &own, &error) == STATUS_OK)
+  status code = farm_start(&(struct farm_options){.slots = SLOTS, .in_process = in_process}, task_work, &farm, &error);
+  if (code == STATUS_OK)
+    code = farm_run(farm, &own, &error);
+  if (code == STATUS_OK)
     measured.usage = farm_usage(farm);
-  else
-    fprintf(stderr, "bench_farm: %s\n", error.message);
   farm_stop(farm, NULL);
+  if (code != STATUS_OK) { /* a signal, or a fault: figures of the rest would be worth nothing */
+    fprintf(stderr, "bench_farm: %s\n", error.message);
+    unlink(burn_program);
+    exit((int)code);
+  }
   measured.utilisation = sum / (SLOTS * measured.usage.wall_s);
   measured.of_given = sum / (SLOTS * measured.usage.wall_s - list.kept_waiting_s);
   task_list_free(&list);

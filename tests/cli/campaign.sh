@@ -95,6 +95,10 @@ import json; rows = json.load(open('out'))
 assert rows and abs(sum(r['mass_share'] for r in rows) - 1) < 1e-9
 assert all(r['runs'] == 5 for r in rows)"
 ok "the mass shares of a spectrum sum to one"
+for command in spectrum estimates; do
+  expect 64 "$clast" $command tiny.db --point 999
+  says "points 1 to 4"
+done
 expect 0 "$clast" spectrum tiny.db --where "replicate = 0" --csv
 expect 0 "$clast" check tiny.db
 expect 0 "$clast" replay tiny.db 3
@@ -141,4 +145,4 @@ says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 52
+done_after 54

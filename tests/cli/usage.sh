@@ -41,6 +41,8 @@ expect 64 "$clast" simulate disc-explosion --seed -1
 expect 64 "$clast" simulate disc-explosion --seed 1e3
 expect 64 "$clast" simulate disc-explosion --set threshold.strain
 says "PATH=VALUE"
+expect 64 "$clast" simulate disc-explosion --set nosuch=1
+says "nosuch"; one_error
 expect 64 "$clast" run x.yaml -j many
 expect 64 "$clast" run x.yaml -j
 
@@ -70,4 +72,4 @@ one_error
 expect 74 bash -c "'$clast' explain --json >/dev/full"
 expect 74 bash -c "'$clast' help >/dev/full"
 expect 0 bash -c "'$clast' help >&-"
-done_after 30
+done_after 31

@@ -50,6 +50,7 @@ campaign number.yaml 'name: x\nscene: disc-explosion\nvary: {threshold.strain: [
 campaign million.yaml 'name: x\nscene: disc-explosion\nvary: {threshold.strain: {from: 1 %, to: 5 %, n: 100000000000000000000}}\nstore: x.db'
 run 65 million.yaml
 campaign inactive.yaml 'name: x\nscene: disc-explosion\nset: {impact.speed: 3 m/s}\nstore: x.db'; run 65 inactive.yaml; says "impact.speed"
+campaign unnamed.yaml 'name: x\nscene: ""\nstore: x.db'; run 65 unnamed.yaml; says "empty"
 
 # The same files as scenes
 for file in empty binary nul second list bomb deep huge; do
@@ -58,11 +59,11 @@ for file in empty binary nul second list bomb deep huge; do
 done
 expect 66 "$clast" explain ./missing.yaml
 expect 66 "$clast" simulate ./missing.yaml
-expect 65 "$clast" simulate disc-explosion --set threshold.strain=inf
-expect 65 "$clast" simulate disc-explosion --set threshold.strain='3 kg'
+expect 64 "$clast" simulate disc-explosion --set threshold.strain=inf
+expect 64 "$clast" simulate disc-explosion --set threshold.strain='3 kg'
 says "kg"
-expect 65 "$clast" simulate disc-explosion --set treshold.strain=3%
+expect 64 "$clast" simulate disc-explosion --set treshold.strain=3%
 says "threshold.strain"
 expect 65 "$clast" simulate disc-explosion --set impact.speed=3
 says "impact.speed"
-done_after 38
+done_after 39
