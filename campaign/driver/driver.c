@@ -212,7 +212,15 @@ void driver_summarise(const struct driver *driver, struct driver_summary *summar
 /* ---- a whole campaign ---- */
 
 static status verdict(const struct driver_summary *summary, status code, struct error *error) {
-  if (code != STATUS_OK || summary->runs_failed + (int64_t)summary->points_invalid == 0)
+  if (code != STATUS_OK)
+    return code;
+  if (summary->runs_left > 0)
+    return status_fail(error, STATUS_STOPPED,
+                       "%lld run%s left: signals from outside ended %s, or the machine had no memory or disk; the same "
+                       "command tries again, and `clast query STORE --named failures` says more",
+                       (long long)summary->runs_left, summary->runs_left == 1 ? " is" : "s are",
+                       summary->runs_left == 1 ? "it" : "them");
+  if (summary->runs_failed + (int64_t)summary->points_invalid == 0)
     return code;
   char points[64] = "";
   if (summary->points_invalid)
@@ -247,6 +255,11 @@ static status manage(struct driver *driver, struct farm *farm, struct driver_sum
   status code = farm_run(farm, &manager, error);
   status ended = driver_end(driver, code == STATUS_OK ? error : NULL);
   code = code != STATUS_OK ? code : ended;
+  if (code == STATUS_STOPPED && driver->stop.status != STATUS_OK) {
+    code = driver->stop.status;
+    if (error)
+      *error = driver->stop;
+  }
   driver_summarise(driver, summary);
   if (code == STATUS_OK) /* a stopped campaign pools in its next invocation */
     code = pooling_store(driver->store, summary->campaign_id, error);

@@ -138,8 +138,15 @@ void point_want_fields(struct point *point, const struct campaign *campaign) {
   }
 }
 
-bool point_over(const struct point *point) {
-  return point->decided && point->out == 0 && point->replays == 0;
+void point_leave(struct point *point, int64_t replicate) {
+  point->replicates[replicate].state = POINT_LEFT;
+  point->left++;
+}
+
+bool point_over(struct point *point) {
+  if (point->out > 0 || point->replays > 0)
+    return false;
+  return point->decided || (point->left > 0 && point_next(point, false) < 0);
 }
 
 int64_t point_missing(const struct point *point) {

@@ -7,13 +7,15 @@
 #include "campaign/document/campaign.h"
 #include "campaign/driver/cost.h"
 
-enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED };
+/* POINT_LEFT: lost again and again, and left to the next invocation. The point stays undecided. */
+enum point_state { POINT_WANTED, POINT_OUT, POINT_DONE, POINT_FAILED, POINT_LEFT };
 
 struct point_replicate {
   unsigned char state;    /* enum point_state */
   bool surplus;           /* stored with surplus = 1 */
   bool fields;            /* its HDF5 file exists, or there is nothing to write: an invalid run has no body */
   bool replay, replaying; /* its HDF5 file is wanted, and under way */
+  int lost;               /* attempts of this invocation that the machine ended */
 };
 
 struct point {
@@ -28,6 +30,7 @@ struct point {
   int64_t capacity; /* of the arrays */
   struct point_replicate *replicates;
   double *values;  /* main quantity; NaN = failed or not there */
+  int64_t left;    /* replicates in state POINT_LEFT */
   int64_t out;     /* runs and replays on slots */
   int64_t replays; /* wanted and not under way */
   struct cost_point cost;
@@ -47,8 +50,10 @@ bool point_judge(struct point *point);
 int64_t point_next(struct point *point, bool ahead);
 /* After the decision: marks which replicates' fields are to be computed again. */
 void point_want_fields(struct point *point, const struct campaign *campaign);
+/* The replicate is left to the next invocation. */
+void point_leave(struct point *point, int64_t replicate);
 /* True when the point has nothing to send out and nothing is out. */
-bool point_over(const struct point *point);
+bool point_over(struct point *point);
 /* Runs of the prefix that are neither done nor failed. */
 int64_t point_missing(const struct point *point);
 

@@ -52,6 +52,7 @@ struct driver {
   double begin, last_left, seconds_left;
   int64_t wanted;     /* runs to complete in points met */
   struct error error; /* of a callback that cannot return one */
+  struct error stop;  /* why no more runs go out: those that compute are still taken in */
 };
 
 void driver_note(struct driver *driver, const char *text);

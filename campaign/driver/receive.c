@@ -10,7 +10,7 @@ static status store_result(struct driver *driver, const struct flight *flight, c
   struct point *point = flight->point;
   struct point_replicate *replicate = &point->replicates[flight->replicate];
   char path[4096] = "";
-  if (driver_writes_fields(driver, flight) && result->outcome.state != OUTCOME_INVALID)
+  if (driver_writes_fields(driver, flight) && result->outcome.state != OUTCOME_INVALID && !result->unwritten.status)
     driver_fields_path(driver, flight->identity, false, path, sizeof path);
   replicate->surplus = flight->replicate >= point->prefix;
   replicate->fields = path[0] != '\0' || result->outcome.state == OUTCOME_INVALID;
@@ -87,12 +87,39 @@ static status judge_failures(struct driver *driver, bool failed, struct error *e
       (long long)driver->first_failed, (long long)driver->first_done, driver->options.store_path);
 }
 
+/* The machine ended the attempt, which says nothing about the run. It is tried again here, and when that does not help,
+ * by the next invocation. It is never given up. */
+static void finish_lost(struct driver *driver, const struct flight *flight) {
+  struct point_replicate *replicate = &flight->point->replicates[flight->replicate];
+  if (++replicate->lost < driver->campaign->attempts) {
+    point_want_again(flight->point, flight->replicate);
+    return;
+  }
+  point_leave(flight->point, flight->replicate);
+  driver->summary.runs_left++;
+}
+
+/* No more runs go out; those that compute are taken in. The results are kept, the fields are for the next invocation.
+ */
+static void stop_without_fields(struct driver *driver, const struct error *why) {
+  if (driver->stop.status != STATUS_OK)
+    return;
+  status_fail(&driver->stop, why->status,
+              "%s. The results are stored, these fields are not: free some space, and give the same command again",
+              why->message);
+  driver_note(driver, "a fields file cannot be written: no new runs, those that compute are waited for");
+}
+
 /* An attempt that gave no result: the run is tried again, or given up when its attempts are used up. */
 static status finish_attempt(struct driver *driver, const struct flight *flight, const struct farm_report *report,
                              struct error *error) {
   status code = store_failure(driver, flight, report, error);
   if (code != STATUS_OK)
     return code;
+  if (report->ending == FARM_LOST) {
+    finish_lost(driver, flight);
+    return STATUS_OK;
+  }
   if (flight->attempt < driver->campaign->attempts) {
     point_want_again(flight->point, flight->replicate);
     return STATUS_OK;
@@ -124,8 +151,24 @@ static status finish_run(struct driver *driver, const struct flight *flight, con
   driver->summary.runs_failed += !usable;
   driver->summary.runs_censored += result.outcome.state == OUTCOME_END_TIME;
   driver->summary.cpu_s += report->cpu_s;
+  if (result.unwritten.status != STATUS_OK)
+    stop_without_fields(driver, &result.unwritten);
   code = judge_failures(driver, !usable, error);
 cleanup:
+  run_result_clear(&result);
+  return code;
+}
+
+/* STATUS_OK when the run that was computed for its fields has written them. */
+static status fields_written(struct driver *driver, const struct flight *flight, const struct farm_report *report,
+                             struct error *error) {
+  struct run_result result;
+  status code = run_decode_result(flight->point->scene->kind, report->bytes, report->size, &result, error);
+  if (code != STATUS_OK)
+    return code;
+  code = result.unwritten.status;
+  if (code != STATUS_OK)
+    stop_without_fields(driver, &result.unwritten);
   run_result_clear(&result);
   return code;
 }
@@ -140,8 +183,11 @@ static status finish_replay(struct driver *driver, const struct flight *flight, 
     snprintf(text, sizeof text, "fields of seed %llu could not be written to %s: %s", (unsigned long long)flight->seed,
              path, report->message && report->message[0] ? report->message : "the replay did not end well");
     driver_note(driver, text);
+    driver->summary.runs_left += report->ending == FARM_LOST;
     return STATUS_OK;
   }
+  if (fields_written(driver, flight, report, error) != STATUS_OK)
+    return driver->stop.status != STATUS_OK ? STATUS_OK : STATUS_INTERNAL;
   replicate->fields = true;
   driver->summary.fields_written++;
   return store_set_fields(driver->store, flight->identity, path, error);
@@ -168,5 +214,7 @@ status driver_receive(void *context, const struct farm_report *report, struct er
     (void)driver_window_judge(driver, flight.point, NULL); /* the stop keeps its own message */
   if (point_over(flight.point))
     driver_window_drop(driver, flight.point);
+  if (code == STATUS_OK && driver->stop.status != STATUS_OK)
+    return status_fail(error, STATUS_STOPPED, "%s", driver->stop.message);
   return code;
 }

@@ -12,7 +12,7 @@
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
 #define TASK_MARK   "clast task 1"
-#define RESULT_MARK "clast result 1"
+#define RESULT_MARK "clast result 2"
 
 void run_result_clear(struct run_result *result) {
   free(result->result);
@@ -218,6 +218,8 @@ static void write_result(struct writer *writer, const struct engine_kind *kind, 
   put_count(writer, sizeof(struct estimate));
   put_count(writer, result->estimate_count);
   put(writer, result->estimates, result->estimate_count * sizeof(struct estimate));
+  put_count(writer, result->unwritten.status);
+  put_text(writer, result->unwritten.status != STATUS_OK ? result->unwritten.message : "");
 }
 
 static uint8_t *encode_result(const struct engine_kind *kind, const struct run_result *result, size_t *size) {
@@ -263,6 +265,8 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
   const uint8_t *rows = reader.good ? take(&reader, estimates * sizeof(struct estimate)) : NULL;
   if (rows)
     memcpy(result->estimates, rows, (size_t)estimates * sizeof(struct estimate));
+  result->unwritten.status = (status)take_count(&reader);
+  take_text(&reader, result->unwritten.message, sizeof result->unwritten.message);
   if (!reader.good || reader.left) {
     run_result_clear(result);
     return status_fail(error, STATUS_INTERNAL,
@@ -309,8 +313,12 @@ status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t
   if (code != STATUS_OK)
     goto cleanup;
   code = run_simulate(&request, NULL, NULL, 0, &values, error);
-  if (code != STATUS_OK)
+  if (code != STATUS_OK && !values.result)
     goto cleanup;
+  if (code != STATUS_OK && error)
+    values.unwritten = *error;
+  values.unwritten.status = code;
+  code = STATUS_OK;
   *result = encode_result(request.kind, &values, result_size);
   if (!*result)
     code = status_fail(error, STATUS_MEMORY, "no memory for the result");

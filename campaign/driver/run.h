@@ -21,7 +21,9 @@ struct run_result {
   struct fragment *fragments; /* owned: by descending mass */
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
-  size_t estimate_count; /* 0 for a run without fragments */
+  size_t estimate_count;  /* 0 for a run without fragments */
+  struct error unwritten; /* of run_execute: why the fields file could not be written; STATUS_OK: it was, or is not asked
+                             for */
 };
 
 /* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends
@@ -44,6 +46,7 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
 
 /* Finds an engine by name (engine_find, or a test's). */
 typedef const struct engine_kind *(*run_find)(const char *name, struct error *error);
+/* Results of a run whose fields file cannot be written are encoded all the same, with the reason in `unwritten`. */
 status run_execute(run_find find, const uint8_t *task, size_t task_size, uint8_t **result, size_t *result_size,
                    struct error *error);
 /* The farm_work of clast: run_execute with engine_find. */

@@ -143,6 +143,8 @@ bool driver_send(void *context, struct farm_task *task) {
   struct driver *driver = context;
   if (driver->error.status != STATUS_OK)
     return false; /* tick() passes the error to the farm */
+  if (driver->stop.status != STATUS_OK)
+    return false;
 
   struct flight flight = {0};
   status code = STATUS_OK;

@@ -28,7 +28,7 @@ typedef status (*farm_work)(const uint8_t *task, size_t task_size, uint8_t **res
 struct farm_options {
   int slots;           /* per rank; 0: one per core that this process may use (under MPI: one) */
   bool in_process;     /* runs are computed in the slot's process: no fork per run, but a crash ends the slot as well */
-  double time_limit_s; /* wall time of an attempt, 0: none. Then SIGTERM, and SIGKILL half a second later */
+  double time_limit_s; /* wall time of an attempt, 0: none. Then SIGKILL */
   size_t memory_limit; /* bytes of an attempt beyond those of the slot (RLIMIT_AS), 0: none */
   bool use_mpi;        /* decided by farm_under_mpi() */
   /* Zero means the default in all of these. */
@@ -51,6 +51,9 @@ int farm_rank(const struct farm *farm); /* 0 = manager */
 int farm_ranks(const struct farm *farm);
 int farm_slots_total(const struct farm *farm); /* over all ranks */
 
+/* FARM_LOST says nothing about the task: a signal from outside ended it, a rank or slot went away, or the machine had no
+ * memory, process or disk for it. Tasks ignore SIGINT, SIGTERM, SIGHUP and SIGUSR1, which a terminal or batch system
+ * sends to the whole process group: the manager decides what these mean. */
 enum farm_ending { FARM_DONE, FARM_FAILED, FARM_TIME_LIMIT, FARM_MEMORY_LIMIT, FARM_CRASHED, FARM_LOST };
 
 struct farm_task {

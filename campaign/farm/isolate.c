@@ -17,8 +17,6 @@
 
 #include "schemas/clock.h"
 
-#define TERM_GRACE_NS (500 * CLOCK_MS) /* between SIGTERM at the deadline and SIGKILL */
-
 static size_t address_space(void) {
   char text[64] = "";
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -82,7 +80,6 @@ static _Noreturn void compute(const struct farm_isolate *isolate, const struct f
   close(isolate->channel); /* so that the main process sees a dead slot as a closed channel */
   close(isolate->child_signal);
   close(isolate->result[0]);
-  signal(SIGTERM, SIG_DFL); /* the deadline's first word */
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
@@ -175,8 +172,8 @@ static bool await_child(struct farm_isolate *isolate, pid_t child, int64_t limit
     if ((fds[0].revents & POLLIN) && has_ended(isolate, child, wait_status, usage))
       break;
     if (clock_ns() >= until) {
-      kill(child, in_time ? SIGTERM : SIGKILL);
-      until = in_time ? clock_ns() + TERM_GRACE_NS : INT64_MAX;
+      kill(child, SIGKILL);
+      until = INT64_MAX;
       in_time = false;
     }
   }
@@ -210,10 +207,20 @@ static struct answer read_answer(struct farm_isolate *isolate, uint64_t handle, 
   return answer;
 }
 
-static enum farm_ending ending_of(int64_t verdict, bool limited) {
+enum farm_ending farm_isolate_ending(int64_t verdict, bool limited) {
   if (verdict == STATUS_OK)
     return FARM_DONE;
-  return verdict == STATUS_MEMORY && limited ? FARM_MEMORY_LIMIT : FARM_FAILED;
+  if (verdict == STATUS_MEMORY)
+    return limited ? FARM_MEMORY_LIMIT : FARM_LOST;
+  return verdict == STATUS_IO ? FARM_LOST : FARM_FAILED;
+}
+
+enum farm_ending farm_isolate_ending_by(int signal_number) {
+  static const int own[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS};
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++)
+    if (signal_number == own[i])
+      return FARM_CRASHED;
+  return FARM_LOST;
 }
 
 /* The child ended without an answer: why. */
@@ -224,13 +231,11 @@ static void judge_end(struct farm_result *head, bool in_time, int ended, double 
     return;
   }
   if (!WIFSIGNALED(ended)) {
-    head->ending = FARM_CRASHED;
+    head->ending = head->exit_code == STATUS_MEMORY || head->exit_code == STATUS_IO ? FARM_LOST : FARM_CRASHED;
     snprintf(text, size, "the run's process exited with code %d and no result", head->exit_code);
     return;
   }
-  /* These signals come from outside, to the whole process group, and say nothing about the run. */
-  const bool outside = head->signal == SIGTERM || head->signal == SIGINT || head->signal == SIGHUP;
-  head->ending = outside ? FARM_LOST : FARM_CRASHED;
+  head->ending = farm_isolate_ending_by(head->signal);
   snprintf(text, size, "killed by signal %d (%s)%s", head->signal, strsignal(head->signal),
            head->signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
 }
@@ -240,7 +245,7 @@ static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_r
   const struct iovec nothing = {NULL, 0};
   const bool done = answer->verdict == STATUS_OK;
   head->exit_code = (int)answer->verdict;
-  head->ending = ending_of(answer->verdict, limited);
+  head->ending = farm_isolate_ending(answer->verdict, limited);
   head->size = done ? answer->bytes.iov_len : 0;
   const struct iovec part[3] = {{head, sizeof *head}, done ? answer->bytes : nothing, done ? nothing : answer->bytes};
   if (farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 3, part))
@@ -251,7 +256,7 @@ static bool append_answer(struct farm_bytes *out, uint64_t handle, struct farm_r
   /* The result is too large, or there is no memory for a copy of it here. */
   char text[96];
   snprintf(text, sizeof text, "no memory to pass on a result of %zu bytes", answer->bytes.iov_len);
-  head->ending = FARM_FAILED;
+  head->ending = FARM_LOST;
   head->exit_code = STATUS_MEMORY;
   head->size = 0;
   return append_failure(out, handle, head, text);

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "campaign/farm/isolate.h"
 #include "campaign/farm/server.h"
 #include "schemas/clock.h"
 
@@ -351,17 +352,22 @@ static void hear_slot_ended(struct farm_pool *pool, const struct farm_server_mes
   struct slot *const slot = &pool->slots[message->slot];
   const int value = message->value;
   char text[160];
-  struct farm_result verdict = {.ending = pool->setup.options.in_process ? FARM_CRASHED : FARM_LOST};
+  const bool in_process = pool->setup.options.in_process;
+  struct farm_result verdict = {.ending = FARM_LOST};
   if (message->pid == 0) {
     snprintf(text, sizeof text, "the system refused a process for a slot: %s", strerror(value));
   } else if (WIFSIGNALED(value)) {
     verdict.signal = WTERMSIG(value);
+    if (in_process)
+      verdict.ending = farm_isolate_ending_by(verdict.signal);
     snprintf(text, sizeof text, "%s killed by signal %d (%s)%s",
-             pool->setup.options.in_process ? "the run's process was" : "the slot (not the run) was", verdict.signal,
+             in_process ? "the run's process was" : "the slot (not the run) was", verdict.signal,
              strsignal(verdict.signal),
              verdict.signal == SIGKILL ? "; if nobody did it, the machine was out of memory" : "");
   } else {
     verdict.exit_code = WEXITSTATUS(value);
+    if (in_process && verdict.exit_code != STATUS_MEMORY)
+      verdict.ending = FARM_CRASHED;
     snprintf(text, sizeof text, "the run's process exited with code %d and no result", verdict.exit_code);
   }
   slot_ended(pool, message->slot, &verdict, text);

@@ -79,13 +79,13 @@ static bool run_here(const struct farm_slot_setup *setup, int slot, uint64_t han
   struct iovec part[2] = {{&head, sizeof head}, {result, result_size}};
   head.size = result_size;
   if (verdict != STATUS_OK) {
-    head.ending = verdict == STATUS_MEMORY && memory_limit ? FARM_MEMORY_LIMIT : FARM_FAILED;
+    head.ending = farm_isolate_ending(verdict, memory_limit > 0);
     head.size = 0;
     part[1] = (struct iovec){error.message, strlen(error.message)};
   }
   bool written = farm_frame_append(out, FARM_FRAME_RESULT, 0, handle, 2, part);
   if (!written) {
-    head.ending = FARM_FAILED;
+    head.ending = FARM_LOST;
     head.exit_code = STATUS_MEMORY;
     head.size = 0;
     char text[128];

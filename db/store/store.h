@@ -106,7 +106,7 @@ status store_tick(struct store *store, struct error *error);  /* commit when the
 /* Is a run of this identity stored? */
 bool store_has_run(struct store *store, const uint8_t identity[16]);
 /* Failed attempts of an identity. Those that ended at a lower time or memory limit than the one given (s, bytes; 0: no
- * limit) are not counted, so that a raised limit tries again. */
+ * limit) are not counted, so that a raised limit tries again. Nor are lost ones, which say nothing about the run. */
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit);
 
 /* A stored run of a point, for a driver that resumes and for stopping rules. */

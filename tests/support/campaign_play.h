@@ -147,7 +147,7 @@ static struct campaign *play_campaign(size_t strains, size_t angles, int64_t per
   return campaign;
 }
 
-enum play_fate { PLAY_RUN, PLAY_CRASH, PLAY_SLOW, PLAY_STOP };
+enum play_fate { PLAY_RUN, PLAY_CRASH, PLAY_SLOW, PLAY_LOST, PLAY_STOP };
 struct play {
   int slots;
   uint64_t order; /* seed of the order in which runs finish; 0 = as they were given out */
@@ -190,6 +190,10 @@ static status play_farm(struct play *play, struct driver *driver, struct error *
       report.ending = FARM_CRASHED;
       report.signal = 11;
       report.message = "killed by signal 11";
+    } else if (fate == PLAY_LOST) {
+      report.ending = FARM_LOST;
+      report.signal = 9;
+      report.message = "killed by signal 9";
     } else if (fate == PLAY_SLOW) {
       report.ending = FARM_TIME_LIMIT;
       report.message = "ended at its time limit";

@@ -187,6 +187,36 @@ static void attempts_are_kept_and_repeated_up_to_the_limit(void **state) {
   campaign_free(campaign);
 }
 
+static enum play_fate lose_three(uint64_t seed, int attempt) {
+  (void)attempt;
+  return seed == 3 ? PLAY_LOST : PLAY_RUN;
+}
+
+/* Runs that the machine ended are left, whatever their number, and computed when the machine lets them. */
+static void lost_runs_are_never_given_up(void **state) {
+  (void)state;
+  const char *path = in("lost.db");
+  struct driver_summary summary;
+  struct campaign *campaign = play_campaign(2, 1, 6);
+  struct play losing = {.slots = 2, .fate = lose_three}, good = {.slots = 2};
+  for (int i = 0; i < 3; i++) {
+    assert_int_equal(play_once(&losing, campaign, path, &summary), STATUS_OK);
+    assert_int_equal(summary.attempts_failed, 4); /* two points, two attempts */
+    assert_int_equal(summary.runs_failed, 0);
+    assert_int_equal(summary.runs_left, 2);
+    assert_int_equal(summary.runs_done, i == 0 ? 10 : 0);
+    assert_int_equal(summary.points_done, 0);
+  }
+  assert_int_equal(play_once(&good, campaign, path, &summary), STATUS_OK);
+  assert_int_equal(summary.runs_done, 2);
+  assert_int_equal(summary.runs_left, 0);
+  assert_int_equal(summary.points_done, 2);
+  char *whole = complete(campaign, in("unlost.db"), 2, 0), *mended = play_dump(path);
+  assert_string_equal(whole, mended);
+  free(whole), free(mended), free(losing.says), free(good.says);
+  campaign_free(campaign);
+}
+
 static void stops_when_too_many_of_the_first_fail(void **state) {
   (void)state;
   const char *path = in("failing.db");
@@ -326,6 +356,7 @@ int main(void) {
       cmocka_unit_test(growing_campaigns_repeat_nothing),
       cmocka_unit_test(a_rule_gives_the_same_prefix_whatever_the_slots),
       cmocka_unit_test(attempts_are_kept_and_repeated_up_to_the_limit),
+      cmocka_unit_test(lost_runs_are_never_given_up),
       cmocka_unit_test(stops_when_too_many_of_the_first_fail),
       cmocka_unit_test(failed_states_are_results),
       cmocka_unit_test(fields_are_kept_as_asked),

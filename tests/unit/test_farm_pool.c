@@ -88,6 +88,7 @@ static void every_ending(void **state) {
     list.tasks[23] = (struct task){.id = 23, .kind = TASK_ALLOC, .amount = 3e8};
     list.tasks[27] = (struct task){.id = 27, .kind = TASK_EXIT, .number = 0};
     list.tasks[31].kind = TASK_WILD;
+    list.tasks[35] = (struct task){.id = 35, .kind = TASK_FAIL, .number = STATUS_IO};
     const struct farm_options options = {.slots = 2,
                                          .in_process = mode,
                                          .time_limit_s = 0.4,
@@ -108,7 +109,8 @@ static void every_ending(void **state) {
     assert_string_equal(list.messages[19], "task 19 cannot");
     assert_int_equal(list.endings[23], FARM_MEMORY_LIMIT);
     assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
-    assert_int_equal(list.endings[31], FARM_CRASHED);
+    assert_int_equal(list.endings[31], FARM_LOST); /* SIGKILL comes from outside */
+    assert_int_equal(list.endings[35], FARM_LOST); /* the machine's disk */
     for (size_t i = 0; i < list.count; i++)
       if (list.tasks[i].kind == TASK_ECHO)
         assert_int_equal(list.endings[i], FARM_DONE);
