@@ -79,6 +79,7 @@ static void keep_standard_files(void) {
 int main(int argc, char **argv) {
   keep_standard_files();
   signal(SIGPIPE, SIG_IGN); /* a reader that goes away (`| head`) must not end the program in the middle of a commit */
+  signal(SIGXFSZ, SIG_IGN); /* a file at its limit (`ulimit -f`) is a full disk: write says so */
   analysis_init();
   struct error error = {.status = STATUS_OK};
   status code = run_command_line(argc, argv, &error);

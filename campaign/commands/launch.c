@@ -135,7 +135,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
 /* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
 static bool other_rank(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
-  if (!farm_under_mpi())
+  if (!farm_under_mpi() && farm_launched() <= 1)
     return false;
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
     const char *rank = getenv(names[i]);

@@ -7,6 +7,7 @@
 
 #include "campaign/design/design.h"
 #include "campaign/document/campaign_vary.h"
+#include "db/store/place.h"
 #include "engine/random.h"
 #include "schemas/document.h"
 
@@ -279,6 +280,8 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   if (!campaign->store[0] &&
       snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
+  if (campaign->store[0] && place_refused(campaign->store))
+    document_report(document_key(root, "store"), "store", "%s", place_refused(campaign->store));
   if (!scene || !campaign->scene_reference[0])
     return; /* document_read has reported it; nothing more can be read without it */
   if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) != STATUS_OK) {

@@ -19,6 +19,29 @@ bool farm_under_mpi(void) {
   return getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK");
 }
 
+int farm_launched(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    const char *size = getenv(names[i]);
+    if (size && *size)
+      return atoi(size);
+  }
+  return 1;
+}
+
+/* A launcher without a common PMI starts programs that do not know of each other. All would write one store: one would
+ * work, and the others' errors would hide how it ended. */
+static status refuse_singletons(const struct farm *farm, struct error *error) {
+  const int launched = farm_launched();
+  if (farm->ranks > 1 || launched <= 1)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE,
+                     "the launcher started %d programs, but MPI does not connect them. Under Slurm use `srun "
+                     "--mpi=pmix`, or start one program; programs that work on stores of their own need `env -u "
+                     "SLURM_STEP_NUM_TASKS -u PMI_SIZE`",
+                     launched);
+}
+
 static int usable_cores(void) {
   cpu_set_t set;
   return sched_getaffinity(0, sizeof set, &set) == 0 && CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
@@ -133,6 +156,9 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
     farm->rank = farm_link_rank(farm->link);
     farm->ranks = farm_link_ranks(farm->link);
   }
+  result = refuse_singletons(farm, error);
+  if (result != STATUS_OK)
+    goto cleanup;
   farm->peers = calloc((size_t)farm->ranks, sizeof *farm->peers);
   if (!farm->peers) {
     result = status_fail(error, STATUS_MEMORY, "no memory for %d ranks", farm->ranks);

@@ -45,7 +45,13 @@ struct farm;
  */
 bool farm_under_mpi(void);
 
-/* Forks the server and the slots. Every rank calls it, before MPI_Init, any thread and HDF5. */
+/* How many programs the launcher says it started side by side; 1: one, or it says nothing. Looks at the environment
+ * only.
+ */
+int farm_launched(void);
+
+/* Forks the server and the slots. STATUS_USAGE when the launcher started several programs that MPI does not connect.
+ * Every rank calls it, before MPI_Init, any thread and HDF5. */
 status farm_start(const struct farm_options *options, farm_work work, struct farm **out, struct error *error);
 int farm_rank(const struct farm *farm); /* 0 = manager */
 int farm_ranks(const struct farm *farm);

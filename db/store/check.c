@@ -272,6 +272,13 @@ static status check_questions(struct report *report, struct error *error) {
   return result;
 }
 
+static status check_copy(struct report *report, struct error *error) {
+  (void)error;
+  if (report->store->lacks_wal)
+    say(report, "the store was copied without its -wal file while it was being written: its last runs are missing");
+  return STATUS_OK;
+}
+
 static status check_sums(struct report *report, struct error *error) {
   int64_t wrong = 0;
   status result = sums_mismatches(report->store->db, &wrong, error);
@@ -283,10 +290,10 @@ static status check_sums(struct report *report, struct error *error) {
 
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error) {
-  static status (*const checks[])(struct report *, struct error *) = {check_questions, check_fragment_counts,
-                                                                      check_results,   check_ranges,
-                                                                      check_files,     check_sums,
-                                                                      check_masses,    check_identities};
+  static status (*const checks[])(struct report *,
+                                  struct error *) = {check_copy,    check_questions, check_fragment_counts,
+                                                     check_results, check_ranges,    check_files,
+                                                     check_sums,    check_masses,    check_identities};
   struct report report = {.store = store, .line = line, .context = context};
   status result = store_flush(store, error);
   for (size_t i = 0; result == STATUS_OK && i < sizeof checks / sizeof checks[0]; i++)

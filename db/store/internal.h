@@ -19,7 +19,8 @@ struct store {
   sqlite3 *db;
   bool writer, functions;
   char *path;
-  int lock; /* descriptor, -1 for readers */
+  int lock;       /* descriptor, -1 for readers */
+  bool lacks_wal; /* in WAL mode without its -wal file when it was opened (db/store/place.h) */
 
   struct identities identities; /* read when a writer opens, and by a reader when they are first needed */
   bool identities_loaded;

@@ -10,8 +10,13 @@
 #include "db/store/internal.h"
 #include "db/store/lock.h"
 #include "db/store/migrate.h"
+#include "db/store/place.h"
 #include "db/store/schema.h"
 #include "schemas/clock.h"
+
+static const char lacks_wal_text[] =
+    "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
+    "files, or make a copy with `clast export`.";
 
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
@@ -120,6 +125,14 @@ static status write_holder(struct store *store, struct error *error) {
                       host, (long long)getpid());
 }
 
+/* A copy of a store that was being written holds the row of its writer, or nothing at all. */
+static bool is_partial_copy(const struct store *store, int version) {
+  int64_t holders = 0;
+  if (!store->lacks_wal || version < 0)
+    return store->lacks_wal;
+  return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
+}
+
 /* The file is locked: opens it, brings it forward and reads what a writer must know. */
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
@@ -129,6 +142,7 @@ static status open_locked(struct store *store, struct error *error) {
   result = migrate_inspect(store->db, store->path, &version, error);
   if (result != STATUS_OK)
     return result;
+  store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
                        "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
                        "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
@@ -148,11 +162,14 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   *out = NULL;
   if (warning_size)
     warning[0] = '\0';
+  if (place_refused(path))
+    return status_fail(error, STATUS_USAGE, "%s: %s", path, place_refused(path));
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
   bool existed = access(path, F_OK) == 0;
+  store->lacks_wal = place_lacks_wal(path);
   status result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
     release(store);
@@ -167,6 +184,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
         "local disk and copy the file when it is done.",
         path, network);
   result = open_locked(store, error);
+  if (store->lacks_wal && warning_size)
+    snprintf(warning, warning_size, "warning: %s %s", path, lacks_wal_text);
   if (result != STATUS_OK) {
     struct stat file;
     release(store);
@@ -190,9 +209,14 @@ status store_open_reader(const char *path, struct store **out, struct error *err
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
+  store->lacks_wal = place_lacks_wal(path);
   status result = open_database(store, SQLITE_OPEN_READONLY, error);
   if (result == STATUS_OK)
     result = migrate_inspect(store->db, path, &version, error);
+  if (result == STATUS_OK)
+    store->lacks_wal = is_partial_copy(store, version);
+  if (result == STATUS_OK && version < 0 && store->lacks_wal)
+    result = status_fail(error, STATUS_CONTENT, "%s %s", path, lacks_wal_text);
   if (result == STATUS_OK && version < 0)
     result = status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", path);
   if (result == STATUS_OK && version < SCHEMA_VERSION)
@@ -277,7 +301,9 @@ status store_end(struct store *store, status result, int rows, struct error *err
 status store_flush(struct store *store, struct error *error) {
   if (!store->in_batch)
     return STATUS_OK;
-  status result = sums_write(&store->sums, store->db, error);
+  status result = place_check(store->db, store->path, error);
+  if (result == STATUS_OK)
+    result = sums_write(&store->sums, store->db, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", "committing", error);
   if (result != STATUS_OK) {
@@ -290,8 +316,9 @@ status store_flush(struct store *store, struct error *error) {
 }
 
 status store_tick(struct store *store, struct error *error) {
-  return store->in_batch && clock_s() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error)
-                                                                                    : STATUS_OK;
+  if (!store->in_batch)
+    return place_check(store->db, store->path, error);
+  return clock_s() - store->batch_started >= STORE_BATCH_SECONDS ? store_flush(store, error) : STATUS_OK;
 }
 
 status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error) {

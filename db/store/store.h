@@ -19,9 +19,9 @@ struct store;
 
 /* Opens for writing: creates the file when absent, brings an older one forward (and keeps a copy of it), refuses a
  * newer or foreign one. STATUS_IO: read-only, disk full, locked (the message names the holder's host and process).
- * STATUS_CONTENT: not a clast store, damaged, newer. *warning (may be NULL) receives a sentence to print (network file
- * system), or "". The lock dies with the process; a child forked while the store is open shares it until it ends or
- * executes another program. */
+ * STATUS_CONTENT: not a clast store, damaged, newer. STATUS_USAGE: the name is no file's (":memory:"). *warning (may be
+ * NULL) receives a sentence to print (network file system, copied without its -wal file), or "". The lock dies with the
+ * process; a child forked while the store is open shares it until it ends or executes another program. */
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size, struct error *error);
 /* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. db/ask/query.h reads from a store; it
  * works on a writer too, and then sees its open batch. */
@@ -101,7 +101,8 @@ struct store_convergence {
 status store_convergence_set(struct store *store, const struct store_convergence *study, struct error *error);
 
 status store_flush(struct store *store, struct error *error); /* commit the open batch now */
-status store_tick(struct store *store, struct error *error);  /* commit when the batch is older than 1 s */
+/* Commits when the batch is older than 1 s. STATUS_IO when the file was moved, removed or replaced. */
+status store_tick(struct store *store, struct error *error);
 
 /* Is a run of this identity stored? */
 bool store_has_run(struct store *store, const uint8_t identity[16]);

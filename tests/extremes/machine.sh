@@ -1,0 +1,155 @@
+#!/usr/bin/env bash
+# Faults of the machine, not of a run: signals from outside, full disks, a store that is moved away, a launcher without
+# MPI. No run is given up for them: the same command computes what is missing, to the reference's bits.
+. "$(dirname "$0")/../cli/lib.bash"
+ask() { python -c "import sqlite3, sys; print(sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True).execute(sys.argv[2]).fetchone()[0])" "$1" "$2"; }
+
+slow slow
+expect 0 "$clast" run slow.yaml -j 2 --quiet
+bits slow.db >reference.bits
+runs_in() { ask "$1" 'select count(*) from run' 2>/dev/null || echo 0; }
+# begin STORE COMMAND...: in the background, in a process group of its own, until the store has another run
+begin() {
+  local store=$1 i before
+  before=$(runs_in "$1")
+  shift
+  setsid env --default-signal=INT,TERM,USR1 "$@" >out 2>err &
+  pid=$!
+  for i in $(seq 600); do
+    [ "$(runs_in "$store")" -gt "$before" ] && return
+    sleep 0.05
+  done
+  fail "no other run after 30 s"
+}
+ends() { # ends CODE WHAT
+  local got=0
+  wait "$pid" || got=$?
+  [ "$got" -eq "$1" ] || fail "exit $got, expected $1: $2"
+  ok "exit $1: $2"
+}
+
+# SIGTERM to the whole process group, twice, in two sessions: `timeout`, scancel, preemption. Nothing counts as failed.
+cp slow.yaml term.yaml
+echo 'limits: {attempts: 1}' >>term.yaml
+for i in 1 2; do
+  begin term.db "$clast" run term.yaml --store term.db -j 2
+  kill -TERM -- "-$pid"; sleep 0.2; kill -TERM -- "-$pid" 2>/dev/null || true
+  ends 75 "SIGTERM twice to the process group"
+done
+same "$(ask term.db 'select count(*) from attempt')" 0 "attempts that failed"
+expect 0 "$clast" run term.yaml --store term.db -j 2 --quiet
+same_bits term.db reference.bits "after four SIGTERM"
+
+# kill -9 of the processes that compute, as the kernel does when memory is out: tried again, never given up for good
+sed 's/per_point: .*}/per_point: 1}/; s/14 cm/60 cm/; s/vary:.*/limits: {attempts: 1}/; s/1.5 ms/6 ms/' slow.yaml >killed.yaml
+setsid "$clast" run killed.yaml --store killed.db -j 1 >out 2>err &
+pid=$!
+child() { local c; for c in $(pgrep -P "$1"); do child "$c"; [ -n "$(pgrep -P "$c")" ] || echo "$c"; done; }
+victim=
+for i in $(seq 200); do
+  victim=$(child "$pid" | tail -n 1)
+  [ -n "$victim" ] && break
+  sleep 0.05
+done
+sleep 0.5
+victim=$(child "$pid" | tail -n 1)
+kill -9 "$victim"
+ends 75 "a run whose process was killed from outside"
+says "the same command"
+same "$(ask killed.db "select count(*) || ' ' || min(reason) from attempt")" "1 lost" "attempt in the store"
+cp slow.db lost.db # as if every run had been lost three times, and none computed
+python - <<'PY'
+import sqlite3
+d = sqlite3.connect('lost.db')
+d.execute("insert into attempt (identity, point_id, replicate, seed, number, reason, exit_code, signal, wall_time, peak_memory, limited_to, message, host, rank, failed_at) "
+          "select identity, point_id, replicate, seed, n, 'lost', 0, 15, 1, 0, 0, 'terminated', 'h', 0, 1.0 from run, (select 1 as n union select 2 union select 3)")
+for table in ('fragment_mass', 'spectrum', 'estimate', 'result_dem', 'run', 'point_estimate', 'point_total', 'point_spectrum'):
+    d.execute(f'delete from {table}')
+d.commit()
+PY
+expect 0 "$clast" run slow.yaml --store lost.db -j 2 --quiet
+same_bits lost.db reference.bits "runs that were lost three times each"
+
+# a disk that is full when fields are written: the results are kept, 74, and the same command writes the fields
+# (fields of 0.8 MB each, a store of 0.2 MB)
+sed 's/per_point: .*}/per_point: 2}/; s/\[2 %, 3 %, 5 %\]/[2 %]/; s/14 cm/45 cm/; s/1.5 ms/0.2 ms/' slow.yaml >fields.yaml
+echo 'keep: {fields: all}' >>fields.yaml
+expect 0 "$clast" run fields.yaml --store whole.db -j 2 --quiet
+bits whole.db >fields.bits
+expect 74 bash -c "ulimit -f 500; '$clast' run fields.yaml --store fields.db -j 2"
+says "fields"
+says "same command"
+same "$(ask fields.db 'select count(*) from attempt')" 0 "attempts that failed"
+[ "$(ask fields.db 'select count(*) from run')" -ge 1 ] || fail "the computed result was thrown away"
+same "$(ask fields.db 'select count(fields_path) from run')" 0 "fields written"
+expect 0 "$clast" run fields.yaml --store fields.db -j 2 --quiet
+same "$(ask fields.db 'select count(fields_path) from run')" 2 "fields written by the same command"
+same_bits fields.db fields.bits "after a full disk"
+for file in fields-fields/*.h5; do cmp -s "$file" "whole-fields/$(basename "$file")" || fail "$file differs"; done
+ok "the fields are those of a run without a full disk"
+
+# a limit on file sizes (ulimit -f, SIGXFSZ) is a full disk: said, 74
+tiny tiny
+sed -i 's/per_point: 3/per_point: 600/' tiny.yaml
+expect 74 bash -c "ulimit -f 700; '$clast' run tiny.yaml -j 2 --quiet"
+one_error
+
+# a store that is moved, removed or replaced under a running campaign
+for how in moved removed replaced; do
+  begin $how.db "$clast" run slow.yaml --store $how.db -j 2
+  case $how in
+    moved) mv moved.db elsewhere.db ;;
+    removed) rm removed.db ;;
+    replaced) cp slow.db other.db; mv other.db replaced.db ;;
+  esac
+  ends 74 "the store was $how"
+  says "moved, removed or replaced"
+done
+cmp -s slow.db replaced.db || fail "the file that took the store's place was written"
+expect 0 "$clast" check elsewhere.db
+
+# names that SQLite takes for memory
+for name in :memory: "file::memory:?mode=memory" "file:x.db?mode=memory" ""; do
+  expect 64 "$clast" run slow.yaml --store "$name" --quiet
+  one_error
+done
+[ ! -e :memory: ] || fail "a file called :memory:"
+
+# a copy without the -wal file of a store that is being written
+begin writing.db "$clast" run slow.yaml --store writing.db -j 2
+cp writing.db copy.db
+kill -INT "$pid"; ends 75 "the store that was copied"
+got=0
+"$clast" check copy.db >out 2>err || got=$?
+[ "$got" -eq 65 ] || fail "check of a copy without its -wal: $got"
+grep -q -- "-wal" out err || fail "it does not say what is missing"
+ok "a copy without its -wal is said to be one"
+expect 65 "$clast" status copy.db
+says "-wal"
+
+# programs that a launcher started side by side without MPI: refused before anything is written
+for launcher in "SLURM_STEP_NUM_TASKS=4 SLURM_PROCID=0" "PMI_RANK=0 PMI_SIZE=4"; do
+  expect 64 env $launcher "$clast" run slow.yaml --store single.db --quiet
+  says "--mpi=pmix"
+  expect 64 env ${launcher/=0/=1} "$clast" run slow.yaml --store single.db --quiet
+done
+[ ! -e single.db ] || fail "one of several programs began to write"
+expect 0 env SLURM_STEP_NUM_TASKS=1 SLURM_PROCID=0 "$clast" run slow.yaml --quiet
+expect 0 env SLURM_STEP_NUM_TASKS=4 SLURM_PROCID=0 mpirun --oversubscribe -n 2 "$clast" run slow.yaml --quiet
+
+# targets that are no plain files are written, not replaced
+mkfifo pipe
+cat pipe >piped.bits & reader=$!
+expect 0 "$clast" export slow.db pipe --bits
+[ -p pipe ] || fail "export replaced the pipe by a file"
+wait "$reader"
+cmp -s piped.bits reference.bits || fail "other bits through the pipe"
+ok "export writes into a pipe"
+
+# a benchmark that gets SIGTERM ends
+"$build/tests/bench/bench_farm_program" 1 farm >out 2>err &
+pid=$!
+sleep 1.5; kill -TERM "$pid"
+got=0; wait "$pid" || got=$?
+case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
+done_after 39
