@@ -34,11 +34,11 @@ struct driver_summary {
   uint64_t points_invalid;        /* values that the engine cannot run together: no runs, counted as failures */
   int64_t runs_reused, runs_done; /* found in the store; computed now */
   int64_t runs_failed;            /* given up after their attempts, or ended in a failed state; includes reused ones */
-  int64_t runs_left;              /* lost to the machine as often as limits.attempts says: the same command tries again */
-  int64_t runs_censored;          /* ended at the hard end time: usable, but fragments may still have been breaking */
-  int64_t runs_surplus;           /* in the store, but left out of statistics */
-  int64_t fields_written;         /* HDF5 files kept */
-  int64_t attempts_failed;        /* of this invocation */
+  int64_t runs_left;       /* lost to the machine as often as limits.attempts says: the same command tries again */
+  int64_t runs_censored;   /* ended at the hard end time: usable, but fragments may still have been breaking */
+  int64_t runs_surplus;    /* in the store, but left out of statistics */
+  int64_t fields_written;  /* HDF5 files kept */
+  int64_t attempts_failed; /* of this invocation */
   uint64_t points_interval_met, points_cap_reached; /* with `until` */
   double cpu_s;                                     /* of the runs computed now */
 };
@@ -47,8 +47,9 @@ struct driver_summary {
 void driver_farm_options(const struct campaign *campaign, struct farm_options *options);
 
 /* STATUS_OK; STATUS_FAILED_RUNS: finished with failed runs, or stopped because too many of the first failed;
- * STATUS_STOPPED: signal, or runs were lost to the machine; the same command resumes. STATUS_IO: a fields file could not
- * be written; STATUS_IO and STATUS_CONTENT from the store. *summary is filled in every case. On ranks other than 0: serves, returns the manager's status, *summary zero. */
+ * STATUS_STOPPED: signal, or runs were lost to the machine; the same command resumes. STATUS_IO: a fields file could
+ * not be written; STATUS_IO and STATUS_CONTENT from the store. *summary is filled in every case. On ranks other than 0:
+ * serves, returns the manager's status, *summary zero. */
 status driver_run(const struct campaign *campaign, struct farm *farm, const struct driver_options *options,
                   struct driver_summary *summary, struct error *error);
 

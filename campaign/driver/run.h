@@ -22,8 +22,8 @@ struct run_result {
   size_t fragment_count;
   struct estimate estimates[ESTIMATES_COUNT];
   size_t estimate_count;  /* 0 for a run without fragments */
-  struct error unwritten; /* of run_execute: why the fields file could not be written; STATUS_OK: it was, or is not asked
-                             for */
+  struct error unwritten; /* of run_execute: why the fields file could not be written; STATUS_OK: it was, or is not
+                             asked for */
 };
 
 /* Called before the first step and after each block of steps: snapshots, a progress line. Anything but STATUS_OK ends

@@ -57,8 +57,8 @@ int farm_rank(const struct farm *farm); /* 0 = manager */
 int farm_ranks(const struct farm *farm);
 int farm_slots_total(const struct farm *farm); /* over all ranks */
 
-/* FARM_LOST says nothing about the task: a signal from outside ended it, a rank or slot went away, or the machine had no
- * memory, process or disk for it. Tasks ignore SIGINT, SIGTERM, SIGHUP and SIGUSR1, which a terminal or batch system
+/* FARM_LOST says nothing about the task: a signal from outside ended it, a rank or slot went away, or the machine had
+ * no memory, process or disk for it. Tasks ignore SIGINT, SIGTERM, SIGHUP and SIGUSR1, which a terminal or batch system
  * sends to the whole process group: the manager decides what these mean. */
 enum farm_ending { FARM_DONE, FARM_FAILED, FARM_TIME_LIMIT, FARM_MEMORY_LIMIT, FARM_CRASHED, FARM_LOST };
 

@@ -365,7 +365,8 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
   sqlite3_stmt *statement = NULL;
   int count = (int)entry->attempts;
   if (sql_prepare(store->db,
-                  "SELECT count(*) FROM attempt WHERE identity = ?1 AND reason <> 'lost' AND NOT (reason = 'time_limit' AND (?2 = 0 OR "
+                  "SELECT count(*) FROM attempt WHERE identity = ?1 AND reason <> 'lost' AND NOT (reason = "
+                  "'time_limit' AND (?2 = 0 OR "
                   "limited_to < ?2)) AND NOT (reason = 'memory_limit' AND (?3 = 0 OR limited_to < ?3))",
                   &statement, "counting attempts", NULL) == STATUS_OK) {
     sqlite3_bind_blob(statement, 1, identity, 16, SQLITE_STATIC);

@@ -109,8 +109,8 @@ static void every_ending(void **state) {
     assert_string_equal(list.messages[19], "task 19 cannot");
     assert_int_equal(list.endings[23], FARM_MEMORY_LIMIT);
     assert_int_equal(list.endings[27], FARM_CRASHED); /* exit(0) without a result is no success */
-    assert_int_equal(list.endings[31], FARM_LOST); /* SIGKILL comes from outside */
-    assert_int_equal(list.endings[35], FARM_LOST); /* the machine's disk */
+    assert_int_equal(list.endings[31], FARM_LOST);    /* SIGKILL comes from outside */
+    assert_int_equal(list.endings[35], FARM_LOST);    /* the machine's disk */
     for (size_t i = 0; i < list.count; i++)
       if (list.tasks[i].kind == TASK_ECHO)
         assert_int_equal(list.endings[i], FARM_DONE);
