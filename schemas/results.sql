@@ -204,7 +204,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   level INTEGER NOT NULL, -- number of the level, from 0, coarse to fine
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the level, as a point: its runs are in run
   knob TEXT, -- What was made coarser or finer (`clast converge --list`).
-  quantity TEXT, -- Result of the runs. Its unit is that of mean, scatter, bias and error.
+  quantity TEXT, -- Result, as a column of the view runs. Its unit is that of mean, bias and error.
   setting TEXT, -- Value of the knob's first input at this level.
   base INTEGER, -- 1: the scene's own setting.
   reference INTEGER, -- 1: the finest level, or the choice that the others are compared with.
@@ -224,7 +224,9 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   cost_ratio REAL, -- w: processor time of a run over that of the next finer level.
   break_even REAL, -- 2 sqrt(w)/(1 + w): correlation from which a control variate would save time.
   gain REAL, -- Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing.
-  error REAL, -- |bias| and its half width, and those of the other knobs at the scene's own setting. Off where it is not known.
+  resolution REAL, -- What this knob leaves unknown at this level: the distance to the limit and half its interval, or |bias| and half width where there is no order. Off for knobs that are no resolution.
+  open INTEGER, -- 1: no limit is in sight, so that resolution may be larger.
+  error REAL, -- resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene's own setting. Off where it is not known.
   frontier INTEGER, -- 1: no level studied is both cheaper and nearer (Pareto).
   PRIMARY KEY (base_point_id, results_version, knob, quantity, level)
 ) STRICT, WITHOUT ROWID;
@@ -233,7 +235,7 @@ CREATE TABLE convergence_limit ( -- Order and limit of each knob of a study, for
   base_point_id INTEGER NOT NULL REFERENCES point (point_id), -- the scene studied, as a point
   results_version INTEGER NOT NULL, -- version of the engine's results
   knob TEXT, -- What was made coarser or finer.
-  quantity TEXT, -- Result of the runs. Its unit is that of the limit.
+  quantity TEXT, -- Result, as a column of the view runs. Its unit is that of the limit.
   verdict TEXT, -- What the three finest levels tell. One of: too-few, unchanged, order, no-order, unsure
   measured_order REAL, -- p of limit + a step^p through the three finest levels.
   measured_order_low REAL, -- Lower end of the 95 % interval of the order.
@@ -645,7 +647,7 @@ INSERT INTO column_doc VALUES ('convergence', 'cpu', 's', 'Mean processor time o
 
 INSERT INTO column_doc VALUES ('convergence', 'deviation', NULL, 'Standard deviation between seeds.', 1);
 
-INSERT INTO column_doc VALUES ('convergence', 'error', NULL, '|bias| and its half width, and those of the other knobs at the scene''s own setting. Off where it is not known.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'error', NULL, 'resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the scene''s own setting. Off where it is not known.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'frontier', NULL, '1: no level studied is both cheaper and nearer (Pareto).', 1);
 
@@ -661,13 +663,17 @@ INSERT INTO column_doc VALUES ('convergence', 'mean', NULL, 'Mean over seeds.', 
 
 INSERT INTO column_doc VALUES ('convergence', 'n', '1', 'Seeds with a usable result.', 1);
 
+INSERT INTO column_doc VALUES ('convergence', 'open', NULL, '1: no limit is in sight, so that resolution may be larger.', 1);
+
 INSERT INTO column_doc VALUES ('convergence', 'paired', NULL, '1: levels are compared seed by seed.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'point_id', NULL, 'the level, as a point: its runs are in run', 0);
 
-INSERT INTO column_doc VALUES ('convergence', 'quantity', NULL, 'Result of the runs. Its unit is that of mean, scatter, bias and error.', 1);
+INSERT INTO column_doc VALUES ('convergence', 'quantity', NULL, 'Result, as a column of the view runs. Its unit is that of mean, bias and error.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'reference', NULL, '1: the finest level, or the choice that the others are compared with.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'resolution', NULL, 'What this knob leaves unknown at this level: the distance to the limit and half its interval, or |bias| and half width where there is no order. Off for knobs that are no resolution.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'results_version', NULL, 'version of the engine''s results', 0);
 
@@ -693,7 +699,7 @@ INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_high', NULL,
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'measured_order_low', NULL, 'Lower end of the 95 % interval of the order.', 1);
 
-INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result of the runs. Its unit is that of the limit.', 1);
+INSERT INTO column_doc VALUES ('convergence_limit', 'quantity', NULL, 'Result, as a column of the view runs. Its unit is that of the limit.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'results_version', NULL, 'version of the engine''s results', 0);
 

@@ -243,17 +243,23 @@ void convergence_frontier(size_t n, const double *cost, const double *error, boo
   }
 }
 
-struct convergence_resolution convergence_resolve(const struct convergence_row *level,
-                                                  const struct convergence_limit_row *limit) {
-  struct convergence_resolution resolution = {NOTHING, false};
-  if (limit->verdict == CONVERGENCE_ORDER) {
-    const double half_width = (limit->limit_high - limit->limit_low) / 2;
-    resolution.error = fabs(level->mean - limit->limit) + half_width;
-    return resolution;
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct convergence_limit_row *limit) {
+  const bool open = limit->verdict == CONVERGENCE_NO_ORDER || limit->verdict == CONVERGENCE_UNSURE ||
+                    limit->verdict == CONVERGENCE_TOO_FEW;
+  double coarser = NOTHING; /* |bias| and half width of the last level before the reference */
+  for (size_t l = 0; l < count; l++) {
+    struct convergence_row *level = &levels[l];
+    const bool stepped = !isnan(level->step);
+    level->open = stepped && open;
+    if (limit->verdict == CONVERGENCE_ORDER)
+      level->resolution = fabs(level->mean - limit->limit) + (limit->limit_high - limit->limit_low) / 2;
+    else if (!level->reference)
+      level->resolution = fabs(level->bias) + level->bias_half_width;
+    else
+      level->resolution = stepped ? coarser : 0;
+    if (!level->reference && isfinite(level->bias_half_width))
+      coarser = fabs(level->bias) + level->bias_half_width;
   }
-  resolution.error = level->reference ? 0 : fabs(level->bias) + level->bias_half_width;
-  resolution.at_least = limit->verdict == CONVERGENCE_NO_ORDER || limit->verdict == CONVERGENCE_UNSURE;
-  return resolution;
 }
 
 /* ---- rows of the store ---- */
@@ -276,7 +282,7 @@ struct convergence_resolution convergence_resolve(const struct convergence_row *
 
 static const struct field rows[] = {
     LEVEL_TEXT(knob, .doc = "What was made coarser or finer (`clast converge --list`)."),
-    LEVEL_TEXT(quantity, .doc = "Result of the runs. Its unit is that of mean, scatter, bias and error."),
+    LEVEL_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of mean, bias and error."),
     LEVEL_TEXT(setting, .doc = "Value of the knob's first input at this level."),
     LEVEL_FLAG(base, .doc = "1: the scene's own setting."),
     LEVEL_FLAG(reference, .doc = "1: the finest level, or the choice that the others are compared with."),
@@ -297,9 +303,13 @@ static const struct field rows[] = {
     LEVEL(cost_ratio, 0, .doc = "w: processor time of a run over that of the next finer level."),
     LEVEL(break_even, 0, .doc = "2 sqrt(w)/(1 + w): correlation from which a control variate would save time."),
     LEVEL(gain, 0, .doc = "Plain Monte Carlo's cost over that of the best control variate; 1: it saves nothing."),
+    LEVEL(resolution, 0,
+          .doc = "What this knob leaves unknown at this level: the distance to the limit and half its interval, or "
+                 "|bias| and half width where there is no order. Off for knobs that are no resolution."),
+    LEVEL_FLAG(open, .doc = "1: no limit is in sight, so that resolution may be larger."),
     LEVEL(error, 0,
-          .doc = "|bias| and its half width, and those of the other knobs at the scene's own setting. Off where it is "
-                 "not known."),
+          .doc = "resolution (of a model: |bias| and half width), and what the other knobs leave unknown at the "
+                 "scene's own setting. Off where it is not known."),
     LEVEL_FLAG(frontier, .doc = "1: no level studied is both cheaper and nearer (Pareto)."),
 };
 const struct field_table convergence_table = FIELD_TABLE(rows, struct convergence_row, "convergence",
@@ -312,7 +322,7 @@ static const char *const verdict_docs = "fewer than three levels with a step, or
                                         "more seeds are needed to tell";
 static const struct field limit_rows[] = {
     LIMIT_TEXT(knob, .doc = "What was made coarser or finer."),
-    LIMIT_TEXT(quantity, .doc = "Result of the runs. Its unit is that of the limit."),
+    LIMIT_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of the limit."),
     ROW(struct convergence_limit_row, verdict, FIELD_CHOICE, NULL, .choices = convergence_verdict_names,
         .choice_docs = verdict_docs, .maximum = CONVERGENCE_VERDICTS - 1, .doc = "What the three finest levels tell."),
     LIMIT_AS("measured_order", order, 0, .doc = "p of limit + a step^p through the three finest levels."),

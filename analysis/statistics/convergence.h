@@ -87,7 +87,10 @@ struct convergence_row { /* one level of one knob, for one quantity */
   double bias, bias_half_width;
   double correlation, correlation_low, correlation_high; /* with the next finer level */
   double cost_ratio, break_even, gain;
-  double error; /* |bias| + half width of it, and those of the other knobs at the scene's own setting */
+  double resolution; /* what this knob alone leaves unknown at this level (convergence_resolve). NaN: a model's knob */
+  bool open;         /* no limit is in sight: it may be larger */
+  double error;      /* of this level: resolution, or |bias| and half width of a model's; and what the other knobs leave
+                        unknown at the scene's own setting */
   bool frontier;
 };
 extern const struct field_table convergence_table;
@@ -100,13 +103,10 @@ struct convergence_limit_row { /* one knob, for one quantity */
 };
 extern const struct field_table convergence_limit_table;
 
-/* What the resolution leaves unknown at one level: the distance to the limit with its interval where there is an order;
- * else |bias| + half width against the finest level. */
-struct convergence_resolution {
-  double error;
-  bool at_least; /* the knob has no order and its result still changes: the error may be larger */
-};
-struct convergence_resolution convergence_resolve(const struct convergence_row *level,
-                                                  const struct convergence_limit_row *limit);
+/* Fills resolution and open of every level of a ladder, coarse to fine. With an order: the distance to the limit and
+ * the half width of its interval. Else |bias| and half width against the finest level; the finest level itself has
+ * those of the next coarser one, unless the knob has no step: then it is the best there is, and leaves nothing. Levels
+ * without runs are left out (NaN). */
+void convergence_resolve(size_t count, struct convergence_row *levels, const struct convergence_limit_row *limit);
 
 #endif

@@ -40,19 +40,10 @@ static void clear(struct subject *subject) {
 
 /* ---- the subject ---- */
 
-/* Seeds mean specimens: the lattice is turned with the seed wherever the scene does not say otherwise. */
-static status turn(struct scene *scene, struct error *error) {
-  const struct field_table *table = scene->kind->inputs;
-  const struct field *row = field_find(table, "target.turned", NULL);
-  if (!row || !field_is_active(table, row, scene->inputs) || scene->given[row - table->rows])
-    return STATUS_OK;
-  return scene_set_text(scene, row->path, "true", error);
-}
-
 static status add_scene(struct subject *subject, const struct options *options, struct scene *scene,
                         struct error *error) {
   subject->scenes[subject->scene_count++] = scene;
-  status code = turn(scene, error);
+  status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && i < options->set.count; i++) {
     const char *item = options->set.items[i], *equals = strchr(item, '=');
     char path[FIELD_TEXT_SIZE];
@@ -384,9 +375,9 @@ static status print_rows(const struct study *study, size_t count, const struct s
 
 static const char legend[] =
     "* the scene's own setting; ref: what bias is measured against. bias: mean less that of ref, with the half width\n"
-    "of its 95 % interval; error: |bias| + half width + those of the other knobs of group resolution at *; frontier:\n"
-    "no level is both cheaper and nearer. corr: with the next finer level; a control variate would save time from\n"
-    "break_even on.\n";
+    "of its 95 % interval. error: distance to the limit (without one |bias| + half width, which may be too small),\n"
+    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
+    "the next finer level; a control variate would save time from break_even on.\n";
 
 static status print_study(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);

@@ -88,7 +88,6 @@ static void find_level(const struct study_ladder *ladder, size_t quantity, size_
   const bool zero = row->reference && row->n > 0;
   row->bias = zero ? 0 : bias.value;
   row->bias_half_width = zero ? 0 : bias.half_width;
-  row->error = fabs(row->bias) + row->bias_half_width;
   if (finer == ladder->levels.count)
     return;
 
@@ -128,23 +127,35 @@ static void find_limit(const struct study_ladder *ladder, size_t quantity, size_
 
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found) {
-  const char *path = study->quantity[quantity].row->path;
+  char column[FIELD_TEXT_SIZE];
+  field_column_name(study->quantity[quantity].row->path, column, sizeof column);
   const size_t n = (size_t)ladder->seeds;
   *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
   for (size_t l = 0; l < found->count; l++) {
     struct convergence_row *row = &found->rows[l];
     field_defaults(&convergence_table, row);
     snprintf(row->knob, sizeof row->knob, "%s", ladder->levels.knob->name);
-    snprintf(row->quantity, sizeof row->quantity, "%s", path);
+    snprintf(row->quantity, sizeof row->quantity, "%s", column);
     snprintf(row->setting, sizeof row->setting, "%s", ladder->levels.level[l].setting);
     find_level(ladder, quantity, l, n, row);
   }
   field_defaults(&convergence_limit_table, &found->limit);
   snprintf(found->limit.knob, sizeof found->limit.knob, "%s", ladder->levels.knob->name);
-  snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", path);
+  snprintf(found->limit.quantity, sizeof found->limit.quantity, "%s", column);
   find_limit(ladder, quantity, n, &found->limit);
+  convergence_resolve(found->count, found->rows, &found->limit);
+  for (size_t l = 0; l < found->count; l++) {
+    struct convergence_row *row = &found->rows[l];
+    const bool model = ladder->levels.knob->group == KNOB_MODEL;
+    row->error = model ? fabs(row->bias) + row->bias_half_width : row->resolution;
+    if (!found->adds) {
+      row->resolution = NOTHING;
+      row->open = false;
+    }
+  }
 }
 
+/* What the knob leaves unknown at the scene's own setting; 0 when that was not run. */
 static double error_at_base(const struct study_found *found) {
   for (size_t l = 0; l < found->count; l++)
     if (found->rows[l].base && isfinite(found->rows[l].error))

@@ -26,6 +26,9 @@ void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEX
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
   switch (resolution->verdict) {
   case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "+- %.2g (resolution)", resolution->half_width); return;
+  case ASK_RESOLUTION_AT_LEAST:
+    snprintf(text, UNCERTAINTY_TEXT, "+- %.2g or more (resolution)", resolution->half_width);
+    return;
   case ASK_RESOLUTION_DIVERGES:
     snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
     return;

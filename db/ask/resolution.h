@@ -8,7 +8,8 @@
 enum ask_resolution_verdict {
   ASK_RESOLUTION_NOT_STUDIED, /* no study of the point's scene is in the store */
   ASK_RESOLUTION_KNOWN,       /* half_width holds it */
-  ASK_RESOLUTION_DIVERGES,    /* studied: the quantity does not converge */
+  ASK_RESOLUTION_AT_LEAST,    /* half_width holds what is known; no limit is known yet, so that it may be larger */
+  ASK_RESOLUTION_DIVERGES,    /* studied: the quantity does not converge. half_width holds what is known */
 };
 
 struct ask_resolution {
@@ -17,8 +18,10 @@ struct ask_resolution {
   char scene[128];   /* whose study answers, or is missing; "SCENE" when the store has several scenes */
 };
 
-/* quantity: a result column of the view runs, beta, or beta_METHOD_WINDOW. point_id 0: all points of the store
- * together. store NULL: a run without a store, never studied. */
+/* What `clast converge` found with the results_version of the point's newest runs: the sum over the knobs of resolution
+ * that were studied there, be the point the scene studied or one of its levels. quantity: a result column of the view
+ * runs, beta, or beta_METHOD_WINDOW. point_id 0: all points of the store together. store NULL: a run without a store,
+ * never studied. */
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error);
 

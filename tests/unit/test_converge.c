@@ -13,6 +13,7 @@
 
 #include "analysis/analysis.h"
 #include "campaign/converge/ladder.h"
+#include "db/ask/resolution.h"
 #include "tests/support/store_fixture.h"
 
 static struct error error;
@@ -187,10 +188,58 @@ static void findings_replace_earlier_ones(void **state) {
   scene_free(scene);
 }
 
+/* Adds what a study left unknown at the point, by one knob. */
+static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,
+                    enum convergence_verdict verdict) {
+  struct convergence_row row;
+  struct convergence_limit_row limit;
+  field_defaults(&convergence_table, &row);
+  field_defaults(&convergence_limit_table, &limit);
+  snprintf(row.knob, sizeof row.knob, "%s", knob);
+  snprintf(limit.knob, sizeof limit.knob, "%s", knob);
+  strcpy(row.quantity, "largest_fraction");
+  strcpy(limit.quantity, "largest_fraction");
+  row.resolution = resolution;
+  row.open = open;
+  limit.verdict = verdict;
+  const struct store_convergence study = {point, fixture_kind.results_version, 1, &point, &row, &limit};
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+}
+
+static void a_point_has_the_errors_of_its_knobs(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  assert_int_equal(store_open_writer(fixture_path(path, "resolution"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(fixture_populate(store, 1, 1, 3, false, &error), STATUS_OK);
+  const int64_t point = integer(store, "SELECT min(point_id) FROM run");
+  struct ask_resolution found;
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
+  studied(store, point, "time_step", 0.01, false, CONVERGENCE_ORDER);
+  studied(store, point, "grains", 0.05, false, CONVERGENCE_UNCHANGED);
+  studied(store, point, "contact_law", NAN, false, CONVERGENCE_TOO_FEW);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_int_equal(found.verdict, ASK_RESOLUTION_KNOWN);
+  assert_true(fabs(found.half_width - 0.06) < 1e-12);
+  assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(fabs(found.half_width - 0.06) < 1e-12); /* the only point */
+  studied(store, point, "grains", 0.05, true, CONVERGENCE_UNSURE);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST);
+  studied(store, point, "grains", 0.05, true, CONVERGENCE_NO_ORDER);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_int_equal(found.verdict, ASK_RESOLUTION_DIVERGES);
+  assert_int_equal(ask_resolution(store, point, "dust_fraction", &found, &error), STATUS_OK);
+  assert_int_equal(found.verdict, ASK_RESOLUTION_NOT_STUDIED);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_knob_names_inputs_of_its_engine),
                                      cmocka_unit_test(ladders_of_all_scenes), cmocka_unit_test(levels_of_ones_own),
-                                     cmocka_unit_test(findings_replace_earlier_ones)};
+                                     cmocka_unit_test(findings_replace_earlier_ones),
+                                     cmocka_unit_test(a_point_has_the_errors_of_its_knobs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

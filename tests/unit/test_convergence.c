@@ -118,16 +118,29 @@ static void frontiers(void **state) {
 
 static void resolutions(void **state) {
   (void)state;
-  struct convergence_row level = {.mean = 0.5, .bias = -0.1, .bias_half_width = 0.02};
+  struct convergence_row level[3] = {{.step = 4, .mean = 0.5, .bias = -0.1, .bias_half_width = 0.02},
+                                     {.step = 2, .mean = 0.56, .bias = -0.04, .bias_half_width = 0.01},
+                                     {.step = 1, .mean = 0.6, .reference = true}};
   struct convergence_limit_row limit = {.verdict = CONVERGENCE_ORDER,
                                         .limit = 0.7,
                                         .limit_low = 0.65,
                                         .limit_high = 0.75};
-  NEAR(convergence_resolve(&level, &limit).error, 0.25, 1e-12);
-  assert_false(convergence_resolve(&level, &limit).at_least);
+  convergence_resolve(3, level, &limit);
+  NEAR(level[0].resolution, 0.25, 1e-12);
+  NEAR(level[2].resolution, 0.15, 1e-12);
+  assert_false(level[0].open);
+
   limit.verdict = CONVERGENCE_NO_ORDER;
-  NEAR(convergence_resolve(&level, &limit).error, 0.12, 1e-12);
-  assert_true(convergence_resolve(&level, &limit).at_least);
+  convergence_resolve(3, level, &limit);
+  NEAR(level[0].resolution, 0.12, 1e-12);
+  NEAR(level[2].resolution, 0.05, 1e-12); /* as far as the next coarser level at least */
+  assert_true(level[0].open && level[2].open);
+
+  /* Exact is exact: a choice has no step. */
+  level[0].step = level[1].step = level[2].step = NAN;
+  limit.verdict = CONVERGENCE_TOO_FEW;
+  convergence_resolve(3, level, &limit);
+  assert_true(level[2].resolution == 0 && !level[2].open);
 }
 
 int main(void) {

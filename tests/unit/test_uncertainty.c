@@ -43,6 +43,9 @@ static void resolution(void **state) {
   found.half_width = 0.0612;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "+- 0.061 (resolution)");
+  found.verdict = ASK_RESOLUTION_AT_LEAST;
+  uncertainty_resolution(&found, text);
+  assert_string_equal(text, "+- 0.061 or more (resolution)");
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge (`clast converge basalt-sphere`)");
