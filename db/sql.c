@@ -28,6 +28,9 @@ static const char *remedy(int code) {
            "trouble). What was committed is safe; mend that and give the same command again.";
   case SQLITE_CORRUPT:
     return "The file is damaged. Restore a copy, or save what can be saved with `sqlite3 FILE .recover`.";
+  case SQLITE_CONSTRAINT:
+    return "A row breaks a rule of the store's tables: a file is damaged, or another program has changed it. `clast "
+           "check` tells more.";
   case SQLITE_NOTADB: return "It is not an SQLite database.";
   case SQLITE_NOMEM: return "Memory ran out.";
   default: return "This is a bug in clast, or another program has changed the store's tables.";
@@ -45,6 +48,7 @@ static status status_of(int code) {
   case SQLITE_LOCKED:
   case SQLITE_IOERR: return STATUS_IO;
   case SQLITE_CORRUPT:
+  case SQLITE_CONSTRAINT:
   case SQLITE_NOTADB: return STATUS_CONTENT;
   case SQLITE_NOMEM: return STATUS_MEMORY;
   default: return STATUS_INTERNAL;
@@ -93,6 +97,20 @@ status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error) 
                       : sql_fail(sqlite3_db_handle(statement), code, doing, error);
   sqlite3_reset(statement);
   return result;
+}
+
+bool sql_next(sqlite3_stmt *statement, status *result, const char *doing, struct error *error) {
+  if (*result != STATUS_OK)
+    return false;
+  int code = sqlite3_step(statement);
+  if (code != SQLITE_ROW && code != SQLITE_DONE)
+    *result = sql_fail(sqlite3_db_handle(statement), code, doing, error);
+  return code == SQLITE_ROW;
+}
+
+const char *sql_text(sqlite3_stmt *statement, int column) {
+  const char *text = (const char *)sqlite3_column_text(statement, column);
+  return text ? text : "";
 }
 
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error) {

@@ -22,6 +22,10 @@ status sql_prepare(sqlite3 *db, const char *sql, sqlite3_stmt **out, const char 
 status sql_prepare_once(sqlite3 *db, sqlite3_stmt **out, const char *sql, const char *doing, struct error *error);
 /* Steps a statement that gives no rows, and resets it. */
 status sql_run(sqlite3_stmt *statement, const char *doing, struct error *error);
+/* Steps to the next row while *result is STATUS_OK. False at the end, and on an error, which *result then is. */
+bool sql_next(sqlite3_stmt *statement, status *result, const char *doing, struct error *error);
+/* A column as text; "" where the row has NULL. Rows of a damaged or hostile file may have NULL anywhere. */
+const char *sql_text(sqlite3_stmt *statement, int column);
 /* First column of the first row as an integer; `otherwise` when there is no row or it is NULL. */
 status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out, struct error *error);
 /* The first column of all rows, each quoted as a name, with a comma before it; first and second are the texts ?1 and ?2

@@ -11,6 +11,8 @@
 #include "db/store/schema.h"
 #include "engine/scene.h"
 
+static const char checking[] = "checking";
+
 struct report {
   struct store *store;
   void (*line)(void *context, const char *text);
@@ -33,12 +35,9 @@ static void say(struct report *report, const char *format, ...) {
 /* Every row of `sql` is a problem; its first column is the sentence. */
 static status no_rows(struct report *report, const char *sql, struct error *error) {
   sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(report->store->db, sql, &statement, "checking", error);
-  int code = SQLITE_DONE;
-  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
-    say(report, "%s", (const char *)sqlite3_column_text(statement, 0));
-  if (result == STATUS_OK && code != SQLITE_DONE)
-    result = sql_fail(report->store->db, code, "checking", error);
+  status result = sql_prepare(report->store->db, sql, &statement, checking, error);
+  while (sql_next(statement, &result, checking, error))
+    say(report, "%s", sql_text(statement, 0));
   sqlite3_finalize(statement);
   return result;
 }
@@ -49,6 +48,9 @@ static const char *const questions[] = {
     "' that is not there' FROM pragma_foreign_key_check",
     "SELECT 'run ' || run_id || ' has no fragment masses' FROM run WHERE run_id NOT IN (SELECT run_id FROM "
     "fragment_mass)",
+    /* SQLite looks at no CHECK of a file that is only read. */
+    "SELECT 'point ' || point_id || ': its scene is no JSON' FROM point WHERE NOT json_valid(scene)",
+    "SELECT 'session ' || session_id || ': its facts are no JSON' FROM session WHERE NOT json_valid(facts)",
     "SELECT 'point ' || point_id || ' has no inputs' FROM point WHERE point_id NOT IN (SELECT point_id FROM "
     "point_input)",
     "SELECT 'bin ' || bin || ' has no edges' FROM (SELECT DISTINCT bin FROM point_spectrum) WHERE bin NOT IN (SELECT "
@@ -74,9 +76,9 @@ static status check_results(struct report *report, struct error *error) {
                   "SELECT format('SELECT ''run '' || run_id || '' has no row in %w'' FROM run JOIN point USING "
                   "(point_id) WHERE engine = %Q AND run_id NOT IN (SELECT run_id FROM \"%w\")', name, substr(name, "
                   "8), name) FROM sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
-                  &statement, "checking", error);
-  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
-    result = no_rows(report, (const char *)sqlite3_column_text(statement, 0), error);
+                  &statement, checking, error);
+  while (sql_next(statement, &result, checking, error))
+    result = no_rows(report, sql_text(statement, 0), error);
   sqlite3_finalize(statement);
   return result;
 }
@@ -136,9 +138,9 @@ static status check_files(struct report *report, struct error *error) {
   const char *slash = strrchr(report->store->path, '/');
   int folder = slash ? (int)(slash - report->store->path + 1) : 0;
   status result = sql_prepare(report->store->db, "SELECT run_id, fields_path FROM run WHERE fields_path IS NOT NULL",
-                              &statement, "checking", error);
-  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW) {
-    const char *name = (const char *)sqlite3_column_text(statement, 1);
+                              &statement, checking, error);
+  while (sql_next(statement, &result, checking, error)) {
+    const char *name = sql_text(statement, 1);
     char *path = name[0] == '/' ? sqlite3_mprintf("%s", name)
                                 : sqlite3_mprintf("%.*s%s", folder, report->store->path, name);
     if (path && access(path, R_OK) != 0)
@@ -150,20 +152,23 @@ static status check_files(struct report *report, struct error *error) {
 }
 
 /* Compares the spectrum of a run with its masses: counts exactly, mass within the rounding of n additions. */
-static void check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows) {
+static status check_spectrum(struct report *report, int64_t run_id, size_t n, const double *masses, sqlite3_stmt *rows,
+                             struct error *error) {
   struct spectrum_bin_row bins[512];
   size_t count = spectrum_fill(n, masses, bins, 512), i = 0;
   bool same = count <= 512;
+  status result = STATUS_OK;
   sqlite3_bind_int64(rows, 1, run_id);
-  while (sqlite3_step(rows) == SQLITE_ROW) {
-    same = same && i < count && sqlite3_column_int(rows, 0) == bins[i].bin &&
+  while (sql_next(rows, &result, checking, error)) {
+    same = same && i < count && sqlite3_column_int64(rows, 0) == bins[i].bin &&
            sqlite3_column_int64(rows, 1) == bins[i].count &&
            fabs(sqlite3_column_double(rows, 2) - bins[i].mass) <= 1e-12 * bins[i].mass;
     i++;
   }
   sqlite3_reset(rows);
-  if (!same || i != count)
+  if (result == STATUS_OK && (!same || i != count))
     say(report, "run %lld: its spectrum is not that of its masses", (long long)run_id);
+  return result;
 }
 
 /* Little-endian float64 from a blob. */
@@ -176,54 +181,81 @@ static double mass_at(const unsigned char *bytes, size_t i) {
   return mass;
 }
 
-/* `run` is a row of run_id, masses, total mass, counts. `masses` has enough members for it. */
-static void check_run(struct report *report, sqlite3_stmt *run, double *masses, sqlite3_stmt *spectrum) {
-  int64_t run_id = sqlite3_column_int64(run, 0);
+struct mass_list { /* grows to the longest run */
+  double *masses;
+  size_t count, capacity; /* bytes */
+};
+
+/* The masses of column 1 of a row; the blob's own length counts, whatever other columns say. */
+static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct error *error) {
   const unsigned char *bytes = sqlite3_column_blob(run, 1);
-  size_t n = (size_t)sqlite3_column_bytes(run, 1) / 8;
+  const size_t size = (size_t)sqlite3_column_bytes(run, 1);
+  if (size + sizeof(double) > list->capacity) {
+    double *grown = realloc(list->masses, 2 * size + sizeof(double));
+    if (!grown)
+      return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
+    list->masses = grown;
+    list->capacity = 2 * size + sizeof(double);
+  }
+  list->count = size / sizeof(double);
+  for (size_t i = 0; i < list->count; i++)
+    list->masses[i] = mass_at(bytes, i);
+  return STATUS_OK;
+}
+
+/* `run` is a row of run_id, masses, total mass, counts. */
+static status check_run(struct report *report, sqlite3_stmt *run, struct mass_list *list, sqlite3_stmt *spectrum,
+                        struct error *error) {
+  const int64_t run_id = sqlite3_column_int64(run, 0);
+  if (sqlite3_column_type(run, 1) != SQLITE_BLOB || sqlite3_column_bytes(run, 1) % 8 != 0) {
+    say(report, "run %lld: its masses are not a list of float64", (long long)run_id);
+    return STATUS_OK;
+  }
+  status result = read_masses(list, run, error);
+  if (result != STATUS_OK)
+    return result;
   double total = 0, stored = sqlite3_column_double(run, 2);
   bool descending = true;
-  for (size_t i = 0; i < n; i++) {
-    masses[i] = mass_at(bytes, i);
-    total += masses[i];
-    descending = descending && (i == 0 || masses[i] <= masses[i - 1]);
+  for (size_t i = 0; i < list->count; i++) {
+    total += list->masses[i];
+    descending = descending && (i == 0 || list->masses[i] <= list->masses[i - 1]);
   }
   if (!descending)
     say(report, "run %lld: its masses are not in descending order", (long long)run_id);
   /* The engine may have summed in another order: n roundings of the total, with n below 1e6. */
-  if (sqlite3_column_int(run, 3) && fabs(total - stored) > 1e-9 * stored)
+  if (sqlite3_column_int(run, 3) && !(fabs(total - stored) <= 1e-9 * stored))
     say(report, "run %lld: its masses sum to %.17g kg, but its total mass is %.17g kg", (long long)run_id, total,
         stored);
-  check_spectrum(report, run_id, n, masses, spectrum);
+  return check_spectrum(report, run_id, list->count, list->masses, spectrum, error);
 }
 
 static status check_masses(struct report *report, struct error *error) {
   sqlite3_stmt *runs = NULL, *spectrum = NULL;
-  double *masses = NULL;
-  int64_t largest = 0;
-  status result = sql_integer(report->store->db, "SELECT max(length(masses)) FROM fragment_mass", 0, &largest, error);
-  if (result != STATUS_OK)
-    return result;
+  struct mass_list list = {0};
   char sql[256];
   snprintf(sql, sizeof sql, "SELECT run_id, masses, %s, counts FROM fragment_mass JOIN run USING (run_id)",
            OUTCOME_NAME(total_mass));
-  result = sql_prepare(report->store->db, sql, &runs, "checking", error);
+  status result = sql_prepare(report->store->db, sql, &runs, checking, error);
   if (result == STATUS_OK)
     result = sql_prepare(report->store->db, "SELECT bin, count, mass FROM spectrum WHERE run_id = ?1 ORDER BY bin",
-                         &spectrum, "checking", error);
-  if (result != STATUS_OK)
-    goto cleanup;
-  masses = malloc((size_t)largest + sizeof *masses);
-  if (!masses) {
-    result = status_fail(error, STATUS_MEMORY, "checking: memory ran out");
-    goto cleanup;
-  }
-  while (sqlite3_step(runs) == SQLITE_ROW)
-    check_run(report, runs, masses, spectrum);
-cleanup:
-  free(masses);
+                         &spectrum, checking, error);
+  while (sql_next(runs, &result, checking, error))
+    result = check_run(report, runs, &list, spectrum, error);
+  free(list.masses);
   sqlite3_finalize(runs);
   sqlite3_finalize(spectrum);
+  return result;
+}
+
+static status check_point_identities(struct report *report, const struct scene *scene, sqlite3_stmt *runs,
+                                     struct error *error) {
+  status result = STATUS_OK;
+  while (sql_next(runs, &result, checking, error)) {
+    uint8_t identity[16];
+    scene_identity(scene, (uint64_t)sqlite3_column_int64(runs, 1), identity);
+    if (sqlite3_column_bytes(runs, 2) != 16 || memcmp(identity, sqlite3_column_blob(runs, 2), 16) != 0)
+      say(report, "run %lld: its identity is not that of its scene and seed", (long long)sqlite3_column_int64(runs, 0));
+  }
   return result;
 }
 
@@ -232,31 +264,24 @@ cleanup:
 static status check_identities(struct report *report, struct error *error) {
   sqlite3_stmt *points = NULL, *runs = NULL;
   status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,
-                              "checking", error);
+                              checking, error);
   if (result == STATUS_OK)
     result = sql_prepare(report->store->db,
                          "SELECT run_id, seed, identity FROM run WHERE point_id = ?1 AND results_version = ?2", &runs,
-                         "checking", error);
-  while (result == STATUS_OK && sqlite3_step(points) == SQLITE_ROW) {
+                         checking, error);
+  while (sql_next(points, &result, checking, error)) {
     struct scene *scene = NULL;
     struct error why = {0};
     int64_t point_id = sqlite3_column_int64(points, 0);
-    if (!engine_find((const char *)sqlite3_column_text(points, 3), NULL))
+    if (!engine_find(sql_text(points, 3), NULL))
       continue;
-    if (scene_parse((const char *)sqlite3_column_text(points, 2), (const char *)sqlite3_column_text(points, 1), &scene,
-                    &why) != STATUS_OK) {
+    if (scene_parse(sql_text(points, 2), sql_text(points, 1), &scene, &why) != STATUS_OK) {
       say(report, "point %lld: its scene cannot be read: %.600s", (long long)point_id, why.message);
       continue;
     }
     sqlite3_bind_int64(runs, 1, point_id);
     sqlite3_bind_int(runs, 2, scene->kind->results_version);
-    while (sqlite3_step(runs) == SQLITE_ROW) {
-      uint8_t identity[16];
-      scene_identity(scene, (uint64_t)sqlite3_column_int64(runs, 1), identity);
-      if (sqlite3_column_bytes(runs, 2) != 16 || memcmp(identity, sqlite3_column_blob(runs, 2), 16) != 0)
-        say(report, "run %lld: its identity is not that of its scene and seed",
-            (long long)sqlite3_column_int64(runs, 0));
-    }
+    result = check_point_identities(report, scene, runs, error);
     sqlite3_reset(runs);
     scene_free(scene);
   }

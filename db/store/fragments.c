@@ -60,7 +60,7 @@ static status fill_bins(struct store *store, size_t *count, const struct store_r
   return store->bins || *count == 0 ? STATUS_OK : status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
 }
 
-static status cover_bins(struct store *store, int lowest, int highest, struct error *error) {
+static status cover_bins(struct store *store, int64_t lowest, int64_t highest, struct error *error) {
   bool none = store->lowest_bin > store->highest_bin;
   if (!none && lowest >= store->lowest_bin && highest <= store->highest_bin)
     return STATUS_OK;

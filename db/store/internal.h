@@ -25,7 +25,7 @@ struct store {
   struct identities identities; /* read when a writer opens, and by a reader when they are first needed */
   bool identities_loaded;
   struct sums sums;
-  int lowest_bin, highest_bin; /* covered by table bin; lowest > highest: none */
+  int64_t lowest_bin, highest_bin; /* covered by table bin; lowest > highest: none */
 
   bool in_batch, broken;
   int batch_rows;

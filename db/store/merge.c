@@ -1,9 +1,12 @@
 /* Merging the stores of several machines. Points are the same when their hashes are, runs when their identities are. */
+#include <stdlib.h>
 #include <string.h>
 
+#include "db/store/guard.h"
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
+#include "schemas/text.h"
 
 static const char doing[] = "merging";
 
@@ -28,14 +31,17 @@ static status map_parents(sqlite3 *db, struct error *error) {
       "other.point WHERE point_id IN (SELECT theirs FROM merge_point WHERE ours IS NULL);"
       "DROP TABLE merge_point; CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
       "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
-      "INSERT OR IGNORE INTO main.point_input SELECT m.ours, i.path, i.value FROM other.point_input i JOIN merge_point "
+      "INSERT OR IGNORE INTO main.point_input (point_id, path, value) SELECT m.ours, i.path, i.value FROM "
+      "other.point_input i JOIN merge_point "
       "m ON m.theirs = i.point_id;"
-      "INSERT OR IGNORE INTO main.axis SELECT * FROM other.axis;"
+      "INSERT OR IGNORE INTO main.axis (path, column_name, unit, meaning) SELECT path, column_name, unit, meaning FROM "
+      "other.axis;"
 
       "INSERT INTO main.campaign (name, document, plan, added_at) SELECT name, document, plan, added_at FROM "
       "other.campaign b WHERE NOT EXISTS (SELECT 1 FROM main.campaign a WHERE a.name = b.name AND a.document = "
       "b.document);"
-      "INSERT OR IGNORE INTO main.campaign_point SELECT a.campaign_id, m.ours FROM other.campaign_point c JOIN "
+      "INSERT OR IGNORE INTO main.campaign_point (campaign_id, point_id) SELECT a.campaign_id, m.ours FROM "
+      "other.campaign_point c JOIN "
       "other.campaign b ON b.campaign_id = c.campaign_id JOIN main.campaign a ON a.name = b.name AND a.document = "
       "b.document JOIN merge_point m ON m.theirs = c.point_id;"
 
@@ -100,19 +106,35 @@ static status copy_attempts(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Result tables of engines that this program lacks are copied from the other store. */
+/* Result tables of engines that this program lacks are made from the list of their columns. No text of the other store
+ * is run: its names are quoted, its types are compared with those of a store. */
 static status make_tables(sqlite3 *db, struct error *error) {
-  sqlite3_stmt *statement = NULL;
-  status result =
-      sql_prepare(db,
-                  "SELECT sql FROM other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' AND name NOT "
-                  "IN (SELECT name FROM main.sqlite_schema)",
-                  &statement, doing, error);
-  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
-    result = sql_execute(db, (const char *)sqlite3_column_text(statement, 0), doing, error);
-  sqlite3_finalize(statement);
+  sqlite3_stmt *tables = NULL;
+  status result = sql_prepare(
+      db,
+      "SELECT format('CREATE TABLE main.\"%w\" (run_id INTEGER PRIMARY KEY REFERENCES run (run_id)', t.name) || "
+      "(SELECT ifnull(group_concat(format(', \"%w\" %s', c.name, iif(c.type IN ('REAL', 'INTEGER'), c.type, 'TEXT')), "
+      "''), '') FROM pragma_table_info(t.name, 'other') c WHERE c.name <> 'run_id') || ') STRICT' FROM "
+      "other.sqlite_schema t WHERE t.type = 'table' AND t.name GLOB 'result_*' AND t.name NOT IN (SELECT name FROM "
+      "main.sqlite_schema)",
+      &tables, doing, error);
+  char *sql = NULL; /* of all tables: no table can be made while the statement runs */
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  while (out && sql_next(tables, &result, doing, error))
+    fprintf(out, "%s;\n", sql_text(tables, 0));
+  sqlite3_finalize(tables);
+  if (!out || !text_close(out, &sql))
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   if (result == STATUS_OK)
-    result = sql_execute(db, "INSERT OR IGNORE INTO main.column_doc SELECT * FROM other.column_doc", doing, error);
+    result = sql_execute(db, sql, doing, error);
+  free(sql);
+  if (result == STATUS_OK)
+    result =
+        sql_execute(db,
+                    "INSERT OR IGNORE INTO main.column_doc (table_name, column_name, unit, meaning, deterministic) "
+                    "SELECT table_name, column_name, unit, meaning, deterministic FROM other.column_doc",
+                    doing, error);
   return result;
 }
 
@@ -125,8 +147,8 @@ static status copy_results(sqlite3 *db, struct error *error) {
   if (result == STATUS_OK)
     result = sql_prepare(db, "SELECT name FROM other.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*'",
                          &statement, doing, error);
-  while (result == STATUS_OK && sqlite3_step(statement) == SQLITE_ROW)
-    result = copy_of_runs(db, (const char *)sqlite3_column_text(statement, 0), error);
+  while (sql_next(statement, &result, doing, error))
+    result = copy_of_runs(db, sql_text(statement, 0), error);
   sqlite3_finalize(statement);
   return result;
 }
@@ -182,20 +204,34 @@ static status merge_attached(struct store *store, int64_t *added, int64_t *diffe
   return result;
 }
 
-status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
+/* Opens the source by itself, which refuses a missing, foreign, newer or older file and one with anything in it that no
+ * store has, and looks at all its pages and the types of its rows. */
+static status inspect(const char *source, struct error *error) {
   struct store *other = NULL;
-  *added = 0;
-  *differing = 0;
-  status result = store_open_reader(source, &other, error); /* refuses a missing, foreign, newer or older file */
+  sqlite3_stmt *statement = NULL;
+  status result = store_open_reader(source, &other, error);
   if (result != STATUS_OK)
     return result;
-  result = store_close(other, error);
+  result = sql_prepare(other->db, "PRAGMA quick_check(1)", &statement, doing, error);
+  if (sql_next(statement, &result, doing, error) && strcmp(sql_text(statement, 0), "ok") != 0)
+    result = status_fail(error, STATUS_CONTENT,
+                         "%s is damaged: %.500s. Nothing was taken from it; `clast check` tells more. Restore a copy.",
+                         source, sql_text(statement, 0));
+  sqlite3_finalize(statement);
+  status closed = store_close(other, result == STATUS_OK ? error : NULL);
+  return result == STATUS_OK ? closed : result;
+}
+
+status store_merge(struct store *store, const char *source, int64_t *added, int64_t *differing, struct error *error) {
+  *added = 0;
+  *differing = 0;
+  status result = inspect(source, error);
   if (result != STATUS_OK)
     return result;
   result = store_flush(store, error);
   if (result != STATUS_OK)
     return result;
-  result = sql_executef(store->db, doing, error, "ATTACH %Q AS other", source);
+  result = guard_attach(store->db, source, doing, error);
   if (result != STATUS_OK)
     return result;
   result = merge_attached(store, added, differing, error);

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "db/store/guard.h"
 #include "db/store/schema.h"
 #include "db/store/sums.h"
 #include "db/store/views.h"
@@ -54,7 +55,7 @@ status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error
         "program; the file was left alone.",
         path, (long long)header.version, SCHEMA_VERSION);
   *version = (int)header.version;
-  return STATUS_OK;
+  return guard_schema(db, path, *version, error);
 }
 
 /* Version 0 had no running sums and no table of bin edges. */
@@ -90,7 +91,7 @@ static status back_up(sqlite3 *db, const char *path, int version, struct error *
     if (access(copy, F_OK) != 0)
       break;
   }
-  status result = sql_executef(db, "keeping a copy before bringing the store forward", error, "VACUUM INTO %Q", copy);
+  status result = guard_vacuum_into(db, copy, "keeping a copy before bringing the store forward", error);
   sqlite3_free(copy);
   return result;
 }

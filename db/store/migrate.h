@@ -5,7 +5,7 @@
 #include "db/sql.h"
 
 /* *version: the store's user_version, -1 when the file is new (empty). STATUS_CONTENT: not SQLite, not a store, newer
- * than this program, damaged. */
+ * than this program, damaged, or with something in it that no store has (db/store/guard.h). */
 status migrate_inspect(sqlite3 *db, const char *path, int *version, struct error *error);
 
 /* Creates everything in an empty file, or brings an older version forward after a copy of it as `path`.version<N>

@@ -6,7 +6,7 @@
 #include "db/store/schema.h"
 
 static int state_of(const struct field *states, const char *name) {
-  for (int k = 0; states->choices[k]; k++)
+  for (int k = 0; name && states->choices[k]; k++)
     if (strcmp(states->choices[k], name) == 0)
       return k;
   return OUTCOME_INVALID;

@@ -18,8 +18,11 @@ struct schema_table schema_result_table(const struct engine_kind *kind) {
   return table;
 }
 
-/* The tables in the order of their creation: the engines' results come last. */
-static struct schema_table table_at(size_t index) {
+size_t schema_table_count(void) {
+  return schema_tables_count + engine_count();
+}
+
+struct schema_table schema_table_at(size_t index) {
   return index < schema_tables_count ? schema_tables[index]
                                      : schema_result_table(engine_at(index - schema_tables_count));
 }
@@ -66,7 +69,7 @@ static void write_declaration(const struct schema_column *column, char *text, si
   fclose(out);
 }
 
-static void write_index(const struct schema_index *index, FILE *out) {
+void schema_write_index(const struct schema_index *index, FILE *out) {
   const struct field *row;
   fprintf(out, "CREATE INDEX %s ON %s (%s", index->name, index->table, index->columns);
   for (size_t i = 0; index->with_main_results && (row = outcome_main(i)); i++)
@@ -74,7 +77,7 @@ static void write_index(const struct schema_index *index, FILE *out) {
   fputs(");\n", out);
 }
 
-static void write_table(const struct schema_table *table, FILE *out) {
+void schema_write_table(const struct schema_table *table, FILE *out) {
   size_t fields = table->fields ? table->fields->count : 0;
   fprintf(out, "CREATE TABLE %s ( -- %s\n", table->name, table->meaning);
   for (size_t i = 0; i < table->count; i++) {
@@ -97,9 +100,9 @@ static void write_table(const struct schema_table *table, FILE *out) {
   fprintf(out, ") %s;\n", table->options);
 }
 
-static status has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error) {
+status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error) {
   sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(db, "SELECT 1 FROM pragma_table_xinfo(?1) WHERE name = ?2 OR ?2 = ''", &statement,
+  status result = sql_prepare(db, "SELECT 1 FROM pragma_table_xinfo(?1, 'main') WHERE name = ?2 OR ?2 = ''", &statement,
                               "reading the schema", error);
   if (result == STATUS_OK) {
     sqlite3_bind_text(statement, 1, table, -1, SQLITE_STATIC);
@@ -142,10 +145,10 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   FILE *text = open_memstream(&sql, &size);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
-  write_table(table, text);
+  schema_write_table(table, text);
   for (size_t i = 0; i < schema_tables_indexes_count; i++)
     if (strcmp(schema_tables_indexes[i].table, table->name) == 0)
-      write_index(&schema_tables_indexes[i], text);
+      schema_write_index(&schema_tables_indexes[i], text);
   fclose(text);
   status result = sql ? sql_execute(db, sql, "creating tables", error)
                       : status_fail(error, STATUS_MEMORY, "creating tables: memory ran out");
@@ -155,7 +158,7 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
 
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
   bool has = false;
-  status result = has_column(db, table->name, "", &has, error);
+  status result = schema_has_column(db, table->name, "", &has, error);
   if (result != STATUS_OK)
     return result;
   if (!has) {
@@ -166,7 +169,7 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
   for (size_t i = 0; table->fields && i < table->fields->count; i++) {
     char name[SCHEMA_NAME_SIZE];
     field_column_name(table->fields->rows[i].path, name, sizeof name);
-    result = has_column(db, table->name, name, &has, error);
+    result = schema_has_column(db, table->name, name, &has, error);
     if (result == STATUS_OK && !has)
       result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name, name,
                             sql_type(&table->fields->rows[i]));
@@ -179,8 +182,8 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
 
 status schema_complete_all(sqlite3 *db, struct error *error) {
   status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < schema_tables_count + engine_count(); i++) {
-    struct schema_table table = table_at(i);
+  for (size_t i = 0; result == STATUS_OK && i < schema_table_count(); i++) {
+    struct schema_table table = schema_table_at(i);
     result = schema_complete(db, &table, error);
   }
   return result;

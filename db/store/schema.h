@@ -41,11 +41,19 @@ extern const struct schema_index schema_tables_indexes[];
 extern const size_t schema_tables_indexes_count;
 
 struct schema_table schema_result_table(const struct engine_kind *kind); /* result_<engine> */
+/* All tables in the order of their creation: the engines' results come last. */
+size_t schema_table_count(void);
+struct schema_table schema_table_at(size_t index);
+/* Their CREATE statements, with a semicolon and a line break at the end. */
+void schema_write_table(const struct schema_table *table, FILE *out);
+void schema_write_index(const struct schema_index *index, FILE *out);
 
 /* The condition that a row of table run is part of the statistics, as SQL: not surplus, a usable state, every main
  * result a number. `not_surplus`: "surplus = 0", or another expression for it. The same as store_run_counts(). */
 void schema_write_counts(const char *not_surplus, FILE *out);
 
+/* *has: the database has this column of this table; of any column with the name "". */
+status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error);
 /* Creates what is missing in the database: the table, or columns that its field table has gained (NULL in old rows),
  * and their rows of column_doc. */
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);

@@ -7,11 +7,13 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "db/store/guard.h"
 #include "db/store/internal.h"
 #include "db/store/lock.h"
 #include "db/store/migrate.h"
 #include "db/store/place.h"
 #include "db/store/schema.h"
+#include "db/store/views.h"
 #include "schemas/clock.h"
 
 static const char lacks_wal_text[] =
@@ -53,11 +55,13 @@ static void release(struct store *store) {
 }
 
 static status open_database(struct store *store, int flags, struct error *error) {
-  int code = sqlite3_open_v2(store->path, &store->db, flags | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
+  int code = sqlite3_open_v2(store->path, &store->db,
+                             flags | SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOMUTEX, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "opening", error);
   sqlite3_busy_timeout(store->db, 10000);
-  return STATUS_OK;
+  guard_connection(store->db);
+  return sql_execute(store->db, "PRAGMA cell_size_check = ON", "opening", error);
 }
 
 /* The refusal names the holder, when its row is written already. */
@@ -111,8 +115,8 @@ static status load_identities(struct store *store, struct error *error) {
   result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
   if (result == STATUS_OK)
     result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
-  store->lowest_bin = (int)lowest;
-  store->highest_bin = (int)highest;
+  store->lowest_bin = lowest;
+  store->highest_bin = highest;
   store->identities_loaded = result == STATUS_OK;
   return result;
 }
@@ -197,6 +201,13 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   return STATUS_OK;
 }
 
+static status make_readable(struct store *store, struct error *error) {
+  status result = sql_execute(store->db, "PRAGMA temp_store = MEMORY", "opening", error);
+  if (result == STATUS_OK)
+    result = views_make_temporary(store->db, error);
+  return result == STATUS_OK ? sql_execute(store->db, "PRAGMA query_only = ON", "opening", error) : result;
+}
+
 status store_open_reader(const char *path, struct store **out, struct error *error) {
   int version = -1;
   *out = NULL;
@@ -226,7 +237,7 @@ status store_open_reader(const char *path, struct store **out, struct error *err
         "merge NEW.db` it: opening for writing brings it forward and keeps a copy.",
         path, version, SCHEMA_VERSION);
   if (result == STATUS_OK)
-    result = sql_execute(store->db, "PRAGMA query_only = ON; PRAGMA temp_store = MEMORY", "opening", error);
+    result = make_readable(store, error);
   if (result != STATUS_OK) {
     release(store);
     return result;
@@ -387,7 +398,7 @@ status store_export(struct store *store, const char *path, struct error *error) 
     return result;
   /* query_only refuses VACUUM INTO, although it writes another file. */
   sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
-  result = sql_executef(store->db, "writing the hand-over file", error, "VACUUM INTO %Q", path);
+  result = guard_vacuum_into(store->db, path, "writing the hand-over file", error);
   if (!store->writer)
     sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
   if (result != STATUS_OK)

@@ -212,12 +212,18 @@ status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
   return result;
 }
 
-status sums_cover_bins(sqlite3 *db, int lowest, int highest, struct error *error) {
+enum { BINS_LIMIT = 4000 }; /* ten bins per decade: no float64 lies further out */
+
+status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error) {
   static const char doing[] = "adding bin edges";
   sqlite3_stmt *statement = NULL;
+  if (lowest < -BINS_LIMIT || highest > BINS_LIMIT)
+    return status_fail(error, STATUS_CONTENT,
+                       "%s: bins %lld to %lld are no bins of masses. The store is damaged: restore a copy.",
+                       sqlite3_db_filename(db, "main"), (long long)lowest, (long long)highest);
   status result = sql_prepare(db, "INSERT OR IGNORE INTO bin (bin, lower, upper) VALUES (?1, ?2, ?3)", &statement,
                               doing, error);
-  for (int bin = lowest; result == STATUS_OK && bin <= highest; bin++) {
+  for (int bin = (int)lowest; result == STATUS_OK && bin <= highest; bin++) {
     sqlite3_bind_int(statement, 1, bin);
     sqlite3_bind_double(statement, 2, spectrum_edge(bin));
     sqlite3_bind_double(statement, 3, spectrum_edge(bin + 1));
@@ -232,5 +238,5 @@ status sums_cover_all_bins(sqlite3 *db, struct error *error) {
   status result = sql_integer(db, "SELECT min(bin) FROM spectrum", 0, &lowest, error);
   if (result == STATUS_OK)
     result = sql_integer(db, "SELECT max(bin) FROM spectrum", -1, &highest, error);
-  return result == STATUS_OK ? sums_cover_bins(db, (int)lowest, (int)highest, error) : result;
+  return result == STATUS_OK ? sums_cover_bins(db, lowest, highest, error) : result;
 }

@@ -41,8 +41,8 @@ status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
 status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error);
 
 /* Adds to table bin the edges of the bins lowest..highest that it lacks, so that spectra can be read without the
- * program. Within the caller's transaction. */
-status sums_cover_bins(sqlite3 *db, int lowest, int highest, struct error *error);
+ * program. Within the caller's transaction. STATUS_CONTENT: no mass lies in such bins. */
+status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error);
 /* The same for all bins in table spectrum. */
 status sums_cover_all_bins(sqlite3 *db, struct error *error);
 

@@ -4,7 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "db/store/schema.h"
 #include "engine/outcome.h"
+#include "schemas/text.h"
+
+const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates"};
 
 size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]) {
   size_t count = 0;
@@ -41,7 +45,7 @@ static status each_row(sqlite3 *db, const char *sql, void (*write)(FILE *out, sq
 }
 
 static void write_text(FILE *out, sqlite3_stmt *row) {
-  fputs((const char *)sqlite3_column_text(row, 0), out);
+  fputs(sql_text(row, 0), out);
 }
 
 static status write_axes(sqlite3 *db, FILE *out, struct error *error) {
@@ -62,7 +66,7 @@ static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) 
   if (result != STATUS_OK)
     return result;
   return each_row(db,
-                  "SELECT format('  %w.\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
+                  "SELECT format('  \"%w\".\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
                   "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "
                   "pragma_table_xinfo(o.name) d WHERE o.type = 'table' AND o.name GLOB 'result_*' AND d.name = "
                   "c.name) > 1, format(' AS \"%w_%w\"', t.name, c.name), '')) "
@@ -72,7 +76,7 @@ static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) 
 }
 
 static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
-  fprintf(out, "CREATE VIEW runs AS -- every run with its varied inputs and all its results\n"
+  fprintf(out, "runs AS -- every run with its varied inputs and all its results\n"
                "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n");
   status result = write_axes(db, out, error);
   if (result != STATUS_OK)
@@ -82,7 +86,7 @@ static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
     return result;
   fprintf(out, "  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id");
   result = each_row(db,
-                    "SELECT format(char(10) || '  LEFT JOIN %w ON %w.run_id = r.run_id', name, name) FROM "
+                    "SELECT format(char(10) || '  LEFT JOIN \"%w\" ON \"%w\".run_id = r.run_id', name, name) FROM "
                     "sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY name",
                     write_text, out, error);
   fprintf(out, ";\n");
@@ -119,13 +123,32 @@ void views_write_statistics(size_t count, const char *const *names, FILE *out) {
   fprintf(out, "\n  FROM moment\n)\n");
 }
 
+/* The main results that the store has: an older one that is only read may lack some. */
+static status stored_main_results(sqlite3 *db, size_t *count, const char *names[VIEWS_MAIN_MAXIMUM],
+                                  struct error *error) {
+  const char *all[VIEWS_MAIN_MAXIMUM];
+  const size_t most = views_main_results(all);
+  status result = STATUS_OK;
+  *count = 0;
+  for (size_t i = 0; result == STATUS_OK && i < most; i++) {
+    bool has = false;
+    result = schema_has_column(db, "run", all[i], &has, error);
+    if (has)
+      names[(*count)++] = all[i];
+  }
+  return result;
+}
+
 static status write_points(sqlite3 *db, FILE *out, struct error *error) {
-  const char *names[VIEWS_MAIN_MAXIMUM];
-  size_t count = views_main_results(names);
-  fprintf(out, "CREATE VIEW points AS -- statistics of every point, one row per results_version\n");
+  const char *names[VIEWS_MAIN_MAXIMUM] = {NULL};
+  size_t count = 0;
+  status result = stored_main_results(db, &count, names, error);
+  if (result != STATUS_OK)
+    return result;
+  fprintf(out, "points AS -- statistics of every point, one row per results_version\n");
   views_write_statistics(count, names, out);
   fprintf(out, "SELECT p.point_id, p.engine, p.scene_name AS scene,\n");
-  status result = write_axes(db, out, error);
+  result = write_axes(db, out, error);
   fprintf(
       out,
       "  t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS "
@@ -142,7 +165,7 @@ static status write_points(sqlite3 *db, FILE *out, struct error *error) {
 }
 
 static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
-  fprintf(out, "CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point\n"
+  fprintf(out, "spectra AS -- pooled fragment mass spectrum of every point\n"
                "SELECT p.point_id, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
   fprintf(out, "  s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,\n"
@@ -161,7 +184,7 @@ static status write_estimate_columns(sqlite3 *db, FILE *out, struct error *error
 }
 
 static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
-  fprintf(out, "CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
+  fprintf(out, "estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)\n"
                "SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,\n");
   status result = write_axes(db, out, error);
   if (result != STATUS_OK)
@@ -217,28 +240,37 @@ static status document(sqlite3 *db, struct error *error) {
   return sql_execute(db, sql, "documenting the views", error);
 }
 
-status views_regenerate(sqlite3 *db, struct error *error) {
-  static status (*const writers[])(sqlite3 *, FILE *, struct error *) = {write_runs, write_points, write_spectra,
-                                                                         write_estimates};
+/* Drops and creates the four views in the schema `place`: main or temp. */
+static status make(sqlite3 *db, const char *place, struct error *error) {
+  static status (*const writers[VIEWS_COUNT])(sqlite3 *, FILE *, struct error *) = {write_runs, write_points,
+                                                                                    write_spectra, write_estimates};
   char *sql = NULL;
   size_t size = 0;
   FILE *out = open_memstream(&sql, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-  fputs("DROP VIEW IF EXISTS runs; DROP VIEW IF EXISTS points; DROP VIEW IF EXISTS spectra; DROP VIEW IF EXISTS "
-        "estimates;\n",
-        out);
   status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < sizeof writers / sizeof writers[0]; i++)
+  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
+    fprintf(out, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.", place, views_names[i], place);
     result = writers[i](db, out, error);
-  fclose(out);
+  }
+  if (!text_close(out, &sql))
+    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
   if (result == STATUS_OK)
-    result = sql ? sql_execute(db, sql, "making the views", error)
-                 : status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-  if (result == STATUS_OK)
-    result = document(db, error);
+    result = sql_execute(db, sql, "making the views", error);
   free(sql);
   return result;
+}
+
+status views_make_temporary(sqlite3 *db, struct error *error) {
+  return make(db, "temp", error);
+}
+
+status views_regenerate(sqlite3 *db, struct error *error) {
+  status result = views_make_temporary(db, error);
+  if (result == STATUS_OK)
+    result = make(db, "main", error);
+  return result == STATUS_OK ? document(db, error) : result;
 }
 
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error) {

@@ -1,5 +1,6 @@
 /* The views `runs`, `points`, `spectra`, `estimates`: flat tables for any tool, one column per varied input. Plain SQL
- * only, so that a database browser or pandas can open them. */
+ * only, so that a database browser or pandas can open them. clast itself never runs the views of a file
+ * (db/store/guard.h): every connection makes temporary ones of the same names, which come first. */
 #ifndef CLAST_DB_STORE_VIEWS_H
 #define CLAST_DB_STORE_VIEWS_H
 
@@ -7,8 +8,14 @@
 
 #include "db/sql.h"
 
-/* Drops and creates all four, and their rows in column_doc. Within the caller's transaction. */
+enum { VIEWS_COUNT = 4 };
+extern const char *const views_names[VIEWS_COUNT];
+
+/* Makes all four anew, in the file and for this connection, and their rows in column_doc. Within the caller's
+ * transaction. */
 status views_regenerate(sqlite3 *db, struct error *error);
+/* Makes those of this connection. Changes no file: for readers. */
+status views_make_temporary(sqlite3 *db, struct error *error);
 
 /* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already.
  */

@@ -1,0 +1,316 @@
+/* Stores that someone else has prepared: whatever stands in them is data. Each is refused with the names of what does
+ * not belong there, and nothing of it is run: not when it is read, written on or merged. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "db/store/internal.h"
+#include "tests/support/store_checks.h"
+
+/* Changes a store as any program could; writable_schema lets SQL replace the text of a table, as an editor of bytes
+ * would. */
+static void change(const char *path, const char *text) {
+  sqlite3 *db = NULL;
+  char *message = NULL;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  sqlite3_db_config(db, SQLITE_DBCONFIG_DEFENSIVE, 0, NULL);
+  if (sqlite3_exec(db, text, NULL, NULL, &message) != SQLITE_OK)
+    fail_msg("%s: %s", text, message);
+  sqlite3_close(db);
+}
+
+static const char *populated(char path[64], const char *name) {
+  struct store *store = NULL;
+  fixture_path(path, name);
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 2, 10, false, &error));
+  OK(store_close(store, &error));
+  return path;
+}
+
+static void said(status code, const char *how, const char *name) {
+  if (code != STATUS_CONTENT)
+    fail_msg("%s: status %d instead of %d: %s", how, code, STATUS_CONTENT, error.message);
+  if (!strstr(error.message, name))
+    fail_msg("%s does not name %s: %s", how, name, error.message);
+}
+
+/* Reading, writing and merging all refuse the store and name what is wrong. */
+static void refused(const char *path, const char *name) {
+  char target[64];
+  struct store *store = NULL;
+  int64_t added = 0, differing = 0;
+  error.message[0] = 0;
+  said(store_open_reader(path, &store, &error), "a reader", name);
+  error.message[0] = 0;
+  said(store_open_writer(path, &store, NULL, 0, &error), "a writer", name);
+  OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));
+  said(store_merge(store, path, &added, &differing, &error), "merge", name);
+  assert_int_equal(added, 0);
+  OK(store_close(store, &error));
+}
+
+/* A trigger that swallows every run: a campaign would compute and keep nothing. */
+static void triggers_are_refused(void **state) {
+  (void)state;
+  char path[64];
+  change(populated(path, "hostile-trigger"),
+         "CREATE TRIGGER swallow AFTER INSERT ON run BEGIN DELETE FROM run WHERE run_id = new.run_id; END");
+  refused(path, "swallow");
+  /* ... and behind the name of a view, where its text alone says what it is */
+  change(populated(path, "hostile-trigger"),
+         "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = 'CREATE TRIGGER points AFTER INSERT ON run BEGIN "
+         "DELETE FROM run; END' WHERE name = 'points'");
+  refused(path, "points");
+}
+
+/* A view of another name is refused. Our own names are never run from the file: the reader makes its own views. */
+static void views_are_refused_or_replaced(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  change(populated(path, "hostile-view"), "CREATE VIEW more AS SELECT * FROM run");
+  refused(path, "more");
+  change(populated(path, "hostile-view"),
+         "DROP VIEW runs; CREATE VIEW runs AS SELECT 1 AS counts, 0.5 AS largest_fraction, randomblob(100000000) AS x");
+  OK(store_open_reader(path, &store, &error));
+  assert_near(number(store, "SELECT count(*) FROM runs"), 40, 0);
+  OK(store_close(store, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  assert_near(number(store, "SELECT count(*) FROM runs"), 40, 0);
+  OK(store_close(store, &error));
+  sqlite3 *db = NULL;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK); /* other programs see the view that the writer made anew */
+  assert_int_equal(sqlite3_exec(db, "SELECT run_id, identity FROM runs", NULL, NULL, NULL), SQLITE_OK);
+  sqlite3_close(db);
+}
+
+static void virtual_tables_are_refused(void **state) {
+  (void)state;
+  char path[64];
+  change(populated(path, "hostile-virtual"), "CREATE VIRTUAL TABLE result_x USING fts5(run_id)");
+  refused(path, "result_x");
+}
+
+/* The text of a table holds a second statement: SQLite reads the first alone; a program that runs the text runs both.
+ */
+static void second_statement_is_never_run(void **state) {
+  (void)state;
+  char path[64], victim[64];
+  struct store *store = NULL;
+  int64_t added = 0, differing = 0;
+  populated(victim, "hostile-victim");
+  populated(path, "hostile-two");
+  change(path, "CREATE TABLE result_x (run_id INTEGER PRIMARY KEY REFERENCES run (run_id), y REAL) STRICT;"
+               "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = sql || '; COMMIT; ATTACH "
+               "''test-store-hostile-victim.db'' AS v; DELETE FROM v.run; BEGIN' WHERE name = 'result_x'");
+  char target[64];
+  OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));
+  struct error refusal = {0};
+  status merged = store_merge(store, path, &added, &differing, &refusal);
+  store_close(store, NULL);
+  OK(store_open_reader(victim, &store, &error));
+  assert_near(number(store, "SELECT count(*) FROM run"), 40, 0);
+  store_close(store, NULL);
+  error = refusal;
+  said(merged, "merge", "result_x");
+  refused(path, "result_x");
+}
+
+/* Names that end a quotation: of a table, of a column, of an axis. */
+static void names_are_names(void **state) {
+  (void)state;
+  char path[64];
+  change(populated(path, "hostile-names"),
+         "CREATE TABLE \"result_x\"\" AS y; DROP TABLE run; --\" (run_id INTEGER PRIMARY KEY) STRICT");
+  refused(path, "DROP TABLE run");
+  change(populated(path, "hostile-names"), "ALTER TABLE result_fake ADD COLUMN \"a\"\", (SELECT 1) AS \"\"b\" REAL");
+  refused(path, "result_fake");
+  change(populated(path, "hostile-names"),
+         "UPDATE axis SET column_name = 'm\", (SELECT scene FROM point) AS \"n' WHERE path = 'material.m'");
+  refused(path, "material.m");
+}
+
+static void generated_columns_are_refused(void **state) {
+  (void)state;
+  char path[64];
+  change(populated(path, "hostile-generated"), "ALTER TABLE run ADD COLUMN made REAL AS (total_mass * 2) VIRTUAL");
+  refused(path, "made");
+  change(populated(path, "hostile-generated"), "ALTER TABLE run ADD COLUMN late REAL CHECK (late IS NULL)");
+  refused(path, "late");
+  change(populated(path, "hostile-generated"), "ALTER TABLE run ADD COLUMN filled REAL DEFAULT 7");
+  refused(path, "filled");
+  /* a rule that no run can meet */
+  change(populated(path, "hostile-generated"),
+         "PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = replace(sql, '''completed''', '''nothing''') "
+         "WHERE name = 'run'");
+  refused(path, "counts");
+}
+
+static void index_expressions_are_refused(void **state) {
+  (void)state;
+  char path[64];
+  change(populated(path, "hostile-index"), "CREATE INDEX dear ON run (hex(zeroblob(rank)))");
+  refused(path, "dear");
+  change(populated(path, "hostile-index"),
+         "DROP INDEX run_statistics; CREATE INDEX run_statistics ON run (abs(point_id))");
+  refused(path, "run_statistics");
+  change(populated(path, "hostile-index"), "CREATE UNIQUE INDEX once ON run (replicate, point_id)");
+  refused(path, "once");
+}
+
+static void collect(void *context, const char *text) {
+  char *all = context;
+  snprintf(all + strlen(all), 8000 - strlen(all), "%.300s\n", text);
+}
+
+/* Rows of other types and sizes than the schema says: the file's bytes decide, not its text. */
+static void huge_and_odd_rows_are_found(void **state) {
+  (void)state;
+  static const char *const odd[] = {
+      "UPDATE fragment_mass SET masses = (WITH RECURSIVE n (i, t) AS (SELECT 1, 'ä' UNION ALL SELECT i + 1, t || t "
+      "FROM "
+      "n WHERE i < 22) SELECT max(t) FROM n) WHERE run_id = 3", /* text of 4 MiB, in which length() counts letters */
+      "UPDATE fragment_mass SET masses = 7 WHERE run_id = 3",
+      "UPDATE point SET scene = NULL WHERE point_id = 2",
+      "UPDATE point SET scene = x'ff00', scene_name = NULL, engine = NULL",
+      "UPDATE run SET state = NULL, identity = NULL, replicate = 'x' WHERE run_id = 5",
+      "UPDATE bin SET lower = NULL",
+      "UPDATE spectrum SET bin = 9223372036854775807 WHERE run_id = 4 AND bin = -4",
+      "UPDATE point SET scene = (WITH RECURSIVE n (i, t) AS (SELECT 1, '[' UNION ALL SELECT i + 1, t || t FROM n WHERE "
+      "i < 21) SELECT max(t) FROM n)" /* a million brackets deep */
+  };
+  for (size_t i = 0; i < sizeof odd / sizeof odd[0]; i++) {
+    char path[64], copy[64], sql[2000], target[64], found[8000] = "";
+    struct store *store = NULL;
+    int64_t added = 0, differing = 0, point = 1;
+    populated(path, "hostile-rows");
+    /* Without STRICT, NOT NULL and CHECK any row goes in; the text is put back behind it. */
+    snprintf(
+        sql, sizeof sql,
+        "CREATE TABLE kept AS SELECT name, sql FROM sqlite_schema WHERE name IN ('fragment_mass', 'point', 'run', "
+        "'bin', 'spectrum'); PRAGMA writable_schema = ON; PRAGMA ignore_check_constraints = ON; UPDATE "
+        "sqlite_schema SET sql = replace(replace(replace(replace(replace(sql, 'IS NOT NULL', 'NOTNULL'), 'NOT NULL', "
+        "''), "
+        "'NOTNULL', 'IS NOT NULL'), 'STRICT, WITHOUT', 'WITHOUT'), ') STRICT', ')') WHERE name IN (SELECT name FROM "
+        "kept); PRAGMA schema_version = 7000");
+    change(path, sql);
+    snprintf(sql, sizeof sql,
+             "PRAGMA ignore_check_constraints = ON; %s; PRAGMA writable_schema = ON; UPDATE sqlite_schema SET sql = "
+             "(SELECT sql FROM kept WHERE kept.name = sqlite_master.name) WHERE name IN (SELECT name FROM kept); DROP "
+             "TABLE kept; PRAGMA schema_version = 9000",
+             odd[i]);
+    change(path, sql);
+    if (store_open_reader(path, &store, &error) == STATUS_OK) {
+      if (store_check(store, collect, found, &error) != STATUS_CONTENT)
+        fail_msg("%s: not found: %s", odd[i], error.message);
+      unlink(fixture_path(copy, "hostile-copy"));
+      FILE *nowhere = fopen("/dev/null", "w");
+      assert_non_null(nowhere);
+      store_dump(store, nowhere, &error);
+      fclose(nowhere);
+      double count = 0;
+      query_number(store, "SELECT count(*) FROM points", 0, NULL, &count, &error);
+      OK(store_close(store, &error));
+    }
+    OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));
+    if (store_merge(store, path, &added, &differing, &error) == STATUS_OK || added)
+      fail_msg("%s: merged", odd[i]);
+    OK(store_close(store, &error));
+    if (store_open_writer(path, &store, NULL, 0, &error) == STATUS_OK) {
+      struct fixture_inputs inputs;
+      struct scene scene = fixture_scene(&inputs, 6, 1e30);
+      store_add_point(store, 0, &scene, 2, fixture_axes, &point, &error);
+      store_close(store, NULL);
+    }
+  }
+}
+
+static char *dump(const char *path) {
+  struct store *store = NULL;
+  char *text = NULL;
+  size_t size = 0;
+  OK(store_open_reader(path, &store, &error));
+  FILE *out = open_memstream(&text, &size);
+  assert_non_null(out);
+  OK(store_dump(store, out, &error));
+  fclose(out);
+  OK(store_close(store, &error));
+  return text;
+}
+
+/* Noise of 200 bytes near the beginning of three pages. */
+static void spoil(const char *path, uint64_t round) {
+  FILE *file = fopen(path, "r+b");
+  assert_non_null(file);
+  fseek(file, 0, SEEK_END);
+  const long pages = ftell(file) / 4096;
+  for (uint64_t k = 0; k < 3; k++) {
+    const long page = 1 + (long)(fixture_random(round, k) * (double)(pages - 1));
+    fseek(file, 4096 * page + (long)(fixture_random(round, 10 + k) * 64), SEEK_SET);
+    for (uint64_t i = 0; i < 200; i++)
+      fputc((int)(256 * fixture_random(round * 3 + k, 100 + i)), file);
+  }
+  fclose(file);
+}
+
+/* Pages of noise: an error or a problem, never a crash. Only where check finds nothing, because the noise lies where no
+ * row is, may the rows go into another store, and these are the right ones. */
+static void corrupt_pages_are_errors(void **state) {
+  (void)state;
+  char path[64], target[64];
+  populated(path, "hostile-pages");
+  char *whole = dump(path);
+  int found_whole = 0;
+  for (uint64_t round = 0; round < 60; round++) {
+    char found[8000] = "";
+    struct store *store = NULL;
+    int64_t added = 0, differing = 0;
+    populated(path, "hostile-pages");
+    spoil(path, round);
+    status checked = store_open_reader(path, &store, &error);
+    if (checked == STATUS_OK)
+      checked = store_check(store, collect, found, &error);
+    store_close(store, NULL);
+    OK(store_open_writer(fixture_path(target, "hostile-target"), &store, NULL, 0, &error));
+    status merged = store_merge(store, path, &added, &differing, &error);
+    store_close(store, NULL);
+    if (merged == STATUS_OK && checked != STATUS_OK)
+      fail_msg("round %d: merged in spite of: %s", (int)round, found);
+    if (checked == STATUS_OK) {
+      char *text = dump(path);
+      assert_string_equal(text, whole);
+      free(text);
+      found_whole++;
+    }
+    if (merged != STATUS_OK)
+      assert_int_equal(added, 0);
+    OK(store_open_reader(target, &store, &error));
+    OK(store_check(store, NULL, NULL, &error));
+    OK(store_close(store, &error));
+    if (store_open_writer(path, &store, NULL, 0, &error) == STATUS_OK)
+      store_close(store, NULL);
+  }
+  free(whole);
+  assert_in_range(found_whole, 0, 10);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(triggers_are_refused),
+      cmocka_unit_test(views_are_refused_or_replaced),
+      cmocka_unit_test(virtual_tables_are_refused),
+      cmocka_unit_test(second_statement_is_never_run),
+      cmocka_unit_test(names_are_names),
+      cmocka_unit_test(generated_columns_are_refused),
+      cmocka_unit_test(index_expressions_are_refused),
+      cmocka_unit_test(huge_and_odd_rows_are_found),
+      cmocka_unit_test(corrupt_pages_are_errors),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
