@@ -145,6 +145,16 @@ char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char 
   return list;
 }
 
+void sql_write_name(const char *name, FILE *out) {
+  fputc('"', out);
+  for (; *name; name++) {
+    if (*name == '"')
+      fputc('"', out);
+    fputc(*name, out);
+  }
+  fputc('"', out);
+}
+
 void sql_bind_field(sqlite3_stmt *statement, int index, const struct field *row, const void *object, bool off_as_text) {
   const char *place = (const char *)object + row->offset;
   switch (row->kind) {

@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "schemas/field.h"
 #include "schemas/status.h"
@@ -31,6 +32,9 @@ status sql_integer(sqlite3 *db, const char *sql, int64_t otherwise, int64_t *out
 /* The first column of all rows, each quoted as a name, with a comma before it; first and second are the texts ?1 and ?2
  * (NULL: there is no ?2). To be freed by sqlite3_free(); NULL when memory is out, empty when the text is no SQL. */
 char *sql_name_list(sqlite3 *db, const char *sql, const char *first, const char *second);
+
+/* Writes a name within double quotes; those of the name are doubled. */
+void sql_write_name(const char *name, FILE *out);
 
 /* Binds the value that `row` describes in *object: NaN as NULL (as the text 'off' with off_as_text), choices by name.
  * Texts are bound by reference: *object must live until the statement has run. */

@@ -89,6 +89,13 @@ static status resolve(struct store *store, const char *list, const char *what, c
   return STATUS_OK;
 }
 
+static void write_axes(const struct names *axes, FILE *out) {
+  for (size_t i = 0; i < axes->count; i++) {
+    sql_write_name(axes->name[i], out);
+    fputs(", ", out);
+  }
+}
+
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL;
   size_t size = 0;
@@ -96,8 +103,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   if (!out)
     return NULL;
   fputs("SELECT ", out);
-  for (size_t i = 0; i < axes->count; i++)
-    fprintf(out, "\"%s\", ", axes->name[i]);
+  write_axes(axes, out);
   fputs("engine, results_version, n, failed, censored", out);
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
@@ -110,8 +116,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   }
   /* Ordered rows, so that the sums have the same bits for any order in which the runs finished. */
   fputs("\nFROM (SELECT ", out);
-  for (size_t i = 0; i < axes->count; i++)
-    fprintf(out, "\"%s\", ", axes->name[i]);
+  write_axes(axes, out);
   fputs("engine, results_version, sum(counts) AS n, sum(counts = 0) AS failed, sum(counts AND state = 'end-time') AS "
         "censored",
         out);
@@ -124,11 +129,9 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   }
   fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
         out);
-  for (size_t i = 0; i < axes->count; i++)
-    fprintf(out, "\"%s\", ", axes->name[i]);
+  write_axes(axes, out);
   fputs("engine, results_version) ORDER BY ", out);
-  for (size_t i = 0; i < axes->count; i++)
-    fprintf(out, "\"%s\", ", axes->name[i]);
+  write_axes(axes, out);
   fputs("engine, results_version", out);
   return text_close(out, &sql);
 }

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "db/sql.h"
+
 /* Condition for the points of a choice, on any table with a column point_id. */
 static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
   fputs(" WHERE true", sql);
@@ -102,8 +104,10 @@ status ask_points_rows(struct store *store, const struct ask_points_choice *choi
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
   fputs("SELECT point_id, results_version, n, failed, largest_fraction_mean, largest_fraction_hw95", out);
-  for (size_t i = 0; i < input_count; i++)
-    fprintf(out, ", \"%s\"", inputs[i]);
+  for (size_t i = 0; i < input_count; i++) {
+    fputs(", ", out);
+    sql_write_name(inputs[i], out);
+  }
   fputs(" FROM points AS p", out);
   write_choice(out, choice);
   if (newest)
@@ -170,12 +174,12 @@ status ask_points_share(struct store *store, const char *x, const char *y, bool 
   FILE *out = open_memstream(&sql, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
-  fprintf(out,
-          "SELECT coalesce(max(n), 0) FROM (SELECT count(DISTINCT point_id) AS n FROM points WHERE n > 0 GROUP BY "
-          "\"%s\"",
-          x);
-  if (y)
-    fprintf(out, ", \"%s\"", y);
+  fputs("SELECT coalesce(max(n), 0) FROM (SELECT count(DISTINCT point_id) AS n FROM points WHERE n > 0 GROUP BY ", out);
+  sql_write_name(x, out);
+  if (y) {
+    fputs(", ", out);
+    sql_write_name(y, out);
+  }
   fputs(")", out);
   status code = run_written(store, out, &sql, &sink, error);
   *share = most > 1;
