@@ -79,7 +79,7 @@ struct guard {
   sqlite3 *db;
   int version;
   FILE *out; /* the names of what does not belong here */
-  size_t strangers, missing;
+  size_t strangers;
   bool out_of_memory;
 };
 
@@ -94,18 +94,12 @@ static void write_name(const char *name, FILE *out) {
 static void stranger(struct guard *guard, const char *what, const char *name, const char *table) {
   if (guard->strangers++ >= 50)
     return;
-  fprintf(guard->out, "%s%s ", guard->strangers + guard->missing > 1 ? ", " : "", what);
+  fprintf(guard->out, "%s%s ", guard->strangers > 1 ? ", " : "", what);
   write_name(name, guard->out);
   if (table) {
     fputs(" of ", guard->out);
     write_name(table, guard->out);
   }
-}
-
-static void missing(struct guard *guard, const char *what, const char *table) {
-  guard->missing++;
-  fprintf(guard->out, "%s%s ", guard->strangers + guard->missing > 1 ? ", " : "", what);
-  write_name(table, guard->out);
 }
 
 /* Is `line` a column that another version of the program knew: a plain name and a type, and no more? */
@@ -173,7 +167,7 @@ static void compare_tables(struct guard *guard, const struct schema_table *table
   }
   for (size_t i = 1; guard->version == SCHEMA_VERSION && i <= table->count; i++)
     if (!has_line(found, ours->lines[i]))
-      missing(guard, "no column", table->columns[i - 1].name);
+      stranger(guard, "the lack of column", table->columns[i - 1].name, table->name);
 }
 
 /* Reads the text of both; `write` writes ours. */
@@ -311,18 +305,6 @@ static status judge_objects(struct guard *guard, struct error *error) {
   return result;
 }
 
-/* Tables that every store of this version has. */
-static status judge_missing(struct guard *guard, struct error *error) {
-  status result = STATUS_OK;
-  for (size_t i = 0; result == STATUS_OK && i < schema_tables_count; i++) {
-    bool has = false;
-    result = schema_has_column(guard->db, schema_tables[i].name, "", &has, error);
-    if (result == STATUS_OK && !has)
-      missing(guard, "no table", schema_tables[i].name);
-  }
-  return result;
-}
-
 /* Columns of the views are named by rows of table axis. */
 static status judge_axes(struct guard *guard, struct error *error) {
   sqlite3_stmt *rows = NULL;
@@ -347,9 +329,7 @@ static status judge(struct guard *guard, struct error *error) {
   status result = judge_objects(guard, error);
   if (result != STATUS_OK || guard->strangers > 0)
     return result;
-  if (guard->version == SCHEMA_VERSION)
-    result = judge_missing(guard, error);
-  return result == STATUS_OK ? judge_axes(guard, error) : result;
+  return judge_axes(guard, error);
 }
 
 status guard_schema(sqlite3 *db, const char *path, int version, struct error *error) {
@@ -361,7 +341,7 @@ status guard_schema(sqlite3 *db, const char *path, int version, struct error *er
   status result = judge(&guard, error);
   if (fclose(guard.out) != 0 || !names || guard.out_of_memory)
     result = status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
-  else if (result == STATUS_OK && guard.strangers + guard.missing > 0)
+  else if (result == STATUS_OK && guard.strangers > 0)
     result =
         status_fail(error, STATUS_CONTENT,
                     "%s is not as clast makes its stores: %.6000s%s. Nothing of it was run and nothing was "

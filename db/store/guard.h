@@ -15,8 +15,8 @@ status guard_attach(sqlite3 *db, const char *source, const char *doing, struct e
 /* Writes a compact copy of a store whose schema guard_schema() has passed. */
 status guard_vacuum_into(sqlite3 *db, const char *path, const char *doing, struct error *error);
 
-/* Compares the schema with ours. `version`: the store's; older ones may lack tables and columns. STATUS_CONTENT: the
- * message names everything that no program of clast puts into a store, and what is missing. */
+/* Compares the schema with ours. `version`: the store's; older ones may lack columns. STATUS_CONTENT: the message
+ * names everything that no program of clast puts into a store. */
 status guard_schema(sqlite3 *db, const char *path, int version, struct error *error);
 
 #endif
