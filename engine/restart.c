@@ -8,6 +8,7 @@
 
 #include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
+#include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
 /* 3: state and progress without members that nothing read; the order of a grain system's arrays. */
@@ -49,13 +50,6 @@ static char *identity(const struct engine_kind *kind, const void *inputs) {
     snprintf(text, size, "%s results_version=%d\n%s", kind->name, kind->results_version, rows);
   free(rows);
   return text;
-}
-
-static uint64_t checksum(const unsigned char *at, size_t size) { /* FNV-1a */
-  uint64_t hash = 0xcbf29ce484222325U;
-  for (size_t k = 0; k < size; k++)
-    hash = (hash ^ at[k]) * 0x100000001b3U;
-  return hash;
 }
 
 struct bytes {
@@ -107,7 +101,7 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
     put_number(&b, parts[k].size);
     put(&b, parts[k].at, parts[k].size);
   }
-  put_number(&b, checksum(b.at, b.used));
+  put_number(&b, text_hash(TEXT_HASH_START, b.at, b.used));
   status code = atomic_file_write(path, "restart file", b.at, b.used, error);
   free(b.at);
   free(text);
@@ -176,7 +170,7 @@ static status read_head(struct bytes *b, const char *identity, const char *path,
     return status_fail(error, STATUS_CONTENT,
                        "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
   memcpy(&sum, b->at + b->size - 8, 8);
-  if (sum != checksum(b->at, b->size - 8))
+  if (sum != text_hash(TEXT_HASH_START, b->at, b->size - 8))
     return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
                        path);
 

@@ -276,16 +276,15 @@ void field_describe_range(const struct field *row, char *text, size_t size) {
 
 /* ---- bytes ---- */
 
-static uint64_t mix(uint64_t hash, const char *text) { /* FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/ */
-  for (; *text; text++)
-    hash = (hash ^ (uint8_t)*text) * 1099511628211u;
-  return (hash ^ 0xff) * 1099511628211u; /* 0xff: never a byte of our names, so "ab","c" differs from "a","bc" */
+static uint64_t mix(uint64_t hash, const char *text) {
+  static const uint8_t end = 0xff; /* never a byte of our names, so "ab","c" differs from "a","bc" */
+  return text_hash(text_hash(hash, text, strlen(text)), &end, 1);
 }
 
 /* A hash of names, kinds and choices, which decide how bytes are read. Ranges and texts may change freely. */
 static uint64_t table_hash(const struct field_table *table) {
   static const char *const kinds[] = {"real", "integer", "boolean", "choice", "text"};
-  uint64_t hash = 14695981039346656037u;
+  uint64_t hash = TEXT_HASH_START;
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     hash = mix(mix(hash, row->path), kinds[row->kind]);

@@ -1,4 +1,4 @@
-/* Small tools for text: UTF-8, JSON strings, paragraphs, guesses of names. */
+/* Small tools for text: UTF-8, JSON strings, paragraphs, a hash, guesses of names. */
 #include "schemas/text.h"
 
 #include <stdbool.h>
@@ -85,6 +85,13 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
     column += word;
   }
   fputc('\n', out);
+}
+
+uint64_t text_hash(uint64_t hash, const void *bytes, size_t size) {
+  const uint8_t *at = bytes;
+  for (size_t k = 0; k < size; k++)
+    hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);
+  return hash;
 }
 
 size_t text_distance(const char *a, size_t length, const char *b) {

@@ -1,9 +1,10 @@
-/* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, and the guess behind every
- * "did you mean". */
+/* Small tools for text that every folder needs: UTF-8, JSON strings, wrapped paragraphs, a hash, and the guess behind
+ * every "did you mean". */
 #ifndef CLAST_SCHEMAS_TEXT_H
 #define CLAST_SCHEMAS_TEXT_H
 
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* Length in bytes of the well-formed UTF-8 sequence at `text`, of which `left` bytes may be read. 0 when there is none:
@@ -20,6 +21,11 @@ char *text_close(FILE *out, char **text);
 /* Writes the words of `text` in lines of at most `width` columns, each line indented, and ends the last line. The
  * cursor is at column `at`, which is at most `indent`. */
 void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *out);
+
+/* FNV-1a, 64 bits (http://www.isthe.com/chongo/tech/comp/fnv/): the hash of `size` bytes that follow those of `hash`;
+ * TEXT_HASH_START before the first byte. "a" gives af63dc4c8601ec8c. */
+#define TEXT_HASH_START UINT64_C(0xcbf29ce484222325)
+uint64_t text_hash(uint64_t hash, const void *bytes, size_t size);
 
 enum { TEXT_DISTANCE_LENGTH = 128 };
 

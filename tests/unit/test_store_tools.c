@@ -205,6 +205,7 @@ static void export_is_whole_and_single(void **state) {
   assert_string_equal(x, y);
   free(x);
   free(y);
+  fixture_path(path, "export"); /* removes both files */
 }
 
 int main(void) {

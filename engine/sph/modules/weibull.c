@@ -19,7 +19,8 @@ struct sph_weibull_lists {
   uint32_t *total;
 };
 
-void sph_weibull_free(struct sph_weibull_lists *w) {
+static void free_prepared(void *prepared) {
+  struct sph_weibull_lists *w = prepared;
   if (!w)
     return;
   free(w->first);
@@ -59,25 +60,24 @@ static bool fill_compact(struct sph_weibull_lists *w, const struct sph_flaws *fl
   return true;
 }
 
-status sph_weibull_make(const struct sph_flaws *flaws, bool compact, struct sph_weibull_lists **out,
-                        struct error *error) {
-  *out = NULL;
+static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
+  const struct sph_flaws *flaws = body->physics.flaws;
+  const bool compact = inputs->fidelity.flaws == SPH_FLAWS_COMPACT;
   struct sph_weibull_lists *w = calloc(1, sizeof *w);
   if (w) {
     w->particles = flaws->particles;
     w->count = flaws->count;
   }
   if (!w || !(compact ? fill_compact : fill_exact)(w, flaws)) {
-    sph_weibull_free(w);
+    free_prepared(w);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", flaws->count);
   }
-  *out = w;
+  body->prepared[SPH_MODULE_weibull] = w;
   return STATUS_OK;
 }
 
-size_t sph_weibull_bytes(const struct sph_weibull_lists *w) {
-  if (!w)
-    return 0;
+static size_t bytes_prepared(const void *prepared) {
+  const struct sph_weibull_lists *w = prepared;
   return sizeof *w + (w->strain ? (w->particles + 1) * sizeof *w->first + w->count * sizeof *w->strain
                                 : w->particles * (2 * sizeof *w->lowest + sizeof *w->total));
 }
@@ -130,21 +130,6 @@ uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;
   return body->flaws != NULL;
-}
-
-static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
-  struct sph_weibull_lists *lists = NULL;
-  const status code = sph_weibull_make(body->physics.flaws, inputs->fidelity.flaws == SPH_FLAWS_COMPACT, &lists, error);
-  body->prepared[SPH_MODULE_weibull] = lists;
-  return code;
-}
-
-static void free_prepared(void *prepared) {
-  sph_weibull_free(prepared);
-}
-
-static size_t bytes_prepared(const void *prepared) {
-  return sph_weibull_bytes(prepared);
 }
 
 const struct sph_module sph_weibull_module = {

@@ -10,13 +10,7 @@
 
 #include "engine/sph/body/flaws.h"
 
-struct sph_weibull_lists; /* opaque */
-
-/* STATUS_MEMORY. */
-status sph_weibull_make(const struct sph_flaws *flaws, bool compact, struct sph_weibull_lists **out,
-                        struct error *error);
-void sph_weibull_free(struct sph_weibull_lists *lists); /* NULL is fine */
-size_t sph_weibull_bytes(const struct sph_weibull_lists *lists);
+struct sph_weibull_lists; /* opaque; body->prepared[SPH_MODULE_weibull] */
 
 double sph_weibull_lowest(const struct sph_weibull_lists *lists, size_t particle);
 uint32_t sph_weibull_total(const struct sph_weibull_lists *lists, size_t particle);
