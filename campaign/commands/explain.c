@@ -7,6 +7,7 @@
 #include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
 #include "campaign/document/campaign.h"
+#include "campaign/document/campaign_keys.h"
 #include "campaign/terminal/table.h"
 #include "engine/scene.h"
 
@@ -34,6 +35,14 @@ static bool has_prefix(const struct field_table *table, const char *prefix) {
   return false;
 }
 
+static void explain_key(const struct campaign_key *key) {
+  printf("%s: %s\n%s: %s\n%s", campaign_table.name, campaign_table.doc, key->name, key->doc, key->forms);
+  if (!key->table)
+    return;
+  putchar('\n');
+  field_explain(key->table, "", stdout);
+}
+
 static status explain_path(const char *path, struct error *error) {
   const struct field_table *list[TABLES_MAXIMUM];
   size_t count = tables(list), found = 0;
@@ -50,6 +59,13 @@ static status explain_path(const char *path, struct error *error) {
   }
   if (found)
     return STATUS_OK;
+  const struct campaign_key *key = campaign_keys_find(path);
+  if (key) {
+    explain_key(key);
+    return STATUS_OK;
+  }
+  for (size_t i = 0; i < campaign_keys_count; i++)
+    text_guess_offer(&guess, campaign_keys[i].name);
   const char *nearest = guess.nearest;
   return status_fail(error, STATUS_CONTENT,
                      "nothing is called \"%.128s\"%s%s%s `clast explain` lists all paths, `clast scenes` all scenes",
@@ -61,6 +77,27 @@ void explain_sentence(const char *doc, char *text, size_t size) {
   while (doc[length] && !(doc[length] == '.' && (doc[length + 1] == ' ' || doc[length + 1] == '\0')))
     length++;
   snprintf(text, size, "%.*s", (int)length, doc);
+}
+
+/* The row's default as text; empty for what has none. */
+static void default_text(const struct field_table *of, const struct field *row, char *text, size_t size) {
+  text[0] = '\0';
+  if (of == &outcome_table || of == &estimates_table || (row->flags & (FIELD_REQUIRED | FIELD_DERIVED)))
+    return;
+  struct field_value value;
+  field_default(row, &value);
+  field_print(row, &value, text, size);
+}
+
+static void list_row(struct table *table, const char *of, const char *path, const char *unit, const char *value,
+                     const char *doc) {
+  char text[FIELD_TEXT_SIZE];
+  explain_sentence(doc, text, sizeof text);
+  table_text(table, of);
+  table_text(table, path);
+  table_text(table, unit && strcmp(unit, "1") != 0 ? unit : NULL);
+  table_text(table, *value ? value : NULL);
+  table_text(table, text);
 }
 
 static status list_paths(const struct explain_options *options, struct error *error) {
@@ -76,23 +113,11 @@ static status list_paths(const struct explain_options *options, struct error *er
     for (size_t k = 0; k < list[i]->count; k++) {
       const struct field *row = &list[i]->rows[k];
       char text[FIELD_TEXT_SIZE];
-      table_text(table, list[i]->name);
-      table_text(table, row->path);
-      table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : NULL);
-      void *object = calloc(1, list[i]->size);
-      struct field_value value;
-      bool input = list[i] != &outcome_table && list[i] != &estimates_table &&
-                   !(row->flags & (FIELD_REQUIRED | FIELD_DERIVED));
-      if (object && input) {
-        field_defaults(list[i], object);
-        field_get(row, object, &value);
-        field_print(row, &value, text, sizeof text);
-      }
-      table_text(table, object && input && *text ? text : NULL);
-      free(object);
-      explain_sentence(row->doc, text, sizeof text);
-      table_text(table, text);
+      default_text(list[i], row, text, sizeof text);
+      list_row(table, list[i]->name, row->path, row->unit, text, row->doc);
     }
+  for (size_t i = 0; i < campaign_keys_count; i++)
+    list_row(table, campaign_table.name, campaign_keys[i].name, NULL, "", campaign_keys[i].doc);
   return table_end(table, error);
 }
 
@@ -208,10 +233,12 @@ const struct command explain_command = {
     .arguments = "[PATH|SCENE]",
     .summary = "what an input or result means; what a scene models and costs",
     .doc =
-        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section): meaning, unit, range,\n"
-        "default and source. With a SCENE (a built-in name or a file): what is modelled and why, the expected cost,\n"
-        "and every input with its value; with --json or --csv the inputs only. Without argument: a table of all\n"
-        "inputs and results.",
+        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a "
+        "campaign):\n"
+        "meaning, unit, range, default and source. With a SCENE (a built-in name or a file): what is modelled and "
+        "why,\n"
+        "the expected cost, and every input with its value; with --json or --csv the inputs only. Without argument: a\n"
+        "table of all inputs, results and keys.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct explain_options, rows),

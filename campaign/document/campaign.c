@@ -24,7 +24,7 @@ static const struct field rows[] = {
     TEXT("quantity", quantity, .text = OUTCOME_DEFAULT,
          .doc = "The main quantity: shown while running and in the closing table, judged by `keep: {fields: "
                 "extremes}`. Any "
-                "number that a run reports (`clast explain results`)."),
+                "number that a run reports (`clast explain`)."),
     TEXT("store", store, .text = "",
          .doc = "The results file, relative to the current folder. Default: the name with .db after it."),
     COUNT(
@@ -115,7 +115,7 @@ const struct field *campaign_quantity(const struct engine_kind *kind, const char
     const char *nearest = guess.nearest;
     status_fail(error, STATUS_CONTENT,
                 "no quantity '%s'%s%s%s; a run of engine %s reports largest_fraction, fragment_count, "
-                "mean_fragment_mass and more (`clast explain results`)",
+                "mean_fragment_mass and more (`clast explain` lists them)",
                 path, nearest ? ": did you mean '" : "", nearest ? nearest : "", nearest ? "'?" : "", kind->name);
     return NULL;
   }

@@ -76,4 +76,33 @@ for what in scene campaign; do
   python -c "import json, jsonschema; jsonschema.Draft7Validator.check_schema(json.load(open('out')))"
 done
 expect 64 "$clast" schema elephant
-done_after $((28 + 3 * $(echo "$scenes" | wc -w)))
+
+# Every key and every fixed word of a campaign document has its explanation.
+expect 0 "$clast" schema campaign
+words=$(python - <<'PY'
+import json
+def walk(node, path, words):
+    if isinstance(node, list):
+        for item in node: walk(item, path, words)
+    elif isinstance(node, dict):
+        for key, item in node.get('properties', {}).items():
+            here = key if path == 'vary' else f'{path}.{key}'.lstrip('.')
+            words.add(here)
+            walk(item, 'vary' if path == 'vary' else here, words)
+        for word in node.get('enum', []): words.add(word)
+        for key in ('anyOf', 'items', 'additionalProperties'): walk(node.get(key), path, words)
+words = set()
+walk(json.load(open('out')), '', words)
+assert {'vary', 'set', 'design.points', 'keep.fields', 'lognormal', 'sobol', 'seeds.until.batch'} <= words, words
+print(*sorted(words))
+PY
+)
+for word in $words; do
+  "$clast" explain "$word" >out 2>err || fail "\`clast explain $word\` has no answer"
+done
+ok "clast explain answers for $(echo "$words" | wc -w) words of a campaign"
+expect 0 "$clast" explain vary
+prints "log_uniform"
+expect 65 "$clast" explain desing
+says "design"
+done_after $((32 + 3 * $(echo "$scenes" | wc -w)))
