@@ -1,4 +1,5 @@
 /* `clast stats STORE --by AXES`: means over seeds, with their errors. */
+#include <inttypes.h>
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
@@ -30,6 +31,20 @@ static status refuse_exponents(const char *names, const char *store, struct erro
   return STATUS_OK;
 }
 
+/* Means count the runs of twins as if they were independent: say so. */
+static status warn_of_twins(struct store *store, struct error *error) {
+  struct ask_group_twins twins;
+  const status code = ask_group_twins(store, &twins, error);
+  if (code == STATUS_OK && twins.pairs > 0)
+    fprintf(stderr,
+            "clast: warning: %" PRId64 " pair%s of points with the same seeds differ only in inputs that one of the "
+            "two lacks (points %" PRId64 " and %" PRId64 ": %s). A program without these inputs stored one of them. "
+            "Seeds count twice here, so the intervals are too narrow; compute the campaign into a new store "
+            "(`clast run FILE --store NEW.db`) for statistics of one program alone.\n",
+            twins.pairs, twins.pairs == 1 ? "" : "s", twins.point[0], twins.point[1], twins.input);
+  return code;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -45,6 +60,8 @@ static status run(const struct command_line *line, struct error *error) {
   struct query_sink sink = rows_sink(&rows, store, format, stdout);
   code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, error);
   code = rows_end(&rows, code, error);
+  if (!code)
+    code = warn_of_twins(store, error);
   store_close(store, NULL);
   return code;
 }

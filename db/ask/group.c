@@ -164,3 +164,30 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
   free(sql);
   return result;
 }
+
+static status take_twins(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  struct ask_group_twins *twins = context;
+  twins->pairs = values[0].integer;
+  twins->point[0] = values[1].integer;
+  twins->point[1] = values[2].integer;
+  snprintf(twins->input, sizeof twins->input, "%s", values[3].kind == QUERY_TEXT ? values[3].text : "");
+  return STATUS_OK;
+}
+
+/* Points are compared input by input only where their varied inputs agree: otherwise they differ anyway. */
+status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error) {
+  *twins = (struct ask_group_twins){.pairs = 0};
+  const struct query_sink sink = {.context = twins, .row = take_twins};
+  return query_run(
+      store,
+      "WITH varied AS MATERIALIZED (SELECT point_id, engine || ifnull((SELECT group_concat(v) FROM (SELECT path || '=' "
+      "|| quote(value) AS v FROM axis JOIN point_input i USING (path) WHERE i.point_id = p.point_id ORDER BY path)), "
+      "'') AS inputs FROM point p), twin AS (SELECT a.point_id AS a, b.point_id AS b FROM varied a JOIN varied b USING "
+      "(inputs) WHERE a.point_id < b.point_id AND NOT EXISTS (SELECT 1 FROM point_input i JOIN point_input j USING "
+      "(path) WHERE i.point_id = a.point_id AND j.point_id = b.point_id AND i.value IS NOT j.value) AND EXISTS (SELECT "
+      "1 FROM run r JOIN run s USING (seed, results_version) WHERE r.point_id = a.point_id AND s.point_id = b.point_id "
+      "AND r.surplus = 0 AND s.surplus = 0)) SELECT count(*) OVER (), a, b, (SELECT path FROM point_input WHERE "
+      "point_id IN (a, b) GROUP BY path HAVING count(*) = 1 LIMIT 1) FROM twin ORDER BY a, b LIMIT 1",
+      0, NULL, 0, &sink, error);
+}

@@ -55,6 +55,16 @@ status ask_register_functions(struct store *store, struct error *error);
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
                  struct error *error);
 
+/* Two points that share seeds and have no input with two values: each may have inputs that the other lacks. That is
+ * what a campaign leaves when it is computed once more by a program with a new input. ask_group counts the runs of
+ * both. */
+struct ask_group_twins {
+  int64_t pairs;    /* of such points; 0: none, and the rest is not set */
+  int64_t point[2]; /* one pair */
+  char input[256];  /* that only one of these two has */
+};
+status ask_group_twins(struct store *store, struct ask_group_twins *twins, struct error *error);
+
 /* Canned queries: a name, what it answers in a sentence, its SQL, the names of its parameters. */
 struct query_canned {
   const char *name, *doc, *sql;

@@ -308,6 +308,59 @@ static void parameters_are_bound(void **state) {
   store_close(store, NULL);
 }
 
+/* A program without the row fidelity.grains computes a campaign; then the program with it computes the same one again:
+ * other identities, the same seeds. Points that differ in a value, or share no seed, are no twins. */
+static void the_same_seeds_are_seen(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct ask_group_twins twins;
+  struct fixture_inputs inputs;
+  struct fixture_run f;
+  int64_t campaign, session, older, newer;
+  const struct field_table fewer = {fixture_input_rows, sizeof fixture_input_rows / sizeof *fixture_input_rows - 1,
+                                    sizeof inputs, "fake scene", "A scene for tests."};
+  struct engine_kind before = fixture_kind;
+  before.inputs = &fewer;
+  OK(store_open_writer(fixture_path(path, "twins"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 2, 3, false, &error)); /* points 1 to 4 */
+  OK(ask_group_twins(store, &twins, &error));
+  assert_int_equal(twins.pairs, 0);
+
+  OK(store_add_campaign(store, "older", "name: older", "{}", &campaign, &error));
+  OK(store_begin_session(store, "{}", &session, &error));
+  struct scene scene = fixture_scene(&inputs, 6, 1e31);
+  scene.kind = &before;
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &older, &error));
+  fixture_fill(&f, &scene, older, session, 7, FIXTURE_FRAGMENTS); /* a seed of its own */
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_flush(store, &error));
+  OK(ask_group_twins(store, &twins, &error));
+  assert_int_equal(twins.pairs, 0);
+
+  fixture_fill(&f, &scene, older, session, 1, FIXTURE_FRAGMENTS);
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_flush(store, &error));
+  newer = (int64_t)number(store, "SELECT point_id FROM points WHERE material_m = 6 AND material_k = 1e31 ORDER BY 1");
+  assert_int_not_equal(newer, older);
+  OK(ask_group_twins(store, &twins, &error));
+  assert_int_equal(twins.pairs, 1);
+  assert_int_equal(twins.point[0], newer); /* stored first here */
+  assert_int_equal(twins.point[1], older);
+  assert_string_equal(twins.input, "fidelity.grains");
+
+  scene = fixture_scene(&inputs, 6, 1e31); /* another value: a point of its own */
+  inputs.grains = 50;
+  OK(store_add_point(store, campaign, &scene, 2, fixture_axes, &newer, &error));
+  fixture_fill(&f, &scene, newer, session, 0, FIXTURE_FRAGMENTS);
+  OK(store_add_run(store, &f.run, &error));
+  OK(store_flush(store, &error));
+  OK(ask_group_twins(store, &twins, &error));
+  assert_int_equal(twins.pairs, 1);
+  OK(store_close(store, &error));
+  fixture_path(path, "twins");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_have_mean_scatter_and_interval),
@@ -315,6 +368,7 @@ int main(void) {
       cmocka_unit_test(spread_of_equal_values_is_zero),
       cmocka_unit_test(spectra_are_densities),
       cmocka_unit_test(groups_pool_runs_not_means),
+      cmocka_unit_test(the_same_seeds_are_seen),
       cmocka_unit_test(only_reading_is_allowed),
       cmocka_unit_test(time_limit_stops),
       cmocka_unit_test(every_canned_query_runs),
