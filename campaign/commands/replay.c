@@ -57,6 +57,9 @@ static status print_differences(struct store *store, int64_t run_id, const struc
 
 static status verdict(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
                       size_t fragments, struct error *error) {
+  if (comparison->absent)
+    fprintf(stderr, "clast: %zu result%s not compared: the program that stored the run did not store %s\n",
+            comparison->absent, comparison->absent == 1 ? "" : "s", comparison->absent_names);
   if (comparison->different == 0) {
     fprintf(stderr, "run %" PRId64 ": %zu results and %zu fragment masses agree to the last bit\n", run_id,
             comparison->compared - 1, fragments);
@@ -137,8 +140,8 @@ const struct command replay_command = {
     .summary = "compute a stored run again and compare every bit",
     .doc =
         "Takes the scene and seed of run RUN (run_id) from the store, computes it again, and compares all results and\n"
-        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. Does not change the\n"
-        "store.",
+        "fragment masses bit by bit. Prints a table of the differences; exit 65 if there are any. Results that the\n"
+        "program of that time did not store are named and not compared. Does not change the store.",
     .examples = "clast replay out.db 17\nclast replay out.db 17 --fields run17.h5",
     .minimum_arguments = 2,
     .maximum_arguments = 2,

@@ -14,12 +14,15 @@ struct comparison {
   char (*names)[128]; /* of the columns */
   struct replay_compare *out;
   struct table *table;
+  const struct field **doubtful; /* rows that have a value now and none in the store, `doubtful_count` of them */
+  size_t doubtful_count;
 };
 
 static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
   struct comparison *comparison = context;
   comparison->names = calloc(count, sizeof *comparison->names);
-  if (!comparison->names)
+  comparison->doubtful = calloc(count, sizeof *comparison->doubtful);
+  if (!comparison->names || !comparison->doubtful)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   for (size_t i = 0; i < count; i++)
     snprintf(comparison->names[i], sizeof comparison->names[i], "%s", names[i]);
@@ -53,8 +56,13 @@ static void compare_value(struct comparison *comparison, const struct field *row
                           const struct query_value *stored) {
   struct field_value computed;
   field_get(row, object, &computed);
+  const bool same = same_value(row, &computed, stored);
+  if (!same && stored->kind == QUERY_NULL) {
+    comparison->doubtful[comparison->doubtful_count++] = row;
+    return;
+  }
   comparison->out->compared++;
-  if (same_value(row, &computed, stored))
+  if (same)
     return;
 
   char text[FIELD_TEXT_SIZE], kept[FIELD_TEXT_SIZE];
@@ -87,6 +95,29 @@ static status compare_row(void *context, size_t count, const struct query_value 
   return STATUS_OK;
 }
 
+/* Results without a value in the store: a program that knew the result stored a value of it in some run; then the run
+ * differs. */
+static status judge_doubtful(struct comparison *comparison, struct store *store, int64_t run_id, struct error *error) {
+  struct replay_compare *out = comparison->out;
+  for (size_t i = 0; i < comparison->doubtful_count; i++) {
+    char name[sizeof *comparison->names];
+    bool used = false;
+    field_column_name(comparison->doubtful[i]->path, name, sizeof name);
+    status code = ask_run_column_used(store, run_id, comparison->kind->name, name, &used, error);
+    if (code)
+      return code;
+    if (used) {
+      out->compared++;
+      difference(comparison, comparison->doubtful[i]->path, NULL, "a value");
+      continue;
+    }
+    const size_t length = strlen(out->absent_names);
+    snprintf(out->absent_names + length, sizeof out->absent_names - length, "%s%s", length ? ", " : "", name);
+    out->absent++;
+  }
+  return STATUS_OK;
+}
+
 static void compare_masses(struct comparison *comparison, const double *masses, size_t count) {
   const struct run_result *result = comparison->result;
   bool same = count == result->fragment_count;
@@ -107,11 +138,14 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
   size_t count = 0;
   status code = ask_run_results(store, run_id, kind->name, &sink, error);
   if (code == STATUS_OK)
+    code = judge_doubtful(&comparison, store, run_id, error);
+  if (code == STATUS_OK)
     code = ask_run_masses(store, run_id, &masses, &count, error);
   if (code == STATUS_OK && masses)
     compare_masses(&comparison, masses, count);
   free(masses);
   free(comparison.names);
+  free(comparison.doubtful);
   if (code == STATUS_OK && out->compared < 3)
     return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);
   return code;

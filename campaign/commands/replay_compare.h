@@ -8,6 +8,8 @@
 
 struct replay_compare {
   size_t compared, different; /* results; the fragment masses together are one of them */
+  size_t absent;              /* results that the program that stored the run did not know, as it seems: not compared */
+  char absent_names[256];     /* the first of them */
 };
 
 /* Each difference is a row of `table`: name, stored, recomputed. STATUS_CONTENT: the store has no results of this run.

@@ -45,6 +45,19 @@ status ask_run_results(struct store *store, int64_t run_id, const char *engine, 
   return query_run(store, sql, 0, NULL, 0, sink, error);
 }
 
+status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
+                           struct error *error) {
+  char sql[512];
+  double count = 0;
+  snprintf(sql, sizeof sql,
+           "SELECT count(\"%.128s\") FROM run JOIN result_%.64s USING (run_id) WHERE session_id IS (SELECT session_id "
+           "FROM run WHERE run_id = %lld)",
+           column, engine, (long long)run_id);
+  status code = query_number(store, sql, 0, NULL, &count, error);
+  *used = count > 0;
+  return code;
+}
+
 struct masses {
   double *list;
   size_t count;

@@ -17,6 +17,11 @@ void ask_run_release(struct ask_run *run); /* a zeroed one is fine */
 status ask_run_results(struct store *store, int64_t run_id, const char *engine, const struct query_sink *sink,
                        struct error *error);
 
+/* Did the program that computed this run store a value in a column of run or result_<engine>, of this run or of another
+ * one in the same session? If not, it may not have known that result. */
+status ask_run_column_used(struct store *store, int64_t run_id, const char *engine, const char *column, bool *used,
+                           struct error *error);
+
 /* Fragment masses in kg, largest first, to be freed by the caller. NULL: the store has none. */
 status ask_run_masses(struct store *store, int64_t run_id, double **masses, size_t *count, struct error *error);
 

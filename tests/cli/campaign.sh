@@ -103,6 +103,40 @@ expect 0 "$clast" spectrum tiny.db --where "replicate = 0" --csv
 expect 0 "$clast" check tiny.db
 expect 0 "$clast" replay tiny.db 3
 says "agree to the last bit"
+# A result that the program of that time did not know has no value in the store; one that it knew is compared.
+cp tiny.db older.db
+python -c "
+import sqlite3
+db = sqlite3.connect('older.db')
+column = [c[1] for c in db.execute('PRAGMA table_info(result_dem)') if c[2] == 'REAL'
+          and db.execute(f'SELECT count({c[1]}) = count(*) FROM result_dem').fetchone()[0]][0]
+db.execute(f'UPDATE result_dem SET {column} = NULL')
+db.commit()
+print(column)" >column
+expect 0 "$clast" replay older.db 3
+says "1 result not compared"
+says "$(cat column)"
+cp tiny.db wrong.db
+python -c "
+import sqlite3
+db = sqlite3.connect('wrong.db')
+db.execute('UPDATE result_dem SET $(cat column) = NULL WHERE run_id = 3')
+db.commit()"
+expect 65 "$clast" replay wrong.db 3
+says "1 of"
+# A program without some input computed the same seeds: each counts twice.
+expect 0 "$clast" stats tiny.db
+silent err
+python -c "
+import sqlite3
+db = sqlite3.connect('older.db')
+new = db.execute('INSERT INTO point SELECT NULL, randomblob(16), engine, scene_name, scene FROM point WHERE point_id = 1').lastrowid
+db.execute('INSERT INTO point_input SELECT ?, path, value FROM point_input WHERE point_id = 1 AND path <> ?', (new, 'contact.friction'))
+columns = ', '.join(c[1] for c in db.execute('PRAGMA table_info(run)') if c[1] not in ('run_id', 'point_id', 'identity'))
+db.execute(f'INSERT INTO run (point_id, identity, {columns}) SELECT ?, randomblob(16), {columns} FROM run WHERE point_id = 1', (new,))
+db.commit()"
+expect 0 "$clast" stats older.db
+says "contact.friction"
 expect 64 "$clast" replay tiny.db 999
 expect 64 "$clast" replay tiny.db x
 expect 0 "$clast" retry tiny.db
@@ -145,4 +179,4 @@ says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 54
+done_after 58
