@@ -189,6 +189,7 @@ static void thresholds_and_choices(void **state) {
       {"contact.normal_damping=2e4 1/s", NULL},
       {"contact.normal_damping=2e4 1/s", "contact.damping_bonded=true"},
       {"grain.disorder=0.5", NULL},
+      {"stop.least_time=0 s", NULL},
       {"stop.quiet_time=1 ms", NULL},
       {"fidelity.integrator=gear", NULL},
       {"fidelity.time_step=0.5 us", NULL},
