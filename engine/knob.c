@@ -67,6 +67,7 @@ static const struct knob knobs[] = {
         .meaning = "grains that a beam joins repel each other, too"),
     DEM("breaking", MODEL, .inputs = {{"threshold.breaking"}}, ON_OFF, .pairs = true, .meaning = "beams may break"),
 };
+_Static_assert(sizeof knobs / sizeof knobs[0] <= KNOB_MOST, "raise KNOB_MOST");
 
 size_t knob_count(void) {
   return sizeof knobs / sizeof knobs[0];
@@ -74,6 +75,10 @@ size_t knob_count(void) {
 
 const struct knob *knob_at(size_t index) {
   return &knobs[index];
+}
+
+size_t knob_index(const struct knob *knob) {
+  return (size_t)(knob - knobs);
 }
 
 const struct knob *knob_find(const char *engine, const char *name, struct error *error) {

@@ -8,7 +8,7 @@
 
 #include "schemas/status.h"
 
-enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12 };
+enum { KNOB_INPUTS = 3, KNOB_LEVELS = 12, KNOB_MOST = 64 /* in the list */ };
 
 enum knob_group {
   KNOB_RESOLUTION, /* has a best end, which is the reference: its bias is part of the error of resolution */
@@ -37,6 +37,7 @@ struct knob {
 
 size_t knob_count(void);
 const struct knob *knob_at(size_t index);
+size_t knob_index(const struct knob *knob); /* of a knob of the list */
 /* NULL + STATUS_USAGE with the known names of this engine. */
 const struct knob *knob_find(const char *engine, const char *name, struct error *error);
 

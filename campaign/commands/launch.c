@@ -132,8 +132,7 @@ status launch_campaign(const struct campaign *campaign, const char *store, const
   return code ? code : stopped;
 }
 
-/* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
-static bool other_rank(void) {
+bool launch_other_rank(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID"};
   if (!farm_under_mpi() && farm_launched() <= 1)
     return false;
@@ -146,7 +145,7 @@ static bool other_rank(void) {
 }
 
 status launch_quiet_ranks(status code, struct error *error) {
-  if (code == STATUS_OK || !other_rank())
+  if (code == STATUS_OK || !launch_other_rank())
     return code;
   error->message[0] = '\0';
   nanosleep(&(struct timespec){.tv_nsec = 500000000}, NULL);

@@ -28,6 +28,9 @@ struct launch_options {
 status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
                        enum table_format format, const struct command_line *line, struct error *error);
 
+/* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
+bool launch_other_rank(void);
+
 /* Under mpirun only rank 0 prints errors: on other ranks this clears the message. It also lets the process live a
  * moment longer, because mpirun ends all ranks when the first one leaves with an error. Returns `code`. */
 status launch_quiet_ranks(status code, struct error *error);

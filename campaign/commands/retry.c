@@ -4,6 +4,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
+#include "campaign/converge/accuracy.h"
 #include "db/ask/campaign.h"
 
 struct options {
@@ -77,6 +78,8 @@ static status retry(const struct command_line *line, enum table_format format, s
     goto cleanup;
   }
   code = raise_limits(options, name, document, attempts, &campaign, error);
+  if (code == STATUS_OK && !launch_other_rank())
+    code = accuracy_settle(campaign, "CAMPAIGN.yaml", path, error);
   if (code == STATUS_OK)
     code = launch_campaign(campaign, path, &options->launch, format, line, error);
 cleanup:

@@ -3,6 +3,7 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
+#include "campaign/converge/accuracy.h"
 #include "campaign/terminal/table.h"
 
 struct options {
@@ -22,9 +23,11 @@ static status run(const struct command_line *line, struct error *error) {
     return commands_plan(path, options->store, options->launch.slots, false, options->launch.table.json, error);
   struct campaign *campaign = NULL;
   code = campaign_load(path, &campaign, error);
+  const char *store = options->store || code ? options->store : campaign->store;
+  if (!code && !launch_other_rank()) /* only the manager takes runs from the campaign */
+    code = accuracy_settle(campaign, path, store, error);
   if (!code)
-    code = launch_campaign(campaign, options->store ? options->store : campaign->store, &options->launch, format, line,
-                           error);
+    code = launch_campaign(campaign, store, &options->launch, format, line, error);
   campaign_free(campaign);
   return launch_quiet_ranks(code, error);
 }

@@ -206,6 +206,17 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   return STATUS_OK;
 }
 
+status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error) {
+  struct making making = {.knob = knob, .base = scene};
+  struct field_value value = {0};
+  status code = find_inputs(&making, error);
+  if (code != STATUS_OK)
+    return code;
+  if (field_parse(making.rows[0], setting, &value, error) != STATUS_OK)
+    return STATUS_USAGE;
+  return same_value(making.rows[0], &value, &making.own[0]) ? STATUS_OK : set_inputs(&making, &value, scene, error);
+}
+
 void ladder_clear(struct ladder *ladder) {
   for (size_t i = 0; i < ladder->count; i++)
     scene_free(ladder->level[i].scene);

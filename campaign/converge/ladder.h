@@ -23,6 +23,10 @@ struct ladder {
  * scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no value of the input. */
 status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
                    char **notes, struct error *error);
+/* Sets all inputs of a knob in a scene, as the level `setting` of its ladder has them. STATUS_CONTENT when the knob
+ * does not apply or the scene refuses the value, STATUS_USAGE when it is no value of the input. */
+status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error);
+
 void ladder_clear(struct ladder *ladder);
 
 #endif

@@ -50,6 +50,13 @@ static const struct field rows[] = {
                  "narrow "
                  "far too often."),
     COUNT("seeds.until.batch", until_batch, 10, 1, 0x1p40, .doc = "Replicates between two decisions."),
+    TEXT("accuracy.quantity", accuracy_quantity, .text = "",
+         .doc = "The quantity that must be accurate. Default: the main quantity."),
+    ROW("accuracy.within", accuracy_within, FIELD_REAL, "1", .number = NAN, .minimum = 0, .maximum = HUGE_VAL,
+        .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+        .doc = "Choose settings and number of seeds so that the error of resolution and the 95 % interval of the mean "
+               "together are at most this, in the SI unit of the quantity, at the least processor time. The choice "
+               "comes from a study in the store (`clast converge`). off: settings and seeds are as written."),
     ROW("limits.time", time_limit, FIELD_REAL, "s", .number = NAN, .minimum = 0, .maximum = 1e9,
         .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM, .doc = "Wall time of one attempt at a run; off: none."),
     ROW("limits.memory", memory_limit, FIELD_REAL, "B", .number = NAN, .minimum = 1048576, .maximum = 0x1p60,
@@ -233,6 +240,21 @@ static void check_seeds(document_node *root, struct campaign *campaign) {
                     (long long)campaign->maximum, (long long)campaign->until_minimum);
 }
 
+/* `accuracy` decides the seeds itself. */
+static void check_accuracy(document_node *root, struct campaign *campaign) {
+  document_node *accuracy = document_key(root, "accuracy"), *seeds = key_of(document_key(root, "seeds"), "per_point");
+  if (!campaign->accuracy_quantity[0])
+    memcpy(campaign->accuracy_quantity, campaign->quantity, sizeof campaign->accuracy_quantity);
+  if (!accuracy)
+    return;
+  if (!key_of(accuracy, "within"))
+    document_report(accuracy, "accuracy", "'within' is missing: how far may the result be off?");
+  if (seeds || key_of(document_key(root, "seeds"), "until"))
+    document_report(accuracy, "accuracy",
+                    "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "
+                    "out");
+}
+
 static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
   struct error error;
   bool of_outcome;
@@ -277,6 +299,7 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   read_keep(document_key(root, "keep"), campaign);
   read_design(document_key(root, "design"), campaign);
   check_seeds(root, campaign);
+  check_accuracy(root, campaign);
   if (!campaign->store[0] &&
       snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
@@ -291,6 +314,9 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   bool varied = campaign_vary_read(vary, campaign);
   read_set(set, campaign);
   document_node *quantity = document_key(root, "quantity"), *until = key_of(key_of(root, "seeds"), "until");
+  document_node *accuracy_quantity = key_of(document_key(root, "accuracy"), "quantity");
+  if (accuracy_quantity)
+    check_quantity(accuracy_quantity, "accuracy.quantity", campaign->accuracy_quantity, campaign);
   document_node *until_quantity = key_of(until, "quantity");
   check_quantity(quantity ? quantity : scene, "quantity", campaign->quantity, campaign);
   if (until_quantity)

@@ -10,6 +10,7 @@
  *     set: {contact.friction: 0.2}
  *     seeds: {first: 1, per_point: 30}  # or {until: {quantity: largest_fraction, half_width: 0.01}, max: 200}
  *     design: grid                      # or list, or {kind: random | latin_hypercube | sobol, points: 64, seed: 1}
+ *     accuracy: {within: 0.02}          # instead of seeds: settings and number of seeds from a study
  *     keep: {fields: none}              # none | all | extremes | first N
  *     limits: {time: 10 min, memory: 2 GiB, attempts: 2, failures: 20}
  *     store: thresholds.db              # relative to the current folder */
@@ -42,10 +43,12 @@ struct campaign {
   double until_half_width; /* of the confidence interval of the mean, SI of the quantity */
   double until_level;      /* 0.95 */
   int64_t until_minimum, until_batch;
-  double time_limit;   /* s per attempt, NaN = off */
-  double memory_limit; /* bytes per attempt, NaN = off */
-  int64_t attempts;    /* of one run, in all */
-  int64_t failures;    /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
+  char accuracy_quantity[FIELD_TEXT_SIZE];
+  double accuracy_within; /* |error| and interval of the mean together, SI of the quantity; NaN: not asked for */
+  double time_limit;      /* s per attempt, NaN = off */
+  double memory_limit;    /* bytes per attempt, NaN = off */
+  int64_t attempts;       /* of one run, in all */
+  int64_t failures;       /* of the first CAMPAIGN_FIRST_RUNS that end the campaign; 0 = never */
   struct campaign_design_keys design;
   int keep;           /* enum campaign_keep */
   int64_t keep_first; /* of CAMPAIGN_KEEP_FIRST */

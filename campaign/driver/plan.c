@@ -194,7 +194,8 @@ cleanup:
 
 void plan_clear(struct plan *plan) {
   free(plan->model);
-  plan->model = NULL;
+  free(plan->alternatives);
+  plan->model = plan->alternatives = NULL;
 }
 
 static const char *bytes(double count, char *buffer, size_t size) {
@@ -291,6 +292,8 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   number(out, "memory_most_bytes", plan->memory_most);
   number(out, "disk_bytes", plan->disk_bytes);
   number(out, "fields_bytes", plan->fields_bytes);
+  if (plan->alternatives)
+    fprintf(out, ", \"alternatives\": %s", plan->alternatives);
   fputs(", \"model\": ", out);
   text_json_string(plan->model ? plan->model : "", out);
   fputs("}\n", out);

@@ -27,6 +27,7 @@ struct plan {
   double disk_bytes;                /* store growth for runs_most; NaN without trial */
   double fields_bytes;              /* HDF5 files to keep; NaN when not known */
   char *model;                      /* owned: kind->describe() of the point looked at */
+  char *alternatives;               /* owned: JSON array of the settings that an accuracy was chosen from, or NULL */
 };
 
 status plan_make(const struct campaign *campaign, const struct plan_options *options, struct plan *plan,

@@ -62,15 +62,6 @@ status store_add_campaign(struct store *store, const char *name, const char *doc
   return store_end(store, result, 1, error);
 }
 
-/* A point's hash is a run's identity without seed and results_version: a point outlives a change of result bits. */
-static void point_hash(const struct scene *scene, uint8_t hash[16]) {
-  struct engine_kind kind = *scene->kind;
-  struct scene unversioned = *scene;
-  kind.results_version = 0;
-  unversioned.kind = &kind;
-  scene_identity(&unversioned, 0, hash);
-}
-
 static status add_inputs(struct store *store, int64_t point_id, const struct scene *scene, struct error *error) {
   const struct field_table *inputs = scene->kind->inputs;
   status result = sql_prepare_once(store->db, &store->point_input,
@@ -88,26 +79,13 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
   return result;
 }
 
-/* *point_id: 0 when the point is not stored yet. */
-static status find_point(struct store *store, const uint8_t hash[16], int64_t *point_id, struct error *error) {
-  status result = sql_prepare_once(store->db, &store->point_find, "SELECT point_id FROM point WHERE hash = ?1",
-                                   adding_point, error);
-  if (result != STATUS_OK)
-    return result;
-  sqlite3_bind_blob(store->point_find, 1, hash, 16, SQLITE_STATIC);
-  int code = sqlite3_step(store->point_find);
-  *point_id = code == SQLITE_ROW ? sqlite3_column_int64(store->point_find, 0) : 0;
-  sqlite3_reset(store->point_find);
-  return code == SQLITE_ROW || code == SQLITE_DONE ? STATUS_OK : sql_fail(store->db, code, adding_point, error);
-}
-
 static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
                                 struct error *error) {
-  uint8_t hash[16];
-  point_hash(scene, hash);
-  status result = find_point(store, hash, point_id, error);
+  status result = store_point_find(store, scene, point_id, error);
   if (result != STATUS_OK || *point_id != 0)
     return result;
+  uint8_t hash[16];
+  store_point_hash(scene, hash);
   result = sql_prepare_once(store->db, &store->point,
                             "INSERT INTO point (hash, engine, scene_name, scene) VALUES (?1, ?2, ?3, ?4)", adding_point,
                             error);

@@ -59,6 +59,9 @@ static inline bool store_run_counts(const struct store_run *run) {
 /* Adds the masses, the spectrum and the running sums of a run whose row is written. Within the open batch. */
 status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
+/* The hash that a point is known by. */
+void store_point_hash(const struct scene *scene, uint8_t hash[16]);
+
 /* Inserts the estimates of a run that has none yet, within the open batch. */
 status store_set_estimates_rows(struct store *store, int64_t run_id, size_t count, const struct estimate *rows,
                                 struct error *error);

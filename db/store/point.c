@@ -1,9 +1,33 @@
-/* A point's runs, for a driver that resumes and for stopping rules. */
+/* Finds a point by its scene, and reads its runs, for a driver that resumes and for stopping rules. */
 #include <math.h>
 #include <string.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+
+/* A point's hash is a run's identity without seed and results_version: a point outlives a change of result bits. */
+void store_point_hash(const struct scene *scene, uint8_t hash[16]) {
+  struct engine_kind kind = *scene->kind;
+  struct scene unversioned = *scene;
+  kind.results_version = 0;
+  unversioned.kind = &kind;
+  scene_identity(&unversioned, 0, hash);
+}
+
+status store_point_find(struct store *store, const struct scene *scene, int64_t *point_id, struct error *error) {
+  static const char doing[] = "looking for a point";
+  uint8_t hash[16];
+  status result = sql_prepare_once(store->db, &store->point_find, "SELECT point_id FROM point WHERE hash = ?1", doing,
+                                   error);
+  if (result != STATUS_OK)
+    return result;
+  store_point_hash(scene, hash);
+  sqlite3_bind_blob(store->point_find, 1, hash, 16, SQLITE_STATIC);
+  int code = sqlite3_step(store->point_find);
+  *point_id = code == SQLITE_ROW ? sqlite3_column_int64(store->point_find, 0) : 0;
+  sqlite3_reset(store->point_find);
+  return code == SQLITE_ROW || code == SQLITE_DONE ? STATUS_OK : sql_fail(store->db, code, doing, error);
+}
 
 static int state_of(const struct field *states, const char *name) {
   for (int k = 0; name && states->choices[k]; k++)

@@ -40,6 +40,9 @@ status store_add_campaign(struct store *store, const char *name, const char *doc
 status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
                        const char *const *varied_paths, int64_t *point_id, struct error *error);
 
+/* *point_id: 0 when the store has no such point. For a reader or a writer. */
+status store_point_find(struct store *store, const struct scene *scene, int64_t *point_id, struct error *error);
+
 struct store_run {
   int64_t point_id, session_id;
   int64_t replicate;

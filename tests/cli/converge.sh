@@ -63,6 +63,36 @@ tiny tiny
 expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
 same "$(number tiny.db "select count(distinct base_point_id) from convergence")" 4 "points studied"
 
+# Accuracy on demand: without a study the command is named; then the cheapest settings are taken, and their seeds run.
+cat >sharp.yaml <<'YAML'
+name: sharp
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+accuracy: {within: 0.05}
+store: sharp.db
+YAML
+expect 65 "$clast" run sharp.yaml
+says "clast converge sharp.yaml --quantity largest_fraction --store sharp.db"
+expect 0 "$clast" converge sharp.yaml --knob time_step --seeds 8 --max-seeds 8 --store sharp.db -j 2
+expect 0 "$clast" plan sharp.yaml --json
+python - <<'PY'
+import json, sqlite3
+plan = json.load(open('out'))
+chosen, = [a for a in plan['alternatives'] if a['choice'] == 'chosen']
+open('setting', 'w').write(str(float(chosen['setting'])))
+assert plan['runs_least'] == chosen['seeds'] > 2, plan
+assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a in plan['alternatives'])
+PY
+ok "the plan takes the cheapest alternative"
+expect 0 "$clast" plan sharp.yaml
+prints "chosen"
+expect 0 "$clast" run sharp.yaml -j 2 --quiet --csv
+same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
+  where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
+sed -i 's/0.05/1e-9/' sharp.yaml
+expect 65 "$clast" run sharp.yaml
+says "smallest error"
+
 expect 64 "$clast" converge
 expect 64 "$clast" converge disc-explosion --knob particles
 says "grains"
@@ -73,4 +103,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=0.01
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 22
+done_after 30

@@ -8,7 +8,7 @@ awk '/^```/ { kind = substr($0, 4); file = ""; next }
   kind == "yaml" && !file && /^# .*\.yaml$/ { file = $2 }
   kind == "yaml" && file { print > file }
   kind == "sh" { print > "commands" }' "$guide"
-same "$(ls ./*.yaml | tr '\n' ' ')" "./forms.yaml ./guide.yaml ./levels.yaml ./until.yaml " "campaigns of the guide"
+same "$(ls ./*.yaml | tr '\n' ' ')" "./accurate.yaml ./forms.yaml ./guide.yaml ./levels.yaml ./until.yaml " "campaigns of the guide"
 
 mkdir -p bin
 ln -s "$clast" bin/clast
@@ -26,7 +26,7 @@ for key in $(python -c "
 import json
 keys = json.load(open('$source/schemas/campaign.schema.json'))['properties']
 for key, value in keys.items():
-    inner = value.get('properties') if key in ('seeds', 'limits', 'keep') else None
+    inner = value.get('properties') if key in ('seeds', 'accuracy', 'limits', 'keep') else None
     print(*[f'{key}.{k}' for k in inner] if inner else [key])"); do
   grep -qF "| \`$key\` |" "$guide" || fail "the guide does not have the key $key"
 done

@@ -1,0 +1,222 @@
+/* Reads a study, finds how many seeds each level needs, and chooses. */
+#include "campaign/converge/accuracy.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/statistics/sample.h"
+#include "campaign/converge/ladder.h"
+#include "campaign/design/design.h"
+#include "db/ask/convergence.h"
+
+enum { FEWEST_SEEDS = 3, MOST_SEEDS = 1000000, LOOKED_AT = 1000 };
+
+int64_t accuracy_seeds(double deviation, double margin) {
+  if (!(margin > 0) || !(deviation >= 0))
+    return 0;
+  int64_t low = FEWEST_SEEDS - 1, high = FEWEST_SEEDS; /* low is too few */
+  while (high <= MOST_SEEDS && sample_student((size_t)high, 0.95) * deviation / sqrt((double)high) > margin) {
+    low = high;
+    high *= 2;
+  }
+  if (high > MOST_SEEDS)
+    return 0;
+  while (high - low > 1) {
+    const int64_t middle = low + (high - low) / 2;
+    if (sample_student((size_t)middle, 0.95) * deviation / sqrt((double)middle) > margin)
+      low = middle;
+    else
+      high = middle;
+  }
+  return high;
+}
+
+struct finding {
+  const struct campaign *campaign;
+  struct accuracy *accuracy;
+  bool base_open[KNOB_MOST]; /* by number of the knob */
+  bool studied;
+};
+
+static const struct knob *knob_of(const struct campaign *campaign, const char *name) {
+  struct error ignored;
+  return knob_find(campaign->scene->kind->name, name, &ignored);
+}
+
+static bool is_varied(const struct campaign *campaign, const struct knob *knob) {
+  for (size_t i = 0; i < KNOB_INPUTS && knob->inputs[i].path; i++)
+    for (size_t a = 0; a < campaign->axis_count; a++)
+      if (strcmp(campaign->axes[a].row->path, knob->inputs[i].path) == 0)
+        return true;
+  return false;
+}
+
+/* First pass: which knobs have no limit at the scene's own setting. */
+static status take_open(void *context, const struct convergence_row *row, struct error *error) {
+  (void)error;
+  struct finding *finding = context;
+  const struct knob *knob = knob_of(finding->campaign, row->knob);
+  finding->studied = true;
+  if (knob && row->base && row->open)
+    finding->base_open[knob_index(knob)] = true;
+  return STATUS_OK;
+}
+
+static bool others_open(const struct finding *finding, const struct knob *knob) {
+  for (size_t i = 0; i < knob_count(); i++)
+    if (finding->base_open[i] && knob_at(i) != knob)
+      return true;
+  return false;
+}
+
+/* Second pass: a level as an option. */
+static status take_option(void *context, const struct convergence_row *row, struct error *error) {
+  struct finding *finding = context;
+  struct accuracy *accuracy = finding->accuracy;
+  const struct knob *knob = knob_of(finding->campaign, row->knob);
+  if (!knob || isnan(row->resolution) || !isfinite(row->error) || !isfinite(row->deviation))
+    return STATUS_OK; /* a model is not chosen for its price; a level without runs tells nothing */
+  if (!row->base && is_varied(finding->campaign, knob))
+    return STATUS_OK;
+  for (size_t i = 0; row->base && i < accuracy->count; i++)
+    if (accuracy->options[i].own)
+      return STATUS_OK; /* every knob has the scene's own settings as a level */
+
+  struct accuracy_option *grown = realloc(accuracy->options, (accuracy->count + 1) * sizeof *grown);
+  if (!grown)
+    return status_fail(error, STATUS_MEMORY, "no memory for the alternatives");
+  accuracy->options = grown;
+  struct accuracy_option option = {.own = row->base,
+                                   .open = row->open || others_open(finding, knob),
+                                   .error = row->error,
+                                   .seeds = accuracy_seeds(row->deviation,
+                                                           finding->campaign->accuracy_within - row->error),
+                                   .run_s = row->cpu};
+  snprintf(option.knob, sizeof option.knob, "%.63s", row->knob);
+  snprintf(option.setting, sizeof option.setting, "%.63s", row->setting);
+  option.cpu_s = option.seeds ? (double)option.seeds * option.run_s : (double)NAN;
+  accuracy->options[accuracy->count++] = option;
+  return STATUS_OK;
+}
+
+static int by_cost(const void *a, const void *b) {
+  const struct accuracy_option *x = a, *y = b;
+  const bool reach_x = x->seeds > 0, reach_y = y->seeds > 0;
+  if (reach_x != reach_y)
+    return reach_x ? -1 : 1;
+  const double p = reach_x ? x->cpu_s : x->error, q = reach_x ? y->cpu_s : y->error;
+  return (p > q) - (p < q);
+}
+
+static void choose(struct accuracy *accuracy) {
+  qsort(accuracy->options, accuracy->count, sizeof *accuracy->options, by_cost);
+  accuracy->chosen = accuracy->count;
+  for (size_t i = accuracy->count; i-- > 0;) {
+    if (accuracy->options[i].seeds > 0 && !accuracy->options[i].open)
+      accuracy->chosen = i;
+    if (accuracy->options[i].error <= accuracy->options[accuracy->reference].error)
+      accuracy->reference = i;
+  }
+}
+
+/* Reads the study of this scene, if there is one. */
+static status read_study(struct finding *finding, struct store *store, const struct scene *scene, struct error *error) {
+  bool of_outcome;
+  char column[FIELD_TEXT_SIZE];
+  int64_t point = 0;
+  const struct field *row = campaign_quantity(scene->kind, finding->campaign->accuracy_quantity, &of_outcome, error);
+  if (!row)
+    return STATUS_CONTENT;
+  field_column_name(row->path, column, sizeof column);
+  status code = store_point_find(store, scene, &point, error);
+  if (code != STATUS_OK || point == 0)
+    return code;
+  code = ask_convergence_levels(store, point, scene->kind->results_version, column, take_open, finding, error);
+  if (code == STATUS_OK)
+    code = ask_convergence_levels(store, point, scene->kind->results_version, column, take_option, finding, error);
+  return code;
+}
+
+static status read_points(struct finding *finding, struct store *store, struct error *error) {
+  const struct campaign *campaign = finding->campaign;
+  struct design *design = NULL;
+  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
+  if (!values)
+    return status_fail(error, STATUS_MEMORY, "no memory for the points");
+  status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                              (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
+  for (int i = 0; code == STATUS_OK && !finding->studied && i < LOOKED_AT && design_next(design, values); i++) {
+    struct error ignored;
+    struct scene *scene = campaign_point_scene(campaign, values, &ignored);
+    if (scene)
+      code = read_study(finding, store, scene, error);
+    scene_free(scene);
+  }
+  design_free(design);
+  free(values);
+  return code;
+}
+
+static status no_study(const struct campaign *campaign, const char *path, const char *store, struct error *error) {
+  return status_fail(error, STATUS_CONTENT,
+                     "accuracy: %s has no study of %s for this campaign. Make it: clast converge %s --quantity %s "
+                     "--store %s",
+                     store, campaign->accuracy_quantity, path, campaign->accuracy_quantity, store);
+}
+
+status accuracy_find(const struct campaign *campaign, const char *path, const char *store_path,
+                     struct accuracy *accuracy, struct error *error) {
+  struct finding finding = {.campaign = campaign, .accuracy = accuracy};
+  struct store *store = NULL;
+  *accuracy = (struct accuracy){0};
+  status code = store_open_reader(store_path, &store, error);
+  if (code == STATUS_MISSING)
+    return no_study(campaign, path, store_path, error);
+  if (code == STATUS_OK)
+    code = read_study(&finding, store, campaign->scene, error);
+  if (code == STATUS_OK && !finding.studied)
+    code = read_points(&finding, store, error);
+  store_close(store, NULL);
+  if (code == STATUS_OK && accuracy->count == 0)
+    code = no_study(campaign, path, store_path, error);
+  if (code != STATUS_OK) {
+    accuracy_clear(accuracy);
+    return code;
+  }
+  choose(accuracy);
+  return STATUS_OK;
+}
+
+void accuracy_clear(struct accuracy *accuracy) {
+  free(accuracy->options);
+  *accuracy = (struct accuracy){0};
+}
+
+status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign, struct error *error) {
+  if (accuracy->chosen == accuracy->count) {
+    const struct accuracy_option *best = &accuracy->options[accuracy->reference];
+    return status_fail(error, STATUS_CONTENT,
+                       "accuracy: nothing that was studied gives %s within %g. The smallest error is %.2g%s, with "
+                       "%s = %s; `clast plan` prints the alternatives. Ask for less, or study finer levels",
+                       campaign->accuracy_quantity, campaign->accuracy_within, best->error,
+                       best->open ? " or more" : "", best->knob, best->setting);
+  }
+  const struct accuracy_option *option = &accuracy->options[accuracy->chosen];
+  campaign->per_point = option->seeds;
+  if (option->own)
+    return STATUS_OK;
+  const struct knob *knob = knob_of(campaign, option->knob);
+  return knob ? ladder_turn(knob, campaign->scene, option->setting, error) : STATUS_INTERNAL;
+}
+
+status accuracy_settle(struct campaign *campaign, const char *path, const char *store, struct error *error) {
+  if (field_is_off(campaign->accuracy_within))
+    return STATUS_OK;
+  struct accuracy accuracy;
+  status code = accuracy_find(campaign, path, store, &accuracy, error);
+  if (code == STATUS_OK)
+    code = accuracy_apply(&accuracy, campaign, error);
+  accuracy_clear(&accuracy);
+  return code;
+}

@@ -1,0 +1,172 @@
+/* Which settings and how many seeds reach an accuracy: known answers from made-up studies. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/analysis.h"
+#include "analysis/statistics/sample.h"
+#include "campaign/converge/accuracy.h"
+#include "tests/support/store_fixture.h"
+
+static struct error error;
+static char path[64];
+
+static void seeds_for_a_margin(void **state) {
+  (void)state;
+  /* t(n - 1) s/sqrt n at n = 10: 2.262157/3.162278 = 0.715357 */
+  assert_int_equal(accuracy_seeds(1, 0.71536), 10);
+  assert_int_equal(accuracy_seeds(1, 0.71535), 11);
+  assert_int_equal(accuracy_seeds(1, 100), 3);
+  assert_int_equal(accuracy_seeds(0, 1e-9), 3);
+  assert_int_equal(accuracy_seeds(1, 0), 0);
+  assert_int_equal(accuracy_seeds(1, 1e-9), 0);
+  assert_int_equal(accuracy_seeds(NAN, 1), 0);
+  for (double margin = 0.5; margin > 0.01; margin /= 1.7) {
+    const size_t n = (size_t)accuracy_seeds(1, margin);
+    assert_true(sample_student(n, 0.95) / sqrt((double)n) <= margin);
+    assert_true(sample_student(n - 1, 0.95) / sqrt((double)(n - 1)) > margin);
+  }
+}
+
+static struct campaign *campaign_of(const char *text) {
+  struct campaign *campaign = NULL;
+  if (campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error) != STATUS_OK)
+    fail_msg("%s", error.message);
+  return campaign;
+}
+
+struct level {
+  const char *setting;
+  double resolution, error, deviation, cpu;
+  bool base, open;
+};
+
+static void add_study(struct store *store, int64_t point, const char *knob, size_t count, const struct level *levels) {
+  struct convergence_row rows[8];
+  struct convergence_limit_row limit;
+  int64_t points[8];
+  field_defaults(&convergence_limit_table, &limit);
+  snprintf(limit.knob, sizeof limit.knob, "%s", knob);
+  strcpy(limit.quantity, "largest_fraction");
+  for (size_t i = 0; i < count; i++) {
+    field_defaults(&convergence_table, &rows[i]);
+    snprintf(rows[i].knob, sizeof rows[i].knob, "%s", knob);
+    snprintf(rows[i].setting, sizeof rows[i].setting, "%s", levels[i].setting);
+    strcpy(rows[i].quantity, "largest_fraction");
+    rows[i].resolution = levels[i].resolution;
+    rows[i].error = levels[i].error;
+    rows[i].deviation = levels[i].deviation;
+    rows[i].cpu = levels[i].cpu;
+    rows[i].base = levels[i].base;
+    rows[i].open = levels[i].open;
+    points[i] = point;
+  }
+  const struct store_convergence study = {point, engine_find("dem", &error)->results_version, count, points, rows,
+                                          &limit};
+  assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+}
+
+/* Own setting: 10 s, error 0.03. Twice the time step: 5 s, error 0.04. A quarter: 40 s, error 0.01. A model that is
+ * cheap is no choice. */
+static void store_study(const struct campaign *campaign, bool open) {
+  struct store *store = NULL;
+  int64_t point = 0;
+  assert_int_equal(store_open_writer(fixture_path(path, "accuracy"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(store_add_point(store, 0, campaign->scene, 0, NULL, &point, &error), STATUS_OK);
+  add_study(store, point, "time_step", 3,
+            (const struct level[]){{"2e-6", 0.02, 0.04, 0.02, 5, false, open},
+                                   {"1e-6", 0.01, 0.03, 0.02, 10, true, open},
+                                   {"2.5e-7", 0, 0.01, 0.02, 40, false, open}});
+  add_study(store, point, "contact_law", 2,
+            (const struct level[]){{"off", NAN, 0, 0.02, 1, false, false}, {"printed", NAN, 0, 0.02, 10, true, false}});
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+}
+
+#define HEAD "name: t\nscene: disc-explosion\n"
+
+static void the_cheapest_that_reaches_it(void **state) {
+  (void)state;
+  struct accuracy accuracy;
+  struct campaign *campaign = campaign_of(HEAD "accuracy: {within: 0.06}\n");
+  store_study(campaign, false);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 3);
+  /* margins 0.02, 0.03, 0.05 at a scatter of 0.02 need 7, 5, 3 seeds: 35, 50 and 120 s */
+  assert_int_equal(accuracy.chosen, 0);
+  assert_string_equal(accuracy.options[0].setting, "2e-6");
+  assert_int_equal(accuracy.options[0].seeds, 7);
+  assert_true(accuracy.options[0].cpu_s == 35 && accuracy.options[1].cpu_s == 50 && accuracy.options[1].own);
+  assert_int_equal(accuracy.reference, 2);
+  accuracy_clear(&accuracy);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_OK);
+  assert_int_equal(campaign->per_point, 7);
+  struct field_value value;
+  field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
+  assert_true(value.number == 2e-6);
+  campaign_free(campaign);
+
+  /* Nearer: only the finest reaches it. */
+  campaign = campaign_of(HEAD "accuracy: {quantity: largest_fraction, within: 0.025}\n");
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_OK);
+  field_get(field_find(campaign->scene->kind->inputs, "fidelity.time_step", &error), campaign->scene->inputs, &value);
+  assert_true(value.number == 2.5e-7);
+  campaign_free(campaign);
+
+  /* Nothing reaches it, and nothing counts whose error is not bounded. */
+  campaign = campaign_of(HEAD "accuracy: {within: 0.01}\n");
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "0.01"));
+  campaign->accuracy_within = 0.06;
+  store_study(campaign, true);
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT);
+  campaign_free(campaign);
+}
+
+static void a_varied_input_is_no_choice(void **state) {
+  (void)state;
+  struct accuracy accuracy;
+  struct campaign *campaign = campaign_of(HEAD "vary: {fidelity.time_step: [1e-6, 5e-7]}\naccuracy: {within: 0.06}\n");
+  store_study(campaign, false);
+  assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
+  assert_int_equal(accuracy.count, 1);
+  assert_true(accuracy.options[0].own);
+  accuracy_clear(&accuracy);
+  campaign_free(campaign);
+}
+
+static void without_a_study_the_command_is_named(void **state) {
+  (void)state;
+  struct campaign *campaign = campaign_of(HEAD "set: {contact.friction: 0.3}\naccuracy: {within: 0.06}\n");
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", "no-such.db", &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "clast converge t.yaml --quantity largest_fraction --store no-such.db"));
+  assert_int_equal(accuracy_settle(campaign, "t.yaml", path, &error), STATUS_CONTENT); /* of another scene */
+  assert_non_null(strstr(error.message, "clast converge"));
+  campaign_free(campaign);
+  static const char *const wrong[] = {"accuracy: {quantity: largest_fraction}\n", "accuracy: {within: 0}\n",
+                                      "accuracy: {within: 0.1, quantity: nonsense}\n",
+                                      "accuracy: {within: 0.1}\nseeds: {per_point: 3}\n",
+                                      "accuracy: {within: 0.1}\nseeds: {until: {half_width: 0.1}}\n"};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    char text[256];
+    campaign = NULL;
+    snprintf(text, sizeof text, HEAD "%s", wrong[i]);
+    error = (struct error){0};
+    assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
+    assert_non_null(strstr(error.message, "accuracy"));
+  }
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(seeds_for_a_margin),
+                                     cmocka_unit_test(the_cheapest_that_reaches_it),
+                                     cmocka_unit_test(a_varied_input_is_no_choice),
+                                     cmocka_unit_test(without_a_study_the_command_is_named)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
