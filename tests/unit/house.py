@@ -174,6 +174,21 @@ def check_names():
                   f"{path}:{number}: {', '.join(sorted(named))}: named outside of its row; take the name from the table")
 
 
+def check_modules():
+    """The head of a module of sph lists its inputs, with its bodies' materials as material.NAME; each has a row."""
+    paths, _, sections = known_paths()
+    for path in files(".c", folders=("engine/sph/modules",)):
+        text = read(path)
+        if "_module = {" not in text:
+            continue
+        listed = re.findall(r"^ \*   ((?:[a-z_]+\.[\w.*]+(?:, )?)+)(?=  | \*/|$)", text[: text.index("*/") + 2], re.M)
+        check(listed, f"{path}: the head lists no input of the module")
+        for name in ", ".join(listed).split(", "):
+            full = re.sub(r"^material\.", "target.material.", name)
+            known = full in paths or (full.endswith(".*") and full[:-2] in sections)
+            check(known, f"{path}: the head lists {name}, but no input is called so")
+
+
 # ---- words ----
 
 # Private words of this house that have no legitimate use in it.
@@ -190,6 +205,7 @@ def check_words():
 
 check_documents()
 check_names()
+check_modules()
 check_words()
 check(checked > 1000, f"looked at too little ({checked} things)")
 print(f"house: {checked} quotations and names checked, {failures} broken")
