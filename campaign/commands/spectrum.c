@@ -32,38 +32,6 @@ static void print_rivals(const struct pooled_rivals *rivals) {
          rivals->lognormal_p);
 }
 
-/* "strain 0.03, angle 0.0698 rad, 20 runs": the varied inputs by the last words of their paths. */
-struct label {
-  char text[128];
-  size_t used;
-};
-
-static void add_input(void *context, const struct ask_points_input *input) {
-  struct label *label = context;
-  const char *word = strrchr(input->path, '.');
-  const char *unit = strcmp(input->unit, "1") == 0 ? "" : input->unit;
-  char value[64], item[256];
-  if (input->value->kind == QUERY_TEXT)
-    snprintf(value, sizeof value, "%s", input->value->text);
-  else
-    snprintf(value, sizeof value, "%.3g", input->value->real);
-
-  int size = snprintf(item, sizeof item, "%s %s%s%s, ", word ? word + 1 : input->path, value, *unit ? " " : "", unit);
-  if (size <= 0 || label->used + (size_t)size + sizeof "20000 runs" >= sizeof label->text)
-    return; /* what does not fit is left out */
-  memcpy(label->text + label->used, item, (size_t)size + 1);
-  label->used += (size_t)size;
-}
-
-static status label_of(struct store *store, int64_t point, size_t runs, struct label *label, struct error *error) {
-  *label = (struct label){0};
-  status code = ask_points_inputs(store, point, add_input, label, error);
-  if (label->used == 0) /* nothing was varied */
-    label->used = (size_t)snprintf(label->text, sizeof label->text, "point %lld, ", (long long)point);
-  snprintf(label->text + label->used, sizeof label->text - label->used, "%zu run%s", runs, runs == 1 ? "" : "s");
-  return code;
-}
-
 struct drawing {
   int64_t points[POINTS_MAXIMUM];
   size_t count, there; /* points drawn; points with runs */
@@ -90,13 +58,15 @@ static status choose_points(struct store *store, int64_t point, struct drawing *
 static status make_series(struct store *store, bool with_rivals, struct drawing *drawing, size_t i,
                           struct error *error) {
   struct point_data point;
-  struct label label;
-  status code = point_read(store, drawing->points[i], 0, &point, error);
+  char inputs[112], label[128];
+  status code = ask_points_label(store, drawing->points[i], inputs, sizeof inputs, error);
   if (code)
     return code;
-  code = label_of(store, drawing->points[i], point.runs.count, &label, error);
-  if (code == STATUS_OK)
-    code = point_curve_make(&point, label.text, &drawing->curves[i], error);
+  code = point_read(store, drawing->points[i], 0, &point, error);
+  if (code)
+    return code;
+  snprintf(label, sizeof label, "%s, %zu run%s", inputs, point.runs.count, point.runs.count == 1 ? "" : "s");
+  code = point_curve_make(&point, label, &drawing->curves[i], error);
   const double lower = point_window(&point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
   if (code == STATUS_OK && with_rivals && lower > 0)
     code = pooled_rivals(&point.runs, lower, &drawing->rivals[i], error);

@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "db/sql.h"
 
@@ -141,25 +142,37 @@ status ask_points_with_runs(struct store *store, size_t most, int64_t *points, s
   return code;
 }
 
-struct inputs {
-  void (*each)(void *context, const struct ask_points_input *input);
-  void *context;
+struct label {
+  char *text;
+  size_t size, used;
 };
 
-static status give_input(void *context, size_t count, const struct query_value *values, struct error *error) {
+/* A row of path, value and unit. */
+static status add_input(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
-  const struct inputs *inputs = context;
-  const char *unit = values[2].kind == QUERY_TEXT ? values[2].text : "";
-  inputs->each(inputs->context, &(struct ask_points_input){values[0].text, &values[1], unit});
+  struct label *label = context;
+  const char *path = values[0].text, *word = strrchr(path, '.');
+  const char *unit = values[2].kind == QUERY_TEXT && strcmp(values[2].text, "1") != 0 ? values[2].text : "";
+  char value[64], item[256];
+  if (values[1].kind == QUERY_TEXT)
+    snprintf(value, sizeof value, "%s", values[1].text);
+  else
+    snprintf(value, sizeof value, "%.3g", values[1].real);
+
+  const int size = snprintf(item, sizeof item, "%s%s %s%s%s", label->used ? ", " : "", word ? word + 1 : path, value,
+                            *unit ? " " : "", unit);
+  if (size <= 0 || (size_t)size >= sizeof item || label->used + (size_t)size >= label->size)
+    return STATUS_OK; /* what does not fit is left out */
+  memcpy(label->text + label->used, item, (size_t)size + 1);
+  label->used += (size_t)size;
   return STATUS_OK;
 }
 
-status ask_points_inputs(struct store *store, int64_t point_id,
-                         void (*each)(void *context, const struct ask_points_input *input), void *context,
-                         struct error *error) {
-  struct inputs inputs = {each, context};
-  const struct query_sink sink = {.context = &inputs, .row = give_input};
+status ask_points_label(struct store *store, int64_t point_id, char *text, size_t size, struct error *error) {
+  struct label label = {text, size, 0};
+  const struct query_sink sink = {.context = &label, .row = add_input};
   char sql[256];
+  snprintf(text, size, "point %lld", (long long)point_id);
   snprintf(sql, sizeof sql,
            "SELECT path, value, unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path DESC",
            (long long)point_id);

@@ -38,16 +38,9 @@ status ask_points_rows(struct store *store, const struct ask_points_choice *choi
 /* Numbers of the points with runs that count: the first `most` of them. *total is the number of all of them. */
 status ask_points_with_runs(struct store *store, size_t most, int64_t *points, size_t *total, struct error *error);
 
-/* One varied input of a point. */
-struct ask_points_input {
-  const char *path;
-  const struct query_value *value;
-  const char *unit; /* "" when the store does not tell it; "1" for a pure number */
-};
-/* The varied inputs of a point, last path first. What is passed to `each` is borrowed for the call. */
-status ask_points_inputs(struct store *store, int64_t point_id,
-                         void (*each)(void *context, const struct ask_points_input *input), void *context,
-                         struct error *error);
+/* The varied inputs of a point by the last words of their paths, last path first: "strain 0.03, angle 0.0698 rad".
+ * Inputs that do not fit are left out. "point 7" when nothing was varied. */
+status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);
 
 /* Do several points with runs have the same value of input column `x` (and of `y`, unless it is NULL)? A mean over
  * these runs is then a mean over other inputs as well. */
