@@ -87,6 +87,13 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
   fputc('\n', out);
 }
 
+void text_sentence(const char *doc, char *text, size_t size) {
+  size_t length = 0;
+  while (doc[length] && !(doc[length] == '.' && (doc[length + 1] == ' ' || doc[length + 1] == '\0')))
+    length++;
+  snprintf(text, size, "%.*s", (int)length, doc);
+}
+
 uint64_t text_hash(uint64_t hash, const void *bytes, size_t size) {
   const uint8_t *at = bytes;
   for (size_t k = 0; k < size; k++)

@@ -14,6 +14,9 @@ size_t text_utf8_length(const char *text, size_t left);
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 
+/* The first sentence of `doc` without its full stop. */
+void text_sentence(const char *doc, char *text, size_t size);
+
 /* Closes the stream that open_memstream made for *text. Returns the text, which the caller frees; NULL (and *text is
  * freed and NULL) when memory ran out. */
 char *text_close(FILE *out, char **text);

@@ -3,7 +3,8 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/explain.h"
+#include "campaign/terminal/scene_option.h"
+#include "campaign/terminal/table.h"
 
 struct options {
   struct option_list set;
@@ -38,7 +39,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   struct scene *scene = NULL;
-  code = explain_load(line->arguments[0], &options->set, &scene, error);
+  code = scene_option_load(line->arguments[0], &options->set, &scene, error);
   if (code) {
     scene_free(scene);
     return code;
@@ -59,7 +60,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    EXPLAIN_SET(struct options, set),
+    SCENE_OPTION_SET(struct options, set),
     TABLE_OPTIONS(struct options, table),
 };
 

@@ -4,14 +4,19 @@
 
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
 #include "campaign/document/campaign.h"
 #include "campaign/document/campaign_keys.h"
+#include "campaign/terminal/scene_option.h"
 #include "campaign/terminal/table.h"
 #include "engine/scene.h"
 
 enum { TABLES_MAXIMUM = 24 };
+
+struct options {
+  struct option_list set;
+  struct table_options table;
+};
 
 /* All field tables of which `clast explain` knows the paths. */
 static size_t tables(const struct field_table *list[TABLES_MAXIMUM]) {
@@ -72,13 +77,6 @@ static status explain_path(const char *path, struct error *error) {
                      path, nearest ? "; did you mean " : ";", nearest ? nearest : "", nearest ? "?" : "");
 }
 
-void explain_sentence(const char *doc, char *text, size_t size) {
-  size_t length = 0;
-  while (doc[length] && !(doc[length] == '.' && (doc[length + 1] == ' ' || doc[length + 1] == '\0')))
-    length++;
-  snprintf(text, size, "%.*s", (int)length, doc);
-}
-
 /* The row's default as text; empty for what has none. */
 static void default_text(const struct field_table *of, const struct field *row, char *text, size_t size) {
   text[0] = '\0';
@@ -92,7 +90,7 @@ static void default_text(const struct field_table *of, const struct field *row, 
 static void list_row(struct table *table, const char *of, const char *path, const char *unit, const char *value,
                      const char *doc) {
   char text[FIELD_TEXT_SIZE];
-  explain_sentence(doc, text, sizeof text);
+  text_sentence(doc, text, sizeof text);
   table_text(table, of);
   table_text(table, path);
   table_text(table, unit && strcmp(unit, "1") != 0 ? unit : NULL);
@@ -100,7 +98,7 @@ static void list_row(struct table *table, const char *of, const char *path, cons
   table_text(table, text);
 }
 
-static status list_paths(const struct explain_options *options, struct error *error) {
+static status list_paths(const struct options *options, struct error *error) {
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
   if (code)
@@ -141,7 +139,7 @@ static void explain_inputs(const struct scene *scene, FILE *out) {
                strcmp(row->unit, "1") == 0 ? "" : row->unit);
     else
       field_print(row, &value, text, sizeof text);
-    explain_sentence(row->doc, doc, sizeof doc);
+    text_sentence(row->doc, doc, sizeof doc);
     fprintf(out, "  %-*s  %-20s %s\n", widest, row->path, text, doc);
   }
 }
@@ -170,25 +168,6 @@ static status explain_scene(const struct scene *scene, enum table_format format,
   return STATUS_OK;
 }
 
-/* One --set. */
-static status set_input(struct scene *scene, const char *text, struct error *error) {
-  const char *equals = strchr(text, '=');
-  char path[FIELD_TEXT_SIZE];
-  if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
-    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
-                       text);
-  snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
-  const status code = scene_set_text(scene, path, equals + 1, error);
-  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
-}
-
-status explain_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {
-  status code = scene_load(name, NULL, scene, error);
-  for (size_t i = 0; code == STATUS_OK && i < set->count; i++)
-    code = set_input(*scene, set->items[i], error);
-  return code ? code : scene_check(*scene, error);
-}
-
 static bool is_file_name(const char *name) {
   static const char *const endings[] = {".yaml", ".yml", ".json"};
   const char *ending = strrchr(name, '.');
@@ -201,7 +180,7 @@ static bool is_file_name(const char *name) {
 }
 
 static status run(const struct command_line *line, struct error *error) {
-  const struct explain_options *options = line->options;
+  const struct options *options = line->options;
   if (line->count == 0)
     return list_paths(options, error);
   enum table_format format = TABLE_TEXT;
@@ -215,7 +194,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code ? code : explain_path(name, error);
   }
   struct scene *scene = NULL;
-  code = explain_load(name, &options->set, &scene, error);
+  code = scene_option_load(name, &options->set, &scene, error);
   if (code == STATUS_OK)
     code = explain_scene(scene, format, error);
   scene_free(scene);
@@ -223,8 +202,8 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
-    EXPLAIN_SET(struct explain_options, set),
-    TABLE_OPTIONS(struct explain_options, table),
+    SCENE_OPTION_SET(struct options, set),
+    TABLE_OPTIONS(struct options, table),
 };
 
 const struct command explain_command = {
@@ -241,6 +220,6 @@ const struct command explain_command = {
         "table of all inputs, results and keys.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
-    COMMAND_OPTIONS(struct explain_options, rows),
+    COMMAND_OPTIONS(struct options, rows),
     .run = run,
 };

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/commands/explain.h"
+#include "schemas/text.h"
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
@@ -27,7 +27,7 @@ static bool empty(const struct field *row, const void *object) {
 
 void results_row(struct table *table, const struct field *row, const void *object) {
   char meaning[FIELD_TEXT_SIZE];
-  explain_sentence(row->doc, meaning, sizeof meaning);
+  text_sentence(row->doc, meaning, sizeof meaning);
   table_text(table, row->path);
   value_cell(table, row, object);
   table_text(table, row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "");

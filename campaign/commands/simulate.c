@@ -5,12 +5,12 @@
 
 #include "analysis/pictures/picture_canvas.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/explain.h"
 #include "campaign/commands/results.h"
 #include "campaign/commands/resume.h"
 #include "campaign/commands/snapshots.h"
 #include "campaign/document/campaign.h"
 #include "campaign/driver/run.h"
+#include "campaign/terminal/scene_option.h"
 #include "engine/atomic_file.h"
 
 enum { BLOCK = 8 }; /* steps between two calls of look(): less than a second, even with a million particles */
@@ -145,7 +145,7 @@ static status run(const struct command_line *line, struct error *error) {
   status code = table_choose(&options->table, &format, error);
   if (code)
     return code;
-  code = explain_load(line->arguments[0], &options->set, &scene, error);
+  code = scene_option_load(line->arguments[0], &options->set, &scene, error);
   if (code)
     goto cleanup;
   code = try_files(options, error);
@@ -160,7 +160,7 @@ cleanup:
 static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("seed", 0, "N", struct options, seed, 0, INT64_MAX, "1",
                        "Seed of the run: the same seed gives the same bits."),
-    EXPLAIN_SET(struct options, set),
+    SCENE_OPTION_SET(struct options, set),
     OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, picture, NULL,
                     "Draw the body at the end: fragments of grains, or the damage of particles on a cut."),
     OPTION_ROW_TEXT(

@@ -1,0 +1,22 @@
+/* --set PATH=VALUE: a scene with other inputs. */
+#include "campaign/terminal/scene_option.h"
+
+#include <string.h>
+
+static status set_input(struct scene *scene, const char *text, struct error *error) {
+  const char *equals = strchr(text, '=');
+  char path[FIELD_TEXT_SIZE];
+  if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
+    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
+                       text);
+  snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
+  const status code = scene_set_text(scene, path, equals + 1, error);
+  return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
+}
+
+status scene_option_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {
+  status code = scene_load(name, NULL, scene, error);
+  for (size_t i = 0; code == STATUS_OK && i < set->count; i++)
+    code = set_input(*scene, set->items[i], error);
+  return code ? code : scene_check(*scene, error);
+}
