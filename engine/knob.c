@@ -57,9 +57,10 @@ static const struct knob knobs[] = {
     DEM("time_step", RESOLUTION, .inputs = {{"fidelity.time_step", 1}}, HALVES, .step_power = 1, .pairs = true,
         .meaning = "time step"),
     DEM("integrator", RESOLUTION, .inputs = {{"fidelity.integrator"}}, .choices = {"verlet", "gear"}, .pairs = true,
-        .meaning = "second order, or Gear's fifth"),
-    DEM("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.end_time", 1}}, .factors = {0.5, 1, 2, 4, 8},
-        .pairs = true, .meaning = "how long no beam must break until the run ends; the hard end moves with it"),
+        .meaning = "velocity Verlet, or Gear's method of fifth order"),
+    DEM("stop", RESOLUTION, .inputs = {{"stop.least_time", 1}, {"stop.quiet_time", 1}, {"stop.end_time", 1}},
+        .factors = {0.25, 0.5, 1, 2, 4}, .pairs = true,
+        .meaning = "least time of a run; how long no beam must break until it ends, and the hard end move with it"),
 
     DEM("contact_law", MODEL, .inputs = {{"contact.law"}}, .choices = {"off", "printed", "conservative"}, .pairs = true,
         .meaning = "repulsion of overlapping grains"),
