@@ -31,7 +31,11 @@ static const struct field rows[] = {
     COUNT(fragment_count, .main_rank = 3, .doc = "Fragments of any size, single grains (dust) included."),
     COUNT(single_count, .doc = "Fragments of one grain or particle: below the model's resolution."),
     ROW(dust_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 4,
-        .doc = "Mass share of single grains."),
+        .doc = "Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or "
+               "single grains (dem)."),
+    REAL(complete_mass, "kg", 0,
+         .doc = "Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 "
+                "grains (dem: 1.5 mean ones). Exponents use heavier fragments only."),
     ROW(largest_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 1,
         .doc = "Mass of the largest fragment over the total mass, M_1/M."),
     ROW(second_fraction, FIELD_REAL, "1", .minimum = 0, .maximum = 1, .main_rank = 2,
@@ -75,20 +79,21 @@ bool outcome_counts(const struct outcome *outcome) {
   return true;
 }
 
-void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments) {
+void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
+                       const struct outcome_small *small) {
   double mass = 0, square = 0, dust = 0;
   outcome->fragment_count = (int64_t)count;
   outcome->single_count = 0;
   for (size_t k = 0; k < count; k++) {
     mass += fragments[k].mass;
     square += fragments[k].mass * fragments[k].mass;
-    if (fragments[k].count == 1) {
-      outcome->single_count++;
+    outcome->single_count += fragments[k].count == 1;
+    if (isnan(small->dust) ? fragments[k].count == 1 : fragments[k].mass < small->dust)
       dust += fragments[k].mass;
-    }
   }
   double largest = count > 0 ? fragments[0].mass : 0, rest = mass - largest;
   outcome->total_mass = mass;
+  outcome->complete_mass = small->complete;
   outcome->dust_fraction = mass > 0 ? dust / mass : 0;
   outcome->largest_fraction = mass > 0 ? largest / mass : 0;
   outcome->second_fraction = count > 1 ? fragments[1].mass / mass : 0;

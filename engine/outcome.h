@@ -26,7 +26,8 @@ struct outcome {
   double momentum_error;          /* |sum p - initial - external impulse| / sum |p| */
   int64_t fragment_count;         /* all, single grains (dust) included */
   int64_t single_count;           /* fragments of one grain: unresolved */
-  double dust_fraction;           /* mass share of single grains */
+  double dust_fraction;           /* mass share of fragments lighter than dust (outcome_small) */
+  double complete_mass;           /* kg or kg/m: from here on the spectrum of fragments is complete */
   double largest_fraction;        /* M_1 / M */
   double second_fraction;         /* M_2 / M */
   double mean_fragment_mass;      /* second moment over first of all fragment masses, kg */
@@ -51,7 +52,14 @@ bool outcome_is_usable(int state);
  * whatever its results.) */
 bool outcome_counts(const struct outcome *outcome);
 
+/* What small fragments are to an engine. */
+struct outcome_small {
+  double dust;     /* kg or kg/m: lighter fragments are dust; NaN: single grains are */
+  double complete; /* kg or kg/m: complete_mass */
+};
+
 /* Fill the rows that follow from the fragments alone (by descending mass): total mass, counts, fractions, moments. */
-void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments);
+void outcome_fragments(struct outcome *outcome, size_t count, const struct fragment *fragments,
+                       const struct outcome_small *small);
 
 #endif

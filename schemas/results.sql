@@ -87,7 +87,8 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   momentum_error REAL, -- [1] Change of total momentum not explained by outer forces, over the sum of the members' momenta.
   fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
-  dust_fraction REAL, -- [1] Mass share of single grains.
+  dust_fraction REAL, -- [1] Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).
+  complete_mass REAL, -- [kg] Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
   largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
   mean_fragment_mass REAL, -- [kg] Second moment over first of all fragment masses (not M_2/M_1).
@@ -142,7 +143,7 @@ CREATE TABLE point_spectrum ( -- Running pooled spectrum of each point, kept in 
 CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they can be made again at any time.
   run_id INTEGER NOT NULL REFERENCES run (run_id), -- the run
   ordinal INTEGER NOT NULL, -- number among the estimates of the run
-  window TEXT, -- Window of masses of the estimate. One of: from_2, from_5, from_10
+  window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
@@ -160,7 +161,7 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   point_id INTEGER NOT NULL REFERENCES point (point_id), -- the point
   results_version INTEGER NOT NULL, -- version of the engine's results it was made from
   ordinal INTEGER NOT NULL, -- number among the estimates of the point
-  window TEXT, -- Window of masses of the estimate. One of: from_2, from_5, from_10
+  window TEXT, -- Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
@@ -308,11 +309,11 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, with the static strength.
   largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static strength.
   largest_dynamic_fraction REAL, -- [1] M_1/M with the damaged layer and without the static strength.
-  largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.
+  largest_axis_middle REAL, -- [1] Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment. Off when that has fewer than 100 particles.
   largest_axis_short REAL, -- [1] Shortest over longest axis of the same ellipsoid. 1 is a sphere.
-  largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass.
+  largest_speed REAL, -- [m/s] Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles.
   second_mass REAL, -- [kg] Mass of the second largest fragment; off when there is only one.
-  second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.
+  second_angle REAL, -- [rad] Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.
   ejecta_mass_fraction REAL, -- [1] Impact: mass share of the target that moves outwards faster than crater.ejection_speed.
   ejecta_momentum REAL, -- [kg m/s] Impact: momentum of the ejecta along the outward normal.
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
@@ -386,6 +387,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   r."fragment_count",
   r."single_count",
   r."dust_fraction",
+  r."complete_mass",
   r."largest_fraction",
   r."second_fraction",
   r."mean_fragment_mass",
@@ -729,7 +731,7 @@ INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard erro
 
 INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 1);
+INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 1);
 
 INSERT INTO column_doc VALUES ('estimates', 'beta', '1', 'Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.', 0);
 
@@ -769,7 +771,7 @@ INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard err
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 0);
+INSERT INTO column_doc VALUES ('estimates', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 0);
 
 INSERT INTO column_doc VALUES ('fragment_mass', 'masses', 'kg', 'mass of every fragment, descending: little-endian float64, 8 bytes each', 0);
 
@@ -819,7 +821,7 @@ INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standar
 
 INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses of the estimate. One of: from_2, from_5, from_10', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 1);
 
 INSERT INTO column_doc VALUES ('point_input', 'path', NULL, 'path of an active input in the scene', 0);
 
@@ -859,13 +861,13 @@ INSERT INTO column_doc VALUES ('point_total', 'surplus', '1', 'runs left out bec
 
 INSERT INTO column_doc VALUES ('points', 'censored', '1', 'runs that count and ended at their time: fragments may still have been breaking', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass share of single grains.', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width of the 95 % confidence interval of the mean (Student): Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of single grains.', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of single grains.', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard error of the mean: Mass share of single grains.', 0);
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard error of the mean: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'engine', NULL, 'name of the engine', 0);
 
@@ -1033,7 +1035,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'fracture_ceased', NULL, 'Fracture 
 
 INSERT INTO column_doc VALUES ('result_sph', 'frequency', '1/s', 'Vibration: frequency of the first mode, from its zero crossings.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment. Off when that has fewer than 100 particles.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 1);
 
@@ -1041,7 +1043,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'largest_bare_fraction', '1', 'M_1/
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_dynamic_fraction', '1', 'M_1/M with the damaged layer and without the static strength.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass. Off when that has fewer than 100 particles.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 1);
 
@@ -1091,7 +1093,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'rebound', '1', 'Collision: speed o
 
 INSERT INTO column_doc VALUES ('result_sph', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'second_mass', 'kg', 'Mass of the second largest fragment; off when there is only one.', 1);
 
@@ -1121,11 +1123,13 @@ INSERT INTO column_doc VALUES ('result_sph', 'undamaged_fraction', '1', 'Mass sh
 
 INSERT INTO column_doc VALUES ('run', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
 
+INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 1);
+
 INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('run', 'cpu_time', 's', 'processor time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of single grains.', 1);
+INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
 INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Drift of the closed energy ledger over the energy put in.', 1);
 
@@ -1211,6 +1215,8 @@ INSERT INTO column_doc VALUES ('runs', 'compaction_reach', 'm', 'Impact: largest
 
 INSERT INTO column_doc VALUES ('runs', 'compaction_volume', 'm^3', 'Impact: volume that the retained matter lost as its pores closed; off without pores.', 0);
 
+INSERT INTO column_doc VALUES ('runs', 'complete_mass', 'kg', 'Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.', 0);
+
 INSERT INTO column_doc VALUES ('runs', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the successful attempt', 0);
@@ -1227,7 +1233,7 @@ INSERT INTO column_doc VALUES ('runs', 'crater_volume', 'm^3', 'Impact: volume o
 
 INSERT INTO column_doc VALUES ('runs', 'density_held_share', '1', 'Share of all particle steps that held the density at its lower limit. Such a step adds no energy.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of single grains.', 0);
+INSERT INTO column_doc VALUES ('runs', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'ejecta_mass_fraction', '1', 'Impact: mass share of the target that moves outwards faster than crater.ejection_speed.', 0);
 
@@ -1289,7 +1295,7 @@ INSERT INTO column_doc VALUES ('runs', 'identity', NULL, '128-bit hash of engine
 
 INSERT INTO column_doc VALUES ('runs', 'kinetic_energy_share', '1', 'Translation energy of the fragments over the energy put in.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_axis_middle', '1', 'Middle over longest axis of the ellipsoid that has the moments of inertia of the largest fragment. Off when that has fewer than 100 particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_axis_short', '1', 'Shortest over longest axis of the same ellipsoid. 1 is a sphere.', 0);
 
@@ -1301,7 +1307,7 @@ INSERT INTO column_doc VALUES ('runs', 'largest_fraction', '1', 'Mass of the lar
 
 INSERT INTO column_doc VALUES ('runs', 'largest_loss', '1', 'How final the run is: M_1/M that the largest fragment lost in the second half of the run''s time. Expect about as much in the next doubling of the time.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass.', 0);
+INSERT INTO column_doc VALUES ('runs', 'largest_speed', 'm/s', 'Speed of the largest fragment''s centre of mass. Off when that has fewer than 100 particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'largest_veneer_fraction', '1', 'M_1/M: mass of the largest fragment with its damaged layer over the target''s mass, with the static strength.', 0);
 
@@ -1393,7 +1399,7 @@ INSERT INTO column_doc VALUES ('runs', 'run_id', NULL, 'number of the run in thi
 
 INSERT INTO column_doc VALUES ('runs', 'scene', NULL, 'name of the scene the inputs started from', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode.', 0);
+INSERT INTO column_doc VALUES ('runs', 'second_angle', 'rad', 'Impact: angle between the directions from the centre of mass to the point of impact and to the second largest fragment. pi is the antipode. Off when that has fewer than 100 particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'second_fraction', '1', 'Mass of the second largest fragment over the total mass, M_2/M.', 0);
 

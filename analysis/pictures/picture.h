@@ -61,7 +61,8 @@ struct picture_look {
  * range is symmetric about zero when both signs occur. STATUS_USAGE also when the plane meets no particle. */
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error);
-/* "95210 particles: 143 fragments of two and more (largest 34.6 %, second 3.1 % of the mass), 41.2 % dust". */
+/* "95210 particles: 143 fragments of two and more (largest 34.6 %, second 3.1 % of the mass), 41.2 % in single
+ * particles". */
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
 /* A fitted power law. Its line holds as many fragments per run in [lower, upper) as the fit was made from. */
@@ -75,6 +76,7 @@ struct picture_series {
   const struct pooled_bin *bins; /* of pooled_spectrum() with unit_mass 1 */
   size_t fits;
   const struct picture_fit *fit;
+  double complete_mass; /* kg: bins that begin below are grey, as fragments are missing there; 0 or NaN: none is */
 };
 /* Log-log F(m) with error bars (one standard error over runs) and lines of the fits. One to eight series. The legend
  * stands beside the frame and makes the picture wider than `width`. */
@@ -83,8 +85,9 @@ status picture_spectrum(const char *path, double width, const char *title, const
 
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
  *     lower edge   count   F(m)   error in %      ├──●──┤  ·
- * the point, one standard error to both sides, and (·) the series' first fit. columns: width of the terminal, at least
- * 72 are used. unicode: false for ASCII only. It writes no colour, and nothing when there is no fragment. */
+ * the point (○ in bins that begin below complete_mass), one standard error to both sides, and (·) the series' first
+ * fit. columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. It writes no colour, and
+ * nothing when there is no fragment. */
 void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
                         const struct picture_series *series);
 

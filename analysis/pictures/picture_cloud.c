@@ -37,7 +37,7 @@ static const char *refuse_particle(const struct picture_cloud *cloud, size_t i) 
   if (cloud->fragment[i] < -1 || cloud->fragment[i] >= (int64_t)cloud->n)
     return "a fragment's number is out of range";
   if (cloud->part[i] < 0 || cloud->part[i] >= PICTURE_PARTS)
-    return "a particle's part is none of core, layer, dust";
+    return "a particle's part is none of core, layer, single";
   return NULL;
 }
 

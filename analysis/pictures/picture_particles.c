@@ -82,35 +82,35 @@ static bool resolved(const struct scene *s, size_t i) {
   return s->cloud->fragment[i] >= 0 && s->count[s->cloud->fragment[i]] >= RESOLVED;
 }
 
-/* Mass of the particles that were searched for fragments, and of the dust in it, kg. Returns how many they are. */
-static size_t sum_masses(const struct picture_cloud *cloud, double *total, double *dust) {
+/* Mass of the particles that were searched for fragments, and of the single ones, kg. Returns how many they are. */
+static size_t sum_masses(const struct picture_cloud *cloud, double *total, double *single) {
   size_t searched = 0;
-  *total = *dust = 0;
+  *total = *single = 0;
   for (size_t i = 0; i < cloud->n; i++) {
     if (cloud->part[i] == PICTURE_LEFT_OUT)
       continue;
     searched++;
     *total += cloud->mass[i];
     if (cloud->part[i] == PICTURE_DUST)
-      *dust += cloud->mass[i];
+      *single += cloud->mass[i];
   }
   return searched;
 }
 
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size) {
   struct scene s = {.cloud = cloud};
-  double total, dust;
-  size_t searched = sum_masses(cloud, &total, &dust), fragments = 0;
+  double total, single;
+  size_t searched = sum_masses(cloud, &total, &single), fragments = 0;
   text[0] = 0;
   if (total > 0 && gather(&s) == STATUS_OK) {
     for (size_t f = 0; f < s.fragments; f++)
       fragments += s.count[f] > 1;
     double largest = s.fragments ? s.mass[0] : 0, second = s.fragments > 1 && s.count[1] > 1 ? s.mass[1] : 0;
-    snprintf(
-        text, size,
-        "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% dust",
-        searched, fragments, fragments == 1 ? "" : "s", 100 * largest / total, 100 * second / total,
-        100 * dust / total);
+    snprintf(text, size,
+             "%zu particles: %zu fragment%s of two and more (largest %.1f %%, second %.1f %% of the mass), %.1f %% in "
+             "single particles",
+             searched, fragments, fragments == 1 ? "" : "s", 100 * largest / total, 100 * second / total,
+             100 * single / total);
   }
   free_scene(&s);
 }
@@ -329,12 +329,12 @@ static size_t core_particle(const struct picture_cloud *cloud, size_t fragment) 
   return i;
 }
 
-/* The heaviest fragments and the dust with their shares of the mass. */
+/* The heaviest fragments and the single particles with their shares of the mass. */
 static void legend(cairo_t *cairo, const struct scene *s, double x, double y, double font) {
   enum { MOST = 8 };
   char text[48];
-  double total, dust;
-  sum_masses(s->cloud, &total, &dust);
+  double total, single;
+  sum_masses(s->cloud, &total, &single);
   for (size_t f = 0; f < MOST && f < s->fragments && s->count[f] >= RESOLVED; f++, y += 1.6 * font) {
     size_t sample = core_particle(s->cloud, f);
     if (sample == s->cloud->n)
@@ -343,10 +343,10 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
     snprintf(text, sizeof text, "%.3g %%", 100 * s->mass[f] / total);
     legend_line(cairo, x, y, font, text);
   }
-  if (!(dust > 0 && total > 0))
+  if (!(single > 0 && total > 0))
     return;
   picture_canvas_colour(cairo, 0.90, 0.004, 250, 1);
-  snprintf(text, sizeof text, "%.3g %% dust", 100 * dust / total);
+  snprintf(text, sizeof text, "%.3g %% single", 100 * single / total);
   legend_line(cairo, x, y, font, text);
 }
 

@@ -134,7 +134,10 @@ static void points(const struct frame *f, const struct picture_series *series, s
     if (bin->standard_error > 0)
       error_bar(f, bin, x, 0.7 * radius, index);
     cairo_arc(cairo, x, at_y(f, log10(bin->density)), radius, 0, 2 * M_PI);
-    picture_canvas_series(cairo, index, 1);
+    if (bin->lower < series->complete_mass)
+      cairo_set_source_rgb(cairo, 0.72, 0.72, 0.72);
+    else
+      picture_canvas_series(cairo, index, 1);
     cairo_fill_preserve(cairo);
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_set_line_width(cairo, 0.06 * f->font);

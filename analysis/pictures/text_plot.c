@@ -6,12 +6,12 @@
 
 enum { LEAST_COLUMNS = 72, FRONT = 38, MOST_PLOT = 200 };
 
-enum mark { BLANK, GRID, FIT, ERROR_BAR, ERROR_LEFT, ERROR_RIGHT, POINT };
+enum mark { BLANK, GRID, FIT, ERROR_BAR, ERROR_LEFT, ERROR_RIGHT, POINT, INCOMPLETE };
 
 static const char *glyph(enum mark mark, bool unicode) {
   static const char *const fancy[] =
-      {" ", "\xe2\x94\x8a", "\xc2\xb7", "\xe2\x94\x80", "\xe2\x94\x9c", "\xe2\x94\xa4", "\xe2\x97\x8f"};
-  static const char *const plain[] = {" ", ".", ":", "-", "[", "]", "*"};
+      {" ", "\xe2\x94\x8a", "\xc2\xb7", "\xe2\x94\x80", "\xe2\x94\x9c", "\xe2\x94\xa4", "\xe2\x97\x8f", "\xe2\x97\x8b"};
+  static const char *const plain[] = {" ", ".", ":", "-", "[", "]", "*", "o"};
   return (unicode ? fancy : plain)[mark];
 }
 
@@ -39,7 +39,8 @@ static double fit_at(const struct picture_fit *fit, double mass) {
 }
 
 static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_bin *bin,
-                const struct picture_fit *fit) {
+                const struct picture_series *series) {
+  const struct picture_fit *fit = series->fits ? &series->fit[0] : NULL;
   unsigned char line[MOST_PLOT] = {0};
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++)
     line[place(scale, decade)] = GRID;
@@ -57,7 +58,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   }
   if (isfinite(fitted) && fitted >= scale->low && fitted <= scale->high)
     line[place(scale, fitted)] = FIT;
-  line[point] = POINT;
+  line[point] = bin->lower < series->complete_mass ? INCOMPLETE : POINT;
   fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->density);
   if (isfinite(bin->standard_error))
     fprintf(out, " %4.0f%%  ", 100 * bin->standard_error / bin->density);
@@ -126,7 +127,10 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_u
   heading(out, &scale, mass_unit);
   for (size_t b = 0; b < series->count; b++)
     if (series->bins[b].density > 0)
-      row(out, &scale, unicode, &series->bins[b], series->fits ? &series->fit[0] : NULL);
+      row(out, &scale, unicode, &series->bins[b], series);
+  if (series->count && series->bins[0].lower < series->complete_mass)
+    fprintf(out, "%s below %.3g %s fragments are missing: too few particles\n", glyph(INCOMPLETE, unicode),
+            series->complete_mass, mass_unit);
   if (!series->fits || !series->fit[0].label)
     return;
   fprintf(out, "%s ", glyph(FIT, unicode));

@@ -32,7 +32,7 @@ static const struct field rows_of_table[] = {
      .choice_docs = window_docs,
      .minimum = 0,
      .maximum = ESTIMATES_WINDOWS - 1,
-     .doc = "Window of masses of the estimate."},
+     .doc = "Window of masses of the estimate. None begins below complete_mass of the run."},
     {.path = "method",
      .kind = FIELD_CHOICE,
      .offset = AT(fit.method),
@@ -91,6 +91,10 @@ double estimates_window_elements(enum estimates_window window) {
   return NAN;
 }
 
+double estimates_window_lower(enum estimates_window window, double element_mass, double complete_mass) {
+  return fmax(estimates_window_elements(window) * element_mass, complete_mass); /* NaN: the other */
+}
+
 static const struct {
   enum exponent_method method;
   enum estimates_window window;
@@ -103,8 +107,8 @@ static const struct {
     {EXPONENT_UPPER_CUTOFF, ESTIMATES_FROM_5},
 };
 
-status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
-                      struct error *error) {
+status estimates_make(size_t n, const struct fragment *fragments, double complete_mass,
+                      struct estimate rows[ESTIMATES_COUNT], struct error *error) {
   double few[512], *masses = few, total = 0, elements = 0, largest = 0;
   if (n > sizeof few / sizeof *few && !(masses = malloc(n * sizeof *masses)))
     return status_fail(error, STATUS_MEMORY, "estimates: no memory for %zu masses", n);
@@ -120,7 +124,7 @@ status estimates_make(size_t n, const struct fragment *fragments, struct estimat
   status code = STATUS_OK;
   for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
     struct estimate *row = &rows[i];
-    double lower = estimates_window_elements(wanted[i].window) * element;
+    double lower = estimates_window_lower(wanted[i].window, element, complete_mass);
     struct exponent_window window = {lower, largest};
     *row = (struct estimate){.window = (int)wanted[i].window,
                              .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&

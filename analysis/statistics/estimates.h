@@ -7,8 +7,9 @@
 #include "engine/fragments.h"
 
 /* An element is a grain or a particle. Windows begin midway between N - 1 and N mean element masses, N = 2, 5, 10, and
- * end below the run's largest fragment M_1. From 2 is the choice of Kun & Herrmann (1999): all but single grains. From
- * 5 lies between and shows the trend.
+ * end below the run's largest fragment M_1. None begins below the mass from which the spectrum is complete (outcome:
+ * complete_mass), so in sph, with 10 particles, all begin there. From 2 is the choice of Kun & Herrmann (1999): all but
+ * single grains. From 5 lies between and shows the trend.
  *
  * The masses of small fragments of nearly equal grains are nearly discrete. A continuous fit from one grain reads 2.76
  * for a true 2.0. With equal grains, windows from N - 1/2 read 1.96, 2.00, 2.00 (from N: 2.32, 2.11, 2.05); with grains
@@ -16,6 +17,8 @@
 enum estimates_window { ESTIMATES_FROM_2, ESTIMATES_FROM_5, ESTIMATES_FROM_10, ESTIMATES_WINDOWS };
 extern const char *const estimates_window_names[];              /* "from_2"..., NULL-terminated */
 double estimates_window_elements(enum estimates_window window); /* lower end in mean element masses: 1.5, 4.5, 9.5 */
+/* Lower end, kg: so many mean element masses, but not below complete_mass (NaN: not known). */
+double estimates_window_lower(enum estimates_window window, double element_mass, double complete_mass);
 
 struct estimate {
   int window;          /* enum estimates_window */
@@ -35,9 +38,10 @@ enum {
 };
 
 /* Fragments by descending mass, with those of one element: they are part of the mean element mass (total mass over
- * total count), but not of the windows. Fills all rows; too few fragments give beta = NaN. */
-status estimates_make(size_t n, const struct fragment *fragments, struct estimate rows[ESTIMATES_COUNT],
-                      struct error *error);
+ * total count), but not of the windows. complete_mass: kg, of the outcome: no window begins below. Fills all rows; too
+ * few fragments give beta = NaN. */
+status estimates_make(size_t n, const struct fragment *fragments, double complete_mass,
+                      struct estimate rows[ESTIMATES_COUNT], struct error *error);
 
 /* An exponent of a point by name: "beta" is the headline, "beta_METHOD_WINDOW" ("beta_masses_from_2") another one.
  * *is = false for other names; STATUS_USAGE for an unknown name that begins with beta. */

@@ -88,7 +88,8 @@ static status finish(const struct engine_kind *kind, void *run, struct run_resul
   if (code != STATUS_OK || result->fragment_count == 0)
     return code;
   result->estimate_count = ESTIMATES_COUNT;
-  return estimates_make(result->fragment_count, result->fragments, result->estimates, error);
+  return estimates_make(result->fragment_count, result->fragments, result->outcome.complete_mass, result->estimates,
+                        error);
 }
 
 status run_simulate(const struct run_request *request, run_watch watch, void *context, uint64_t block,

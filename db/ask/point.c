@@ -46,9 +46,27 @@ static status take_run(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
+/* A store that was made before runs said it, and is only read, has no such column. */
+static status read_complete_mass(struct store *store, struct query_parameter parameters[2], double *mass,
+                                 struct error *error) {
+  double there = 0;
+  *mass = NAN;
+  status code = query_number(store, "SELECT count(*) FROM pragma_table_info('run') WHERE name = 'complete_mass'", 0,
+                             NULL, &there, error);
+  if (code || !(there > 0))
+    return code;
+  return query_number(store,
+                      "SELECT avg(complete_mass) FROM run WHERE point_id = :point AND results_version = :version AND "
+                      "counts = 1",
+                      2, parameters, mass, error);
+}
+
 status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
                   struct error *error) {
-  *out = (struct point_data){.point_id = point_id, .results_version = results_version, .element_mass = NAN};
+  *out = (struct point_data){.point_id = point_id,
+                             .results_version = results_version,
+                             .element_mass = NAN,
+                             .complete_mass = NAN};
   char id[32], version[32];
   snprintf(id, sizeof id, "%lld", (long long)point_id);
   struct query_parameter parameters[2] = {{"point", id}, {"version", version}};
@@ -71,14 +89,16 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
                    "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
                    "results_version = :version AND counts = 1 ORDER BY replicate, seed",
                    2, parameters, 0, &sink, error);
-  /* The window from_2 of a run begins at a known number of its mean element masses. */
+  /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
   if (!code)
     code = query_number(
         store,
         "SELECT avg(lower) FROM estimate e JOIN run r ON r.run_id = e.run_id WHERE r.point_id = :point "
-        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_2'",
+        "AND r.results_version = :version AND r.counts = 1 AND e.method = 'masses' AND e.window = 'from_10'",
         2, parameters, &out->element_mass, error);
-  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_2);
+  if (!code)
+    code = read_complete_mass(store, parameters, &out->complete_mass, error);
+  out->element_mass /= estimates_window_elements(ESTIMATES_FROM_10);
   if (code) {
     point_release(out);
     return code;
@@ -97,7 +117,7 @@ void point_release(struct point_data *point) {
 }
 
 double point_window(const struct point_data *point, enum estimates_window window) {
-  return estimates_window_elements(window) * point->element_mass;
+  return estimates_window_lower(window, point->element_mass, point->complete_mass);
 }
 
 static status estimate(const struct point_data *point, enum exponent_method method, enum estimates_window window,
@@ -136,7 +156,7 @@ status point_estimates(const struct point_data *point, size_t resamples, double 
 
 status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out,
                         struct error *error) {
-  *out = (struct point_curve){.runs = point->runs.count, .fit = {.beta = NAN}};
+  *out = (struct point_curve){.runs = point->runs.count, .complete_mass = point->complete_mass, .fit = {.beta = NAN}};
   if (label)
     snprintf(out->label, sizeof out->label, "%s", label);
   else
@@ -170,6 +190,7 @@ void point_curve_release(struct point_curve *curve) {
 struct picture_series point_curve_series(struct point_curve *curve) {
   curve->fit.label = curve->fit_label;
   return (struct picture_series){.label = curve->label,
+                                 .complete_mass = curve->complete_mass,
                                  .count = curve->count,
                                  .bins = curve->bins,
                                  .fits = isfinite(curve->fit.beta) ? 1u : 0u,

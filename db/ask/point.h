@@ -10,6 +10,7 @@ struct point_data {
   int64_t point_id, results_version;
   struct pooled_runs runs; /* in order of replicate; all fragments, single elements included */
   double element_mass;     /* mean over the runs, kg; NaN when the store holds no estimates of them */
+  double complete_mass;    /* mean over the runs, kg: no window begins below; NaN: not known */
   size_t *first;           /* what `runs` borrows; owned */
   double *masses;
 };
@@ -43,6 +44,7 @@ struct point_curve {
   char label[128], fit_label[96];
   struct pooled_bin *bins; /* owned */
   size_t count, runs;
+  double complete_mass;   /* kg; NaN: not known */
   struct picture_fit fit; /* its label is filled in by point_curve_series; beta = NaN: no fit */
 };
 /* label: NULL for "point 3, 40 runs". */

@@ -55,7 +55,7 @@ int main(void) {
   double best = HUGE_VAL;
   for (int repeat = 0; repeat < 50; repeat++) {
     double start = seconds();
-    if (estimates_make(N, fragments, rows, NULL))
+    if (estimates_make(N, fragments, 0, rows, NULL))
       return 70;
     best = fmin(best, seconds() - start);
   }

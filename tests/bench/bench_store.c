@@ -49,7 +49,7 @@ static double load(const char *path, int64_t runs, size_t estimates, double *cpu
   struct scene scene = fixture_scene(&inputs, 1, 1e30);
   for (int v = 0; v < VARIANTS; v++)
     fill(&variants[v], &scene, v);
-  need(estimates_make(FIXTURE_FRAGMENTS, variants[0].fragments, rows, &error));
+  need(estimates_make(FIXTURE_FRAGMENTS, variants[0].fragments, 0, rows, &error));
   *cpu = processor();
   for (int64_t r = 0; r < runs; r++) {
     struct fixture_run *f = &variants[r % VARIANTS];

@@ -72,7 +72,7 @@ static status play_finish(void *run, struct outcome *outcome, void *result, stru
   *count = n;
   field_defaults(&outcome_table, outcome);
   field_defaults(&dem_results, results);
-  outcome_fragments(outcome, n, *fragments);
+  outcome_fragments(outcome, n, *fragments, &(struct outcome_small){.dust = NAN});
   outcome->state = mine->seed % 50 == 49  ? OUTCOME_NOT_FINITE
                    : mine->seed % 10 == 9 ? OUTCOME_END_TIME
                                           : OUTCOME_COMPLETED;

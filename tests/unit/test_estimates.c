@@ -25,7 +25,7 @@ static void rows_of_a_run(void **state) {
   fragments[60].mass = 4; /* a single grain twice the mean is unresolved all the same */
   fragments[61].mass = fragments[62].mass = 1;
   struct estimate rows[ESTIMATES_COUNT];
-  assert_int_equal(estimates_make(200, fragments, rows, NULL), STATUS_OK);
+  assert_int_equal(estimates_make(200, fragments, 0, rows, NULL), STATUS_OK);
   const struct estimate *headline = NULL;
   int headlines = 0;
   for (int i = 0; i < ESTIMATES_COUNT; i++) {
@@ -43,6 +43,16 @@ static void rows_of_a_run(void **state) {
   assert_int_equal(headline->fit.n, 59); /* 300/2 .. 300/60 = 5 grains; not the 300 of M_1 */
   assert_int_equal(rows[6].fit.n, 59);   /* masses from 2 */
   assert_int_equal(rows[8].fit.n, 29);   /* masses from 10: to 300/30; not 300/31 = 9 */
+
+  /* complete from 5 grains of 2 kg: the window from 2 begins there, too */
+  struct estimate complete[ESTIMATES_COUNT];
+  assert_int_equal(estimates_make(200, fragments, 9, complete, NULL), STATUS_OK);
+  for (int i = 0; i < ESTIMATES_COUNT; i++)
+    if (complete[i].window == ESTIMATES_FROM_2)
+      assert_true(complete[i].fit.lower >= 9 &&
+                  (complete[i].fit.method != EXPONENT_MASSES || complete[i].fit.beta == headline->fit.beta));
+    else
+      assert_true(complete[i].fit.beta == rows[i].fit.beta && complete[i].fit.n == rows[i].fit.n);
 }
 
 static void nothing_to_fit(void **state) {
@@ -50,13 +60,13 @@ static void nothing_to_fit(void **state) {
   struct estimate rows[ESTIMATES_COUNT];
   struct fragment whole = {.mass = 5, .count = 1000},
                   dust[3] = {{.mass = 1, .count = 1}, {.mass = 1, .count = 1}, {.mass = 1, .count = 1}};
-  assert_int_equal(estimates_make(1, &whole, rows, NULL), STATUS_OK);
+  assert_int_equal(estimates_make(1, &whole, 0, rows, NULL), STATUS_OK);
   for (int i = 0; i < ESTIMATES_COUNT; i++)
     assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
-  assert_int_equal(estimates_make(3, dust, rows, NULL), STATUS_OK);
+  assert_int_equal(estimates_make(3, dust, 0, rows, NULL), STATUS_OK);
   for (int i = 0; i < ESTIMATES_COUNT; i++)
     assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
-  assert_int_equal(estimates_make(0, NULL, rows, NULL), STATUS_OK);
+  assert_int_equal(estimates_make(0, NULL, 0, rows, NULL), STATUS_OK);
   for (int i = 0; i < ESTIMATES_COUNT; i++)
     assert_true(isnan(rows[i].fit.beta) && rows[i].fit.n == 0);
 }

@@ -99,10 +99,17 @@ static void dumbbell(void **state) {
   near(f[1].spin[2], -7);
   near(f[1].moment_of_inertia, 0.125);
   struct outcome outcome = {0};
-  outcome_fragments(&outcome, count, f);
+  outcome_fragments(&outcome, count, f, &(struct outcome_small){.dust = NAN, .complete = 3});
   assert_int_equal(outcome.single_count, 1);
   near(outcome.total_mass, 4.5);
   near(outcome.dust_fraction, 0.5 / 4.5);
+  near(outcome.complete_mass, 3);
+  struct outcome heavy = {0}; /* dust is what is lighter than a mass, however many grains it has */
+  outcome_fragments(&heavy, count, f, &(struct outcome_small){.dust = 4.1, .complete = 3});
+  near(heavy.dust_fraction, 1);
+  assert_int_equal(heavy.single_count, 1);
+  outcome_fragments(&heavy, count, f, &(struct outcome_small){.dust = 0.5, .complete = 3});
+  near(heavy.dust_fraction, 0);
   near(outcome.largest_fraction, 4 / 4.5);
   near(outcome.mean_fragment_mass, 16.25 / 4.5);
   near(outcome.mean_fragment_mass_rest, 0.5);

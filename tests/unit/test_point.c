@@ -27,7 +27,7 @@ static struct store *fill(char path[64], int64_t *point) {
     fixture_fill(&f, &scene, *point, session, r, FIXTURE_FRAGMENTS);
     for (int i = 0; i < FIXTURE_FRAGMENTS; i++)
       f.fragments[i].count = (uint32_t)(1 + f.fragments[i].mass / 4e-4);
-    OK(estimates_make(FIXTURE_FRAGMENTS, f.fragments, estimates, &error));
+    OK(estimates_make(FIXTURE_FRAGMENTS, f.fragments, 0, estimates, &error));
     f.run.estimates = estimates;
     f.run.estimate_count = ESTIMATES_COUNT;
     if (r == FAILED)

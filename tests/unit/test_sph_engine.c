@@ -303,6 +303,33 @@ static void few_pores_change_nothing(void **state) {
   assert_true(fabs(damage[1] - damage[0]) < 1e-3 * damage[0]); /* 1e-7, and steps that the pores limit */
 }
 
+/* Dust is what is lighter than a mass of the scene, not what is one particle; few particles have no shape and no motion
+ * of their own. */
+static void small_fragments(void **state) {
+  (void)state;
+  for (int c = 0; c < 2; c++) { /* a largest fragment of more and of less than 100 particles */
+    const struct sph_inputs inputs = SMALL(c ? "impact.speed=6 km/s" : "impact.speed=2 km/s",
+                                           "fragments.dust_mass=10 g");
+    struct ran ran = run_case_run(&sph_engine, &inputs, 3);
+    double dust = 0;
+    for (size_t k = 0; k < ran.count; k++)
+      dust += ran.fragments[k].mass < 0.01 ? ran.fragments[k].mass : 0;
+    const double mean = ran.results.sph.target_mass / (double)ran.results.sph.particles;
+    assert_true(fabs(ran.outcome.dust_fraction - dust / ran.results.sph.target_mass) < 1e-12);
+    assert_true(fabs(ran.outcome.complete_mass / (9.5 * mean) - 1) < 1e-12);
+    assert_true(ran.outcome.dust_fraction > (double)ran.outcome.single_count * mean / ran.results.sph.target_mass ||
+                ran.outcome.fragment_count == ran.outcome.single_count + 1);
+    assert_int_equal(ran.fragments[0].count < 100, c);
+    assert_int_equal(isnan(ran.results.sph.largest.speed), c);
+    assert_int_equal(isnan(ran.results.sph.largest.axis_short), c);
+    assert_true(isnan(ran.results.sph.second.angle)); /* the second is small in both */
+    free(ran.fragments);
+  }
+  /* by default a thousandth of the target, however many particles it has */
+  const double few = SMALL(NULL).fragments.dust_mass, many = SPH_CASE("basalt-sphere", NULL).fragments.dust_mass;
+  assert_true(few == many && fabs(few / (4.0 / 3 * M_PI * 2.7e-5 * 2700 * 1e-3) - 1) < 1e-9);
+}
+
 /* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
  * not see a figure that is ten times too small. */
 static void figures_by_hand(void **state) {
@@ -640,6 +667,7 @@ int main(void) {
                                      cmocka_unit_test(stop_rules),
                                      cmocka_unit_test(sound_matter_stays_whole),
                                      cmocka_unit_test(few_pores_change_nothing),
+                                     cmocka_unit_test(small_fragments),
                                      cmocka_unit_test(figures_by_hand),
                                      cmocka_unit_test(a_share_above_one_is_shown),
                                      cmocka_unit_test(no_angle_of_nowhere),

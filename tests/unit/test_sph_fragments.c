@@ -63,7 +63,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
     group[i] = left_out[i] ? -1 : (long)i;
     part[i] = left_out[i]                             ? SPH_FRAGMENTS_LEFT_OUT
               : pow(p->damage_cbrt[i], 3) < o->damage ? SPH_FRAGMENTS_CORE
-                                                      : SPH_FRAGMENTS_DUST;
+                                                      : SPH_FRAGMENTS_SINGLE;
   }
   for (bool changed = true; changed;) {
     changed = false;
@@ -80,7 +80,7 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
       mass[group[i]] += p->mass[i];
   for (size_t i = 0; i < n && o->layer; i++) {
     long best = -1;
-    if (part[i] != SPH_FRAGMENTS_DUST)
+    if (part[i] != SPH_FRAGMENTS_SINGLE)
       continue;
     for (size_t j = 0; j < n; j++) {
       if (part[j] != SPH_FRAGMENTS_CORE || !(square[i * n + j] <= reach[i * n + j] * fabs(reach[i * n + j])))
@@ -144,7 +144,7 @@ static void equals_brute_force(void **state) {
       assert_int_equal(found.label[i] == UINT32_MAX, left_out[i]);
       cores += part[i] == SPH_FRAGMENTS_CORE;
       layers += part[i] == SPH_FRAGMENTS_LAYER;
-      dust += part[i] == SPH_FRAGMENTS_DUST;
+      dust += part[i] == SPH_FRAGMENTS_SINGLE;
       if (left_out[i])
         continue;
       mass += p->mass[i];
@@ -219,14 +219,14 @@ static void only_one_layer_joins_and_nearest_decides(void **state) {
   for (int i = 0; i < 9; i++)
     assert_int_equal(with.label[i], label[i]);
   assert_int_equal(with.part[4], SPH_FRAGMENTS_LAYER);
-  assert_int_equal(with.part[5], SPH_FRAGMENTS_DUST);
-  assert_true(with.fragments[0].mass == 5 && with.core_largest == 4 && with.core_second == 2 && with.dust_mass == 1);
+  assert_int_equal(with.part[5], SPH_FRAGMENTS_SINGLE);
+  assert_true(with.fragments[0].mass == 5 && with.core_largest == 4 && with.core_second == 2 && with.single_mass == 1);
   assert_int_equal(with.resolved, 2);
   assert_int_equal(with.fragments[2].first, 5);
   sph_fragments_clear(&with);
   o.layer = false;
   struct sph_fragments bare = find(p, &o);
-  assert_true(bare.fragments[0].mass == 4 && bare.fragments[1].mass == 2 && bare.dust_mass == 3);
+  assert_true(bare.fragments[0].mass == 4 && bare.fragments[1].mass == 2 && bare.single_mass == 3);
   assert_int_equal(bare.count, 5);
   sph_fragments_clear(&bare);
   o.layer = true; /* one broken particle between the two: at the same distance, the heavier has it; nearer, the lighter
@@ -461,8 +461,8 @@ static void far_flung_and_not_finite(void **state) {
   assert_int_equal(f.label[2], f.label[4]);
   assert_int_equal(f.fragments[0].count, 3); /* 2, 3 and their layer 4 */
   assert_int_equal(f.count, 7);
-  assert_int_equal(f.part[0], SPH_FRAGMENTS_DUST);
-  assert_int_equal(f.part[1], SPH_FRAGMENTS_DUST);
+  assert_int_equal(f.part[0], SPH_FRAGMENTS_SINGLE);
+  assert_int_equal(f.part[1], SPH_FRAGMENTS_SINGLE);
   assert_int_equal(f.part[8], SPH_FRAGMENTS_CORE);
   sph_fragments_clear(&f);
   sph_particles_free(p);
@@ -481,16 +481,16 @@ static void nothing_all_dust_all_one(void **state) {
     p->damage_cbrt[i] = 1;
   f = find(p, &o);
   struct outcome outcome = {0};
-  outcome_fragments(&outcome, f.count, f.fragments);
+  outcome_fragments(&outcome, f.count, f.fragments, &(struct outcome_small){.dust = 2});
   assert_int_equal(f.count, 9);
   assert_int_equal(f.resolved, 0);
-  assert_true(f.dust_mass == 9 && f.core_largest == 0 && outcome.dust_fraction == 1 && outcome.single_count == 9);
+  assert_true(f.single_mass == 9 && f.core_largest == 0 && outcome.dust_fraction == 1 && outcome.single_count == 9);
   sph_fragments_clear(&f);
   for (int i = 0; i < 9; i++)
     p->damage_cbrt[i] = 0.99;
   f = find(p, &o);
   assert_int_equal(f.count, 1);
-  assert_true(f.fragments[0].mass == 9 && f.dust_mass == 0 && f.core_largest == 9 && f.core_second == 0);
+  assert_true(f.fragments[0].mass == 9 && f.single_mass == 0 && f.core_largest == 9 && f.core_second == 0);
   sph_fragments_clear(&f);
   const double bad[][2] = {{0, 1}, {1.5, 1}, {NAN, 1}, {1, 0}, {1, -1}, {1, NAN}, {1, 100}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {

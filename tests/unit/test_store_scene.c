@@ -32,8 +32,8 @@ static void populate(const char *path) {
     void *result = calloc(1, scene->kind->results->size);
     struct estimate estimates[ESTIMATES_COUNT];
     field_defaults(scene->kind->results, result);
-    outcome_fragments(&outcome, 2, fragments);
-    OK(estimates_make(2, fragments, estimates, &error));
+    outcome_fragments(&outcome, 2, fragments, &(struct outcome_small){.dust = NAN});
+    OK(estimates_make(2, fragments, 0, estimates, &error));
     struct store_run run = {.point_id = point,
                             .seed = 7 + i,
                             .kind = scene->kind,

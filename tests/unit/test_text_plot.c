@@ -32,7 +32,7 @@ static void rows_and_columns(void **state) {
   }
   bins[4].standard_error = bins[4].density; /* reaches down to zero */
   struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4};
-  struct picture_series series = {"all", 5, bins, 1, &fit};
+  struct picture_series series = {"all", 5, bins, 1, &fit, 0};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
   assert_non_null(strstr(line, "from kg/m"));
@@ -54,6 +54,12 @@ static void rows_and_columns(void **state) {
   free(text);
   text = plot(10, true, &series);
   assert_non_null(strstr(text, "\xe2\x97\x8f"));
+  assert_null(strstr(text, "\xe2\x97\x8b"));
+  free(text);
+  series.complete_mass = 2e-3; /* the first two bins begin below */
+  text = plot(100, false, &series);
+  assert_non_null(strstr(text, "o below 0.002 kg/m fragments are missing"));
+  assert_true(strchr(text, 'o') != NULL && strchr(text, '*') != NULL);
   free(text);
   series.count = 0;
   text = plot(80, true, &series);

@@ -166,6 +166,16 @@ static double not_infinite(double value) {
   return isfinite(value) ? value : (double)NAN;
 }
 
+/* Single grains are dust; two grains and more are all there. */
+static struct outcome_small small_fragments(size_t count, const struct fragment *fragments) {
+  double mass = 0, grains = 0;
+  for (size_t k = 0; k < count; k++) {
+    mass += fragments[k].mass;
+    grains += fragments[k].count;
+  }
+  return (struct outcome_small){.dust = NAN, .complete = grains > 0 ? 1.5 * mass / grains : 0};
+}
+
 status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
                          struct fragment **fragments, size_t *count, struct error *error) {
   status code = dem_report_fragments(run, NULL, fragments, count, error);
@@ -182,7 +192,8 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
   snprintf(outcome->message, sizeof outcome->message, "%s",
            run->state.finished ? run->state.message : "not finished: results of a snapshot");
   warn_of_passing(run, outcome);
-  outcome_fragments(outcome, *count, *fragments);
+  const struct outcome_small small = small_fragments(*count, *fragments);
+  outcome_fragments(outcome, *count, *fragments, &small);
   results->energy.vibration = vibration(*count, *fragments);
   code = fill_finality(run, outcome, results, error);
   if (code) {

@@ -52,6 +52,11 @@ static status find_largest_share(const struct sph_run *run, double static_streng
   return STATUS_OK;
 }
 
+/* Is the k-th fragment heavy enough to have a shape and a motion of its own? */
+static bool is_measured(const struct sph_fragments *found, size_t k) {
+  return k < found->count && found->fragments[k].count >= SPH_FRAGMENTS_MEASURED;
+}
+
 /* M_1/M by three rules. `found`: by the rules of the inputs. */
 static status report_largest(const struct sph_run *run, const struct sph_fragments *found, struct sph_results *results,
                              struct error *error) {
@@ -71,7 +76,7 @@ static status report_largest(const struct sph_run *run, const struct sph_fragmen
 
   results->largest.axis_middle = sph_results_finite(found->axis_ratio[0]);
   results->largest.axis_short = sph_results_finite(found->axis_ratio[1]);
-  if (found->count)
+  if (is_measured(found, 0))
     results->largest.speed = sph_results_finite(norm(found->fragments[0].velocity));
   return STATUS_OK;
 }
@@ -81,7 +86,7 @@ static void report_second(const struct sph_run *run, const struct sph_fragments 
     return;
   const struct fragment *f = &found->fragments[1];
   results->second.mass = f->mass;
-  if (run->inputs.kind != SPH_IMPACT)
+  if (run->inputs.kind != SPH_IMPACT || !is_measured(found, 1))
     return;
 
   double centre[3] = {0, 0, 0}, away[3], cosine = 0;
@@ -268,7 +273,9 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   };
   snprintf(outcome->message, sizeof outcome->message, "%s",
            run->state.finished ? run->state.message : "not finished: results of a snapshot");
-  outcome_fragments(outcome, found->count, found->fragments);
+  const struct outcome_small small = {.dust = run->inputs.fragments.dust_mass,
+                                      .complete = (SPH_FRAGMENTS_COMPLETE - 0.5) * found->mass / (double)run->targets};
+  outcome_fragments(outcome, found->count, found->fragments, &small);
 
   double change[3], translation = 0;
   for (int k = 0; k < 3; k++)

@@ -56,13 +56,14 @@ static const struct field rows[] = {
     SHARE(largest.dynamic_fraction, .doc = "M_1/M with the damaged layer and without the static strength."),
     SHARE(largest.axis_middle,
           .doc = "Middle over longest axis of the ellipsoid that has the moments of inertia of the "
-                 "largest fragment."),
+                 "largest fragment. Off when that has fewer than 100 particles."),
     SHARE(largest.axis_short, .doc = "Shortest over longest axis of the same ellipsoid. 1 is a sphere."),
-    REAL(largest.speed, "m/s", 0, .doc = "Speed of the largest fragment's centre of mass."),
+    REAL(largest.speed, "m/s", 0,
+         .doc = "Speed of the largest fragment's centre of mass. Off when that has fewer than 100 particles."),
     REAL(second.mass, "kg", 0, .doc = "Mass of the second largest fragment; off when there is only one."),
     REAL(second.angle, "rad", 0,
          .doc = "Impact: angle between the directions from the centre of mass to the point of impact and to the second "
-                "largest fragment. pi is the antipode.",
+                "largest fragment. pi is the antipode. Off when that has fewer than 100 particles.",
          .source = "BA95 section 5.2"),
     SHARE(ejecta.mass_fraction,
           .doc = "Impact: mass share of the target that moves outwards faster than crater.ejection_speed.",

@@ -13,11 +13,12 @@ enum { VTK_VERTEX = 1, MOST_LAYERS = 4096 };
 
 #define COLUMN(member, width, ...) SNAPSHOT_FILE_COLUMN(fragment, member, width, __VA_ARGS__)
 static const struct snapshot_file_column fragment_columns[] = {
-    COLUMN(mass, 0, "kg", "mass, descending; every dust particle is a fragment of its own"),
+    COLUMN(mass, 0, "kg", "mass, descending; every single particle is a fragment of its own"),
     COLUMN(position, 3, "m", "centre of mass"),
     COLUMN(velocity, 3, "m s-1", "velocity of the centre of mass"),
     COLUMN(spin, 3, "rad s-1",
-           "angular velocity: inverse inertia tensor times angular momentum about the centre of mass"),
+           "angular velocity: inverse inertia tensor times angular momentum about the centre of mass; nan below 100 "
+           "particles"),
     COLUMN(moment_of_inertia, 0, "kg m2", "a third of the inertia tensor's trace, about the centre of mass"),
     COLUMN(kinetic_energy, 0, "J", "translation, rotation and internal motion"),
     COLUMN(count, 0, "1", "number of its particles"),
@@ -132,7 +133,7 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   unsigned_column(file, AT("fragment"), n, fragments->label, integers,
                   "number of its fragment by descending mass; -1: none");
   snapshot_file_data(file, AT("part"), SNAPSHOT_FILE_BYTE, n, 0, fragments->part, "1",
-                     "0 core of a fragment, 1 its damaged layer, 2 dust, 3 of a body without fragments");
+                     "0 core of a fragment, 1 its damaged layer, 2 single particle, 3 of a body without fragments");
   if (flaws)
     unsigned_column(file, AT("flaws"), n, flaws, integers, "number of flaws");
   COLUMNS(file, "fragments", fragments->count, fragments->fragments, fragment_columns);
@@ -156,6 +157,14 @@ static void add_profile(struct snapshot_file *file, const struct sph_run *run) {
   free(layers);
 }
 
+/* The spin of few particles is that of their lattice. */
+static void hide_small_spins(struct sph_fragments *found) {
+  for (size_t k = 0; k < found->count; k++)
+    if (found->fragments[k].count < SPH_FRAGMENTS_MEASURED)
+      for (int d = 0; d < 3; d++)
+        found->fragments[k].spin[d] = NAN;
+}
+
 status sph_snapshot_write(struct sph_run *run, const char *path, struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   struct outcome outcome;
@@ -177,6 +186,7 @@ status sph_snapshot_write(struct sph_run *run, const char *path, struct error *e
   code = sph_report_fragments(run, in->fragments.static_strength, in->fragments.veneer, &found, error);
   if (code)
     goto cleanup;
+  hide_small_spins(&found);
   code = snapshot_file_open(sph_engine.name, sph_engine.doc, sph_engine.results_version, run->seed, &sph_inputs, in,
                             &file, error);
   if (code)

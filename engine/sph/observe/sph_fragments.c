@@ -1,4 +1,4 @@
-/* Fragments of SPH particles: cores, their damaged layers, dust. */
+/* Fragments of SPH particles: cores, their damaged layers, single particles. */
 #include "engine/sph/observe/sph_fragments.h"
 
 #include <math.h>
@@ -79,7 +79,7 @@ static void classify(struct search *s) {
       continue;
 
     add_member(s, i);
-    s->out->part[i] = SPH_FRAGMENTS_DUST; /* until it joins a layer */
+    s->out->part[i] = SPH_FRAGMENTS_SINGLE; /* until it joins a layer */
     bool unbroken = is_unbroken(s, i);
     double sum = p->x[i] + p->y[i] + p->z[i] + p->vx[i] + p->vy[i] + p->vz[i] + p->mass[i] + h[i];
     if (!isfinite(sum) || !(h[i] > 0))
@@ -206,7 +206,7 @@ static void measure_shape(const struct search *s, double ratio[2]) {
   double tensor[6] = {0}, value[3], axis[3][3];
   const struct fragment *f = s->out->fragments;
   ratio[0] = ratio[1] = NAN;
-  if (s->out->count == 0 || f->count < 4)
+  if (s->out->count == 0 || f->count < SPH_FRAGMENTS_MEASURED)
     return;
   for (size_t k = 0; k < s->members; k++) {
     if (s->label[k] != 0)
@@ -247,8 +247,8 @@ static void sum_up(struct search *s) {
     size_t i = s->particle[k];
     out->label[i] = s->label[k];
     out->mass += p->mass[i];
-    if (out->part[i] == SPH_FRAGMENTS_DUST)
-      out->dust_mass += p->mass[i];
+    if (out->part[i] == SPH_FRAGMENTS_SINGLE)
+      out->single_mass += p->mass[i];
     if (s->core_mass[i] > p->mass[i])
       out->resolved++;
     note_core(out, s->core_mass[i]);

@@ -10,7 +10,7 @@
  * two at the same distance the one of the heavier core decides, then the one of the core with the lower first particle.
  *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The damaged layer itself
  * links nothing.
- *   4. Dust: every other broken particle is a fragment of its own, below the resolution.
+ *   4. Single particles: every other broken particle is a fragment of its own, below the resolution.
  *
  * A core is thus a fragment without its damaged layer. The input fragments.veneer switches step 3 on.
  *
@@ -44,28 +44,37 @@ struct sph_fragments_options {
 };
 struct sph_fragments_options sph_fragments_default(void); /* D < 1, one mean h, layer, open, current h */
 
-enum sph_fragments_part { SPH_FRAGMENTS_CORE, SPH_FRAGMENTS_LAYER, SPH_FRAGMENTS_DUST, SPH_FRAGMENTS_LEFT_OUT };
+/* Of so many particles on a fragment has a shape, a spin and a speed of its own. A sphere cut from the lattice reads
+ * 0.93 for shortest over longest axis at 100 particles, 0.69 at 10. */
+enum { SPH_FRAGMENTS_MEASURED = 100 };
+
+/* From so many particles on a spectrum is complete. A core of one particle with its damaged layer weighs 5 to 13. In
+ * the scene `disruption` 10 000 and 40 000 particles give 9.7 and 9.3 fragments above the mass of 10 of the coarser
+ * particles, 19.3 and 16.0 above that of 5 (means of 3 seeds). */
+enum { SPH_FRAGMENTS_COMPLETE = 10 };
+
+enum sph_fragments_part { SPH_FRAGMENTS_CORE, SPH_FRAGMENTS_LAYER, SPH_FRAGMENTS_SINGLE, SPH_FRAGMENTS_LEFT_OUT };
 
 struct sph_fragments {
   size_t n;        /* particles */
   uint32_t *label; /* by particle: number of its fragment, 0 the heaviest; UINT32_MAX when left out */
   uint8_t *part;   /* by particle: enum sph_fragments_part */
   struct fragment
-      *fragments;   /* by descending mass; each dust particle is one of count 1. The caller may take it (set it NULL) */
-  size_t count;     /* number of fragments, dust included */
-  size_t resolved;  /* number of fragments with a core of two particles or more */
-  size_t broken;    /* number of particles that the static strength broke */
-  double mass;      /* kg, of all particles that are not left out */
-  double dust_mass; /* kg */
+      *fragments; /* by descending mass; each single particle is one of count 1. The caller may take it (set it NULL) */
+  size_t count;   /* number of fragments, single particles included */
+  size_t resolved;                  /* number of fragments with a core of two particles or more */
+  size_t broken;                    /* number of particles that the static strength broke */
+  double mass;                      /* kg, of all particles that are not left out */
+  double single_mass;               /* kg, of broken particles that are fragments of their own */
   double core_largest, core_second; /* kg, the two heaviest cores */
   double axis_ratio[2]; /* shape of fragment 0, from the inertia tensor: middle and shortest over longest axis of the
-                         * ellipsoid of the same tensor; NaN for less than four particles or flat ones */
+                         * ellipsoid of the same tensor; NaN for less than SPH_FRAGMENTS_MEASURED particles, or flat */
 };
 
-/* A particle whose position, velocity or h is not finite is dust. In periodic directions a fragment is measured from
- * the images nearest to its first particle. A fragment that spans the box has no spin but about that axis, and its
- * centre along the axis has no meaning. STATUS_MEMORY; STATUS_CONTENT for options out of range or a body without an
- * entry. On failure *out is empty. */
+/* A particle whose position, velocity or h is not finite is a fragment of its own. In periodic directions a fragment is
+ * measured from the images nearest to its first particle. A fragment that spans the box has no spin but about that
+ * axis, and its centre along the axis has no meaning. STATUS_MEMORY; STATUS_CONTENT for options out of range or a body
+ * without an entry. On failure *out is empty. */
 status sph_fragments_find(const struct sph_particles *particles, const struct sph_fragments_options *options,
                           struct sph_fragments *out, struct error *error);
 void sph_fragments_clear(struct sph_fragments *fragments);

@@ -249,6 +249,11 @@ static const struct field rows[] = {
             "The first layer of damaged neighbours belongs to a fragment. Results tell the largest fragment with and "
             "without it.",
         .source = "BA95 section 4.4"),
+    REAL(fragments.dust_mass, "kg", NAN, 0, 1e60, .flags = FIELD_DERIVED,
+         .doc = "Lighter fragments are dust, whatever the particles weigh; a thousandth of the target's mass unless "
+                "given. Below complete_mass (10 particles) dust is not resolved: with that default take 10000 "
+                "particles or more.",
+         .source = "our choice"),
 
     REAL(crater.ejection_speed, "m/s", 10, 0, 1e6, .when = "kind=impact",
          .doc = "At the end what moves out of the target (along z, towards where the projectile came from) faster than "

@@ -62,6 +62,7 @@ struct sph_method {
 };
 struct sph_fragment_rules {
   double static_strength, damage, link_length; /* Pa, 1, 1 */
+  double dust_mass;                            /* kg */
   int link_h;                                  /* 0 initial, 1 current */
   bool veneer;
 };
