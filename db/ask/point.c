@@ -49,16 +49,18 @@ static status take_run(void *context, size_t count, const struct query_value *va
 /* A store that was made before runs said it, and is only read, has no such column. */
 static status read_complete_mass(struct store *store, struct query_parameter parameters[2], double *mass,
                                  struct error *error) {
+  const struct query_parameter column = {"column", OUTCOME_NAME(complete_mass)};
+  char text[256];
   double there = 0;
   *mass = NAN;
-  status code = query_number(store, "SELECT count(*) FROM pragma_table_info('run') WHERE name = 'complete_mass'", 0,
-                             NULL, &there, error);
+  status code = query_number(store, "SELECT count(*) FROM pragma_table_info('run') WHERE name = :column", 1, &column,
+                             &there, error);
   if (code || !(there > 0))
     return code;
-  return query_number(store,
-                      "SELECT avg(complete_mass) FROM run WHERE point_id = :point AND results_version = :version AND "
-                      "counts = 1",
-                      2, parameters, mass, error);
+  snprintf(text, sizeof text,
+           "SELECT avg(%s) FROM run WHERE point_id = :point AND results_version = :version AND counts = 1",
+           OUTCOME_NAME(complete_mass));
+  return query_number(store, text, 2, parameters, mass, error);
 }
 
 status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
