@@ -149,9 +149,7 @@ static void yield_falls_with_alpha(void **state) {
   sph_system_free(s);
 }
 
-/* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change harms nothing. */
-/* Not so tension_limit: it is that of the porous body, whatever its distention, and falls as far as the solid has
- * expanded. */
+/* The tension limit is that of the porous body, whatever its distention. It falls as far as the solid has expanded. */
 static void tension_limit_is_of_the_body(void **state) {
   (void)state;
   size_t n;
@@ -174,6 +172,7 @@ static void tension_limit_is_of_the_body(void **state) {
   sph_system_free(s);
 }
 
+/* D = min(1, D_tension + D_compaction); closed pores do not open again, and elastic change harms nothing. */
 static void damage_adds_up(void **state) {
   (void)state;
   for (int flaws = 0; flaws < 2; flaws++) {
@@ -187,6 +186,7 @@ static void damage_adds_up(void **state) {
         s->c.density[i] = (step == 1 ? 1700 : 1800 * (1 + 0.6 * (double)i / (double)n));
       }
       respond(s);
+      CASE_LOOPS(s, true, {SPH_MODULE_palpha, SPH_DAMAGE});
       for (size_t i = 0; i < n; i++) {
         double c = sph_palpha_damage_cbrt(s->solid[0].prepared[SPH_MODULE_palpha], s->c.rest_distention[i]);
         double want = fmin(1, cbrt(c * c * c + (flaws ? pow((double)(i % 7) / 6, 3) : 0)));

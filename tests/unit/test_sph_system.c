@@ -276,6 +276,17 @@ static void flaws_open_by_the_damaged_stress(void **state) {
   let_go(&c);
 }
 
+/* One load on all particles, in units of the E eps of the weakest flaw: largest principal deviator and pressure. */
+static void load_all(struct sph_system *s, double tension, double pressure) {
+  for (size_t i = 0; i < s->n; i++) {
+    const double w = s->c.weakest[i];
+    s->c.stress[0][i] = tension * w;
+    s->c.stress[3][i] = -0.5 * tension * w;
+    s->c.stress[1][i] = s->c.stress[2][i] = s->c.stress[4][i] = 0;
+    s->c.pressure[i] = pressure * w;
+  }
+}
+
 /* Damage at its cap has no rate: else it would go on shortening the time step. Below the cap it has, and reaches it,
  * not more. */
 static void growth_ends_at_the_cap(void **state) {
@@ -283,29 +294,77 @@ static void growth_ends_at_the_cap(void **state) {
   struct collision c = collide(0);
   struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
   static const double share[] = {0.5, 0.999, 1, 1.001}; /* of the cap, in D^(1/3) */
-  size_t below_one = 0;
-  for (int k = 0; k < 4; k++) {
-    for (int pass = 0; pass < 2; pass++) { /* the first pass finds the cap of this load */
-      for (size_t i = 0; i < s->n; i++) {
-        const double w = s->c.weakest[i], d = pass ? share[k] * s->c.damage_cap[i] : 0;
-        s->c.damage[i] = d;
-        s->c.stress[0][i] = 1.3 * w, s->c.stress[3][i] = -0.65 * w;
-        s->c.stress[1][i] = s->c.stress[2][i] = s->c.stress[4][i] = s->c.pressure[i] = 0;
-      }
+  for (int k = 0; k < 4; k++)
+    for (int way = 0; way < 2; way++) { /* a step long beside what is left to grow, a short one */
+      s->dt = 0;
+      load_all(s, 1.3, 0);
+      CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_CRACK}); /* finds the cap of this load */
+      for (size_t i = 0; i < s->n; i++)
+        s->c.damage[i] = share[k] * s->c.damage_cap[i];
       CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_CRACK});
+      size_t below_one = 0;
+      for (size_t i = 0; i < s->n; i++)
+        if (s->c.damage_cap[i] < 0.99) { /* not all of its flaws are open */
+          below_one++;
+          assert_true((s->c.damage_rate[i] > 0) == (k < 2));
+        }
+      assert_true(4 * below_one > s->n); /* many have flaws left at this load */
+      const double before = s->c.damage[0], rate = s->c.damage_rate[0], cap = s->c.damage_cap[0];
+      s->dt = way ? 1e-12 : 1;
+      CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_CRACK});
+      const double expected = k < 2 ? fmin(before + s->dt * rate, cap) : before;
+      assert_true(fabs(s->c.damage[0] - expected) <= 1e-15);
+      memset(s->c.damage, 0, s->n * sizeof *s->c.damage);
     }
-    for (size_t i = 0; i < s->n; i++) {
-      if (!(s->c.damage_cap[i] < 0.99))
-        continue; /* all of its flaws are open */
-      below_one++;
-      assert_true(k < 2 ? s->c.damage_rate[i] > 0 : s->c.damage_rate[i] == 0);
-    }
+  sph_system_free(s);
+  let_go(&c);
+}
+
+/* Heun: half a step by the rate of the old state, half by that of the new one; also where the load has gone. */
+static void growth_is_the_mean_of_two_rates(void **state) {
+  (void)state;
+  struct collision c = collide(0);
+  c.parameters.in.fracture.cap = SPH_CAP_NONE;
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  s->dt = 1e-9;
+  double grown[3];
+  for (int k = 0; k < 3; k++) { /* the load comes, stays, goes */
     const double before = s->c.damage[0];
-    s->dt = k < 2 ? 1 : 1e-9; /* long beside what is left to grow */
-    CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_PREDICT});
-    assert_true(s->c.damage[0] == (k < 2 ? s->c.damage_cap[0] : before));
+    load_all(s, k < 2 ? 1.0001 : 0.9, 0);
+    CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_CRACK});
+    grown[k] = (s->c.damage[0] - before) / (s->dt * s->c.crack_rate[0]); /* one open flaw: D^(1/3) at c_g/R_s */
   }
-  assert_true(below_one > s->n); /* most have flaws left at this load */
+  assert_true(fabs(grown[0] - 0.5) < 1e-9 && fabs(grown[1] - 1) < 1e-9 && fabs(grown[2] - 0.5) < 1e-9);
+  sph_system_free(s);
+  let_go(&c);
+}
+
+/* Under pressure a flaw shuts as damage grows: E eps = lambda(S) - P/(1-D) falls to its threshold at the D that these
+ * loads say. However long the step, damage goes so far and no farther: it never heals. */
+static void pressure_shuts_flaws(void **state) {
+  (void)state;
+  static const struct {
+    double tension, pressure, damage; /* of the weakest flaw's E eps; D = 1 - P/(lambda - 1) */
+  } cases[] = {{2, 0.8, 0.2}, {3, 0.5, 0.75}, {2, 0.999, 0.001}, {2, 1.001, 0}, {0.9, 0.01, 0}};
+  static const double steps[] = {1e-12, 1e-8, 1e-6, 1};
+  struct collision c = collide(0);
+  c.parameters.in.fracture.cap = SPH_CAP_NONE;
+  struct sph_system *s = case_system(c.particles, 2, c.physics, &c.parameters);
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
+    for (size_t m = 0; m < sizeof steps / sizeof *steps; m++) {
+      memset(s->c.damage, 0, s->n * sizeof *s->c.damage);
+      memset(s->c.damage_rate, 0, s->n * sizeof *s->c.damage_rate);
+      s->dt = steps[m];
+      load_all(s, cases[k].tension, cases[k].pressure);
+      for (int pass = 0; pass < 3; pass++)
+        CASE_LOOPS(s, true, {SPH_MODULE_fracture, SPH_CRACK});
+      for (size_t i = 0; i < s->n; i++) {
+        const double d = pow(s->c.damage[i], 3);
+        assert_true(d <= cases[k].damage + 1e-12);
+        if (steps[m] == 1)
+          assert_true(fabs(d - cases[k].damage) < 1e-7); /* lambda(S) is known to 1e-8 */
+      }
+    }
   sph_system_free(s);
   let_go(&c);
 }
@@ -427,6 +486,8 @@ int main(void) {
       cmocka_unit_test(absent),
       cmocka_unit_test(held),
       cmocka_unit_test(growth_ends_at_the_cap),
+      cmocka_unit_test(growth_is_the_mean_of_two_rates),
+      cmocka_unit_test(pressure_shuts_flaws),
       cmocka_unit_test(ledger_by_hand),
       cmocka_unit_test(limits_by_hand),
       cmocka_unit_test(boosted),

@@ -297,15 +297,18 @@ static double stretch(int growth, int cap, bool compact, double damage_step, dou
     for (size_t i = 0; i < p->n; i++)
       before[i] = strain_of(p, i, young);
     case_steps(s, 1);
-    for (size_t i = 0; i < p->n; i++) { /* the same law, by grady_kipp.h and the flaws as drawn */
-      const double strain = before[i];
-      const size_t total = flaws->first[i + 1] - flaws->first[i];
-      const size_t open = strain > 0 ? grady_kipp_open(flaws, i, log(strain)) : 0;
-      d[i] = grady_kipp_grow(d[i], open, total, growth, cap, speed / radius, sph_system_last_step(s));
-      mean += young * strain * (1 - pow(p->damage_cbrt[i], 3)) / (double)p->n;
-    }
+    for (size_t i = 0; i < p->n; i++)
+      mean += young * before[i] * (1 - pow(p->damage_cbrt[i], 3)) / (double)p->n;
     peak = fmax(peak, mean);
     sph_system_read(s, p);
+    for (size_t i = 0; i < p->n; i++) { /* the same law, by grady_kipp.h and the flaws as drawn: half a step each */
+      const double strains[2] = {before[i], strain_of(p, i, young)};
+      const size_t total = flaws->first[i + 1] - flaws->first[i];
+      for (int end = 0; end < 2; end++) {
+        const size_t open = strains[end] > 0 ? grady_kipp_open(flaws, i, log(strains[end])) : 0;
+        d[i] = grady_kipp_grow(d[i], open, total, growth, cap, speed / radius, sph_system_last_step(s) / 2);
+      }
+    }
     for (size_t i = 0; i < p->n; i++)
       *worst = fmax(*worst, fabs(p->damage_cbrt[i] - d[i]));
   }

@@ -47,39 +47,54 @@ RANGE_INLINE double *fracture_own_damage(const struct sph_system *s, const struc
   return sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : s->c.damage;
 }
 
-RANGE_HOOK void fracture_damage_predict(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double dt = s->dt, *rate = s->c.damage_rate, *cap = s->c.damage_cap;
-  double *d = fracture_own_damage(s, body);
-  RANGE_LOOP
-  for (size_t i = b->low; i < b->high; i++)
-    d[i] = range_larger(d[i], range_smaller(d[i] + dt * rate[i], cap[i])); /* never heals under a lower cap */
+/* What a particle's open flaws see: stresses of the new state, Pa. */
+struct fracture_load {
+  double largest; /* lambda(S) */
+  double strain;  /* E eps at the damage of the old state */
+  double shut;    /* D^(1/3) at which pressure shuts the weakest flaw; infinite where damage shuts none */
+};
+
+RANGE_INLINE struct fracture_load fracture_load(double largest, double pressure, double weakest, double shear_damage,
+                                                double own_damage, bool damage_closes) {
+  struct fracture_load load = {largest, largest - pressure, INFINITY};
+  if (!(damage_closes && pressure > 0))
+    return load;
+  const double damage = shear_damage * shear_damage * shear_damage, above = largest - weakest;
+  const double others = damage - own_damage * own_damage * own_damage;
+  load.strain = largest - pressure / range_larger(1 - damage, 1e-30);
+  load.shut = above > pressure ? cbrt(range_larger(1 - pressure / above - others, 0)) : 0;
+  return load;
 }
 
-/* Rate and cap of the damage of one particle whose strain (times E) is known. Its list of flaws is searched only when
- * the strain has left the bracket between two thresholds. */
-RANGE_INLINE void fracture_open(struct sph_system *s, const struct sph_solid *body, size_t i, double young,
-                                double stress) {
-  if (!(stress >= s->c.open_from[i] && stress < s->c.open_below[i])) {
+/* Advances the damage of one particle over the step that has led to this load, and finds its new rate and cap. Its list
+ * of flaws is searched only when the strain has left the bracket between two thresholds. */
+RANGE_INLINE void fracture_grow(struct sph_system *s, const struct sph_solid *body, size_t i, double young,
+                                const struct fracture_load *load) {
+  const double rate = s->c.damage_rate[i], cap = s->c.damage_cap[i];
+  double *damage = fracture_own_damage(s, body) + i;
+  if (!(load->strain >= s->c.open_from[i] && load->strain < s->c.open_below[i])) {
     const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
     const size_t own = s->id[i] - body->first;
     double bracket[2];
-    const uint32_t open = sph_weibull_active(flaws, own, stress / young, bracket);
+    const uint32_t open = sph_weibull_active(flaws, own, load->strain / young, bracket);
     s->c.open_from[i] = bracket[0] * young;
     s->c.open_below[i] = bracket[1] * young;
     s->c.open_rate[i] = open ? sph_fracture_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
     s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(flaws, own), s->in.fracture.cap) : 0;
   }
-  s->c.damage_rate[i] = fracture_own_damage(s, body)[i] < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
+  const double limit = range_smaller(range_larger(cap, s->c.damage_cap[i]), load->shut);
+  const double grown = *damage + 0.5 * s->dt * (rate + s->c.open_rate[i]);
+  *damage = range_larger(*damage, range_smaller(grown, limit));
+  s->c.damage_rate[i] = *damage < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
   if (s->c.damage[i] >= 1)
     s->c.weakest[i] = INFINITY; /* no flaw is left to open */
 }
 
 RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *d = range_shear_damage(s, body);
+  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *rate = s->c.damage_rate;
   const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
   const double *yz = s->c.stress[4];
-  double *rate = s->c.damage_rate;
-  double above[SPH_BLOCK], strain[SPH_BLOCK];
+  double above[SPH_BLOCK];
   uint32_t which[SPH_BLOCK];
   const size_t low = b->low, n = b->high - b->low;
   RANGE_LOOP
@@ -87,27 +102,28 @@ RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *bod
     const size_t i = low + k;
     const double J2 = xx[i] * xx[i] + yy[i] * yy[i] + xx[i] * yy[i] + xy[i] * xy[i] + xz[i] * xz[i] + yz[i] * yz[i];
     above[k] = 2 * sqrt(J2 * (1.0 / 3)) * (1 + 1e-12) - pressure[i] - weakest[i];
-    rate[i] = above[k] >= 0 ? rate[i] : 0;
   }
   size_t count = 0;
   for (size_t k = 0; k < n; k++) {
     which[count] = (uint32_t)k;
-    count += above[k] >= 0;
+    count += (above[k] >= 0) | (rate[low + k] > 0);
   }
   if (!count)
     return;
   const double young = sph_derived_young_modulus(&body->physics.material);
+  const double *d = range_shear_damage(s, body), *own = fracture_own_damage(s, body);
+  const bool damage_closes = d == s->c.damage;
+  struct fracture_load load[SPH_BLOCK];
   RANGE_LOOP
   for (size_t m = 0; m < count; m++) {
     const size_t i = low + which[m];
-    const double left = 1 - d[i] * d[i] * d[i], p = pressure[i];
-    strain[m] = fracture_largest(xx[i], xy[i], xz[i], yy[i], yz[i]) - (p > 0 ? p / range_larger(left, 1e-30) : p);
+    load[m] = fracture_load(fracture_largest(xx[i], xy[i], xz[i], yy[i], yz[i]), pressure[i], weakest[i], d[i], own[i],
+                            damage_closes);
   }
   for (size_t m = 0; m < count; m++)
-    fracture_open(s, body, low + which[m], young, strain[m]);
+    fracture_grow(s, body, low + which[m], young, &load[m]);
 }
 
-static const sph_hook fracture_hooks[SPH_STAGES] =
-    {[SPH_PREDICT] = fracture_damage_predict, [SPH_CRACK] = fracture_range};
+static const sph_hook fracture_hooks[SPH_STAGES] = {[SPH_CRACK] = fracture_range};
 
 #endif

@@ -31,7 +31,8 @@ enum sph_stage {
   SPH_YIELD,         /* the yield limit of the solid: a law sets it, other modules lower it */
   SPH_YIELD_OF_BODY, /* from the solid's yield limit to that of the body */
   SPH_RETURN,        /* the deviator back to the yield limit; this and the two before only where a law sets a limit */
-  SPH_CRACK,         /* open flaws and their rates, from the stress that the solid bears */
+  SPH_CRACK,         /* open flaws and the damage by them, from the stress that the solid bears */
+  SPH_DAMAGE,        /* all damage, where a body has several causes of it */
   SPH_RATES,         /* after the pair loop: new rates from the velocity gradient, and half the change of rates added */
   SPH_STAGES
 };

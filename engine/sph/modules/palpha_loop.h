@@ -121,7 +121,7 @@ RANGE_INLINE void palpha_respond(struct sph_system *s, const struct sph_solid *b
 }
 
 /* The stored deviator is the bulk one, S_s/alpha: alpha S holds while alpha changes, dS/dt = ... - (S/alpha) dalpha/dt.
- * Total damage D = min(1, D by flaws + D by compaction). */
+ */
 RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
   double was[SPH_BLOCK];
   palpha_respond(s, body, b, was);
@@ -129,19 +129,11 @@ RANGE_HOOK void palpha_range(struct sph_system *s, const struct sph_solid *body,
     return;
   const size_t low = b->low, n = b->high - b->low;
   const double *alpha = s->c.distention;
-  const double *flaws = sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : NULL;
   for (int c = 0; c < 5; c++) {
     double *stress = s->c.stress[c];
     RANGE_LOOP
     for (size_t k = 0; k < n; k++)
       stress[low + k] *= was[k] / alpha[low + k];
-  }
-  for (size_t i = low; i < low + n; i++) {
-    const double closed = s->c.compaction[i], open = flaws ? flaws[i] : 0;
-    if (closed == 0)
-      s->c.damage[i] = open;
-    else
-      s->c.damage[i] = range_smaller(1, cbrt(closed * closed * closed + open * open * open));
   }
 }
 
@@ -174,6 +166,20 @@ RANGE_HOOK void palpha_yield(struct sph_system *s, const struct sph_solid *body,
     limit[k] /= alpha[k];
 }
 
+/* D = min(1, D by flaws + D by compaction). */
+RANGE_HOOK void palpha_damage(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
+  if (!body->physics.strength)
+    return;
+  const double *flaws = sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : NULL;
+  for (size_t i = b->low; i < b->high; i++) {
+    const double closed = s->c.compaction[i], open = flaws ? flaws[i] : 0;
+    if (closed == 0)
+      s->c.damage[i] = open;
+    else
+      s->c.damage[i] = range_smaller(1, cbrt(closed * closed * closed + open * open * open));
+  }
+}
+
 /* |dalpha| <= distention_step in a step, by dalpha/dt = (f - 1) (alpha/rho) drho/dt. Matter that a Courant step may
  * bring onto the crush curve counts as crushing already (f = 0). In a shock the rate grows by up to a quarter within a
  * step, so that the limit uses three quarters of distention_step. */
@@ -199,6 +205,7 @@ RANGE_HOOK void palpha_limit(struct sph_system *s, const struct sph_solid *body,
 static const sph_hook palpha_hooks[SPH_STAGES] = {[SPH_RESPOND] = palpha_range,
                                                   [SPH_PUBLISH] = palpha_publish,
                                                   [SPH_YIELD_OF_BODY] = palpha_yield,
+                                                  [SPH_DAMAGE] = palpha_damage,
                                                   [SPH_RATES] = palpha_limit};
 
 #endif
