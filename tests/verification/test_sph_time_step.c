@@ -90,7 +90,7 @@ static void default_step_is_fine_enough(void **state) {
   const size_t seeds = run_case_seeds(4, 8);
   assert_true(seeds >= 2 && seeds <= MOST_SEEDS);
   if (!run_case_full()) {
-    scene_at_default("solid-ice", "600", seeds);
+    scene_at_default("solid-ice", "1500", seeds);
     scene_at_default("porous-ice", "600", seeds);
     return;
   }

@@ -1,10 +1,15 @@
-/* Which flaws are open, and how fast D^(1/3) grows with them [BA95 section 4.3].
+/* Which flaws are open, and D^(1/3) that grows with them [BA95 section 4.3].
  *
  * Local strain (eq. 21) of the damaged stress: eps = sigma_t/((1-D) E), with sigma_t the largest principal value of
  * (1-D) S - P (P < 0: (1-D) P). The factors cancel:  E eps = lambda(S) - P                where P < 0,
  *                                                    E eps = lambda(S) - P/(1-D)          elsewhere.
  * D is here the damage that scales the deviator. Where a module publishes 0 for it, damage does not soften the rock in
  * shear: S is 2 mu times an elastic strain at any damage, and E eps = lambda(S) - P, the stress without damage.
+ *
+ * A step adds dt times the mean of the rates at its two ends, where the stress of the new end is known. Pressure shuts
+ * a flaw as D grows: growth ends where (lambda(S) - E eps_1)(1-D) = P, eps_1 the lowest threshold of the particle. D
+ * never heals, so a step must not go past that D; if it does, results are first order in dt.
+ *
  * Most particles can have no open flaw: the bound lambda(S) <= 2 sqrt(J2/3) shows it without principal axes. For the
  * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
@@ -47,42 +52,45 @@ RANGE_INLINE double *fracture_own_damage(const struct sph_system *s, const struc
   return sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : s->c.damage;
 }
 
-/* What a particle's open flaws see: stresses of the new state, Pa. */
+/* What opens and shuts the flaws of a particle. */
 struct fracture_load {
-  double largest; /* lambda(S) */
-  double strain;  /* E eps at the damage of the old state */
-  double shut;    /* D^(1/3) at which pressure shuts the weakest flaw; infinite where damage shuts none */
+  double strain; /* E eps at the damage of the old state, Pa */
+  double shut;   /* D^(1/3) by flaws at which pressure shuts the weakest flaw; infinite where damage shuts none */
 };
 
-RANGE_INLINE struct fracture_load fracture_load(double largest, double pressure, double weakest, double shear_damage,
-                                                double own_damage, bool damage_closes) {
-  struct fracture_load load = {largest, largest - pressure, INFINITY};
-  if (!(damage_closes && pressure > 0))
-    return load;
-  const double damage = shear_damage * shear_damage * shear_damage, above = largest - weakest;
-  const double others = damage - own_damage * own_damage * own_damage;
-  load.strain = largest - pressure / range_larger(1 - damage, 1e-30);
-  load.shut = above > pressure ? cbrt(range_larger(1 - pressure / above - others, 0)) : 0;
+/* `largest`: lambda(S). */
+RANGE_INLINE struct fracture_load fracture_load(const struct sph_system *s, const struct sph_solid *body, size_t i,
+                                                double largest) {
+  const double *shear_damage = range_shear_damage(s, body), pressure = s->c.pressure[i];
+  if (!(pressure > 0))
+    return (struct fracture_load){largest - pressure, INFINITY};
+  const double damage = shear_damage[i] * shear_damage[i] * shear_damage[i];
+  struct fracture_load load = {largest - pressure / range_larger(1 - damage, 1e-30), INFINITY};
+  if (shear_damage != s->c.damage)
+    return load; /* damage does not soften the deviator */
+  const double own = fracture_own_damage(s, body)[i], by_others = damage - own * own * own;
+  const double above = largest - s->c.weakest[i];
+  load.shut = above > pressure ? cbrt(range_larger(1 - pressure / above - by_others, 0)) : 0;
   return load;
 }
 
 /* Advances the damage of one particle over the step that has led to this load, and finds its new rate and cap. Its list
  * of flaws is searched only when the strain has left the bracket between two thresholds. */
 RANGE_INLINE void fracture_grow(struct sph_system *s, const struct sph_solid *body, size_t i, double young,
-                                const struct fracture_load *load) {
+                                struct fracture_load load) {
   const double rate = s->c.damage_rate[i], cap = s->c.damage_cap[i];
   double *damage = fracture_own_damage(s, body) + i;
-  if (!(load->strain >= s->c.open_from[i] && load->strain < s->c.open_below[i])) {
+  if (!(load.strain >= s->c.open_from[i] && load.strain < s->c.open_below[i])) {
     const struct sph_weibull_lists *flaws = body->prepared[SPH_MODULE_weibull];
     const size_t own = s->id[i] - body->first;
     double bracket[2];
-    const uint32_t open = sph_weibull_active(flaws, own, load->strain / young, bracket);
+    const uint32_t open = sph_weibull_active(flaws, own, load.strain / young, bracket);
     s->c.open_from[i] = bracket[0] * young;
     s->c.open_below[i] = bracket[1] * young;
     s->c.open_rate[i] = open ? sph_fracture_rate(open, s->in.fracture.growth) * s->c.crack_rate[i] : 0;
     s->c.damage_cap[i] = open ? sph_fracture_limit(open, sph_weibull_total(flaws, own), s->in.fracture.cap) : 0;
   }
-  const double limit = range_smaller(range_larger(cap, s->c.damage_cap[i]), load->shut);
+  const double limit = range_smaller(range_larger(cap, s->c.damage_cap[i]), load.shut);
   const double grown = *damage + 0.5 * s->dt * (rate + s->c.open_rate[i]);
   *damage = range_larger(*damage, range_smaller(grown, limit));
   s->c.damage_rate[i] = *damage < s->c.damage_cap[i] ? s->c.open_rate[i] : 0;
@@ -111,17 +119,16 @@ RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *bod
   if (!count)
     return;
   const double young = sph_derived_young_modulus(&body->physics.material);
-  const double *d = range_shear_damage(s, body), *own = fracture_own_damage(s, body);
-  const bool damage_closes = d == s->c.damage;
-  struct fracture_load load[SPH_BLOCK];
+  double largest[SPH_BLOCK];
   RANGE_LOOP
   for (size_t m = 0; m < count; m++) {
     const size_t i = low + which[m];
-    load[m] = fracture_load(fracture_largest(xx[i], xy[i], xz[i], yy[i], yz[i]), pressure[i], weakest[i], d[i], own[i],
-                            damage_closes);
+    largest[m] = fracture_largest(xx[i], xy[i], xz[i], yy[i], yz[i]);
   }
-  for (size_t m = 0; m < count; m++)
-    fracture_grow(s, body, low + which[m], young, &load[m]);
+  for (size_t m = 0; m < count; m++) {
+    const size_t i = low + which[m];
+    fracture_grow(s, body, i, young, fracture_load(s, body, i, largest[m]));
+  }
 }
 
 static const sph_hook fracture_hooks[SPH_STAGES] = {[SPH_CRACK] = fracture_range};

@@ -1,7 +1,7 @@
 /* One time step. The order of the physics modules is in modules/list.h.
  *
- *   1. predict x v rho u h S D
- *   2. pressure, yield limit, open flaws, damaged stress
+ *   1. predict x v rho u h S
+ *   2. pressure, yield limit, open flaws and damage, damaged stress
  *   3. one pair loop
  *   4. rates; half the change of the rates is added to the predicted state
  *
