@@ -104,11 +104,14 @@ static void pinned(const char *what, double value, double expected, double toler
 
 /* How far damage has come, mean of seeds 1 to 3 at 3000 particles: at 3 us, when it has just begun under the point of
  * impact and waits for the growth of cracks, and at 16 us, when the wave has come back from the far side. Not the
- * paper's numbers but this engine's of results_version 2, to be pinned anew when physics changes on purpose. What means
- * the same physics moved them by (cfl 0.2, cfl 0.4, precision float, flaws compact): 3 us: 0 %, +5 %, 0, +1 %      16
- * us: +0.7, -0.8, 0, +0.4 %      share reached: +0.4, -0.6, +0.1, 0 % What means another one (cracks twice as fast,
- * half as fast, k halved, damage not applied to shear, not to tension): 3 us: +15, -32, -4, -4, 0 %   16 us: -3, +3,
- * -5, +16, +18 %     share reached: -4, +6, -4, +11, +14 % The tolerances stand between: each of those five is red. */
+ * paper's numbers but this engine's of results_version 6, to be pinned anew when physics changes on purpose.
+ *
+ * What means the same physics moved them by (version 6; cfl 0.2, cfl 0.4, damage_step 0.05, float, compact):
+ *   3 us: -0.1, +0.1, -0.1, 0, +0.5 %     16 us: +0.1, 0, +0.1, 0, +0.6 %
+ * What means another one (version 2; cracks twice as fast, half as fast, k halved, damage not applied to shear, not to
+ * tension):
+ *   3 us: +15, -32, -4, -4, 0 %     16 us: -3, +3, -5, +16, +18 %     share reached: -4, +6, -4, +11, +14 %
+ * The tolerances stand between: each of those five fails. */
 static void damage_on_its_way(void **state) {
   (void)state;
   enum { SEEDS = 3 };
@@ -131,9 +134,9 @@ static void damage_on_its_way(void **state) {
     }
     sph_run_free(run);
   }
-  pinned("mean damage at 3 us", damage[0], 0.00509, 0.08);
-  pinned("mean damage at 16 us", damage[1], 0.7092, 0.02);
-  pinned("share of the sphere with damage at 16 us", reached[1], 0.7527, 0.02);
+  pinned("mean damage at 3 us", damage[0], 0.00511, 0.08);
+  pinned("mean damage at 16 us", damage[1], 0.6960, 0.02);
+  pinned("share of the sphere with damage at 16 us", reached[1], 0.7561, 0.02);
 }
 
 static void core_and_spall(void **state) {
