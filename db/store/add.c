@@ -79,6 +79,21 @@ static status add_inputs(struct store *store, int64_t point_id, const struct sce
   return result;
 }
 
+/* The digest of the rows that a point is about to become. */
+static void digest_point(const struct scene *scene, const uint8_t hash[16], const char *json, uint8_t digest[16]) {
+  const struct field_table *inputs = scene->kind->inputs;
+  const struct digest value = digest_name("point_input", "value");
+  struct digest sum = {0};
+  digest_add_bytes(&sum, "point", "hash", hash, 16);
+  digest_add_text(&sum, "point", "engine", scene->kind->name);
+  digest_add_text(&sum, "point", "scene_name", scene->name);
+  digest_add_text(&sum, "point", "scene", json);
+  for (size_t i = 0; i < inputs->count; i++)
+    if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      digest_add_field(&sum, value, digest_row(inputs->rows[i].path), &inputs->rows[i], scene->inputs, true);
+  digest_write(sum, digest);
+}
+
 static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
                                 struct error *error) {
   status result = store_point_find(store, scene, point_id, error);
@@ -87,18 +102,21 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
   uint8_t hash[16];
   store_point_hash(scene, hash);
   result = sql_prepare_once(store->db, &store->point,
-                            "INSERT INTO point (hash, engine, scene_name, scene) VALUES (?1, ?2, ?3, ?4)", adding_point,
-                            error);
+                            "INSERT INTO point (hash, engine, scene_name, scene, digest) VALUES (?1, ?2, ?3, ?4, ?5)",
+                            adding_point, error);
   if (result != STATUS_OK)
     return result;
   char *json = scene_json(scene);
   if (!json)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
+  uint8_t digest[16];
+  digest_point(scene, hash, json, digest);
 
   sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
   sql_bind_text(store->point, 2, scene->kind->name);
   sql_bind_text(store->point, 3, scene->name);
   sql_bind_text(store->point, 4, json);
+  sqlite3_bind_blob(store->point, 5, digest, sizeof digest, SQLITE_STATIC);
   result = sql_run(store->point, adding_point, error);
   *point_id = sqlite3_last_insert_rowid(store->db);
   free(json);
@@ -206,6 +224,7 @@ struct run_row {
   int results_version;
   bool counts;
   double finished_at;
+  uint8_t digest[16];
 };
 #define RUN(name_, kind_, member_)                                                                                     \
   { name_, SQL_COLUMN_##kind_, offsetof(struct run_row, member_) }
@@ -226,17 +245,48 @@ static const struct sql_column run_columns[] = {
     RUN("rank", INT, run.rank),
     RUN("finished_at", REAL, finished_at),
     RUN("fields_path", TEXT, run.fields_path),
+    RUN("digest", IDENTITY, digest),
 };
 
-static status add_row(struct store *store, const struct store_run *run, int64_t *run_id, struct error *error) {
+/* The digest of the rows that a run is about to become: db/store/digest_rows.c finds the same in them. */
+static status digest_run(struct store *store, struct store_kind *kind, const struct store_run *run, uint8_t digest[16],
+                         struct error *error) {
+  struct digest sum = {0};
+  const struct schema_table results = schema_result_table(run->kind);
+  status result = digest_names_make(&store->outcome_names, "run", &outcome_table, error);
+  if (result == STATUS_OK)
+    result = digest_names_make(&store->estimate_names, "estimate", &estimates_table, error);
+  if (result == STATUS_OK)
+    result = digest_names_make(&kind->names, results.name, run->kind->results, error);
+  if (result != STATUS_OK)
+    return result;
+  digest_add_bytes(&sum, "run", "identity", run->identity, sizeof run->identity);
+  digest_add_integer(&sum, "run", "replicate", run->replicate);
+  digest_add_integer(&sum, "run", "seed", (int64_t)run->seed);
+  digest_add_integer(&sum, "run", "results_version", run->kind->results_version);
+  digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
+  if (run->result)
+    digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
+  digest_add_bytes(&sum, "fragment_mass", "masses", store->blob, 8 * run->fragment_count);
+  for (size_t i = 0; i < run->estimate_count; i++)
+    digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
+  digest_write(sum, digest);
+  return STATUS_OK;
+}
+
+static status add_row(struct store *store, struct store_kind *kind, const struct store_run *run, int64_t *run_id,
+                      struct error *error) {
   status result = sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0],
                                      run_columns, &outcome_table, 1, adding_run, error);
   if (result != STATUS_OK)
     return result;
-  const struct run_row row = {.run = *run,
-                              .results_version = run->kind->results_version,
-                              .counts = store_run_counts(run),
-                              .finished_at = wall_clock()};
+  struct run_row row = {.run = *run,
+                        .results_version = run->kind->results_version,
+                        .counts = store_run_counts(run),
+                        .finished_at = wall_clock()};
+  result = digest_run(store, kind, run, row.digest, error);
+  if (result != STATUS_OK)
+    return result;
   sql_insert_bind(&store->run, 0, &row, run->outcome);
   result = sql_run(store->run.statement, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);
@@ -257,7 +307,9 @@ static status add_run(struct store *store, const struct store_run *run, struct e
     result = views_regenerate(store->db, error);
   if (result != STATUS_OK)
     return result;
-  result = add_row(store, run, &run_id, error);
+  result = store_fragments_encode(store, run, error);
+  if (result == STATUS_OK)
+    result = add_row(store, kind, run, &run_id, error);
   if (result == STATUS_OK && run->result)
     result = add_result(kind, run_id, run->result, error);
   if (result != STATUS_OK)

@@ -22,11 +22,7 @@ static void put_little_endian(uint8_t *place, uint64_t bits) {
     place[i] = (uint8_t)(bits >> 8 * i);
 }
 
-static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
-  status result = sql_prepare_once(store->db, &store->masses,
-                                   "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)", adding_run, error);
-  if (result != STATUS_OK)
-    return result;
+status store_fragments_encode(struct store *store, const struct store_run *run, struct error *error) {
   if (!reserve_blob(store, 8 * run->fragment_count + 8))
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
   for (size_t i = 0; i < run->fragment_count; i++) {
@@ -34,6 +30,14 @@ static status add_masses(struct store *store, int64_t run_id, const struct store
     memcpy(&bits, &run->fragments[i].mass, sizeof bits);
     put_little_endian(store->blob + 8 * i, bits);
   }
+  return STATUS_OK;
+}
+
+static status add_masses(struct store *store, int64_t run_id, const struct store_run *run, struct error *error) {
+  status result = sql_prepare_once(store->db, &store->masses,
+                                   "INSERT INTO fragment_mass (run_id, masses) VALUES (?1, ?2)", adding_run, error);
+  if (result != STATUS_OK)
+    return result;
   sqlite3_bind_int64(store->masses, 1, run_id);
   sqlite3_bind_blob64(store->masses, 2, store->blob, 8 * run->fragment_count, SQLITE_STATIC);
   return sql_run(store->masses, adding_run, error);

@@ -3,6 +3,7 @@
 #define CLAST_DB_STORE_INTERNAL_H
 
 #include "db/sql.h"
+#include "db/store/digest.h"
 #include "db/store/identities.h"
 #include "db/store/store.h"
 #include "db/store/sums.h"
@@ -13,6 +14,7 @@ enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
   struct sql_insert insert;
+  struct digest_names names;
 };
 
 struct store {
@@ -33,6 +35,7 @@ struct store {
   uint8_t batch_identities[STORE_BATCH_ROWS][16];
   size_t batch_identity_count;
 
+  struct digest_names outcome_names, estimate_names;
   struct sql_insert run, attempt, estimate;
   sqlite3_stmt *masses, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;
@@ -56,7 +59,10 @@ static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);
 }
 
-/* Adds the masses, the spectrum and the running sums of a run whose row is written. Within the open batch. */
+/* Fills store->blob with the masses of a run, little-endian float64. */
+status store_fragments_encode(struct store *store, const struct store_run *run, struct error *error);
+/* After store_fragments_encode(): adds the masses, the spectrum and the running sums of a run whose row is written.
+ * Within the open batch. */
 status store_fragments_add(struct store *store, int64_t run_id, const struct store_run *run, struct error *error);
 
 /* The hash that a point is known by. */

@@ -32,8 +32,8 @@ static status map_parents(sqlite3 *db, struct error *error) {
       "DROP TABLE merge_point; CREATE TEMP TABLE merge_point (theirs INTEGER PRIMARY KEY, ours INTEGER NOT NULL);"
       "INSERT INTO merge_point SELECT b.point_id, a.point_id FROM other.point b JOIN main.point a USING (hash);"
       "INSERT OR IGNORE INTO main.point_input (point_id, path, value) SELECT m.ours, i.path, i.value FROM "
-      "other.point_input i JOIN merge_point "
-      "m ON m.theirs = i.point_id;"
+      "other.point_input i JOIN merge_point m ON m.theirs = i.point_id WHERE m.ours NOT IN (SELECT point_id FROM "
+      "main.point_input);"
       "INSERT OR IGNORE INTO main.axis (path, column_name, unit, meaning) SELECT path, column_name, unit, meaning FROM "
       "other.axis;"
 
@@ -172,7 +172,11 @@ static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   status result = copy_all(db, added, error);
   if (result != STATUS_OK)
     return result;
-  result = sums_cover_all_bins(db, error);
+  result = digest_fill(db, DIGEST_POINTS, 0, error);
+  if (result == STATUS_OK)
+    result = digest_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
+  if (result == STATUS_OK)
+    result = sums_cover_all_bins(db, error);
   if (result == STATUS_OK && *added > 0)
     result = sums_rebuild(db, 0, error); /* deletes the pooled estimates, too: they came from fewer runs */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
@@ -204,20 +208,52 @@ static status merge_attached(struct store *store, int64_t *added, int64_t *diffe
   return result;
 }
 
-/* Opens the source by itself, which refuses a missing, foreign, newer or older file and one with anything in it that no
- * store has, and looks at all its pages and the types of its rows. */
-static status inspect(const char *source, struct error *error) {
-  struct store *other = NULL;
+struct damage {
+  int64_t first, count;
+};
+
+static void take_damage(void *context, int64_t number) {
+  struct damage *damage = context;
+  if (damage->count++ == 0)
+    damage->first = number;
+}
+
+static status refuse_damaged(const char *source, const char *what, const struct damage *damage, struct error *error) {
+  return damage->count == 0
+             ? STATUS_OK
+             : status_fail(error, STATUS_CONTENT,
+                           "%s: %s %lld is damaged: a bit has changed since it was stored; %lld in all. Nothing was "
+                           "taken from it; `clast check` lists them. Restore a copy.",
+                           source, what, (long long)damage->first, (long long)damage->count);
+}
+
+/* All pages, the types of all rows, and the digests. */
+static status read_through(struct store *other, const char *source, struct error *error) {
+  struct damage runs = {0}, points = {0};
   sqlite3_stmt *statement = NULL;
-  status result = store_open_reader(source, &other, error);
-  if (result != STATUS_OK)
-    return result;
-  result = sql_prepare(other->db, "PRAGMA quick_check(1)", &statement, doing, error);
+  status result = sql_prepare(other->db, "PRAGMA quick_check(1)", &statement, doing, error);
   if (sql_next(statement, &result, doing, error) && strcmp(sql_text(statement, 0), "ok") != 0)
     result = status_fail(error, STATUS_CONTENT,
                          "%s is damaged: %.500s. Nothing was taken from it; `clast check` tells more. Restore a copy.",
                          source, sql_text(statement, 0));
   sqlite3_finalize(statement);
+  if (result == STATUS_OK)
+    result = digest_compare(other->db, DIGEST_RUNS, 0, take_damage, &runs, error);
+  if (result == STATUS_OK)
+    result = refuse_damaged(source, "run", &runs, error);
+  if (result == STATUS_OK)
+    result = digest_compare(other->db, DIGEST_POINTS, 0, take_damage, &points, error);
+  return result == STATUS_OK ? refuse_damaged(source, "point", &points, error) : result;
+}
+
+/* Opens the source by itself, which refuses a missing, foreign, newer or older file and one with anything in it that no
+ * store has, and reads it through. */
+static status inspect(const char *source, struct error *error) {
+  struct store *other = NULL;
+  status result = store_open_reader(source, &other, error);
+  if (result != STATUS_OK)
+    return result;
+  result = read_through(other, source, error);
   status closed = store_close(other, result == STATUS_OK ? error : NULL);
   return result == STATUS_OK ? closed : result;
 }

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "db/store/digest.h"
 #include "db/store/guard.h"
 #include "db/store/schema.h"
 #include "db/store/sums.h"
@@ -79,7 +80,13 @@ static status drop_empty_motion(sqlite3 *db, struct error *error) {
                      "bringing the store forward", error);
 }
 
-static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1};
+/* Version 1 had no digests. They vouch for the rows from now on, not for what happened to them before. */
+static status to_version_2(sqlite3 *db, struct error *error) {
+  status result = digest_fill(db, DIGEST_RUNS, 0, error);
+  return result == STATUS_OK ? digest_fill(db, DIGEST_POINTS, 0, error) : result;
+}
+
+static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1, to_version_2};
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
   char *copy = NULL;

@@ -156,6 +156,17 @@ static status create(sqlite3 *db, const struct schema_table *table, struct error
   return result;
 }
 
+static status add_missing(sqlite3 *db, const char *table, const char *column, const char *declaration, bool *grown,
+                          struct error *error) {
+  bool has = false;
+  status result = schema_has_column(db, table, column, &has, error);
+  if (result != STATUS_OK || has)
+    return result;
+  *grown = true;
+  return sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table, column,
+                      declaration);
+}
+
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
   bool has = false;
   status result = schema_has_column(db, table->name, "", &has, error);
@@ -166,18 +177,14 @@ status schema_complete(sqlite3 *db, const struct schema_table *table, struct err
     return result == STATUS_OK ? write_docs(db, table, error) : result;
   }
   bool grown = false;
-  for (size_t i = 0; table->fields && i < table->fields->count; i++) {
+  for (size_t i = 0; result == STATUS_OK && i < table->count; i++)
+    result = add_missing(db, table->name, table->columns[i].name, table->columns[i].declaration, &grown, error);
+  for (size_t i = 0; result == STATUS_OK && table->fields && i < table->fields->count; i++) {
     char name[SCHEMA_NAME_SIZE];
     field_column_name(table->fields->rows[i].path, name, sizeof name);
-    result = schema_has_column(db, table->name, name, &has, error);
-    if (result == STATUS_OK && !has)
-      result = sql_executef(db, "adding a column", error, "ALTER TABLE \"%w\" ADD COLUMN \"%w\" %s", table->name, name,
-                            sql_type(&table->fields->rows[i]));
-    if (result != STATUS_OK)
-      return result;
-    grown = grown || !has;
+    result = add_missing(db, table->name, name, sql_type(&table->fields->rows[i]), &grown, error);
   }
-  return grown ? write_docs(db, table, error) : STATUS_OK;
+  return result == STATUS_OK && grown ? write_docs(db, table, error) : result;
 }
 
 status schema_complete_all(sqlite3 *db, struct error *error) {

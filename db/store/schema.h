@@ -11,7 +11,8 @@
 
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
-  SCHEMA_VERSION = 1,
+  SCHEMA_VERSION = 2,
+  SCHEMA_READABLE = 1, /* the oldest version that can be read without being brought forward */
   SCHEMA_NAME_SIZE = 128,
 };
 

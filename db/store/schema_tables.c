@@ -28,6 +28,7 @@ static const struct schema_column point[] = {
     {"point_id", "INTEGER PRIMARY KEY", NULL, "number of the point: one set of input values"},
     {"hash", "BLOB NOT NULL UNIQUE CHECK (length(hash) = 16)", NULL,
      "128-bit hash of engine and active inputs, without seed and results_version"},
+    {"digest", "BLOB CHECK (length(digest) = 16)", NULL, "changes when any bit of the point or its inputs changes"},
     {"engine", "TEXT NOT NULL", NULL, "name of the engine"},
     {"scene_name", "TEXT NOT NULL", NULL, "name of the scene the inputs started from"},
     {"scene", "TEXT NOT NULL CHECK (json_valid(scene))", NULL,
@@ -72,6 +73,8 @@ static const struct schema_column run[] = {
     {"fields_path", "TEXT", NULL, "HDF5 file with its fields, relative to the store's folder; NULL when none was kept"},
     {"counts", "INTEGER NOT NULL", NULL,
      "1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)"},
+    {"digest", "BLOB CHECK (length(digest) = 16)", NULL,
+     "changes when any bit changes of what the run determined: results, masses, estimates, seed, identity"},
 };
 
 static const struct schema_column fragment_mass[] = {

@@ -41,8 +41,12 @@ static void release(struct store *store) {
   };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
-  for (size_t i = 0; i < store->kind_count; i++)
+  for (size_t i = 0; i < store->kind_count; i++) {
     sqlite3_finalize(store->kinds[i].insert.statement);
+    digest_names_clear(&store->kinds[i].names);
+  }
+  digest_names_clear(&store->outcome_names);
+  digest_names_clear(&store->estimate_names);
   sums_clear(&store->sums);
   identities_clear(&store->identities);
   sqlite3_close(store->db);
@@ -230,7 +234,7 @@ status store_open_reader(const char *path, struct store **out, struct error *err
     result = status_fail(error, STATUS_CONTENT, "%s %s", path, lacks_wal_text);
   if (result == STATUS_OK && version < 0)
     result = status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", path);
-  if (result == STATUS_OK && version < SCHEMA_VERSION)
+  if (result == STATUS_OK && version < SCHEMA_READABLE)
     result = status_fail(
         error, STATUS_CONTENT,
         "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or `clast "

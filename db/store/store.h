@@ -134,10 +134,12 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
 status store_set_fields(struct store *store, const uint8_t identity[16], const char *fields_path, struct error *error);
 
 /* Checks the file's integrity, foreign keys, rows without an owner, missing fields files, running sums and spectra
- * against the masses, masses against the total mass, identities against the scenes. Each problem is one call of `line`.
- * STATUS_CONTENT when there are any. For a reader or a writer. */
+ * against the masses, masses against the total mass, digests against the rows, identities against the scenes. Each
+ * problem is one call of `line`. STATUS_CONTENT when there are any. For a reader or a writer. */
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);
+/* *whole: the digest of a run is that of its rows. Also true when the store has no such run, or no digests yet. */
+status store_run_is_whole(struct store *store, int64_t run_id, bool *whole, struct error *error);
 /* Adds the runs of the store `source` that `store` (a writer) lacks, in one transaction. *added: how many. *differing:
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
  * them. Merging twice adds nothing. */

@@ -61,7 +61,7 @@ static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) 
   status
       result = each_row(db,
                         "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
-                        "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity')",
+                        "IN ('run_id', 'point_id', 'replicate', 'seed', 'identity', 'digest')",
                         write_text, out, error);
   if (result != STATUS_OK)
     return result;

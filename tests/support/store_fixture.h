@@ -214,7 +214,7 @@ static inline status fixture_populate(struct store *store, int points_m, int poi
 
 /* A fresh name in the current folder, nothing there. */
 static inline const char *fixture_path(char path[64], const char *name) {
-  static const char *const ends[] = {"", "-wal", "-shm", "-journal", ".version0", ".out"};
+  static const char *const ends[] = {"", "-wal", "-shm", "-journal", ".version0", ".version1", ".out"};
   snprintf(path, 64, "test-store-%s.db", name);
   for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
     char other[96];

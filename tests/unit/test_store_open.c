@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 
 #include "db/store/internal.h"
+#include "db/store/schema.h"
 #include "tests/support/store_checks.h"
 
 static void populated(const char *path) {
@@ -117,12 +118,13 @@ static void old_store_is_brought_forward(void **state) {
   store_close(store, NULL);
   sql(path, "DROP VIEW runs; DROP VIEW points; DROP VIEW spectra; DROP VIEW estimates;"
             "DROP TABLE point_total; DROP TABLE point_spectrum; DROP TABLE bin; DROP TABLE holder;"
+            "ALTER TABLE run DROP COLUMN digest; ALTER TABLE point DROP COLUMN digest;"
             "ALTER TABLE result_fake DROP COLUMN hardest; ALTER TABLE run DROP COLUMN momentum_error;"
             "CREATE VIEW runs AS SELECT 1; PRAGMA user_version = 0");
   assert_int_equal(store_open_reader(path, &store, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "older"));
   OK(store_open_writer(path, &store, NULL, 0, &error));
-  assert_near(number(store, "PRAGMA user_version"), 1, 0);
+  assert_near(number(store, "PRAGMA user_version"), SCHEMA_VERSION, 0);
   assert_near(number(store, "SELECT count(*) FROM point_spectrum"), rows, 0);
   assert_near(number(store, "SELECT sum(mass) FROM point_spectrum"), mass, 1e-12 * mass);
   assert_near(number(store, "SELECT count(*) FROM points WHERE n = 10 AND material_m >= 6"), 4, 0);
@@ -141,6 +143,51 @@ static void old_store_is_brought_forward(void **state) {
   if (store_check(store, NULL, NULL, &error) != STATUS_OK)
     fail_msg("%s", error.message);
   store_close(store, NULL);
+}
+
+/* Version 1: no digests. A reader takes it as it is; a writer adds them, the same that new runs have. */
+static void digests_are_added(void **state) {
+  (void)state;
+  static const char columns[] = "ALTER TABLE run DROP COLUMN digest; ALTER TABLE point DROP COLUMN digest; PRAGMA "
+                                "user_version = 1";
+  char path[64], other[64];
+  struct store *store = NULL;
+  populated(fixture_path(path, "undigested"));
+  populated(fixture_path(other, "digested"));
+  sql(path, columns);
+  OK(store_open_reader(path, &store, &error));
+  assert_near(number(store, "SELECT count(*) FROM points"), 4, 0);
+  OK(store_check(store, NULL, NULL, &error));
+  store_close(store, NULL);
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  OK(store_close(store, &error));
+  assert_true(size_of("test-store-undigested.db.version1") > 10000);
+  sqlite3 *db = NULL;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  sql(path, "PRAGMA quick_check");
+  assert_int_equal(sqlite3_exec(db, "ATTACH 'test-store-digested.db' AS other", NULL, NULL, NULL), SQLITE_OK);
+  sqlite3_stmt *same = NULL;
+  sqlite3_prepare_v2(db,
+                     "SELECT (SELECT count(*) FROM main.run a JOIN other.run b USING (identity) WHERE a.digest = "
+                     "b.digest), (SELECT count(*) FROM main.point a JOIN other.point b USING (hash) WHERE a.digest = "
+                     "b.digest)",
+                     -1, &same, NULL);
+  assert_int_equal(sqlite3_step(same), SQLITE_ROW);
+  assert_int_equal(sqlite3_column_int(same, 0), 40);
+  assert_int_equal(sqlite3_column_int(same, 1), 4);
+  sqlite3_finalize(same);
+  sqlite3_close(db);
+  /* A source without digests is merged, and its runs get them. */
+  int64_t added = 0, differing = 0;
+  sql(other, columns);
+  unlink(fixture_path(path, "undigested"));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  OK(store_merge(store, other, &added, &differing, &error));
+  assert_int_equal(added, 40);
+  assert_near(number(store, "SELECT count(digest) FROM run"), 40, 0);
+  assert_near(number(store, "SELECT count(digest) FROM point"), 4, 0);
+  OK(store_check(store, NULL, NULL, &error));
+  OK(store_close(store, &error));
 }
 
 /* Stores of earlier programs have a table of the fragments' motion: an empty one goes, rows stay. */
@@ -277,6 +324,7 @@ int main(void) {
       cmocka_unit_test(missing_and_unreachable),
       cmocka_unit_test(empty_file_is_a_new_store),
       cmocka_unit_test(old_store_is_brought_forward),
+      cmocka_unit_test(digests_are_added),
       cmocka_unit_test(table_of_motion_goes_when_it_is_empty),
       cmocka_unit_test(failed_migration_changes_nothing),
       cmocka_unit_test(second_writer_is_told_who_holds_it),
