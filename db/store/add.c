@@ -84,10 +84,10 @@ static void digest_point(const struct scene *scene, const uint8_t hash[16], cons
   const struct field_table *inputs = scene->kind->inputs;
   const struct digest value = digest_name("point_input", "value");
   struct digest sum = {0};
-  digest_add_bytes(&sum, "point", "hash", hash, 16);
-  digest_add_text(&sum, "point", "engine", scene->kind->name);
-  digest_add_text(&sum, "point", "scene_name", scene->name);
-  digest_add_text(&sum, "point", "scene", json);
+  digest_add_bytes(&sum, digest_name("point", "hash"), hash, 16);
+  digest_add_text(&sum, digest_name("point", "engine"), scene->kind->name);
+  digest_add_text(&sum, digest_name("point", "scene_name"), scene->name);
+  digest_add_text(&sum, digest_name("point", "scene"), json);
   for (size_t i = 0; i < inputs->count; i++)
     if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
       digest_add_field(&sum, value, digest_row(inputs->rows[i].path), &inputs->rows[i], scene->inputs, true);
@@ -150,6 +150,20 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
 
 static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
 
+/* The names of what digest_run() adds, made once for a store and an engine. */
+static status name_columns(struct store *store, struct store_kind *kind, struct error *error) {
+  const struct schema_table results = schema_result_table(kind->kind);
+  store->name_of.identity = digest_name("run", "identity");
+  store->name_of.replicate = digest_name("run", "replicate");
+  store->name_of.seed = digest_name("run", "seed");
+  store->name_of.results_version = digest_name("run", "results_version");
+  store->name_of.masses = digest_name("fragment_mass", "masses");
+  status result = digest_names_make(&store->outcome_names, "run", &outcome_table, error);
+  if (result == STATUS_OK)
+    result = digest_names_make(&store->estimate_names, "estimate", &estimates_table, error);
+  return result == STATUS_OK ? digest_names_make(&kind->names, results.name, kind->kind->results, error) : result;
+}
+
 /* The statement of the run's engine. Creates the engine's result table when the store has none. */
 static status find_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
                         struct error *error) {
@@ -178,6 +192,9 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
     return result;
   *grown = *grown || before != after;
   entry->kind = kind;
+  result = name_columns(store, entry, error);
+  if (result != STATUS_OK)
+    return result;
   store->kind_count++;
   *found = entry;
   return STATUS_OK;
@@ -249,32 +266,23 @@ static const struct sql_column run_columns[] = {
 };
 
 /* The digest of the rows that a run is about to become: db/store/digest_rows.c finds the same in them. */
-static status digest_run(struct store *store, struct store_kind *kind, const struct store_run *run, uint8_t digest[16],
-                         struct error *error) {
+static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
+                       uint8_t digest[16]) {
   struct digest sum = {0};
-  const struct schema_table results = schema_result_table(run->kind);
-  status result = digest_names_make(&store->outcome_names, "run", &outcome_table, error);
-  if (result == STATUS_OK)
-    result = digest_names_make(&store->estimate_names, "estimate", &estimates_table, error);
-  if (result == STATUS_OK)
-    result = digest_names_make(&kind->names, results.name, run->kind->results, error);
-  if (result != STATUS_OK)
-    return result;
-  digest_add_bytes(&sum, "run", "identity", run->identity, sizeof run->identity);
-  digest_add_integer(&sum, "run", "replicate", run->replicate);
-  digest_add_integer(&sum, "run", "seed", (int64_t)run->seed);
-  digest_add_integer(&sum, "run", "results_version", run->kind->results_version);
+  digest_add_bytes(&sum, store->name_of.identity, run->identity, sizeof run->identity);
+  digest_add_integer(&sum, store->name_of.replicate, run->replicate);
+  digest_add_integer(&sum, store->name_of.seed, (int64_t)run->seed);
+  digest_add_integer(&sum, store->name_of.results_version, run->kind->results_version);
   digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
   if (run->result)
     digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
-  digest_add_bytes(&sum, "fragment_mass", "masses", store->blob, 8 * run->fragment_count);
+  digest_add_bytes(&sum, store->name_of.masses, store->blob, 8 * run->fragment_count);
   for (size_t i = 0; i < run->estimate_count; i++)
     digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
   digest_write(sum, digest);
-  return STATUS_OK;
 }
 
-static status add_row(struct store *store, struct store_kind *kind, const struct store_run *run, int64_t *run_id,
+static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run, int64_t *run_id,
                       struct error *error) {
   status result = sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0],
                                      run_columns, &outcome_table, 1, adding_run, error);
@@ -284,9 +292,7 @@ static status add_row(struct store *store, struct store_kind *kind, const struct
                         .results_version = run->kind->results_version,
                         .counts = store_run_counts(run),
                         .finished_at = wall_clock()};
-  result = digest_run(store, kind, run, row.digest, error);
-  if (result != STATUS_OK)
-    return result;
+  digest_run(store, kind, run, row.digest);
   sql_insert_bind(&store->run, 0, &row, run->outcome);
   result = sql_run(store->run.statement, adding_run, error);
   *run_id = sqlite3_last_insert_rowid(store->db);

@@ -1,6 +1,7 @@
 /* Chains of words, and the values that a writer adds. */
 #include "db/store/digest.h"
 
+#include <endian.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,11 +18,11 @@ static struct digest step(struct digest state, uint64_t word) {
   return state;
 }
 
+/* Up to 8 bytes, little-endian, the missing ones 0. */
 static uint64_t word_at(const uint8_t *bytes, size_t size) {
   uint64_t word = 0;
-  for (size_t i = size < 8 ? size : 8; i-- > 0;)
-    word = word << 8 | bytes[i];
-  return word;
+  memcpy(&word, bytes, size);
+  return le64toh(word);
 }
 
 static struct digest step_bytes(struct digest state, const void *bytes, size_t size) {
@@ -93,7 +94,12 @@ void digest_add_field(struct digest *sum, struct digest name, uint64_t row, cons
       add_text(sum, name, row, "off");
     break;
   }
-  case FIELD_INTEGER: add(sum, step(begin(name, INTEGER, row), word_at((const uint8_t *)place, 8))); break;
+  case FIELD_INTEGER: {
+    uint64_t value;
+    memcpy(&value, place, sizeof value);
+    add(sum, step(begin(name, INTEGER, row), value));
+    break;
+  }
   case FIELD_BOOLEAN: add(sum, step(begin(name, INTEGER, row), *(const bool *)place)); break;
   case FIELD_CHOICE: {
     int value;
@@ -112,16 +118,16 @@ void digest_add_fields(struct digest *sum, const struct digest_names *names, con
       digest_add_field(sum, names->of[i], row, &fields->rows[i], object, false);
 }
 
-void digest_add_integer(struct digest *sum, const char *table, const char *column, int64_t value) {
-  add(sum, step(begin(digest_name(table, column), INTEGER, 0), (uint64_t)value));
+void digest_add_integer(struct digest *sum, struct digest name, int64_t value) {
+  add(sum, step(begin(name, INTEGER, 0), (uint64_t)value));
 }
 
-void digest_add_text(struct digest *sum, const char *table, const char *column, const char *text) {
-  add_text(sum, digest_name(table, column), 0, text);
+void digest_add_text(struct digest *sum, struct digest name, const char *text) {
+  add_text(sum, name, 0, text);
 }
 
-void digest_add_bytes(struct digest *sum, const char *table, const char *column, const void *bytes, size_t size) {
-  add(sum, step_bytes(begin(digest_name(table, column), BYTES, 0), bytes, size));
+void digest_add_bytes(struct digest *sum, struct digest name, const void *bytes, size_t size) {
+  add(sum, step_bytes(begin(name, BYTES, 0), bytes, size));
 }
 
 void digest_add_stored(struct digest *sum, struct digest name, uint64_t row, sqlite3_stmt *statement, int column) {

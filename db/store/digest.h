@@ -15,6 +15,8 @@ struct digest { /* all zero: of nothing */
   uint64_t a, b;
 };
 
+/* The chain that the name of a column begins. */
+struct digest digest_name(const char *table, const char *column);
 /* The chains of the names of a field table's columns. All zero: not made yet. */
 struct digest_names {
   struct digest *of;
@@ -30,11 +32,10 @@ void digest_add_fields(struct digest *sum, const struct digest_names *names, con
 /* One field, by the name of its column; off is the text 'off' or NULL, as in sql_bind_field(). */
 void digest_add_field(struct digest *sum, struct digest name, uint64_t row, const struct field *field,
                       const void *object, bool off_as_text);
-void digest_add_integer(struct digest *sum, const char *table, const char *column, int64_t value);
-void digest_add_text(struct digest *sum, const char *table, const char *column, const char *text);
-void digest_add_bytes(struct digest *sum, const char *table, const char *column, const void *bytes, size_t size);
-/* Adds a column of a stored row. `name`: digest_name() of it. */
-struct digest digest_name(const char *table, const char *column);
+void digest_add_integer(struct digest *sum, struct digest name, int64_t value);
+void digest_add_text(struct digest *sum, struct digest name, const char *text);
+void digest_add_bytes(struct digest *sum, struct digest name, const void *bytes, size_t size);
+/* Adds a column of a stored row. */
 void digest_add_stored(struct digest *sum, struct digest name, uint64_t row, sqlite3_stmt *statement, int column);
 /* A number of a row that is known by a text. */
 uint64_t digest_row(const char *text);

@@ -36,6 +36,9 @@ struct store {
   size_t batch_identity_count;
 
   struct digest_names outcome_names, estimate_names;
+  struct {
+    struct digest identity, replicate, seed, results_version, masses;
+  } name_of; /* columns of a run's digest */
   struct sql_insert run, attempt, estimate;
   sqlite3_stmt *masses, *spectrum, *spectrum_together;
   sqlite3_stmt *point_find, *point, *point_input, *campaign_point, *axis_find;

@@ -65,14 +65,15 @@ static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) 
                         write_text, out, error);
   if (result != STATUS_OK)
     return result;
-  return each_row(db,
-                  "SELECT format('  \"%w\".\"%w\"%s,' || char(10), t.name, c.name, iif(EXISTS (SELECT 1 FROM "
-                  "pragma_table_xinfo('run') r WHERE r.name = c.name) OR (SELECT count(*) FROM sqlite_schema o, "
-                  "pragma_table_xinfo(o.name) d WHERE o.type = 'table' AND o.name GLOB 'result_*' AND d.name = "
-                  "c.name) > 1, format(' AS \"%w_%w\"', t.name, c.name), '')) "
-                  "FROM sqlite_schema t, pragma_table_xinfo(t.name) c WHERE t.type = 'table' AND t.name GLOB "
-                  "'result_*' AND c.name <> 'run_id' ORDER BY t.name, c.cid",
-                  write_text, out, error);
+  return each_row(
+      db,
+      "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
+      "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name GLOB 'result_*' AND c.name <> 'run_id'), "
+      "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
+      "GROUP "
+      "BY name HAVING count(*) > 1) SELECT format('  \"%w\".\"%w\"%s,' || char(10), place, name, iif(name IN shared, "
+      "format(' AS \"%w_%w\"', place, name), '')) FROM mine ORDER BY place, cid",
+      write_text, out, error);
 }
 
 static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
@@ -240,36 +241,59 @@ static status document(sqlite3 *db, struct error *error) {
   return sql_execute(db, sql, "documenting the views", error);
 }
 
-/* Drops and creates the four views in the schema `place`: main or temp. */
-static status make(sqlite3 *db, const char *place, struct error *error) {
+/* The text of the views after their CREATE VIEW and schema. free() each. */
+struct views_text {
+  char *of[VIEWS_COUNT];
+};
+
+static status write_all(sqlite3 *db, struct views_text *text, struct error *error) {
   static status (*const writers[VIEWS_COUNT])(sqlite3 *, FILE *, struct error *) = {write_runs, write_points,
                                                                                     write_spectra, write_estimates};
-  char *sql = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
   status result = STATUS_OK;
+  *text = (struct views_text){{NULL}};
   for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
-    fprintf(out, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.", place, views_names[i], place);
+    size_t size = 0;
+    FILE *out = open_memstream(&text->of[i], &size);
+    if (!out)
+      return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
     result = writers[i](db, out, error);
+    if (!text_close(out, &text->of[i]))
+      return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
   }
-  if (!text_close(out, &sql))
-    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
-  if (result == STATUS_OK)
-    result = sql_execute(db, sql, "making the views", error);
-  free(sql);
   return result;
 }
 
+/* Drops and creates the four views in the schema `place`: main or temp. */
+static status make(sqlite3 *db, const char *place, const struct views_text *text, struct error *error) {
+  status result = STATUS_OK;
+  for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++)
+    result = sql_executef(db, "making the views", error, "DROP VIEW IF EXISTS %s.%s; CREATE VIEW %s.%s", place,
+                          views_names[i], place, text->of[i]);
+  return result;
+}
+
+static void free_text(struct views_text *text) {
+  for (size_t i = 0; i < VIEWS_COUNT; i++)
+    free(text->of[i]);
+}
+
 status views_make_temporary(sqlite3 *db, struct error *error) {
-  return make(db, "temp", error);
+  struct views_text text;
+  status result = write_all(db, &text, error);
+  if (result == STATUS_OK)
+    result = make(db, "temp", &text, error);
+  free_text(&text);
+  return result;
 }
 
 status views_regenerate(sqlite3 *db, struct error *error) {
-  status result = views_make_temporary(db, error);
+  struct views_text text;
+  status result = write_all(db, &text, error);
   if (result == STATUS_OK)
-    result = make(db, "main", error);
+    result = make(db, "temp", &text, error);
+  if (result == STATUS_OK)
+    result = make(db, "main", &text, error);
+  free_text(&text);
   return result == STATUS_OK ? document(db, error) : result;
 }
 
