@@ -34,8 +34,8 @@ const struct command check_command = {
     .doc =
         "Checks the file's integrity and foreign keys, looks for orphaned rows and missing field files, and compares\n"
         "running sums and spectra with the fragment masses, masses with the total mass, results with their ranges,\n"
-        "the identity of every run with its scene, and runs and points with their digests. Prints one line per "
-        "problem; exit 65 if there is one.",
+        "the identity of every run with its scene, and runs and points with their digests. Prints one line\n"
+        "per problem; exit 65 if there is one.",
     .examples = "clast check out.db\nclast check out.db && cp out.db /archive/",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -56,15 +56,17 @@ static status print_differences(struct store *store, int64_t run_id, const struc
 }
 
 /* After the table of differences, which shows the values that the run had. */
-static status refuse_damaged(struct store *store, int64_t run_id, struct error *error) {
+static status refuse_damaged(struct store *store, int64_t run_id, const struct replay_compare *comparison,
+                             struct error *error) {
   bool whole = true;
   status code = store_run_is_whole(store, run_id, &whole, error);
   if (code != STATUS_OK || whole)
     return code;
   return status_fail(error, STATUS_CONTENT,
-                     "run %" PRId64 " is damaged in the store: a bit has changed since it was stored. `clast check` "
-                     "lists all such runs; restore a copy, or compute them in a new store",
-                     run_id);
+                     "run %" PRId64
+                     " is damaged in the store: a bit has changed since it was stored; %zu of %zu results "
+                     "differ. `clast check` lists all such runs; restore a copy, or compute them in a new store",
+                     run_id, comparison->different, comparison->compared);
 }
 
 static status verdict(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
@@ -110,7 +112,7 @@ static status replay(struct store *store, int64_t run_id, const struct options *
     goto cleanup;
   code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
   if (code == STATUS_OK)
-    code = refuse_damaged(store, run_id, error);
+    code = refuse_damaged(store, run_id, &comparison, error);
   if (code == STATUS_OK)
     code = verdict(run_id, &stored, &comparison, result.fragment_count, error);
   if (code == STATUS_OK && options->fields && result.outcome.state == OUTCOME_INVALID)
