@@ -50,6 +50,7 @@ struct driver {
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
   int64_t started_done;             /* runs finished now, for the rate */
   double begin, last_left, seconds_left;
+  int64_t fields_missing; /* files of stored runs that are not there any more */
   int64_t wanted;     /* runs to complete in points met */
   struct error error; /* of a callback that cannot return one */
   struct error stop;  /* why no more runs go out: those that compute are still taken in */

@@ -42,6 +42,16 @@ struct resuming {
   bool out_of_memory;
 };
 
+/* For the first one. */
+static void note_missing(struct driver *driver, const struct store_point_run *run) {
+  char text[4400];
+  snprintf(text, sizeof text,
+           "fields file %.4000s of the store is missing, perhaps others too (`clast check` lists them): those that "
+           "the campaign keeps are computed again",
+           run->fields_path);
+  driver_note(driver, text);
+}
+
 /* A run that the store has. It is a replicate of the point if its identity is the one that the replicate would have. */
 static void take_stored(void *context, const struct store_point_run *run) {
   struct resuming *resuming = context;
@@ -62,7 +72,10 @@ static void take_stored(void *context, const struct store_point_run *run) {
   bool usable = outcome_is_usable(run->state);
   point_finish_replicate(point, r, POINT_DONE, usable ? run->value : DRIVER_NOTHING);
   point->replicates[r].surplus = run->surplus;
-  point->replicates[r].fields = run->fields_path != NULL || run->state == OUTCOME_INVALID;
+  const bool kept = run->fields_path && !run->fields_missing;
+  point->replicates[r].fields = kept || run->state == OUTCOME_INVALID;
+  if (campaign->keep != CAMPAIGN_KEEP_NONE && run->fields_missing && driver->fields_missing++ == 0)
+    note_missing(driver, run);
   cost_learn(&driver->cost, &point->cost, run->wall_s);
   driver->summary.runs_reused++;
   driver->summary.runs_surplus += run->surplus;

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "db/store/internal.h"
+#include "db/store/paths.h"
 #include "db/store/schema.h"
 #include "engine/scene.h"
 
@@ -135,17 +136,16 @@ static status check_ranges(struct report *report, struct error *error) {
 
 static status check_files(struct report *report, struct error *error) {
   sqlite3_stmt *statement = NULL;
-  const char *slash = strrchr(report->store->path, '/');
-  int folder = slash ? (int)(slash - report->store->path + 1) : 0;
   status result = sql_prepare(report->store->db, "SELECT run_id, fields_path FROM run WHERE fields_path IS NOT NULL",
                               &statement, checking, error);
   while (sql_next(statement, &result, checking, error)) {
-    const char *name = sql_text(statement, 1);
-    char *path = name[0] == '/' ? sqlite3_mprintf("%s", name)
-                                : sqlite3_mprintf("%.*s%s", folder, report->store->path, name);
+    char *path = paths_of_fields(report->store->path, sql_text(statement, 1));
     if (path && access(path, R_OK) != 0)
-      say(report, "run %lld: its fields file %s is missing", (long long)sqlite3_column_int64(statement, 0), path);
-    sqlite3_free(path);
+      say(report,
+          "run %lld: its fields file %s is missing; `clast run` of a campaign with keep.fields makes it again, or "
+          "`clast replay --fields`",
+          (long long)sqlite3_column_int64(statement, 0), path);
+    free(path);
   }
   sqlite3_finalize(statement);
   return result;

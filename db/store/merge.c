@@ -4,6 +4,7 @@
 
 #include "db/store/guard.h"
 #include "db/store/internal.h"
+#include "db/store/paths.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
 #include "schemas/text.h"
@@ -192,13 +193,29 @@ static status count_differing(sqlite3 *db, int64_t *differing, struct error *err
       0, differing, error);
 }
 
-static status merge_attached(struct store *store, int64_t *added, int64_t *differing, struct error *error) {
+/* Fields files stay where they are: the paths of the runs that were added lead there from the folder of this store. */
+static status keep_paths(struct store *store, const char *source, struct error *error) {
+  char *way = paths_between(store->path, source);
+  if (!way)
+    return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", source);
+  status result = sql_executef(store->db, doing, error,
+                               "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
+                               "merge_run) AND fields_path NOT LIKE '/%%'",
+                               way);
+  free(way);
+  return result;
+}
+
+static status merge_attached(struct store *store, const char *source, int64_t *added, int64_t *differing,
+                             struct error *error) {
   status result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
   if (result != STATUS_OK)
     return result;
   result = count_differing(store->db, differing, error);
   if (result == STATUS_OK)
     result = merge(store->db, added, error);
+  if (result == STATUS_OK)
+    result = keep_paths(store, source, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", doing, error);
   if (result == STATUS_OK)
@@ -270,7 +287,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
   result = guard_attach(store->db, source, doing, error);
   if (result != STATUS_OK)
     return result;
-  result = merge_attached(store, added, differing, error);
+  result = merge_attached(store, source, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
                "temp.merge_run; DETACH other",

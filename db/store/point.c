@@ -1,8 +1,11 @@
 /* Finds a point by its scene, and reads its runs, for a driver that resumes and for stopping rules. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "db/store/internal.h"
+#include "db/store/paths.h"
 #include "db/store/schema.h"
 
 /* A point's hash is a run's identity without seed and results_version: a point outlives a change of result bits. */
@@ -34,6 +37,13 @@ static int state_of(const struct field *states, const char *name) {
     if (strcmp(states->choices[k], name) == 0)
       return k;
   return OUTCOME_INVALID;
+}
+
+static bool can_read(const struct store *store, const char *fields_path) {
+  char *path = paths_of_fields(store->path, fields_path);
+  bool can = path && access(path, R_OK) == 0;
+  free(path);
+  return can;
 }
 
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
@@ -71,6 +81,7 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
         .peak_memory = sqlite3_column_int64(statement, 7),
         .fields_path = (const char *)sqlite3_column_text(statement, 8),
     };
+    run.fields_missing = run.fields_path && !can_read(store, run.fields_path);
     if (sqlite3_column_bytes(statement, 1) == 16)
       memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
     each(context, &run);

@@ -124,6 +124,7 @@ struct store_point_run {
   double wall_s, cpu_s;
   int64_t peak_memory;
   const char *fields_path; /* NULL when none was kept */
+  bool fields_missing;     /* a path is kept, and no such file can be read */
 };
 /* Gives the runs of a point and of the engine's results_version, in order of replicate, each borrowed for the call.
  * `row` is the quantity: a row of outcome_table (of_outcome), or else of the engine's results. */

@@ -1,0 +1,53 @@
+/* Folders of stores, and the way from one to another. */
+#include "db/store/paths.h"
+
+#include <libgen.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/text.h"
+
+enum { PATHS_LONGEST = 8192 };
+
+char *paths_of_fields(const char *store_path, const char *fields_path) {
+  const char *slash = strrchr(store_path, '/');
+  const int folder = slash && fields_path[0] != '/' ? (int)(slash - store_path + 1) : 0;
+  const size_t size = (size_t)folder + strlen(fields_path) + 1;
+  char *path = malloc(size);
+  if (path)
+    snprintf(path, size, "%.*s%s", folder, store_path, fields_path);
+  return path;
+}
+
+/* The folder of a file without links, with a slash at the end. */
+static char *folder_of(const char *file, char resolved[PATHS_LONGEST]) {
+  char *copy = strdup(file);
+  if (!copy)
+    return NULL;
+  char *folder = realpath(dirname(copy), NULL);
+  free(copy);
+  if (!folder)
+    return NULL;
+  snprintf(resolved, PATHS_LONGEST, "%s%s", folder, strcmp(folder, "/") == 0 ? "" : "/");
+  free(folder);
+  return resolved;
+}
+
+char *paths_between(const char *target, const char *source) {
+  char from[PATHS_LONGEST], to[PATHS_LONGEST], *way = NULL;
+  size_t shared = 0, size = 0;
+  if (!folder_of(target, from) || !folder_of(source, to))
+    return NULL;
+  for (size_t i = 0; from[i] && from[i] == to[i]; i++)
+    if (from[i] == '/')
+      shared = i + 1;
+  FILE *out = open_memstream(&way, &size);
+  if (!out)
+    return NULL;
+  for (const char *at = from + shared; *at; at++)
+    if (*at == '/')
+      fputs("../", out);
+  fputs(to + shared, out);
+  return text_close(out, &way);
+}
