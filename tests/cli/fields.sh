@@ -31,4 +31,4 @@ expect 0 "$clast" check there/copy.db
 expect 0 "$clast" merge there/again.db here/kept.db
 same "$(number there/again.db "select count(*) from runs where fields_path like '../here/kept-fields/%'")" 4 "paths upwards"
 expect 0 "$clast" check there/again.db
-done_after 12
+done_after 15
