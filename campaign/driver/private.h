@@ -51,9 +51,9 @@ struct driver {
   int64_t started_done;             /* runs finished now, for the rate */
   double begin, last_left, seconds_left;
   int64_t fields_missing; /* files of stored runs that are not there any more */
-  int64_t wanted;     /* runs to complete in points met */
-  struct error error; /* of a callback that cannot return one */
-  struct error stop;  /* why no more runs go out: those that compute are still taken in */
+  int64_t wanted;         /* runs to complete in points met */
+  struct error error;     /* of a callback that cannot return one */
+  struct error stop;      /* why no more runs go out: those that compute are still taken in */
 };
 
 void driver_note(struct driver *driver, const char *text);
