@@ -59,7 +59,7 @@ static status print_differences(struct store *store, int64_t run_id, const struc
 static status refuse_damaged(struct store *store, int64_t run_id, const struct replay_compare *comparison,
                              struct error *error) {
   bool whole = true;
-  status code = store_run_is_whole(store, run_id, &whole, error);
+  status code = store_check_run(store, run_id, &whole, error);
   if (code != STATUS_OK || whole)
     return code;
   return status_fail(error, STATUS_CONTENT,

@@ -313,8 +313,9 @@ static void say_point(void *context, int64_t point_id) {
 }
 
 static status check_digests(struct report *report, struct error *error) {
-  status result = digest_compare(report->store->db, DIGEST_RUNS, 0, say_run, report, error);
-  return result == STATUS_OK ? digest_compare(report->store->db, DIGEST_POINTS, 0, say_point, report, error) : result;
+  status result = digest_rows_compare(report->store->db, DIGEST_RUNS, 0, say_run, report, error);
+  return result == STATUS_OK ? digest_rows_compare(report->store->db, DIGEST_POINTS, 0, say_point, report, error)
+                             : result;
 }
 
 static void mark_damaged(void *context, int64_t number) {
@@ -322,9 +323,9 @@ static void mark_damaged(void *context, int64_t number) {
   *(bool *)context = false;
 }
 
-status store_run_is_whole(struct store *store, int64_t run_id, bool *whole, struct error *error) {
+status store_check_run(struct store *store, int64_t run_id, bool *whole, struct error *error) {
   *whole = true;
-  return digest_compare(store->db, DIGEST_RUNS, run_id, mark_damaged, whole, error);
+  return digest_rows_compare(store->db, DIGEST_RUNS, run_id, mark_damaged, whole, error);
 }
 
 static status check_sums(struct report *report, struct error *error) {

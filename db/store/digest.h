@@ -45,9 +45,9 @@ void digest_write(struct digest sum, uint8_t bytes[16]);
 enum digest_kind { DIGEST_RUNS, DIGEST_POINTS };
 /* Gives the numbers (run_id, point_id) of rows whose digest is not theirs. only: one number; 0: all. A store of version
  * 1 has no digests, and gives none. */
-status digest_compare(sqlite3 *db, enum digest_kind kind, int64_t only, void (*each)(void *context, int64_t number),
-                      void *context, struct error *error);
+status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
+                           void (*each)(void *context, int64_t number), void *context, struct error *error);
 /* Writes the digest of the row `only`; 0: of all rows that have none. Within the caller's transaction. */
-status digest_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error);
+status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error);
 
 #endif

@@ -119,8 +119,8 @@ static status read_digest(struct reader *reader, int64_t number, uint8_t bytes[1
   return result;
 }
 
-status digest_compare(sqlite3 *db, enum digest_kind kind, int64_t only, void (*each)(void *context, int64_t number),
-                      void *context, struct error *error) {
+status digest_rows_compare(sqlite3 *db, enum digest_kind kind, int64_t only,
+                           void (*each)(void *context, int64_t number), void *context, struct error *error) {
   struct reader reader;
   sqlite3_stmt *numbers = NULL;
   bool has = false;
@@ -149,7 +149,7 @@ status digest_compare(sqlite3 *db, enum digest_kind kind, int64_t only, void (*e
   return result;
 }
 
-status digest_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error) {
+status digest_rows_fill(sqlite3 *db, enum digest_kind kind, int64_t only, struct error *error) {
   struct reader reader;
   sqlite3_stmt *numbers = NULL, *update = NULL;
   status result = open_reader(db, kind, &reader, error);

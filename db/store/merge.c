@@ -173,9 +173,9 @@ static status merge(sqlite3 *db, int64_t *added, struct error *error) {
   status result = copy_all(db, added, error);
   if (result != STATUS_OK)
     return result;
-  result = digest_fill(db, DIGEST_POINTS, 0, error);
+  result = digest_rows_fill(db, DIGEST_POINTS, 0, error);
   if (result == STATUS_OK)
-    result = digest_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
+    result = digest_rows_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
   if (result == STATUS_OK)
     result = sums_cover_all_bins(db, error);
   if (result == STATUS_OK && *added > 0)
@@ -255,11 +255,11 @@ static status read_through(struct store *other, const char *source, struct error
                          source, sql_text(statement, 0));
   sqlite3_finalize(statement);
   if (result == STATUS_OK)
-    result = digest_compare(other->db, DIGEST_RUNS, 0, take_damage, &runs, error);
+    result = digest_rows_compare(other->db, DIGEST_RUNS, 0, take_damage, &runs, error);
   if (result == STATUS_OK)
     result = refuse_damaged(source, "run", &runs, error);
   if (result == STATUS_OK)
-    result = digest_compare(other->db, DIGEST_POINTS, 0, take_damage, &points, error);
+    result = digest_rows_compare(other->db, DIGEST_POINTS, 0, take_damage, &points, error);
   return result == STATUS_OK ? refuse_damaged(source, "point", &points, error) : result;
 }
 

@@ -55,7 +55,7 @@ status store_set_estimates(struct store *store, int64_t point_id, int64_t run_id
     if (result == STATUS_OK && count)
       result = store_set_estimates_rows(store, run_id, count, rows, error);
     if (result == STATUS_OK)
-      result = digest_fill(store->db, DIGEST_RUNS, run_id, error);
+      result = digest_rows_fill(store->db, DIGEST_RUNS, run_id, error);
   } else {
     result = sql_executef(store->db, writing, error,
                           "DELETE FROM point_estimate WHERE point_id = %lld AND results_version = %d",

@@ -140,7 +140,7 @@ status store_set_fields(struct store *store, const uint8_t identity[16], const c
 status store_check(struct store *store, void (*line)(void *context, const char *text), void *context,
                    struct error *error);
 /* *whole: the digest of a run is that of its rows. Also true when the store has no such run, or no digests yet. */
-status store_run_is_whole(struct store *store, int64_t run_id, bool *whole, struct error *error);
+status store_check_run(struct store *store, int64_t run_id, bool *whole, struct error *error);
 /* Adds the runs of the store `source` that `store` (a writer) lacks, in one transaction. *added: how many. *differing:
  * runs present in both stores with different masses or states. The version of `store` is kept; the caller must report
  * them. Merging twice adds nothing. */

@@ -185,9 +185,9 @@ static void merge_refuses_a_damaged_run(void **state) {
   assert_int_equal(sqlite3_exec(db, "UPDATE run SET time = time * 1.5 WHERE run_id = 7", NULL, NULL, NULL), SQLITE_OK);
   sqlite3_close(db);
   OK(store_open_reader(path, &store, &error));
-  OK(store_run_is_whole(store, 6, &whole, &error));
+  OK(store_check_run(store, 6, &whole, &error));
   assert_true(whole);
-  OK(store_run_is_whole(store, 7, &whole, &error));
+  OK(store_check_run(store, 7, &whole, &error));
   assert_false(whole);
   OK(store_close(store, &error));
   OK(store_open_writer(fixture_path(target, "flips-target"), &store, NULL, 0, &error));
