@@ -1,8 +1,8 @@
--- The store of clast: schema of version 1.
+-- The store of clast: schema of version 2.
 -- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 
 CREATE TABLE column_doc ( -- Meaning and unit of every column.
   table_name TEXT NOT NULL, -- table or view
@@ -34,6 +34,7 @@ CREATE TABLE session ( -- Provenance: one row per invocation that wrote to the s
 CREATE TABLE point ( -- Points: sets of input values. The resolved scene is the truth.
   point_id INTEGER PRIMARY KEY, -- number of the point: one set of input values
   hash BLOB NOT NULL UNIQUE CHECK (length(hash) = 16), -- 128-bit hash of engine and active inputs, without seed and results_version
+  digest BLOB CHECK (length(digest) = 16), -- changes when any bit of the point or its inputs changes
   engine TEXT NOT NULL, -- name of the engine
   scene_name TEXT NOT NULL, -- name of the scene the inputs started from
   scene TEXT NOT NULL CHECK (json_valid(scene)) -- the resolved scene, JSON, SI units: every active input, defaults too
@@ -77,6 +78,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   finished_at REAL NOT NULL, -- [s] when it was stored, seconds since 1970-01-01 UTC
   fields_path TEXT, -- HDF5 file with its fields, relative to the store's folder; NULL when none was kept
   counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)
+  digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- The run's own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid
   message TEXT, -- Diagnostics for a person; empty when all is well.
   steps INTEGER, -- [1] Time steps taken.
@@ -785,6 +787,8 @@ INSERT INTO column_doc VALUES ('holder', 'pid', NULL, 'its process number; the r
 
 INSERT INTO column_doc VALUES ('holder', 'since', NULL, 'when it did, UTC, ISO 8601', 0);
 
+INSERT INTO column_doc VALUES ('point', 'digest', NULL, 'changes when any bit of the point or its inputs changes', 0);
+
 INSERT INTO column_doc VALUES ('point', 'engine', NULL, 'name of the engine', 0);
 
 INSERT INTO column_doc VALUES ('point', 'hash', NULL, '128-bit hash of engine and active inputs, without seed and results_version', 0);
@@ -1128,6 +1132,8 @@ INSERT INTO column_doc VALUES ('run', 'complete_mass', 'kg', 'Mass from which th
 INSERT INTO column_doc VALUES ('run', 'counts', NULL, '1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)', 0);
 
 INSERT INTO column_doc VALUES ('run', 'cpu_time', 's', 'processor time of the successful attempt', 0);
+
+INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit changes of what the run determined: results, masses, estimates, seed, identity', 0);
 
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
