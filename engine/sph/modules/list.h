@@ -6,12 +6,14 @@
  *   yield, pressure_strength   the last of them that is on sets the yield limit
  *   tension_limit       after the modules that set the pressure and the yield limit, which it bounds
  *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
+ *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
  *   the rest            options of the pair loop, without loops here
  *
  * To add a module: NAME.c with its descriptor, NAME_loop.h with its loops, and a line in each of the two lists below.
  * Values that it needs of a material are rows of material/material.h. */
 #ifdef SPH_MODULE_LOOPS
 
+#include "engine/sph/modules/crack_front_loop.h"
 #include "engine/sph/modules/elastic_loop.h"
 #include "engine/sph/modules/fracture_loop.h"
 #include "engine/sph/modules/palpha_loop.h"
@@ -31,6 +33,7 @@
   WITH_LOOPS(tension_limit)                                                                                            \
   WITHOUT(weibull)                                                                                                     \
   WITH_LOOPS(fracture)                                                                                                 \
+  WITH_LOOPS(crack_front)                                                                                              \
   WITHOUT(viscosity)                                                                                                   \
   WITHOUT(artificial_stress)                                                                                           \
   WITHOUT(gradient_correction)

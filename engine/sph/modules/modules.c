@@ -53,3 +53,11 @@ size_t sph_modules_bytes_in_pairs(uint64_t modules) {
       bytes += (size_t)list[m]->bytes_in_pairs;
   return bytes;
 }
+
+size_t sph_modules_bytes_linked(uint64_t modules) {
+  size_t bytes = 0;
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (modules >> m & 1)
+      bytes += (size_t)list[m]->bytes_linked;
+  return bytes;
+}

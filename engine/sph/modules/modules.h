@@ -59,6 +59,7 @@ struct sph_module {
   enum sph_module_sets sets;
   const struct sph_column_need *columns; /* NULL: none */
   int bytes_in_pairs;                    /* per particle, of the pair loop's records */
+  int bytes_linked;                      /* per particle, near enough to plan, of what `prepare` makes */
   double cost;                           /* ns of one core per particle-step, where it is an option (bench_sph) */
   /* All optional. `check_material` refuses values of a material that do not go together, whether or not the module is
    * on; STATUS_CONTENT, the message begins with the value's name. `check` refuses what the rows of inputs and materials
@@ -69,9 +70,12 @@ struct sph_module {
   /* The particles first .. last - 1 of a body that is set up at rest. */
   void (*set_up)(const struct sph_body_physics *body, struct sph_particles *particles, size_t first, size_t last);
   /* Makes body->prepared[index]; `free_prepared` frees it, `bytes_prepared` counts it. */
-  status (*prepare)(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error);
+  status (*prepare)(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
+                    struct error *error);
   void (*free_prepared)(void *prepared);
   size_t (*bytes_prepared)(const void *prepared);
+  /* Makes what it prepared and changes in a run again from the columns, after a restart. */
+  void (*restored)(struct sph_system *system, const struct sph_solid *body);
   /* Initial values of the body's columns. */
   void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
 };
@@ -90,6 +94,8 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 /* Does damage scale the deviator of a body by 1 - D? Not where a module publishes the damage that does (shear_damage).
  */
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs);
+/* Bytes per particle that they link (sph_module.bytes_linked). */
+size_t sph_modules_bytes_linked(uint64_t modules);
 /* Bytes per particle that they add to the pair loop's records. */
 size_t sph_modules_bytes_in_pairs(uint64_t modules);
 

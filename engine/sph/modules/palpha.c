@@ -56,9 +56,10 @@ static void set_up(const struct sph_body_physics *body, struct sph_particles *pa
     particles->distention[i] = body->material.porosity.distention;
 }
 
-static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
+static status prepare(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
+                      struct error *error) {
   struct sph_palpha_law *law = malloc(sizeof *law);
-  (void)inputs;
+  (void)inputs, (void)particles;
   if (!law)
     return status_fail(error, STATUS_MEMORY, "no memory for a crush curve");
   body->prepared[SPH_MODULE_palpha] = law;

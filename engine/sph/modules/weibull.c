@@ -60,7 +60,9 @@ static bool fill_compact(struct sph_weibull_lists *w, const struct sph_flaws *fl
   return true;
 }
 
-static status prepare(const struct sph_inputs *inputs, struct sph_solid *body, struct error *error) {
+static status prepare(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
+                      struct error *error) {
+  (void)particles;
   const struct sph_flaws *flaws = body->physics.flaws;
   const bool compact = inputs->fidelity.flaws == SPH_FLAWS_COMPACT;
   struct sph_weibull_lists *w = calloc(1, sizeof *w);

@@ -29,6 +29,7 @@ enum { BODIES = 2 };
 struct need {
   uint64_t modules[BODIES], columns; /* bits (modules.h): of each body, of all */
   size_t pairs;                      /* bytes per particle of the pair loop's options */
+  size_t linked;                     /* bytes per particle that modules prepare */
   size_t bytes;                      /* per particle, of modules alone */
 };
 
@@ -42,10 +43,11 @@ static struct need need_of(const struct sph_inputs *in) {
     const struct sph_body_physics physics = sph_derived_physics(body, sph_derived_cracks(body) ? &some : NULL);
     need.modules[b] = sph_modules_of(&physics, in);
     of_modules |= sph_modules_columns(need.modules[b], &physics);
+    need.linked += sph_modules_bytes_linked(need.modules[b]);
     need.pairs = sph_modules_bytes_in_pairs(need.modules[b]); /* options of the pair loop: the same for all bodies */
   }
   need.columns |= of_modules;
-  need.bytes = need.pairs;
+  need.bytes = need.pairs + need.linked;
   for (; of_modules; of_modules &= of_modules - 1)
     need.bytes += sizeof(double);
   return need;
@@ -54,8 +56,8 @@ static struct need need_of(const struct sph_inputs *in) {
 size_t sph_describe_memory(const struct sph_inputs *in) {
   const struct need need = need_of(in);
   const double particles = sph_derived_particles(in);
-  double bytes = BYTES_ANYWAY +
-                 particles * (sph_system_columns_bytes(need.columns, need.pairs, &in->fidelity) + BYTES_BESIDE);
+  double bytes = BYTES_ANYWAY + particles * (sph_system_columns_bytes(need.columns, need.pairs, &in->fidelity) +
+                                             BYTES_BESIDE + (double)need.linked);
   if (sph_derived_cracks(&in->target))
     bytes += flaws_expected(particles) * BYTES_PER_FLAW;
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;

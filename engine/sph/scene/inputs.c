@@ -20,6 +20,7 @@ static const char *const draws[] = {"ranked", "poisson", NULL};
 static const char *const growths[] = {"cube-root", "linear", NULL};
 static const char *const caps[] = {"ba95", "count", "none", NULL};
 static const char *const crack_radii[] = {"volume", "support", NULL};
+static const char *const fronts[] = {"none", "plane", NULL};
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
 static const char *const flaw_lists[] = {"exact", "compact", NULL};
@@ -203,6 +204,15 @@ static const struct field rows[] = {
                           "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
            .doc = "R_s: length that a crack has to grow until its particle is broken.",
            .source = "BA95 eq. 15; the paper gives no value"),
+    CHOICE(fracture.front, fronts, .flags = FIELD_SILENT_DEFAULT, .when = "target.fracture=auto|on",
+           .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
+                          "grows with the number of particles\n"
+                          "it runs on in its plane at c_g",
+           .doc = "How far a crack runs that has started at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
+    REAL(fracture.front_arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
+         .doc = "A crack runs on where the tension across its plane is at least this share of the one that opens its "
+                "flaw. 0: any tension will do.",
+         .source = "our choice"),
 
     REAL(viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
          .source = "Monaghan 1992"),

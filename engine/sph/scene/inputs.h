@@ -12,6 +12,7 @@ enum sph_kind {
   SPH_COLLISION, /* two equal cylinders or rings, thin slabs that repeat along their axes */
   SPH_PISTON,    /* a plate, a bar along x that repeats sideways, with a piston running into its end */
 };
+enum sph_crack_front { SPH_CRACK_FRONT_NONE, SPH_CRACK_FRONT_PLANE };
 enum sph_fracture_choice { SPH_FRACTURE_AUTO, SPH_FRACTURE_ON, SPH_FRACTURE_OFF };
 enum sph_projectile_by { SPH_BY_SIZE, SPH_BY_MASS, SPH_BY_ENERGY };
 /* R_s of a particle: the radius of the sphere of its volume, or 2h. */
@@ -49,9 +50,11 @@ struct sph_collision {
   double speed, gap; /* m/s, m */
 };
 struct sph_fracture {
-  int draw;         /* enum sph_flaw_draw */
-  int growth, cap;  /* enum sph_fracture_growth, enum sph_fracture_cap */
-  int crack_radius; /* enum sph_crack_radius */
+  int draw;            /* enum sph_flaw_draw */
+  int growth, cap;     /* enum sph_fracture_growth, enum sph_fracture_cap */
+  int crack_radius;    /* enum sph_crack_radius */
+  int front;           /* enum sph_crack_front */
+  double front_arrest; /* 1 */
 };
 struct sph_viscosity {
   double alpha, beta; /* 1 */

@@ -46,12 +46,12 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b) {
   add(b->after, &b->after_count, damage ? r->correct_damaged : correct);
 }
 
-static status make_body(struct sph_system *s, struct sph_solid *b, struct error *error) {
+static status make_body(struct sph_system *s, const struct sph_particles *p, struct sph_solid *b, struct error *error) {
   for (size_t m = 0; m < SPH_MODULES; m++) {
     const struct sph_module *module = sph_modules_at(m);
     if (!(b->modules >> m & 1) || !module->prepare)
       continue;
-    const status code = module->prepare(&s->in, b, error);
+    const status code = module->prepare(&s->in, p, b, error);
     if (code)
       return code;
   }
@@ -136,7 +136,7 @@ static status build(struct sph_system *s, const struct sph_particles *p, const s
   if (code)
     return code;
   for (size_t b = 0; b < s->body_count; b++) {
-    code = make_body(s, &s->solid[b], error);
+    code = make_body(s, p, &s->solid[b], error);
     if (code)
       return code;
   }

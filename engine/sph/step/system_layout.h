@@ -38,6 +38,10 @@ struct sph_columns {
   double *open_from, *open_below,
       *open_rate;     /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
   double *crack_rate; /* c_g / R_s, 1/s */
+  /* crack_front */
+  double *front_time;                  /* s, when a crack's front reached the particle; infinite: not yet */
+  double *front_offset, *front_stress; /* m, Pa: struct sph_crack_front_tip */
+  double *front_normal[3];             /* 1 */
   /* palpha */
   double *distention, *rest_distention; /* alpha, now and at P = 0 (palpha.h) */
   double *shear_factor;                 /* f of the last evaluation */
