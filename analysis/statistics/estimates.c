@@ -125,7 +125,7 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
   for (int i = 0; i < ESTIMATES_COUNT && !code; i++) {
     struct estimate *row = &rows[i];
     double lower = estimates_window_lower(wanted[i].window, element, complete_mass);
-    struct exponent_window window = {lower, largest};
+    struct exponent_window window = exponent_window_from(wanted[i].method, lower, largest);
     *row = (struct estimate){.window = (int)wanted[i].window,
                              .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&
                                          wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,

@@ -23,6 +23,10 @@ struct exponent exponent_unknown(enum exponent_method method, struct exponent_wi
                            .log_likelihood = NAN};
 }
 
+struct exponent_window exponent_window_from(enum exponent_method method, double lower, double largest) {
+  return (struct exponent_window){lower, method == EXPONENT_LEAST_SQUARES ? 10 * lower : largest};
+}
+
 double exponent_lower_cutoff(size_t n, const double *masses) {
   plfit_continuous_options_t options;
   if (n < EXPONENT_LEAST_FRAGMENTS || plfit_continuous_options_init(&options) != 0)

@@ -1,4 +1,4 @@
-/* Exponents of a point from all its runs: one fit for a choice of runs, and the bootstrap over choices. */
+/* Exponents of a point from all its runs: one fit for a choice of runs, and the jackknife over choices. */
 #include "analysis/statistics/pooled.h"
 
 #include <math.h>
@@ -8,19 +8,14 @@
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 
-/* What resampling needs of each run: computed once. */
+/* What the fits of all choices of runs share: computed once. */
 struct prepared {
   enum exponent_method method;
-  size_t runs;
-  struct power_law_group *plain;   /* MASSES, BINNED */
-  struct tempered_group *tempered; /* CUTOFF */
-  int first_bin, bins;             /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
+  struct power_law_group *groups, *chosen; /* MASSES, BINNED: of every run, and of a choice */
+  struct exponent_window window;           /* LEAST_SQUARES: the same for all runs */
+  int first_bin;                           /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
+  size_t bins;
   int64_t *counts;
-  const struct pooled_runs *all; /* KS */
-  double lower;
-  double *masses; /* KS: those of a resample */
-  struct power_law_group *resampled_plain;
-  struct tempered_group *resampled_tempered;
   struct spectrum_bin_row *rows;
 };
 
@@ -104,77 +99,41 @@ static status tempered_group_of(const struct pooled_runs *runs, size_t r, double
   return STATUS_OK;
 }
 
-static status count_bins(struct prepared *p, const struct pooled_runs *runs, double lower) {
-  int last = SPECTRUM_NO_BIN, stop;
-  exponent_bins_inside((struct exponent_window){lower, HUGE_VAL}, &p->first_bin, &stop);
-  size_t begin, end;
-  for (size_t r = 0; r < runs->count; r++) {
-    window_of(runs, r, lower, &begin, &end);
-    if (begin < end && spectrum_bin(runs->masses[begin]) > last)
-      last = spectrum_bin(runs->masses[begin]);
-  }
-  p->bins = last >= p->first_bin ? last - p->first_bin + 1 : 0;
-  size_t bins = (size_t)p->bins;
-  p->counts = calloc(runs->count * bins + 1, sizeof *p->counts);
-  p->rows = calloc(bins + 1, sizeof *p->rows);
+static status count_bins(struct prepared *p, const struct pooled_runs *runs) {
+  int end;
+  exponent_bins_inside(p->window, &p->first_bin, &end);
+  p->bins = (size_t)(end - p->first_bin);
+  p->counts = calloc(runs->count * p->bins + 1, sizeof *p->counts);
+  p->rows = calloc(p->bins, sizeof *p->rows);
   if (!p->counts || !p->rows)
     return STATUS_MEMORY;
-  for (size_t r = 0; r < runs->count; r++) {
-    window_of(runs, r, lower, &begin, &end);
-    for (size_t i = begin; i < end; i++) {
-      int bin = spectrum_bin(runs->masses[i]) - p->first_bin;
-      if (bin >= 0)
-        p->counts[r * bins + (size_t)bin]++;
+  for (size_t r = 0; r < runs->count; r++)
+    for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++) {
+      const int bin = spectrum_bin(runs->masses[i]);
+      if (bin >= p->first_bin && bin < end)
+        p->counts[r * p->bins + (size_t)(bin - p->first_bin)]++;
     }
-  }
   return STATUS_OK;
 }
 
 static status prepare(struct prepared *p, const struct pooled_runs *runs, double lower) {
-  size_t n = runs->count + 1;
-  switch (p->method) {
-  case EXPONENT_LEAST_SQUARES: return count_bins(p, runs, lower);
-  case EXPONENT_BINNED:
-  case EXPONENT_MASSES:
-    p->plain = calloc(n, sizeof *p->plain);
-    p->resampled_plain = calloc(n, sizeof *p->resampled_plain);
-    if (!p->plain || !p->resampled_plain)
-      return STATUS_MEMORY;
-    for (size_t r = 0; r < runs->count; r++)
-      p->plain[r] = p->method == EXPONENT_MASSES ? plain_group(runs, r, lower) : binned_group(runs, r, lower);
-    return STATUS_OK;
-  case EXPONENT_UPPER_CUTOFF:
-    p->tempered = calloc(n, sizeof *p->tempered);
-    p->resampled_tempered = calloc(n, sizeof *p->resampled_tempered);
-    if (!p->tempered || !p->resampled_tempered)
-      return STATUS_MEMORY;
-    for (size_t r = 0; r < runs->count; r++)
-      if (tempered_group_of(runs, r, lower, TEMPERED_CUTOFF, &p->tempered[r]))
-        return STATUS_MEMORY;
-    return STATUS_OK;
-  case EXPONENT_KS: {
-    size_t most = 0;
-    for (size_t r = 0; r < runs->count; r++) {
-      size_t here = runs->first[r + 1] - runs->first[r];
-      if (here > most)
-        most = here;
-    }
-    p->masses = malloc((n * most + 1) * sizeof *p->masses);
-    p->resampled_plain = calloc(n, sizeof *p->resampled_plain);
-    return p->masses && p->resampled_plain ? STATUS_OK : STATUS_MEMORY;
+  if (p->method == EXPONENT_LEAST_SQUARES) {
+    p->window = exponent_window_from(p->method, lower, NAN);
+    return count_bins(p, runs);
   }
-  case EXPONENT_METHODS: break;
-  }
-  return STATUS_USAGE;
+  p->groups = calloc(runs->count + 1, sizeof *p->groups);
+  p->chosen = calloc(runs->count + 1, sizeof *p->chosen);
+  if (!p->groups || !p->chosen)
+    return STATUS_MEMORY;
+  for (size_t r = 0; r < runs->count; r++)
+    p->groups[r] = p->method == EXPONENT_MASSES ? plain_group(runs, r, lower) : binned_group(runs, r, lower);
+  return STATUS_OK;
 }
 
 static void forget(struct prepared *p) {
-  free(p->plain);
-  free(p->tempered);
+  free(p->groups);
+  free(p->chosen);
   free(p->counts);
-  free(p->masses);
-  free(p->resampled_plain);
-  free(p->resampled_tempered);
   free(p->rows);
 }
 
@@ -185,58 +144,31 @@ static double total_weight(size_t n, const struct power_law_group *groups) {
   return weight;
 }
 
+/* A bin without a fragment has no logarithm. A line through the others reads up to 1 too low, and no interval over the
+ * runs knows it; so there is no fit until the runs fill every bin. */
 static void fit_bins(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  size_t bins = (size_t)p->bins;
-  for (size_t j = 0; j < bins; j++)
+  for (size_t j = 0; j < p->bins; j++)
     p->rows[j] = (struct spectrum_bin_row){.bin = p->first_bin + (int)j};
   for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < bins; j++)
-      p->rows[j].count += p->counts[chosen[i] * bins + j];
-  exponent_fit_bins(p->method, bins, p->rows, (struct exponent_window){p->lower, HUGE_VAL}, fit, NULL);
+    for (size_t j = 0; j < p->bins; j++)
+      p->rows[j].count += p->counts[chosen[i] * p->bins + j];
+  bool filled = true;
+  for (size_t j = 0; j < p->bins; j++)
+    filled = filled && p->rows[j].count > 0;
+  exponent_fit_bins(p->method, p->bins, p->rows, p->window, fit, NULL);
+  if (!filled)
+    fit->beta = fit->standard_error = NAN;
 }
 
-static void fit_upper_cutoff(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  double weight = 0;
-  for (size_t i = 0; i < n; i++) {
-    p->resampled_tempered[i] = p->tempered[chosen[i]];
-    weight += p->tempered[chosen[i]].weight;
-  }
-  fit->n = (int64_t)weight;
-  if (weight < EXPONENT_LEAST_FRAGMENTS)
-    return;
-  struct tempered tempered = tempered_fit(TEMPERED_CUTOFF, n, p->resampled_tempered);
-  fit->beta = tempered.beta;
-  fit->standard_error = tempered.standard_error;
-  fit->log_likelihood = tempered.log_likelihood;
-  if (isfinite(tempered.beta))
-    fit->cutoff_mass = tempered.rate > 0 ? p->lower / tempered.rate : HUGE_VAL;
-}
-
-/* The groups of EXPONENT_KS: the lower cut-off is searched anew in all masses of the chosen runs. */
-static void group_above_lower_cutoff(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  size_t count = 0, begin, end;
-  for (size_t i = 0; i < n; i++) {
-    window_of(p->all, chosen[i], p->lower, &begin, &end);
-    for (size_t j = begin; j < end; j++)
-      p->masses[count++] = p->all->masses[j];
-  }
-  double lower = exponent_lower_cutoff(count, p->masses);
-  fit->lower = isfinite(lower) ? lower : p->lower;
+static void fit_groups(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
   for (size_t i = 0; i < n; i++)
-    p->resampled_plain[i] = plain_group(p->all, chosen[i], fit->lower);
-}
-
-static void fit_plain(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  if (p->method == EXPONENT_KS)
-    group_above_lower_cutoff(p, n, chosen, fit);
-  for (size_t i = 0; p->method != EXPONENT_KS && i < n; i++)
-    p->resampled_plain[i] = p->plain[chosen[i]];
-  double weight = total_weight(n, p->resampled_plain);
+    p->chosen[i] = p->groups[chosen[i]];
+  const double weight = total_weight(n, p->chosen);
   fit->n = (int64_t)weight;
   if (weight < EXPONENT_LEAST_FRAGMENTS)
     return;
-  struct power_law plain = power_law_fit(n, p->resampled_plain,
-                                         p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0);
+  const double bin_width = p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0;
+  const struct power_law plain = power_law_fit(n, p->chosen, bin_width);
   fit->beta = plain.beta;
   fit->standard_error = plain.standard_error;
   fit->log_likelihood = plain.log_likelihood;
@@ -248,14 +180,12 @@ static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struc
   fit->beta = fit->standard_error = NAN;
   if (p->method == EXPONENT_LEAST_SQUARES)
     fit_bins(p, n, chosen, fit);
-  else if (p->method == EXPONENT_UPPER_CUTOFF)
-    fit_upper_cutoff(p, n, chosen, fit);
   else
-    fit_plain(p, n, chosen, fit);
+    fit_groups(p, n, chosen, fit);
 }
 
 static double beta_of(size_t n, const uint32_t *chosen, void *context) {
-  struct exponent fit;
+  struct exponent fit = {0};
   fit_runs(context, n, chosen, &fit);
   return fit.beta;
 }
@@ -268,38 +198,51 @@ static status check(const struct pooled_runs *runs, double lower, struct error *
   return STATUS_OK;
 }
 
-status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
-                       double level, uint64_t seed, struct pooled_exponent *out, struct error *error) {
+/* Runs with fragments in their window, and the largest of those runs' largest fragments (0: there is none). */
+static size_t count_runs(const struct prepared *p, const struct pooled_runs *runs, double lower, double *upper) {
+  size_t count = 0;
+  *upper = 0;
+  for (size_t r = 0; r < runs->count; r++) {
+    size_t begin, end;
+    double largest = window_of(runs, r, lower, &begin, &end), inside = 0;
+    for (size_t j = 0; j < p->bins; j++)
+      inside += (double)p->counts[r * p->bins + j];
+    if (p->groups)
+      inside = p->groups[r].weight;
+    if (inside > 0) {
+      count++;
+      *upper = fmax(*upper, largest);
+    }
+  }
+  return count;
+}
+
+status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
+                       struct pooled_exponent *out, struct error *error) {
   *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL}),
-                                  .interval = {NAN, NAN, NAN, NAN, 0}};
+                                  .interval = {NAN, NAN, NAN}};
+  if (method != EXPONENT_LEAST_SQUARES && method != EXPONENT_BINNED && method != EXPONENT_MASSES)
+    return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
   status code = check(runs, lower, error);
   if (code)
     return code;
-  struct prepared p = {.method = method, .runs = runs->count, .all = runs, .lower = lower};
+
+  struct prepared p = {.method = method};
   uint32_t *every = calloc(runs->count + 1, sizeof *every);
   code = every ? prepare(&p, runs, lower) : STATUS_MEMORY;
-  if (code == STATUS_USAGE)
-    status_fail(error, code, "exponent: there is no method number %d", (int)method);
-  else if (code)
+  if (code) {
     status_fail(error, code, "exponent: no memory for %zu runs", runs->count);
-  if (code)
     goto cleanup;
-  double upper = 0;
-  for (size_t r = 0; r < runs->count; r++) {
-    size_t begin, end;
-    double largest = window_of(runs, r, lower, &begin, &end);
-    every[r] = (uint32_t)r;
-    if (begin >= end)
-      continue;
-    out->runs++;
-    upper = fmax(upper, largest);
   }
+  for (size_t r = 0; r < runs->count; r++)
+    every[r] = (uint32_t)r;
   fit_runs(&p, runs->count, every, &out->fit);
-  if (upper > 0)
+  double upper;
+  out->runs = count_runs(&p, runs, lower, &upper);
+  if (upper > 0 && method != EXPONENT_LEAST_SQUARES)
     out->fit.upper = upper;
+  out->interval = sample_jackknife(runs->count, level, beta_of, &p);
   out->interval.estimate = out->fit.beta;
-  if (resamples > 0)
-    out->interval = sample_bootstrap(runs->count, resamples, seed, level, beta_of, &p);
 cleanup:
   forget(&p);
   free(every);

@@ -1,6 +1,9 @@
 /* A point's spectrum and exponents from all its runs together. Runs are independent, so errors come from the scatter
- * between runs and from resampling runs, never from counting fragments. Each run's largest fragment M_1 bounds the
- * run's window and is left out: this costs next to no information, and a giant remnant cannot bend the fit. */
+ * between runs, never from counting fragments.
+ *
+ * With maximum likelihood each run's largest fragment M_1 bounds the run's window and is left out: this costs next to
+ * no information, and a giant remnant cannot bend the fit. Least squares has one window for all runs, which ends a
+ * decade above its lower end; it leaves no fragment out (exponent_window_from()). */
 #ifndef CLAST_ANALYSIS_STATISTICS_POOLED_H
 #define CLAST_ANALYSIS_STATISTICS_POOLED_H
 
@@ -33,14 +36,14 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
                        size_t *count, struct error *error);
 
 struct pooled_exponent {
-  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest of the runs */
-  struct sample_interval interval; /* from resampling runs: the error to quote */
+  struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest of the runs' */
+  struct sample_interval interval; /* over runs: the error to quote. NaN for one run */
   size_t runs;                     /* with fragments in their window */
 };
-/* lower: kg, the same for all runs of the point (a number of mean element masses). resamples: 0 for no interval, 1000
- * for final numbers. A resample costs milliseconds with KS and UPPER_CUTOFF, microseconds with the others. */
-status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, size_t resamples,
-                       double level, uint64_t seed, struct pooled_exponent *out, struct error *error);
+/* By least squares, on bins, or on masses; STATUS_USAGE for other methods. lower: kg, the same for all runs of the
+ * point (a number of mean element masses). level: 0.95 for a 95 % interval. Costs microseconds a run. */
+status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
+                       struct pooled_exponent *out, struct error *error);
 
 /* Is the pure power law good enough? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
 struct pooled_rivals {

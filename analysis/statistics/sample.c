@@ -1,11 +1,9 @@
-/* Means, scatters, intervals, the bootstrap and the stopping rule. */
+/* Means, scatters, intervals, the jackknife and the stopping rule. */
 #include "analysis/statistics/sample.h"
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdlib.h>
-
-#include "engine/random.h"
 
 int sample_ascending(const void *a, const void *b) {
   double x = *(const double *)a, y = *(const double *)b;
@@ -75,53 +73,50 @@ struct sample_summary sample_summarise(size_t n, const double *values, double le
   return sample_summarise_moments(&moments, level);
 }
 
-/* Percentile by linear interpolation between order statistics. */
-static double percentile(size_t n, const double *sorted, double share) {
-  double place = share * (double)(n - 1), whole = floor(place);
-  size_t i = (size_t)whole;
-  return i + 1 < n ? sorted[i] + (place - whole) * (sorted[i + 1] - sorted[i]) : sorted[n - 1];
-}
-
-/* Run indices of resample b, with replacement. One block of random bits gives four of them. */
-static void draw_runs(size_t runs, uint64_t seed, uint64_t b, uint32_t *drawn) {
-  uint64_t bits[4];
-  for (size_t i = 0; i < runs; i++) {
-    if (i % 4 == 0)
-      random_bits(seed, RANDOM_RESAMPLE, b, i / 4, bits);
-    drawn[i] = (uint32_t)(random_uniform(bits[i % 4]) * (double)runs);
+/* The interval of what leaving out one group after another has given: theta[g] is the statistic without group g, which
+ * has size[g] of the `runs` runs (Busing, Meijer & van der Leeden 1999, equations 4 to 6). */
+static void interval_of_groups(size_t runs, size_t groups, const double *theta, const double *size, double level,
+                               struct sample_interval *interval) {
+  double centre = 0, variance = 0;
+  for (size_t g = 0; g < groups; g++) {
+    const double share = size[g] / (double)runs;
+    centre += interval->estimate - (1 - share) * theta[g];
   }
+  for (size_t g = 0; g < groups; g++) {
+    const double h = (double)runs / size[g];
+    const double deviation = h * interval->estimate - (h - 1) * theta[g] - centre;
+    variance += deviation * deviation / (h - 1) / (double)groups;
+  }
+  interval->standard_error = sqrt(variance);
+  interval->half_width = sample_student(groups, level) * interval->standard_error;
 }
 
-struct sample_interval sample_bootstrap(size_t runs, size_t resamples, uint64_t seed, double level,
-                                        sample_statistic statistic, void *context) {
-  struct sample_interval interval = {NAN, NAN, NAN, NAN, 0};
+struct sample_interval sample_jackknife(size_t runs, double level, sample_statistic statistic, void *context) {
+  struct sample_interval interval = {NAN, NAN, NAN};
   if (runs == 0 || runs > UINT32_MAX)
     return interval;
-  uint32_t *drawn = malloc(runs * sizeof *drawn);
-  double *values = malloc((resamples ? resamples : 1) * sizeof *values);
-  if (!drawn || !values)
-    goto cleanup;
+  const size_t each = (runs + SAMPLE_GROUPS - 1) / SAMPLE_GROUPS, groups = (runs + each - 1) / each;
+  double theta[SAMPLE_GROUPS], size[SAMPLE_GROUPS];
+  uint32_t *kept = malloc(runs * sizeof *kept);
+  if (!kept)
+    return interval;
 
   for (size_t i = 0; i < runs; i++)
-    drawn[i] = (uint32_t)i;
-  interval.estimate = statistic(runs, drawn, context);
-  for (size_t b = 0; b < resamples; b++) {
-    draw_runs(runs, seed, b, drawn);
-    double value = statistic(runs, drawn, context);
-    if (isfinite(value))
-      values[interval.resamples++] = value;
+    kept[i] = (uint32_t)i;
+  interval.estimate = statistic(runs, kept, context);
+  bool known = groups > 1 && isfinite(interval.estimate);
+  for (size_t g = 0; g < groups && known; g++) {
+    size_t count = 0;
+    for (size_t i = 0; i < runs; i++)
+      if (i / each != g)
+        kept[count++] = (uint32_t)i;
+    theta[g] = statistic(count, kept, context);
+    size[g] = (double)(runs - count);
+    known = isfinite(theta[g]);
   }
-  if (interval.resamples < 2 || interval.resamples < resamples / 2)
-    goto cleanup;
-
-  struct sample_moments moments = moments_in_two_passes(interval.resamples, values);
-  interval.standard_error = sample_summarise_moments(&moments, level).standard_deviation;
-  qsort(values, interval.resamples, sizeof *values, sample_ascending);
-  interval.lower = percentile(interval.resamples, values, 0.5 - level / 2);
-  interval.upper = percentile(interval.resamples, values, 0.5 + level / 2);
-cleanup:
-  free(drawn);
-  free(values);
+  free(kept);
+  if (known)
+    interval_of_groups(runs, groups, theta, size, level, &interval);
   return interval;
 }
 

@@ -33,18 +33,22 @@ struct sample_summary sample_summarise_moments(const struct sample_moments *mome
  * NaN for n < 2 or a level outside (0, 1). */
 double sample_student(size_t n, double level);
 
-/* Bootstrap over runs: the runs are independent, the fragments of one run are not (their masses sum to the body's).
- * Draws run indices with replacement and calls `statistic` on each resample. Gives the standard deviation over the
- * resamples and the interval between percentiles. `estimate` is the statistic of the sample itself. Resamples without a
- * value (NaN) are left out; when fewer than half have one, the errors are NaN. Random numbers are counter-based: the
- * same seed gives the same bits. */
+/* Interval of a statistic of many runs, such as an exponent, by the jackknife over runs: leave out one run after
+ * another and see how far the statistic moves; then Student's t with one degree of freedom less than runs (Tukey 1958).
+ * The runs are independent, the fragments of one run are not (their masses sum to the body's). `statistic` is called on
+ * choices of runs. From more than SAMPLE_GROUPS runs, groups of equal numbers of runs that follow each other are left
+ * out, so that the cost stays in bounds. No random numbers: the same runs give the same bits.
+ *
+ * Errors are NaN for one run, and when the statistic has no value without one of the runs: so few runs cannot tell. A
+ * bootstrap would need more runs: its percentile intervals cover 0.79 with 3 runs and 0.85 with 5, where these cover
+ * 0.93 to 0.97 (tests/verification/intervals.md). */
 typedef double (*sample_statistic)(size_t n, const uint32_t *runs, void *context);
 struct sample_interval {
-  double estimate, standard_error, lower, upper;
-  size_t resamples; /* with a value */
+  double estimate, standard_error;
+  double half_width; /* of the interval of the level wanted, about the estimate */
 };
-struct sample_interval sample_bootstrap(size_t runs, size_t resamples, uint64_t seed, double level,
-                                        sample_statistic statistic, void *context);
+enum { SAMPLE_GROUPS = 100 };
+struct sample_interval sample_jackknife(size_t runs, double level, sample_statistic statistic, void *context);
 
 /* Stopping at a fixed width (Chow & Robbins 1965, doi 10.1214/aoms/1177700156): stop when the interval's half width is
  * at most `half_width`.

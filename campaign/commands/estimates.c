@@ -10,13 +10,12 @@
 enum { AXES_MAXIMUM = 16 };
 
 struct options {
-  int64_t campaign, point, resamples;
+  int64_t campaign, point;
   struct table_options table;
 };
 
 struct printing {
   struct store *store;
-  size_t resamples;
   enum table_format format;
   struct table *table;
   size_t axes;
@@ -50,7 +49,7 @@ static void window_cells(struct table *table, int window, const struct point_est
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
     table_fixed(table, fit->fit.beta, 2);
-    table_fixed(table, fit->interval.standard_error, 2);
+    table_fixed(table, fit->interval.half_width, 2);
   }
 }
 
@@ -61,7 +60,7 @@ static status print_point(void *context, const struct ask_points_row *row, struc
   status code = point_read(printing->store, row->point_id, row->results_version, &point, error);
   if (code)
     return code;
-  code = point_estimates(&point, printing->resamples, 0.95, fits, error);
+  code = point_estimates(&point, 0.95, fits, error);
   point_release(&point);
   if (code)
     return code;
@@ -104,9 +103,9 @@ const char *const estimates_legend =
     "bins and on masses.\nWindows: fragments of at least 2, 5, 10 mean masses of a grain or particle (from N - 1/2). "
     "Errors: one standard error, from resampling the runs.\n";
 
-status estimates_print(struct store *store, const struct ask_points_choice *choice, int64_t resamples,
-                       enum table_format format, FILE *out, struct error *error) {
-  struct printing printing = {.store = store, .resamples = (size_t)resamples, .format = format};
+status estimates_print(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
+                       struct error *error) {
+  struct printing printing = {.store = store, .format = format};
   status code = ask_columns_axes(store, AXES_MAXIMUM, printing.axis, &printing.axes, error);
   if (code)
     return code;
@@ -136,7 +135,7 @@ static status run(const struct command_line *line, struct error *error) {
   code = ask_points_known(store, options->point, error);
   const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
   if (!code)
-    code = estimates_print(store, &choice, options->resamples, format, stdout, error);
+    code = estimates_print(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT)
     fputs(estimates_legend, stderr);
   store_close(store, NULL);
@@ -148,8 +147,6 @@ static const struct option_row option_rows[] = {
                        "Only this point (point_id in the view points); 0: all."),
     OPTION_ROW_INTEGER("campaign", 0, "N", struct options, campaign, 0, INT64_MAX, "0",
                        "Only the points of this campaign (`clast status` lists them); 0: all."),
-    OPTION_ROW_INTEGER("resamples", 0, "N", struct options, resamples, 0, 100000, "1000",
-                       "Number of resamples of the runs, for the errors of the exponents; 0: no errors."),
     TABLE_OPTIONS(struct options, table),
 };
 

@@ -6,10 +6,9 @@
 #include "db/ask/points.h"
 
 /* One row per point and window: the point's varied inputs, its runs, M_1/M with the half width of its 95 % interval,
- * and the exponents by each method with their errors from resampling the runs `resamples` times (0: no errors). Only
- * runs that count, of the newest results_version of the point. */
-status estimates_print(struct store *store, const struct ask_points_choice *choice, int64_t resamples,
-                       enum table_format format, FILE *out, struct error *error);
+ * and the exponents by each method with theirs. Only runs that count, of the newest results_version of the point. */
+status estimates_print(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
+                       struct error *error);
 
 extern const char *const estimates_legend; /* what the columns of the aligned table mean */
 

@@ -12,10 +12,7 @@
 #include "campaign/driver/run.h"
 #include "schemas/clock.h"
 
-enum {
-  RESAMPLES = 400,
-  MANY_POINTS = 64
-}; /* above this number the table at the end is printed only with --json or --csv */
+enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed only with --json or --csv */
 
 struct notes {
   struct progress *progress;
@@ -71,7 +68,7 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);
   else if (!code)
-    code = estimates_print(store, &choice, RESAMPLES, format, stdout, error);
+    code = estimates_print(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
     fflush(stdout); /* the legend comes below the table */
     fputs(estimates_legend, stderr);

@@ -8,7 +8,7 @@
 #include "campaign/commands/quantity.h"
 #include "db/ask/columns.h"
 
-enum { WIDTH = 900, MOST_LINES = 8, MOST_MEANS = 1000, RESAMPLES = 1000, LABEL = 600 };
+enum { WIDTH = 900, MOST_LINES = 8, MOST_MEANS = 1000, LABEL = 600 };
 
 struct options {
   const char *x, *by, *quantity;
@@ -158,7 +158,6 @@ static status run(const struct command_line *line, struct error *error) {
   const struct quantity_choice choice =
       {.axis = {options->x, options->by},
        .name = options->quantity,
-       .resamples = RESAMPLES,
        .refusal = "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another one), "
                   "and one quantity"};
   struct plot plot = {0};

@@ -59,13 +59,12 @@ static status take_point(void *context, const struct ask_points_row *point, stru
 
   struct pooled_exponent fit;
   status code = point_exponent(reading->store, point->point_id, newest ? 0 : point->results_version, reading->method,
-                               reading->window, reading->choice->resamples, 0.95, &fit, error);
+                               reading->window, 0.95, &fit, error);
   if (code)
     return code;
-  const bool several = point->n > 1;
-  const struct quantity_row row = {point->inputs, point->results_version, fit.fit.beta,
-                                   several ? fit.interval.lower : (double)NAN,
-                                   several ? fit.interval.upper : (double)NAN};
+  const double half_width = fit.interval.half_width;
+  const struct quantity_row row = {point->inputs, point->results_version, fit.fit.beta, fit.fit.beta - half_width,
+                                   fit.fit.beta + half_width};
   return reading->each(reading->context, &row, error);
 }
 

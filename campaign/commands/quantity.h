@@ -21,7 +21,6 @@ struct quantity_choice {
   const char *axis[2]; /* varied inputs by path or unique ending; the second may be NULL */
   const char *name;    /* a result column, beta, or beta_METHOD_WINDOW */
   bool newest;         /* exponents: of each point's newest results_version only, points without runs included */
-  size_t resamples;    /* exponents: for their intervals; 0 = no intervals */
   const char *refusal; /* message when these are not one or two different inputs and one quantity */
 };
 

@@ -12,7 +12,7 @@ static status pool(struct store *store, const struct ask_points_version *which, 
   struct estimate rows[POINT_ESTIMATES];
   status code = point_read(store, which->point_id, which->results_version, &point, error);
   if (!code)
-    code = point_estimates(&point, POOLING_RESAMPLES, 0.95, fits, error);
+    code = point_estimates(&point, 0.95, fits, error);
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct estimate){.window = fits[i].window, .fit = fits[i].exponent.fit};
     rows[i].fit.standard_error = fits[i].exponent.interval.standard_error;

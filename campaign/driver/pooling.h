@@ -5,8 +5,6 @@
 
 #include "db/store/store.h"
 
-enum { POOLING_RESAMPLES = 400 }; /* of runs, for the standard errors: they are then known to 4 % */
-
 /* Estimates of every point of the campaign (0: of all) that has runs and none yet. `store` is open for writing;
  * commits. */
 status pooling_store(struct store *store, int64_t campaign_id, struct error *error);

@@ -8,8 +8,6 @@
 
 #include "db/ask/query.h"
 
-enum { RESAMPLE_SEED = 1 };
-
 struct growing {
   struct point_data *point;
   size_t mass_capacity, run_capacity;
@@ -123,35 +121,34 @@ double point_window(const struct point_data *point, enum estimates_window window
 }
 
 static status estimate(const struct point_data *point, enum exponent_method method, enum estimates_window window,
-                       size_t resamples, double level, struct pooled_exponent *out, struct error *error) {
+                       double level, struct pooled_exponent *out, struct error *error) {
   const double lower = point_window(point, window);
   if (lower > 0)
-    return pooled_exponent(&point->runs, method, lower, resamples, level, RESAMPLE_SEED, out, error);
+    return pooled_exponent(&point->runs, method, lower, level, out, error);
   /* no runs, or none with estimates */
   *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){NAN, NAN}),
-                                  .interval = {NAN, NAN, NAN, NAN, 0}};
+                                  .interval = {NAN, NAN, NAN}};
   return STATUS_OK;
 }
 
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
-                      enum estimates_window window, size_t resamples, double level, struct pooled_exponent *out,
-                      struct error *error) {
+                      enum estimates_window window, double level, struct pooled_exponent *out, struct error *error) {
   struct point_data point;
   status code = point_read(store, point_id, results_version, &point, error);
   if (code)
     return code;
-  code = estimate(&point, method, window, resamples, level, out, error);
+  code = estimate(&point, method, window, level, out, error);
   point_release(&point);
   return code;
 }
 
-status point_estimates(const struct point_data *point, size_t resamples, double level,
-                       struct point_estimate rows[POINT_ESTIMATES], struct error *error) {
+status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
+                       struct error *error) {
   static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
   status code = STATUS_OK;
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct point_estimate){.window = (enum estimates_window)(i % ESTIMATES_WINDOWS)};
-    code = estimate(point, methods[i / ESTIMATES_WINDOWS], rows[i].window, resamples, level, &rows[i].exponent, error);
+    code = estimate(point, methods[i / ESTIMATES_WINDOWS], rows[i].window, level, &rows[i].exponent, error);
   }
   return code;
 }
@@ -168,8 +165,7 @@ status point_curve_make(const struct point_data *point, const char *label, struc
   if (code || !(lower > 0))
     return code;
   struct pooled_exponent headline;
-  code = pooled_exponent(&point->runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 400, 0.95, RESAMPLE_SEED,
-                         &headline, error);
+  code = pooled_exponent(&point->runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline, error);
   if (code) {
     point_curve_release(out);
     return code;

@@ -29,15 +29,13 @@ struct point_estimate {
   struct pooled_exponent exponent;
 };
 enum { POINT_ESTIMATES = 3 * ESTIMATES_WINDOWS }; /* least_squares, binned, masses in each window, in that order */
-/* Pooled estimates, intervals from `resamples` resamples of runs (1000 for final numbers: some 50 ms for 200 runs).
- * Same store, same numbers. */
-status point_estimates(const struct point_data *point, size_t resamples, double level,
-                       struct point_estimate rows[POINT_ESTIMATES], struct error *error);
+/* Pooled estimates with their intervals over runs. Same store, same numbers. */
+status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
+                       struct error *error);
 
 /* One of them, of a point that is read for it. No run, or too few fragments: its beta is NaN. */
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,
-                      enum estimates_window window, size_t resamples, double level, struct pooled_exponent *out,
-                      struct error *error);
+                      enum estimates_window window, double level, struct pooled_exponent *out, struct error *error);
 
 /* A point's pooled spectrum with its headline fit, ready to be drawn (picture_spectrum, text_plot_spectrum). */
 struct point_curve {

@@ -88,7 +88,7 @@ ok "canned queries run: $count"
 
 expect 0 "$clast" status tiny.db
 prints "tiny"; prints "finished"
-expect 0 "$clast" estimates tiny.db --resamples 50
+expect 0 "$clast" estimates tiny.db
 expect 0 "$clast" spectrum tiny.db --point 1 --json
 python -c "
 import json; rows = json.load(open('out'))

@@ -35,6 +35,8 @@ static void rows_of_a_run(void **state) {
     assert_true(isfinite(rows[i].fit.beta) && rows[i].fit.standard_error > 0);
     assert_true(rows[i].fit.lower >= 2 * estimates_window_elements((enum estimates_window)rows[i].window));
     assert_true(rows[i].fit.upper <= fragments[0].mass);
+    if (rows[i].fit.method == EXPONENT_LEAST_SQUARES)
+      assert_true(rows[i].fit.upper <= 20 * estimates_window_elements((enum estimates_window)rows[i].window));
     assert_true(!isinf(rows[i].fit.cutoff_mass));
   }
   assert_int_equal(headlines, 1);

@@ -13,7 +13,7 @@
 #include "analysis/statistics/sample.h"
 #include "engine/dem/run/run.h"
 
-enum { MOST_RUNS = 1000, RESAMPLES = 200, WINDOWS = 3, BANDS = 10 };
+enum { MOST_RUNS = 1000, WINDOWS = 3, BANDS = 10 };
 
 /* In mean grain masses; half a grain below the count, so that the scatter of N-grain fragments is inside. */
 static const struct exponent_window windows[WINDOWS] = {{1.5, 15}, {1.5, 50}, {4.5, 45}};
@@ -27,7 +27,7 @@ struct spectrum_case {
 
 struct pool {
   size_t first[MOST_RUNS + 1];
-  double *masses, *gathered; /* mean grain masses; all fragments of a resample */
+  double *masses, *gathered; /* mean grain masses; all fragments of a choice of runs */
   enum exponent_method method;
   struct exponent_window window;
 };
@@ -121,7 +121,7 @@ static struct spectrum_case pool(const char *label, const struct dem_inputs *inp
     for (int w = 0; w < WINDOWS; w++) {
       pool.method = methods[m];
       pool.window = windows[w];
-      c.beta[m][w] = sample_bootstrap(runs, RESAMPLES, 1, 0.95, pooled_beta, &pool);
+      c.beta[m][w] = sample_jackknife(runs, 0.95, pooled_beta, &pool);
       print_message(" %5.2f +-%5.2f", c.beta[m][w].estimate, c.beta[m][w].standard_error);
     }
     print_message(" |");

@@ -50,47 +50,43 @@ static void true_exponent_with_an_interval(void **state) {
   for (int giant = 0; giant < 2; giant++) {
     const enum exponent_method methods[] = {EXPONENT_MASSES, EXPONENT_BINNED};
     for (int m = 0; m < 2; m++) {
-      double mean = 0, squares = 0, quoted = 0, resampled = 0;
+      double mean = 0, squares = 0, quoted = 0, over_runs = 0;
       int held = 0;
       for (uint64_t e = 0; e < ENSEMBLES; e++) {
         struct pooled_runs runs = make(&made, e, HUGE_VAL, giant);
         struct pooled_exponent out;
-        assert_int_equal(pooled_exponent(&runs, methods[m], 1, 100, 0.95, e, &out, NULL), STATUS_OK);
+        assert_int_equal(pooled_exponent(&runs, methods[m], 1, 0.95, &out, NULL), STATUS_OK);
         if (methods[m] == EXPONENT_MASSES)
           assert_int_equal(out.fit.n, made.first[RUNS] - RUNS); /* all but the largest */
         mean += out.fit.beta / ENSEMBLES;
         squares += out.fit.beta * out.fit.beta / ENSEMBLES;
         quoted += out.fit.standard_error / ENSEMBLES;
-        resampled += out.interval.standard_error / ENSEMBLES;
-        held += out.interval.lower <= 2 && 2 <= out.interval.upper;
+        over_runs += out.interval.standard_error / ENSEMBLES;
+        held += fabs(out.fit.beta - 2) <= out.interval.half_width;
       }
       double deviation = sqrt(squares - mean * mean), error = deviation / sqrt(ENSEMBLES);
       printf("  %s%s: %.4f +- %.4f, quoted %.4f, over runs %.4f, covers %d %%\n", exponent_method_names[methods[m]],
-             giant ? " with giants" : "", mean, deviation, quoted, resampled, held);
+             giant ? " with giants" : "", mean, deviation, quoted, over_runs, held);
       /* n is about 1800: the bias 1/n is below the Monte-Carlo error. */
       assert_true(fabs(mean - 2) < 4 * error + 1.0 / 1500);
       assert_true(fabs(quoted / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
-      assert_true(fabs(resampled / deviation - 1) <
-                  4 / sqrt(2.0 * ENSEMBLES) + 1.0 / RUNS /* (n-1)/n of the variance */);
-      assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* percentile intervals at 30 runs */
+      assert_true(fabs(over_runs / deviation - 1) < 4 / sqrt(2.0 * ENSEMBLES));
+      assert_true(held > 100 * 0.93 - 4 * 100 * sqrt(0.93 * 0.07 / ENSEMBLES)); /* test_intervals: sharper */
     }
   }
 }
 
-static void other_methods_pool_too(void **state) {
+/* Least squares has no bias when every bin of its window is filled; the same runs give the same bits. */
+static void least_squares_pools_too(void **state) {
   (void)state;
   static struct made made;
   struct pooled_runs runs = make(&made, 7, HUGE_VAL, true);
-  struct pooled_exponent ls, ks, masses;
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_LEAST_SQUARES, 1, 50, 0.95, 1, &ls, NULL), STATUS_OK);
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_KS, 1, 20, 0.95, 1, &ks, NULL), STATUS_OK);
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 1, 50, 0.95, 1, &masses, NULL), STATUS_OK);
-  assert_true(ls.fit.beta > 1.5 && ls.fit.beta < masses.fit.beta); /* its bias, also on the pooled bins */
-  assert_true(fabs(ks.fit.beta - 2) < 5 * ks.interval.standard_error && ks.fit.lower >= 1);
-  assert_true(ls.interval.standard_error > 0 && ks.interval.standard_error > 0.8 * masses.interval.standard_error);
-  struct pooled_exponent again;
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, 1, 50, 0.95, 1, &again, NULL), STATUS_OK);
-  assert_true(again.interval.lower == masses.interval.lower && again.interval.upper == masses.interval.upper);
+  struct pooled_exponent ls, again;
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_LEAST_SQUARES, 1, 0.95, &ls, NULL), STATUS_OK);
+  assert_true(fabs(ls.fit.beta - 2) < 4 * ls.interval.standard_error && ls.interval.standard_error < 0.1);
+  assert_true(ls.fit.lower == 1 && ls.fit.upper == 10);
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_LEAST_SQUARES, 1, 0.95, &again, NULL), STATUS_OK);
+  assert_true(again.interval.half_width == ls.interval.half_width);
 }
 
 static void cutoffs_are_told_apart(void **state) {
@@ -151,17 +147,19 @@ static void empty_and_bad(void **state) {
   const size_t first[4] = {0, 0, 1, 1};
   const double masses[1] = {3};
   struct pooled_runs runs = {3, first, masses}, none = {0, first, masses};
-  for (int method = 0; method < EXPONENT_METHODS; method++) {
+  const enum exponent_method pooling[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
+  for (int m = 0; m < 3; m++) {
     struct pooled_exponent out;
-    assert_int_equal(pooled_exponent(&runs, (enum exponent_method)method, 1, 10, 0.95, 1, &out, NULL), STATUS_OK);
-    assert_true(isnan(out.fit.beta) && isnan(out.interval.lower) && out.fit.n == 0);
-    assert_int_equal(pooled_exponent(&none, (enum exponent_method)method, 1, 10, 0.95, 1, &out, NULL), STATUS_OK);
+    assert_int_equal(pooled_exponent(&runs, pooling[m], 1, 0.95, &out, NULL), STATUS_OK);
+    assert_true(isnan(out.fit.beta) && isnan(out.interval.half_width));
+    assert_int_equal(pooled_exponent(&none, pooling[m], 1, 0.95, &out, NULL), STATUS_OK);
     assert_true(isnan(out.fit.beta));
-    assert_int_equal(pooled_exponent(&runs, (enum exponent_method)method, 0, 10, 0.95, 1, &out, NULL), STATUS_USAGE);
+    assert_int_equal(pooled_exponent(&runs, pooling[m], 0, 0.95, &out, NULL), STATUS_USAGE);
   }
   struct pooled_exponent out;
   struct pooled_rivals rivals;
-  assert_int_equal(pooled_exponent(&runs, EXPONENT_METHODS, 1, 10, 0.95, 1, &out, NULL), STATUS_USAGE);
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_METHODS, 1, 0.95, &out, NULL), STATUS_USAGE);
+  assert_int_equal(pooled_exponent(&runs, EXPONENT_KS, 1, 0.95, &out, NULL), STATUS_USAGE); /* of runs only */
   assert_int_equal(pooled_rivals(&runs, 1, &rivals, NULL), STATUS_OK);
   assert_true(isnan(rivals.cutoff_p));
 }
@@ -170,7 +168,7 @@ int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(true_exponent_with_an_interval),
-      cmocka_unit_test(other_methods_pool_too),
+      cmocka_unit_test(least_squares_pools_too),
       cmocka_unit_test(cutoffs_are_told_apart),
       cmocka_unit_test(spectrum_density_and_error),
       cmocka_unit_test(empty_and_bad),

@@ -1,4 +1,4 @@
-/* Summaries against exact numbers; coverage of intervals, of stopping rules and of the bootstrap against their nominal
+/* Summaries against exact numbers; coverage of intervals, of stopping rules and of the jackknife against their nominal
  * level, within Monte-Carlo errors (sqrt(p(1-p)/N), four of them). */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -119,39 +119,50 @@ static double mean_of(size_t n, const uint32_t *runs, void *context) {
   return sum / (double)n;
 }
 
-static void bootstrap_knows_the_error_of_a_mean(void **state) {
+/* Of a mean, leaving out one run after another is Student's interval itself; of groups of runs, nearly. */
+static void jackknife_of_a_mean_is_students(void **state) {
   (void)state;
-  enum { RUNS = 50, RESAMPLES = 1000, TRIALS = 400 };
-  double values[RUNS], ratio = 0;
-  int held = 0;
-  for (uint64_t trial = 0; trial < TRIALS; trial++) {
-    for (uint64_t i = 0; i < RUNS; i++)
-      values[i] = normal(77, trial, i);
-    struct sample_interval b = sample_bootstrap(RUNS, trial < 20 ? RESAMPLES : 200, 5, 0.95, mean_of,
-                                                &(struct clusters){values});
-    struct sample_summary s = sample_summarise(RUNS, values, 0.95);
-    assert_true(fabs(b.estimate - s.mean) < 1e-14);
-    ratio += b.standard_error / s.standard_error / TRIALS;
-    held += b.lower <= 0 && 0 <= b.upper;
+  enum { MOST = 250, TRIALS = 400 };
+  static const size_t sizes[] = {2, 3, 50, SAMPLE_GROUPS};
+  double values[MOST], ratio = 0;
+  for (uint64_t i = 0; i < MOST; i++)
+    values[i] = normal(77, 0, i);
+  for (size_t k = 0; k < 4; k++) {
+    struct sample_interval j = sample_jackknife(sizes[k], 0.95, mean_of, &(struct clusters){values});
+    struct sample_summary s = sample_summarise(sizes[k], values, 0.95);
+    assert_true(fabs(j.estimate - s.mean) < 1e-13);
+    assert_true(fabs(j.standard_error / s.standard_error - 1) < 1e-10);
+    assert_true(fabs(j.half_width / s.half_width - 1) < 1e-10);
   }
-  /* The bootstrap's variance of a mean is (n-1)/n of the unbiased one; 200 resamples know an error to 5 %. */
-  printf("  bootstrap error over standard error %.4f, coverage %.3f\n", ratio, (double)held / TRIALS);
-  assert_true(fabs(ratio - sqrt(1 - 1.0 / RUNS)) < 4 * 0.05 / sqrt(TRIALS));
-  assert_true(fabs((double)held / TRIALS - 0.94) <
-              0.01 + 4 * sqrt(0.94 * 0.06 / TRIALS)); /* percentile, n = 50: .93-.95 */
+  int held = 0;
+  for (uint64_t trial = 0; trial < TRIALS; trial++) { /* 84 groups of three runs, the last of one */
+    for (uint64_t i = 0; i < MOST; i++)
+      values[i] = normal(77, trial, i);
+    struct sample_interval j = sample_jackknife(MOST, 0.95, mean_of, &(struct clusters){values});
+    struct sample_summary s = sample_summarise(MOST, values, 0.95);
+    ratio += j.standard_error / s.standard_error / TRIALS;
+    held += fabs(j.estimate) <= j.half_width;
+  }
+  printf("  by groups: error over standard error %.4f, coverage %.3f\n", ratio, (double)held / TRIALS);
+  assert_true(fabs(ratio - 1) < 4 / sqrt(2.0 * 83 * TRIALS) + 0.005 /* an error of 83 degrees is 0.3 % low */);
+  assert_true(fabs((double)held / TRIALS - 0.95) < 4 * sqrt(0.95 * 0.05 / TRIALS));
 }
 
-static void bootstrap_repeats_its_bits(void **state) {
+static double mean_of_four_at_least(size_t n, const uint32_t *runs, void *context) {
+  return n < 4 ? (double)NAN : mean_of(n, runs, context);
+}
+
+static void jackknife_refuses_what_it_cannot_tell(void **state) {
   (void)state;
   const double values[7] = {1, 4, 2, 8, 5, 7, 1};
   struct clusters clusters = {values};
-  struct sample_interval a = sample_bootstrap(7, 100, 9, 0.9, mean_of, &clusters);
-  struct sample_interval b = sample_bootstrap(7, 100, 9, 0.9, mean_of, &clusters);
-  struct sample_interval c = sample_bootstrap(7, 100, 10, 0.9, mean_of, &clusters);
-  assert_true(a.lower == b.lower && a.upper == b.upper && a.standard_error == b.standard_error && a.resamples == 100);
-  assert_true(a.standard_error != c.standard_error);
-  a = sample_bootstrap(0, 100, 9, 0.9, mean_of, &clusters);
-  assert_true(isnan(a.estimate) && isnan(a.lower));
+  struct sample_interval none = sample_jackknife(0, 0.9, mean_of, &clusters);
+  assert_true(isnan(none.estimate) && isnan(none.half_width));
+  struct sample_interval one = sample_jackknife(1, 0.9, mean_of, &clusters);
+  assert_true(one.estimate == 1 && isnan(one.standard_error) && isnan(one.half_width));
+  struct sample_interval four = sample_jackknife(4, 0.9, mean_of_four_at_least, &clusters);
+  assert_true(four.estimate == 3.75 && isnan(four.half_width)); /* no value without any one of the runs */
+  assert_true(isfinite(sample_jackknife(5, 0.9, mean_of_four_at_least, &clusters).half_width));
 }
 
 int main(void) {
@@ -160,8 +171,8 @@ int main(void) {
       cmocka_unit_test(summaries_are_exact),
       cmocka_unit_test(stopping_keeps_its_level),
       cmocka_unit_test(stopping_waits),
-      cmocka_unit_test(bootstrap_knows_the_error_of_a_mean),
-      cmocka_unit_test(bootstrap_repeats_its_bits),
+      cmocka_unit_test(jackknife_of_a_mean_is_students),
+      cmocka_unit_test(jackknife_refuses_what_it_cannot_tell),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
