@@ -149,10 +149,11 @@ CREATE TABLE estimate ( -- Estimates made from the fragments of one run; they ca
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
-  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge.
+  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).
+  hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
   log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
@@ -167,10 +168,11 @@ CREATE TABLE point_estimate ( -- Estimates pooled over the runs of a point that 
   method TEXT, -- How the exponent was estimated. One of: least_squares, binned, masses, ks, cutoff
   headline INTEGER, -- 1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.
   lower REAL, -- [kg] Lower end of the window used (2D: kg per metre of thickness).
-  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge.
+  upper REAL, -- [kg] Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.
   n INTEGER, -- [1] Fragments in the window.
   beta REAL, -- [1] Exponent of F(m) ~ m^-beta, fragments per unit mass (differential; the cumulative slope is beta - 1). Off when there are too few fragments.
-  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.
+  standard_error REAL, -- [1] Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).
+  hw95 REAL, -- [1] Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off for one run. It does not hold the error of the resolution.
   cutoff_mass REAL, -- [kg] m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.
   ks_distance REAL, -- [1] Largest distance between the distribution functions of sample and fit; methods masses and ks only.
   log_likelihood REAL, -- [1] Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.
@@ -542,6 +544,8 @@ SELECT p.point_id, p.engine, p.scene_name AS scene,
   s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,
   1.0 * s.count / t.runs AS count_mean,
   sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,
+  (CASE WHEN (t.runs - 1) = 1 THEN 12.706204736174 WHEN (t.runs - 1) = 2 THEN 4.302652729749 WHEN (t.runs - 1) = 3 THEN 3.182446305284 WHEN (t.runs - 1) = 4 THEN 2.776445105198 WHEN (t.runs - 1) = 5 THEN 2.570581835636 WHEN (t.runs - 1) = 6 THEN 2.446911851145 WHEN (t.runs - 1) = 7 THEN 2.364624251593 WHEN (t.runs - 1) = 8 THEN 2.306004135204 WHEN (t.runs - 1) = 9 THEN 2.262157162798 WHEN (t.runs - 1) = 10 THEN 2.228138851986
+      WHEN (t.runs - 1) > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1)) / (t.runs - 1) END) * sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs)) AS count_hw95,
   s.count / (t.fragments * (b.upper - b.lower)) AS density
 FROM point p JOIN point_total t ON t.point_id = p.point_id
   JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version
@@ -549,12 +553,12 @@ FROM point p JOIN point_total t ON t.point_id = p.point_id
 
 CREATE VIEW estimates AS -- estimates of runs (run_id) and of whole points (run_id NULL)
 SELECT e.point_id, e.run_id, e.replicate, e.seed, e.counts, p.engine, p.scene_name AS scene,
-  "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", e.results_version
+  "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", e.results_version
 FROM (
-  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", r.results_version
+  SELECT r.point_id, r.run_id, r.replicate, r.seed, r.counts, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", r.results_version
   FROM estimate JOIN run r USING (run_id)
   UNION ALL
-  SELECT point_id, NULL, NULL, NULL, NULL, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "cutoff_mass", "ks_distance", "log_likelihood", results_version FROM point_estimate
+  SELECT point_id, NULL, NULL, NULL, NULL, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", results_version FROM point_estimate
 ) e JOIN point p ON p.point_id = e.point_id;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
@@ -715,6 +719,8 @@ INSERT INTO column_doc VALUES ('estimate', 'cutoff_mass', 'kg', 'm_c of m^-beta 
 
 INSERT INTO column_doc VALUES ('estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
+INSERT INTO column_doc VALUES ('estimate', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 1);
+
 INSERT INTO column_doc VALUES ('estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
@@ -729,9 +735,9 @@ INSERT INTO column_doc VALUES ('estimate', 'ordinal', NULL, 'number among the es
 
 INSERT INTO column_doc VALUES ('estimate', 'run_id', NULL, 'the run', 0);
 
-INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 1);
 
-INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
+INSERT INTO column_doc VALUES ('estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 
 INSERT INTO column_doc VALUES ('estimate', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 1);
 
@@ -744,6 +750,8 @@ INSERT INTO column_doc VALUES ('estimates', 'cutoff_mass', 'kg', 'm_c of m^-beta
 INSERT INTO column_doc VALUES ('estimates', 'engine', NULL, 'name of the engine', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 0);
+
+INSERT INTO column_doc VALUES ('estimates', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 0);
 
@@ -769,7 +777,7 @@ INSERT INTO column_doc VALUES ('estimates', 'scene', NULL, 'name of the scene th
 
 INSERT INTO column_doc VALUES ('estimates', 'seed', NULL, 'the seed (64 bits, shown as a signed number)', 0);
 
-INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 0);
+INSERT INTO column_doc VALUES ('estimates', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 0);
 
 INSERT INTO column_doc VALUES ('estimates', 'upper', 'kg', 'upper edge, outside the bin', 0);
 
@@ -805,6 +813,8 @@ INSERT INTO column_doc VALUES ('point_estimate', 'cutoff_mass', 'kg', 'm_c of m^
 
 INSERT INTO column_doc VALUES ('point_estimate', 'headline', NULL, '1: the estimate that is called beta, by maximum likelihood on masses of at least 5 elements (grains or particles), without the largest fragment.', 1);
 
+INSERT INTO column_doc VALUES ('point_estimate', 'hw95', '1', 'Half width of the 95 % interval of beta over the runs (seeds) of a point: Student''s t and the jackknife. Off for one run. It does not hold the error of the resolution.', 1);
+
 INSERT INTO column_doc VALUES ('point_estimate', 'ks_distance', '1', 'Largest distance between the distribution functions of sample and fit; methods masses and ks only.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'log_likelihood', '1', 'Natural logarithm of the likelihood of ln(m), or of the bin numbers with method binned. Compare within one window only.', 1);
@@ -821,9 +831,9 @@ INSERT INTO column_doc VALUES ('point_estimate', 'point_id', NULL, 'the point', 
 
 INSERT INTO column_doc VALUES ('point_estimate', 'results_version', NULL, 'version of the engine''s results it was made from', 0);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken as known, so the error is too small by a third). Of a point: from resampling its runs.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'standard_error', '1', 'Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from leaving out one of its runs after another (jackknife).', 1);
 
-INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge.', 1);
+INSERT INTO column_doc VALUES ('point_estimate', 'upper', 'kg', 'Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a decade above the lower end.', 1);
 
 INSERT INTO column_doc VALUES ('point_estimate', 'window', NULL, 'Window of masses of the estimate. None begins below complete_mass of the run. One of: from_2, from_5, from_10', 1);
 
@@ -1484,6 +1494,8 @@ INSERT INTO column_doc VALUES ('session', 'started_at', NULL, 'UTC, ISO 8601, to
 INSERT INTO column_doc VALUES ('spectra', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'count', '1', 'fragments in the bin, of all runs', 0);
+
+INSERT INTO column_doc VALUES ('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'count_mean', '1', 'fragments in the bin per run', 0);
 

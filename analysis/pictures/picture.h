@@ -78,16 +78,15 @@ struct picture_series {
   const struct picture_fit *fit;
   double complete_mass; /* kg: bins that begin below are grey, as fragments are missing there; 0 or NaN: none is */
 };
-/* Log-log F(m) with error bars (one standard error over runs) and lines of the fits. One to eight series. The legend
+/* Log-log F(m) with error bars (95 % intervals over runs) and lines of the fits. One to eight series. The legend
  * stands beside the frame and makes the picture wider than `width`. */
 status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
                         const struct picture_series *series, struct error *error);
 
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
- *     lower edge   count   F(m)   error in %      ├──●──┤  ·
- * the point (○ in bins that begin below complete_mass), one standard error to both sides, and (·) the series' first
- * fit. columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. It writes no colour, and
- * nothing when there is no fragment. */
+ *     lower edge   count   F(m)   +-95% in %      ├──●──┤  ·
+ * the point, its 95 % interval over runs, and (·) the series' first fit. columns: width of the terminal, at least
+ * 72 are used. unicode: false for ASCII only. It writes no colour, and nothing when there is no fragment. */
 void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
                         const struct picture_series *series);
 

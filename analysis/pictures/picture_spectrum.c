@@ -103,13 +103,13 @@ static void axis(const struct frame *f, bool horizontal) {
     }
 }
 
-/* One standard error to both sides. A bar that reaches down to zero is faint, so that it does not rule the picture. */
+/* The 95 % interval over runs. A bar that reaches down to zero is faint, so that it does not rule the picture. */
 static void error_bar(const struct frame *f, const struct pooled_bin *bin, double x, double cap, size_t index) {
   cairo_t *cairo = f->cairo;
-  double low = bin->density - bin->standard_error, bottom = f->top + f->height;
+  double low = bin->density - bin->half_width, bottom = f->top + f->height;
   if (low > 0)
     bottom = fmin(at_y(f, log10(low)), bottom);
-  double top = fmax(at_y(f, log10(bin->density + bin->standard_error)), f->top);
+  double top = fmax(at_y(f, log10(bin->density + bin->half_width)), f->top);
   picture_canvas_series(cairo, index, low > 0 ? 0.75 : 0.3);
   cairo_move_to(cairo, x, bottom);
   cairo_line_to(cairo, x, top);
@@ -131,7 +131,7 @@ static void points(const struct frame *f, const struct picture_series *series, s
       continue;
     double x = at_x(f, middle(bin));
     cairo_set_line_width(cairo, 0.09 * f->font);
-    if (bin->standard_error > 0)
+    if (bin->half_width > 0)
       error_bar(f, bin, x, 0.7 * radius, index);
     cairo_arc(cairo, x, at_y(f, log10(bin->density)), radius, 0, 2 * M_PI);
     if (bin->lower < series->complete_mass)

@@ -46,10 +46,9 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
     line[place(scale, decade)] = GRID;
   double middle = sqrt(bin->lower * bin->upper), fitted = fit ? fit_at(fit, middle) : (double)NAN;
   int point = place(scale, log10(bin->density));
-  if (bin->standard_error > 0) {
-    double below = bin->density - bin->standard_error;
-    int left = below > 0 ? place(scale, log10(below)) : 0,
-        right = place(scale, log10(bin->density + bin->standard_error));
+  if (bin->half_width > 0) {
+    double below = bin->density - bin->half_width;
+    int left = below > 0 ? place(scale, log10(below)) : 0, right = place(scale, log10(bin->density + bin->half_width));
     for (int i = left; i <= right; i++)
       line[i] = ERROR_BAR;
     if (below > 0)
@@ -60,8 +59,8 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
     line[place(scale, fitted)] = FIT;
   line[point] = bin->lower < series->complete_mass ? INCOMPLETE : POINT;
   fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->density);
-  if (isfinite(bin->standard_error))
-    fprintf(out, " %4.0f%%  ", 100 * bin->standard_error / bin->density);
+  if (isfinite(bin->half_width))
+    fprintf(out, " %4.0f%%  ", 100 * bin->half_width / bin->density);
   else
     fprintf(out, " %5s  ", "-");
   int end = scale->columns; /* a line has no trailing blanks */

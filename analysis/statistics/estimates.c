@@ -12,7 +12,9 @@ static const char *const window_docs =
     "of 5 elements and more (from 4.5 mean element masses), the largest left out\n"
     "of 10 elements and more (from 9.5 mean element masses), the largest left out";
 static const char *const method_docs =
-    "unweighted least squares of log density on non-empty log bins: the method of Kun & Herrmann (1999), biased low\n"
+    "unweighted least squares of log density on log bins of one decade, the largest fragment included: the method of "
+    "Kun & Herrmann (1999). Of a point: off until its runs fill every bin; of one run: of the bins that are filled, "
+    "biased low\n"
     "maximum likelihood on the stored bins\n"
     "maximum likelihood on masses in a bounded window\n"
     "the same above the lower cut-off that fits best by Kolmogorov-Smirnov distance\n"
@@ -50,7 +52,9 @@ static const struct field rows_of_table[] = {
             "particles), without the largest fragment."},
     REAL("lower", "kg", fit.lower, 0, "Lower end of the window used (2D: kg per metre of thickness).", NULL),
     REAL("upper", "kg", fit.upper, 0,
-         "Upper end, not part of the window: the mass of the largest fragment, or a bin edge.", NULL),
+         "Upper end, not part of the window: the mass of the largest fragment, or a bin edge. With least_squares a "
+         "decade above the lower end.",
+         NULL),
     {.path = "n",
      .kind = FIELD_INTEGER,
      .unit = "1",
@@ -64,9 +68,14 @@ static const struct field rows_of_table[] = {
          "Kun & Herrmann (1999) section 3.3"),
     REAL(
         "standard_error", "1", fit.standard_error, 0,
-        "Standard error of beta. Of one run: fragments are taken as independent (with method ks the lower end is taken "
-        "as known, so the error is too small by a third). Of a point: from resampling its runs.",
+        "Standard error of beta. Of one run: fragments are taken as independent, which they are not; it is no interval "
+        "over seeds (with method ks the lower end is taken as known, so it is too small by a third). Of a point: from "
+        "leaving out one of its runs after another (jackknife).",
         NULL),
+    REAL("hw95", "1", half_width, 0,
+         "Half width of the 95 % interval of beta over the runs (seeds) of a point: Student's t and the jackknife. Off "
+         "for one run. It does not hold the error of the resolution.",
+         NULL),
     REAL("cutoff_mass", "kg", fit.cutoff_mass, 0,
          "m_c of m^-beta exp(-m/m_c); method cutoff only. Off when the pure power law fits best.", NULL),
     REAL("ks_distance", "1", fit.ks_distance, 0,
@@ -127,6 +136,7 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
     double lower = estimates_window_lower(wanted[i].window, element, complete_mass);
     struct exponent_window window = exponent_window_from(wanted[i].method, lower, largest);
     *row = (struct estimate){.window = (int)wanted[i].window,
+                             .half_width = NAN,
                              .headline = wanted[i].method == (int)ESTIMATES_HEADLINE_METHOD &&
                                          wanted[i].window == (int)ESTIMATES_HEADLINE_WINDOW,
                              .fit = exponent_unknown(wanted[i].method, window)};

@@ -24,6 +24,7 @@ struct estimate {
   int window;          /* enum estimates_window */
   bool headline;       /* the one that is called `beta` */
   struct exponent fit; /* fit.cutoff_mass NaN also where no cut-off was needed */
+  double half_width;   /* of the 95 % interval of beta over the runs of a point; NaN of one run */
 };
 extern const struct field_table estimates_table;
 

@@ -22,14 +22,14 @@ struct pooled_runs {
 /* One bin of F(m): fragments per run and per unit of m/unit_mass. */
 struct pooled_bin {
   int bin;
-  double lower, upper;   /* kg */
-  int64_t count;         /* over all runs */
-  double density;        /* count / (runs x (upper - lower)/unit_mass) */
-  double standard_error; /* from the scatter of the runs' counts; NaN for one run */
+  double lower, upper; /* kg */
+  int64_t count;       /* over all runs */
+  double density;      /* count / (runs x (upper - lower)/unit_mass) */
+  double half_width;   /* of the 95 % interval of the density over runs (Student's t); NaN for one run */
 };
-/* Standard error of the mean count per run in a bin, from the scatter between runs. count, squares: sum over the runs
- * of their counts and of the squares. NaN for fewer than two runs. */
-double pooled_spectrum_count_error(size_t runs, double count, double squares);
+/* Half width of the 95 % interval of the mean count per run in a bin, from the scatter between runs (Student's t).
+ * count, squares: sum over the runs of their counts and of the squares. NaN for fewer than two runs. */
+double pooled_spectrum_count_hw95(size_t runs, double count, double squares);
 
 /* Non-empty bins, ascending, malloc'd into *bins. unit_mass: 1 for F(m) in 1/kg, the total mass for F(m/M). */
 status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,

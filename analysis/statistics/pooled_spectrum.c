@@ -1,14 +1,14 @@
-/* The pooled spectrum: densities with errors from the scatter between runs. */
+/* The pooled spectrum: densities with intervals from the scatter between runs. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "analysis/statistics/pooled.h"
 
-double pooled_spectrum_count_error(size_t runs, double count, double squares) {
+double pooled_spectrum_count_hw95(size_t runs, double count, double squares) {
   if (runs < 2)
     return NAN;
   double n = (double)runs;
-  return sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
+  return sample_student(runs, 0.95) * sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
 }
 
 /* Lowest and highest bin that holds a fragment; SPECTRUM_NO_BIN and lower when there is none. */
@@ -70,7 +70,7 @@ status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double
     bin.upper = spectrum_edge(bin.bin + 1);
     double width = (bin.upper - bin.lower) / unit_mass, total = (double)bin.count;
     bin.density = total / ((double)runs->count * width);
-    bin.standard_error = pooled_spectrum_count_error(runs->count, total, squares[j]) / width;
+    bin.half_width = pooled_spectrum_count_hw95(runs->count, total, squares[j]) / width;
     found[(*count)++] = bin;
   }
   *bins = found;

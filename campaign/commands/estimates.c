@@ -3,6 +3,7 @@
 #include "campaign/commands/estimates.h"
 
 #include "campaign/commands/commands.h"
+#include "campaign/commands/quantity.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
@@ -92,16 +93,23 @@ static void headings(struct printing *printing) {
     const char *method = exponent_method_names[methods[m]];
     snprintf(name, sizeof name, "beta_%s", method);
     table_column(table, people ? short_names[m] : name, NULL);
-    snprintf(name, sizeof name, "beta_%s_se", method);
-    table_column(table, people ? "+-" : name, NULL);
+    snprintf(name, sizeof name, "beta_%s_hw95", method);
+    table_column(table, people ? "+-95%" : name, NULL);
   }
 }
 
-const char *const estimates_legend =
-    "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together, without the largest fragment of "
-    "each run.\nLSQ: least squares on logarithmic bins (as in the paper; biased). binned, ML: maximum likelihood on "
-    "bins and on masses.\nWindows: fragments of at least 2, 5, 10 mean masses of a grain or particle (from N - 1/2). "
-    "Errors: one standard error, from resampling the runs.\n";
+static const char *const estimates_legend =
+    "+-95%: half width of the 95 % interval over seeds (Student's t); one run has none. It does not hold the error of "
+    "the resolution.\nbeta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\nLSQ: least "
+    "squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every bin.\nbinned, ML: "
+    "maximum likelihood on bins and on masses, without the largest fragment of each run.\nWindows: fragments of at "
+    "least 2, 5, 10 mean masses of a grain or particle (from N - 1/2).\n";
+
+void estimates_explain(struct store *store) {
+  fputs(estimates_legend, stderr);
+  quantity_tell_resolution(store, OUTCOME_DEFAULT);
+  quantity_tell_resolution(store, "beta");
+}
 
 status estimates_print(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
                        struct error *error) {
@@ -137,7 +145,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (!code)
     code = estimates_print(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT)
-    fputs(estimates_legend, stderr);
+    estimates_explain(store);
   store_close(store, NULL);
   return code;
 }
@@ -157,10 +165,10 @@ const struct command estimates_command = {
     .summary = "largest fragment and exponents of every point, pooled over seeds, with errors",
     .doc =
         "Prints the table that `clast run` ends with. For every point: the mass share of the largest fragment, M_1/M,\n"
-        "with its 95 % interval, and the exponent beta of F(m) ~ m^-beta (differential) by three methods: least\n"
-        "squares on logarithmic bins (as in the paper; biased), maximum likelihood on bins, and maximum likelihood on\n"
-        "masses. Each in three windows: fragments of at least 2, 5 and 10 mean masses of a grain or particle, without\n"
-        "the largest fragment of each run. Errors of the exponents come from resampling the runs.",
+        "and the exponent beta of F(m) ~ m^-beta (differential) by three methods: least squares on logarithmic bins\n"
+        "(as in the paper, over one decade), maximum likelihood on bins, and maximum likelihood on masses. Each in\n"
+        "three windows: from fragments of 2, 5 and 10 mean masses of a grain or particle on; maximum likelihood\n"
+        "without the largest fragment of each run. All with 95 % intervals over seeds; one run has none.",
     .examples = "clast estimates out.db\nclast estimates out.db --point 1 --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -10,6 +10,7 @@
 status estimates_print(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,
                        struct error *error);
 
-extern const char *const estimates_legend; /* what the columns of the aligned table mean */
+/* On stderr: what the columns of the aligned table mean, what its intervals hold, what is known of the resolution. */
+void estimates_explain(struct store *store);
 
 #endif

@@ -71,7 +71,7 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
     code = estimates_print(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
     fflush(stdout); /* the legend comes below the table */
-    fputs(estimates_legend, stderr);
+    estimates_explain(store);
   }
   store_close(store, NULL);
   return code;

@@ -1,4 +1,5 @@
 /* `clast map STORE PICTURE`: a quantity over two varied inputs, as a picture. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -16,6 +17,7 @@ struct map {
   struct quantity quantity;
   double (*points)[3]; /* x, y, value */
   size_t count;
+  double widest; /* half width of the widest interval; 0: there is none */
 };
 
 static bool is_number(const struct query_value *value) {
@@ -41,6 +43,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
   point[0] = x;
   point[1] = y;
   point[2] = row->value;
+  map->widest = fmax(map->widest, row->upper - row->value); /* NaN: no interval */
   return STATUS_OK;
 }
 
@@ -56,9 +59,11 @@ static status draw(struct store *store, const struct options *options, const cha
   const struct quantity *quantity = &map.quantity;
   status code = quantity_read(store, &choice, &map.quantity, add, &map, error);
   if (code == STATUS_OK) {
-    char title[128];
-    snprintf(title, sizeof title, "%s%s, %s over seeds%s", quantity->exponent ? "exponent " : "", options->quantity,
-             quantity->exponent ? "pooled" : "mean", quantity->over_other_inputs ? " and other inputs" : "");
+    char title[ASK_GROUP_POOLED + 256], interval[64] = "";
+    if (map.widest > 0)
+      snprintf(interval, sizeof interval, " (at most \xc2\xb1 %.2g, 95 %%)", map.widest);
+    snprintf(title, sizeof title, "%s%s, %s over seeds%s%s%s", quantity->exponent ? "exponent " : "", options->quantity,
+             quantity->exponent ? "pooled" : "mean", *quantity->pooled ? " and " : "", quantity->pooled, interval);
     code = picture_map(path, WIDTH, title, options->quantity, quantity->column[0], quantity->column[1], map.count,
                        (const double(*)[3])map.points, error);
   }
@@ -76,6 +81,8 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   code = draw(store, options, line->arguments[1], error);
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, options->quantity);
   store_close(store, NULL);
   return code;
 }
@@ -92,7 +99,8 @@ const struct command map_command = {
     .arguments = "STORE PICTURE.png",
     .summary = "a quantity over two varied inputs as a picture",
     .doc = "Draws the mean of a result over seeds, or an exponent fitted to the runs of a point, as a tile for every\n"
-           "pair of values of two varied inputs. A pair without a usable run is crossed out. The ending chooses the\n"
+           "pair of values of two varied inputs. A pair without a usable run is crossed out. The title tells\n"
+           "the widest 95 % interval. The ending chooses the\n"
            "format: .png or .svg.",
     .examples = "clast map out.db map.png -x strain -y angle\nclast map out.db beta.svg -x strain -y angle -q beta",
     .minimum_arguments = 2,

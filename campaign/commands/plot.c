@@ -123,7 +123,7 @@ static status label_axis(struct store *store, const char *column, char label[300
 
 static status draw(struct store *store, struct plot *plot, const char *path, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
-  char x_label[300], by_label[300], y_label[300], title[400];
+  char x_label[300], by_label[300], y_label[300], title[ASK_GROUP_POOLED + 400];
   status code = label_axis(store, quantity->column[0], x_label, error);
   if (code)
     return code;
@@ -141,8 +141,8 @@ static status draw(struct store *store, struct plot *plot, const char *path, str
     curves[i].count = plot->line[i].count;
     curves[i].mean = plot->line[i].means;
   }
-  snprintf(title, sizeof title, "%s, %s over seeds%s with 95 %% interval", quantity->name,
-           quantity->exponent ? "pooled" : "mean", quantity->over_other_inputs ? " and other inputs" : "");
+  snprintf(title, sizeof title, "%s, %s over seeds%s%s, 95 %% interval", quantity->name,
+           quantity->exponent ? "pooled" : "mean", *quantity->pooled ? " and " : "", quantity->pooled);
   return picture_curves(path, WIDTH, title, x_label, y_label, plot->count, curves, error);
 }
 
@@ -164,6 +164,8 @@ static status run(const struct command_line *line, struct error *error) {
   code = quantity_read(store, &choice, &plot.quantity, add, &plot, error);
   if (code == STATUS_OK)
     code = draw(store, &plot, line->arguments[1], error);
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, plot.quantity.name);
   for (size_t i = 0; i < plot.count; i++)
     free(plot.line[i].means);
   store_close(store, NULL);
@@ -186,8 +188,9 @@ const struct command plot_command = {
         "Draws the mean of a result over seeds against a varied input, with the 95 % interval of the mean (Student's\n"
         "t) where there are two runs or more. A second varied input gives one line for each of its values. `clast\n"
         "stats` prints the same numbers. If other inputs vary as well, the mean is over them too, and the title says\n"
-        "so. For an exponent it draws the fit to the runs of each point, with the interval from resampling runs. An\n"
-        "axis that spans a factor of 20 or more is logarithmic. The ending chooses the format: .png or .svg.",
+        "which; the interval then takes the points as units. For an exponent it draws the fit to the runs of each\n"
+        "point, with its 95 % interval. An axis that spans a factor of 20 or more is logarithmic. The ending chooses "
+        "the format: .png or .svg.",
     .examples =
         "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
     .minimum_arguments = 2,

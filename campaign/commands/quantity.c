@@ -6,12 +6,13 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
+#include "campaign/terminal/uncertainty.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
 #include "engine/outcome.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, N = 2, MEAN = 5, HALF_WIDTH = 8, COLUMNS = 9 };
+enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, COLUMNS = 10 };
 
 struct reading {
   struct store *store;
@@ -46,7 +47,7 @@ static status take_group(void *context, size_t count, const struct query_value *
 
   const struct query_value *rest = values + reading->quantity->axes;
   const double mean = rest[MEAN].real;
-  const double half_width = rest[N].integer > 1 ? rest[HALF_WIDTH].real : (double)NAN;
+  const double half_width = rest[HALF_WIDTH].real; /* NaN for one run */
   const struct quantity_row row = {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width};
   return reading->each(reading->context, &row, error);
 }
@@ -82,14 +83,24 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
   snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
            choice->axis[1] ? choice->axis[1] : "");
   const struct query_sink groups = {&reading, take_columns, take_group};
-  code = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, &groups, error);
+  code = ask_group(store, by, quantity->exponent ? OUTCOME_DEFAULT : choice->name, &groups, quantity->pooled, error);
   if (code)
     return code;
 
+  if (!quantity->exponent)
+    return STATUS_OK;
+
   const char *inputs[2] = {quantity->column[0], quantity->column[1]};
-  if (quantity->exponent)
-    return ask_points_rows(store, &(struct ask_points_choice){0}, choice->newest, quantity->axes, inputs, take_point,
-                           &reading, error);
-  return ask_points_share(store, inputs[0], quantity->axes == 2 ? inputs[1] : NULL, &quantity->over_other_inputs,
-                          error);
+  quantity->pooled[0] = '\0'; /* exponents are of single points */
+  return ask_points_rows(store, &(struct ask_points_choice){0}, choice->newest, quantity->axes, inputs, take_point,
+                         &reading, error);
+}
+
+void quantity_tell_resolution(struct store *store, const char *name) {
+  struct ask_resolution resolution;
+  char text[UNCERTAINTY_TEXT];
+  if (ask_resolution(store, 0, name, &resolution, NULL))
+    return;
+  uncertainty_resolution(&resolution, text);
+  fprintf(stderr, "clast: %s: intervals are over seeds (95 %%); %s\n", name, text);
 }

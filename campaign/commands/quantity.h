@@ -26,10 +26,10 @@ struct quantity_choice {
 
 struct quantity {
   bool exponent;
-  size_t axes;            /* 1 or 2 */
-  char column[2][256];    /* of the axes in the views */
-  char name[256];         /* column of the quantity, or the exponent's name */
-  bool over_other_inputs; /* some means are over other inputs as well */
+  size_t axes;                   /* 1 or 2 */
+  char column[2][256];           /* of the axes in the views */
+  char name[256];                /* column of the quantity, or the exponent's name */
+  char pooled[ASK_GROUP_POOLED]; /* varied inputs that means are over as well, points as units; "": none */
 };
 
 struct quantity_row {
@@ -38,10 +38,13 @@ struct quantity_row {
   double value, lower, upper; /* the bounds are of the 95 % interval; NaN: unknown */
 };
 
-/* Passes every value to `each`; `quantity` is filled in except for over_other_inputs before the first call. What `each`
+/* Passes every value to `each`; `quantity` is filled in before the first call. What `each`
  * returns when it is not STATUS_OK. STATUS_USAGE: unknown names. */
 status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
                      status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
                      struct error *error);
+
+/* A line on stderr: what the intervals hold, and what is known of the resolution. */
+void quantity_tell_resolution(struct store *store, const char *name);
 
 #endif

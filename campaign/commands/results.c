@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "schemas/text.h"
+#include "campaign/commands/explain.h"
+#include "campaign/terminal/uncertainty.h"
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
@@ -65,22 +66,19 @@ static status print_wide(const struct engine_kind *kind, int64_t seed, const str
     const char *window = estimates_window_names[result->estimates[i].window];
     snprintf(name, sizeof name, "beta_%s_%s", method, window);
     table_column(table, name, NULL);
-    snprintf(name, sizeof name, "beta_%s_%s_error", method, window);
-    table_column(table, name, NULL);
   }
   table_text(table, kind->name);
   table_integer(table, seed);
   for (size_t t = 0; t < 2; t++)
     for (size_t i = 0; i < tables[t]->count; i++)
       value_cell(table, &tables[t]->rows[i], objects[t]);
-  for (size_t i = 0; i < result->estimate_count; i++) {
+  for (size_t i = 0; i < result->estimate_count; i++)
     table_real(table, result->estimates[i].fit.beta);
-    table_real(table, result->estimates[i].fit.standard_error);
-  }
   return table_end(table, error);
 }
 
-static status print_long(const struct engine_kind *kind, const struct run_result *result, struct error *error) {
+static status print_long(const char *scene, const struct engine_kind *kind, const struct run_result *result,
+                         struct error *error) {
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"result", "value", "unit", "meaning", NULL});
   list(table, &outcome_table, &result->outcome);
@@ -90,18 +88,27 @@ static status print_long(const struct engine_kind *kind, const struct run_result
     return code;
   fputs("\nexponent beta of F(m) ~ m^-beta, of this run alone:\n", stdout);
   table = table_new(TABLE_TEXT, stdout);
-  table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", "error", NULL});
+  table_columns(table, (const char *const[]){"method", "window", "fragments", "beta", NULL});
   for (size_t i = 0; i < result->estimate_count; i++) {
     table_text(table, exponent_method_names[result->estimates[i].fit.method]);
     table_text(table, estimates_window_names[result->estimates[i].window]);
     table_integer(table, result->estimates[i].fit.n);
     table_real(table, result->estimates[i].fit.beta);
-    table_real(table, result->estimates[i].fit.standard_error);
   }
-  return table_end(table, error);
+  code = table_end(table, error);
+  if (code)
+    return code;
+  struct ask_resolution resolution;
+  char text[UNCERTAINTY_TEXT];
+  code = ask_resolution(NULL, 0, OUTCOME_DEFAULT, &resolution, error);
+  snprintf(resolution.scene, sizeof resolution.scene, "%s", scene);
+  uncertainty_resolution(&resolution, text);
+  printf("\nerrors: one run has no interval over seeds: several seeds have one (`clast run`)\n%s\n", text);
+  return code ? code : table_flush(stdout, error);
 }
 
-status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
-                     enum table_format format, struct error *error) {
-  return format == TABLE_TEXT ? print_long(kind, result, error) : print_wide(kind, seed, result, format, error);
+status results_print(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
+                     struct error *error) {
+  return format == TABLE_TEXT ? print_long(scene->name, scene->kind, result, error)
+                              : print_wide(scene->kind, seed, result, format, error);
 }

@@ -8,7 +8,7 @@
 /* Path, value (off and NaN are missing), unit and first sentence of a row of the object: four cells. */
 void results_row(struct table *table, const struct field *row, const void *object);
 
-status results_print(const struct engine_kind *kind, int64_t seed, const struct run_result *result,
-                     enum table_format format, struct error *error);
+status results_print(const struct scene *scene, int64_t seed, const struct run_result *result, enum table_format format,
+                     struct error *error);
 
 #endif

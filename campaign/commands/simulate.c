@@ -122,7 +122,7 @@ static status simulate(const struct scene *scene, const struct options *options,
 
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
   if (result.result) {
-    const status printed = results_print(scene->kind, options->seed, &result, format, code ? NULL : error);
+    const status printed = results_print(scene, options->seed, &result, format, code ? NULL : error);
     code = code ? code : printed;
   }
   if (code)

@@ -4,6 +4,7 @@
 
 #include "analysis/statistics/estimates.h"
 #include "campaign/commands/commands.h"
+#include "campaign/commands/quantity.h"
 #include "campaign/terminal/rows.h"
 #include "engine/outcome.h"
 
@@ -45,6 +46,19 @@ static status warn_of_twins(struct store *store, struct error *error) {
   return code;
 }
 
+/* One line for each quantity. */
+static void tell_resolution(struct store *store, const char *names) {
+  char name[128];
+  if (strcmp(names, "main") == 0)
+    names = OUTCOME_DEFAULT;
+  while (*names) {
+    const size_t length = strcspn(names, ",");
+    snprintf(name, sizeof name, "%.*s", (int)length, names);
+    quantity_tell_resolution(store, name + strspn(name, " "));
+    names += length + (names[length] == ',');
+  }
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -57,9 +71,15 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   struct rows rows;
+  char pooled[ASK_GROUP_POOLED] = "";
   struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, error);
+  code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, pooled,
+                   error);
   code = rows_end(&rows, code, error);
+  if (code == STATUS_OK && *pooled)
+    fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    tell_resolution(store, options->quantity);
   if (!code)
     code = warn_of_twins(store, error);
   store_close(store, NULL);
@@ -85,7 +105,9 @@ const struct command stats_command = {
     .doc =
         "Groups the runs by varied inputs. For each group it prints how many runs count, failed, or reached the hard\n"
         "end time, and for each quantity the mean, standard deviation, standard error, and half width of the 95 %\n"
-        "interval of the mean (Student's t). Runs of different results versions are never mixed.",
+        "interval of the mean over seeds (Student's t). A group of several points pools over other inputs, which it\n"
+        "names: then the points are the units, each with the mean of its runs. Runs of different results versions are\n"
+        "never mixed. No interval holds the error of the resolution.",
     .examples =
         "clast stats out.db --by strain\nclast stats out.db --by strain,angle --quantity largest_fraction --csv",
     .minimum_arguments = 1,

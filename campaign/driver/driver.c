@@ -161,7 +161,7 @@ static void show(struct driver *driver, int running, bool last) {
       .seconds_left = last ? DRIVER_NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
       .mean = quantity.mean,
-      .half_width = quantity.half_width,
+      .half_width = design_points(driver->design) == 1 ? quantity.half_width : (double)NAN, /* of one point's seeds */
   };
   if (elapsed > 0 && driver->started_done > 0)
     state.rate = (double)driver->started_done / elapsed;

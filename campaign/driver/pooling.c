@@ -16,6 +16,7 @@ static status pool(struct store *store, const struct ask_points_version *which, 
   for (int i = 0; i < POINT_ESTIMATES && !code; i++) {
     rows[i] = (struct estimate){.window = fits[i].window, .fit = fits[i].exponent.fit};
     rows[i].fit.standard_error = fits[i].exponent.interval.standard_error;
+    rows[i].half_width = fits[i].exponent.interval.half_width;
     rows[i].headline = rows[i].window == ESTIMATES_HEADLINE_WINDOW && rows[i].fit.method == ESTIMATES_HEADLINE_METHOD;
   }
   if (!code)

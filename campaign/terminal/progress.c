@@ -7,6 +7,8 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "campaign/terminal/uncertainty.h"
+
 struct progress {
   FILE *out;
   enum progress_style style;
@@ -53,7 +55,7 @@ int progress_duration(double seconds, char *buffer, size_t size) {
 }
 
 /* The facts, without bar: "120 of 400 runs, 2 failed, 4 running, 3.1 runs/s, 1 min 30 s left, largest_fraction 0.312 +-
- * 0.008" */
+ * 0.008 (seeds, 95 %)" */
 static void facts(const struct progress_state *state, char *buffer, size_t size) {
   char left[32], failed[48] = "", rate[48] = "", time[64] = "", mean[128] = "";
   progress_duration(state->seconds_left, left, sizeof left);
@@ -64,8 +66,10 @@ static void facts(const struct progress_state *state, char *buffer, size_t size)
   if (state->seconds_left >= 0)
     snprintf(time, sizeof time, ", %s left", left);
   if (state->quantity && isfinite(state->mean)) {
+    char both[UNCERTAINTY_TEXT];
+    uncertainty_seeds(state->mean, state->half_width, both);
     if (isfinite(state->half_width))
-      snprintf(mean, sizeof mean, ", %.60s %.4g ± %.2g", state->quantity, state->mean, state->half_width);
+      snprintf(mean, sizeof mean, ", %.60s %.60s", state->quantity, both);
     else
       snprintf(mean, sizeof mean, ", %.60s %.4g", state->quantity, state->mean);
   }

@@ -15,7 +15,7 @@ struct progress_state {
   double rate;             /* runs/s of this invocation; NaN = not known yet */
   double seconds_left;     /* NaN = not known yet */
   const char *quantity;    /* the main quantity's name */
-  double mean, half_width; /* of it over the runs so far; NaN = none yet */
+  double mean, half_width; /* of it over the runs so far, 95 %; NaN = none yet, or runs of several points */
 };
 
 enum progress_style { PROGRESS_PLAIN, PROGRESS_BAR };

@@ -1,5 +1,4 @@
-/* Statistics grouped by any varied inputs, pooled over the others (`--by m,k`): from run rows, so that n, mean and
- * scatter are those of all runs in the group, not of points' means. */
+/* Statistics grouped by any varied inputs, pooled over the others (`--by m,k`). */
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,13 +88,35 @@ static status resolve(struct store *store, const char *list, const char *what, c
   return STATUS_OK;
 }
 
-static void write_axes(const struct names *axes, FILE *out) {
-  for (size_t i = 0; i < axes->count; i++) {
-    sql_write_name(axes->name[i], out);
+static void write_names(FILE *out, const struct names *names) {
+  for (size_t i = 0; i < names->count; i++) {
+    sql_write_name(names->name[i], out);
     fputs(", ", out);
   }
 }
 
+/* One row per point of a group: its runs, and of quantity N its number rN, mean pN and standard deviation oN. Ordered
+ * rows, so that the sums have the same bits for any order in which the runs finished. */
+static void write_points(FILE *out, const struct names *axes, const struct names *quantities) {
+  fputs("\nFROM (SELECT ", out);
+  write_names(out, axes);
+  fputs("engine, results_version, point_id, sum(counts) AS n, sum(counts = 0) AS failed, sum(counts AND state = "
+        "'end-time') AS censored",
+        out);
+  for (size_t i = 0; i < quantities->count; i++) {
+    const char *q = quantities->name[i];
+    fprintf(out,
+            ",\n  count(iif(counts, \"%s\", NULL)) AS r%zu, avg(iif(counts, \"%s\", NULL)) AS p%zu, stdev(iif(counts, "
+            "\"%s\", NULL)) AS o%zu",
+            q, i, q, i, q, i);
+  }
+  fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
+        out);
+  write_names(out, axes);
+  fputs("engine, results_version, point_id)\nGROUP BY ", out);
+}
+
+/* The units of a group: the runs of its only point, or the means of its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL;
   size_t size = 0;
@@ -103,41 +124,68 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   if (!out)
     return NULL;
   fputs("SELECT ", out);
-  write_axes(axes, out);
-  fputs("engine, results_version, n, failed, censored", out);
+  write_names(out, axes);
+  fputs("engine, results_version, points, n, failed, censored", out);
   for (size_t i = 0; i < quantities->count; i++) {
     const char *q = quantities->name[i];
-    fprintf(out, ",\n  m%zu AS \"%s_mean\", d%zu AS \"%s_sd\", d%zu / sqrt(n%zu) AS \"%s_se\", d%zu / sqrt(n%zu) * (",
+    fprintf(out, ",\n  m%zu AS \"%s_mean\", d%zu AS \"%s_sd\", d%zu / sqrt(u%zu) AS \"%s_se\", d%zu / sqrt(u%zu) * (",
             i, q, i, q, i, i, q, i, i);
     char degrees[32];
-    snprintf(degrees, sizeof degrees, "(n%zu - 1)", i);
+    snprintf(degrees, sizeof degrees, "(u%zu - 1)", i);
     views_write_student(degrees, out);
     fprintf(out, ") AS \"%s_hw95\"", q);
   }
-  /* Ordered rows, so that the sums have the same bits for any order in which the runs finished. */
   fputs("\nFROM (SELECT ", out);
-  write_axes(axes, out);
-  fputs("engine, results_version, sum(counts) AS n, sum(counts = 0) AS failed, sum(counts AND state = 'end-time') AS "
-        "censored",
+  write_names(out, axes);
+  fputs("engine, results_version, sum(n > 0) AS points, sum(n) AS n, sum(failed) AS failed, sum(censored) AS censored",
         out);
-  for (size_t i = 0; i < quantities->count; i++) {
-    const char *q = quantities->name[i];
+  for (size_t i = 0; i < quantities->count; i++)
     fprintf(out,
-            ",\n  count(iif(counts, \"%s\", NULL)) AS n%zu, avg(iif(counts, \"%s\", NULL)) AS m%zu, stdev(iif(counts, "
-            "\"%s\", NULL)) AS d%zu",
-            q, i, q, i, q, i);
-  }
-  fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
-        out);
-  write_axes(axes, out);
+            ",\n  avg(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
+            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu",
+            i);
+  write_points(out, axes, quantities);
+  write_names(out, axes);
   fputs("engine, results_version) ORDER BY ", out);
-  write_axes(axes, out);
+  write_names(out, axes);
   fputs("engine, results_version", out);
   return text_close(out, &sql);
 }
 
+static status take_pooled(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  append(context, ASK_GROUP_POOLED, values[0].text);
+  return STATUS_OK;
+}
+
+/* Varied inputs that differ within a group; "other inputs" when the points of a group differ in none of them. */
+static status find_pooled(struct store *store, const struct names *axes, char pooled[ASK_GROUP_POOLED],
+                          struct error *error) {
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&sql, &size);
+  if (!out)
+    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
+  pooled[0] = '\0';
+  fputs("WITH grouped AS (SELECT point_id, dense_rank() OVER (ORDER BY ", out);
+  write_names(out, axes);
+  fputs("engine, results_version) AS grp FROM points WHERE n > 0),\n"
+        "differing AS (SELECT path FROM (SELECT grp, a.path, count(*) AS points, count(i.value) AS given, "
+        "count(DISTINCT i.value) AS kinds FROM grouped g CROSS JOIN axis a LEFT JOIN point_input i ON i.point_id = "
+        "g.point_id AND i.path = a.path GROUP BY grp, a.path) WHERE kinds > 1 OR (kinds = 1 AND given < points))\n"
+        "SELECT DISTINCT path FROM differing UNION ALL SELECT 'other inputs' WHERE NOT EXISTS (SELECT 1 FROM "
+        "differing) AND EXISTS (SELECT 1 FROM grouped GROUP BY grp HAVING count(DISTINCT point_id) > 1)",
+        out);
+  if (!text_close(out, &sql))
+    return status_fail(error, STATUS_MEMORY, "the statistics: memory ran out");
+  const struct query_sink sink = {.context = pooled, .row = take_pooled};
+  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  free(sql);
+  return code;
+}
+
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
-                 struct error *error) {
+                 char pooled[ASK_GROUP_POOLED], struct error *error) {
   struct names axes = {.count = 0}, results = {.count = 0};
   status result = ask_register_functions(store, error);
   if (result == STATUS_OK)
@@ -149,6 +197,8 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
                 "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
                 "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)",
                 &results, error);
+  if (result == STATUS_OK)
+    result = find_pooled(store, &axes, pooled, error);
   if (result != STATUS_OK)
     return result;
   if (!quantities) {

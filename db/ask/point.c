@@ -172,8 +172,12 @@ status point_curve_make(const struct point_data *point, const char *label, struc
   }
   if (!isfinite(headline.fit.beta))
     return STATUS_OK;
-  snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f \xc2\xb1 %.2f", headline.fit.beta,
-           headline.interval.standard_error);
+  const double half_width = headline.interval.half_width;
+  if (isfinite(half_width))
+    snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f \xc2\xb1 %.2f (seeds, 95 %%)", headline.fit.beta,
+             half_width);
+  else
+    snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f (no interval)", headline.fit.beta);
   out->fit = (struct picture_fit){NULL, headline.fit.beta, headline.fit.lower, headline.fit.upper,
                                   (double)headline.fit.n / (double)out->runs};
   return STATUS_OK;

@@ -179,26 +179,6 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
   return query_run(store, sql, 0, NULL, 0, &sink, error);
 }
 
-status ask_points_share(struct store *store, const char *x, const char *y, bool *share, struct error *error) {
-  int64_t most = 0;
-  const struct query_sink sink = {.context = &most, .row = take_integer};
-  char *sql = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&sql, &size);
-  if (!out)
-    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
-  fputs("SELECT coalesce(max(n), 0) FROM (SELECT count(DISTINCT point_id) AS n FROM points WHERE n > 0 GROUP BY ", out);
-  sql_write_name(x, out);
-  if (y) {
-    fputs(", ", out);
-    sql_write_name(y, out);
-  }
-  fputs(")", out);
-  status code = run_written(store, out, &sql, &sink, error);
-  *share = most > 1;
-  return code;
-}
-
 struct versions {
   struct ask_points_version *list;
   size_t count, capacity;

@@ -42,10 +42,6 @@ status ask_points_with_runs(struct store *store, size_t most, int64_t *points, s
  * Inputs that do not fit are left out. "point 7" when nothing was varied. */
 status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);
 
-/* Do several points with runs have the same value of input column `x` (and of `y`, unless it is NULL)? A mean over
- * these runs is then a mean over other inputs as well. */
-status ask_points_share(struct store *store, const char *x, const char *y, bool *share, struct error *error);
-
 struct ask_points_version {
   int64_t point_id;
   int results_version;

@@ -43,17 +43,22 @@ status query_number(struct store *store, const char *sql, size_t parameter_count
                     const struct query_parameter *parameters, double *number, struct error *error);
 
 /* Functions on this connection only: the aggregates stdev(x), median(x) and hist_sum(masses), which pools mass blobs
- * into the store's bins as a JSON array of [bin, count, mass], and pooled_error(runs, count, squares), which is
- * pooled_spectrum_count_error(). The views of a store use none of them, so that any tool can read the views. */
+ * into the store's bins as a JSON array of [bin, count, mass], and pooled_hw95(runs, count, squares), which is
+ * pooled_spectrum_count_hw95(). The views of a store use none of them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);
 
-/* n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, pooled over
- * all runs that share the named axes. `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k");
- * "" pools everything. `quantities`: comma-separated result columns or unique suffixes; NULL = the main ones. Results
- * of different results_version are different rows. Registers the functions above. STATUS_USAGE names the known axes and
- * quantities. */
+/* points, n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, of
+ * all runs that share the named axes. A group of one point is a sample of runs (seeds). A group of several points pools
+ * over other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over
+ * such points; the scatter of seeds is part of theirs. `pooled` names these inputs ("threshold.angle, material.m"; "":
+ * every group has one point).
+ *
+ * `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools everything. `quantities`:
+ * comma-separated result columns or unique suffixes; NULL = the main ones. Results of different results_version are
+ * different rows. Registers the functions above. STATUS_USAGE names the known axes and quantities. */
+enum { ASK_GROUP_POOLED = 512 };
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
-                 struct error *error);
+                 char pooled[ASK_GROUP_POOLED], struct error *error);
 
 /* Two points that share seeds and have no input with two values: each may have inputs that the other lacks. That is
  * what a campaign leaves when it is computed once more by a program with a new input. ask_group counts the runs of

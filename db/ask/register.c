@@ -21,12 +21,12 @@ static void stdev_final(sqlite3_context *context) {
     sqlite3_result_double(context, sample_summarise_moments(moments, 0.95).standard_deviation);
 }
 
-/* pooled_error(runs, count, squares): pooled_spectrum_count_error(). SQLite makes NULL of its NaN. */
-static void pooled_error(sqlite3_context *context, int count, sqlite3_value **values) {
+/* pooled_hw95(runs, count, squares): pooled_spectrum_count_hw95(). SQLite makes NULL of its NaN. */
+static void pooled_hw95(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
   sqlite3_result_double(context,
-                        pooled_spectrum_count_error((size_t)sqlite3_value_int64(values[0]),
-                                                    sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
+                        pooled_spectrum_count_hw95((size_t)sqlite3_value_int64(values[0]),
+                                                   sqlite3_value_double(values[1]), sqlite3_value_double(values[2])));
 }
 
 struct sample {
@@ -128,7 +128,7 @@ status ask_register_functions(struct store *store, struct error *error) {
   if (code == SQLITE_OK)
     code = sqlite3_create_function(store->db, "hist_sum", 1, flags, NULL, NULL, hist_sum_step, hist_sum_final);
   if (code == SQLITE_OK)
-    code = sqlite3_create_function(store->db, "pooled_error", 3, flags, NULL, pooled_error, NULL, NULL);
+    code = sqlite3_create_function(store->db, "pooled_hw95", 3, flags, NULL, pooled_hw95, NULL, NULL);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "registering functions", error);
   store->functions = true;

@@ -15,7 +15,7 @@ static const char
             "   FROM chosen JOIN spectrum USING (run_id) GROUP BY point_id, bin)"
             " SELECT point_id, lower, upper, n AS runs, s1 AS fragments,"
             "   s1 / (n * (upper - lower)) AS density,"
-            "   pooled_error(n, s1, s2) / (upper - lower) AS density_error,"
+            "   pooled_hw95(n, s1, s2) / (upper - lower) AS density_hw95,"
             "   pooled.mass / total.mass AS mass_share"
             " FROM pooled JOIN total USING (point_id) JOIN bin USING (bin) ORDER BY point_id, bin";
 

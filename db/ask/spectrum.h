@@ -5,8 +5,8 @@
 #include "db/ask/query.h"
 
 /* One row per point and mass bin: point_id, lower, upper (kg), runs, fragments, density (fragments per kg and run),
- * density_error, mass_share. Runs that count, of each point's newest results_version. density_error is the standard
- * error from the scatter between runs, because fragments of one run are not independent.
+ * density_hw95, mass_share. Runs that count, of each point's newest results_version. density_hw95 is the half
+ * width of the 95 % interval, from the scatter between runs, because fragments of one run are not independent.
  *
  * point_id: 0 is all points. where: NULL, or an SQL condition on the view runs that the runs must meet.
  * STATUS_USAGE: the condition is no SQL. */

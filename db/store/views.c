@@ -171,7 +171,10 @@ static status write_spectra(sqlite3 *db, FILE *out, struct error *error) {
   status result = write_axes(db, out, error);
   fprintf(out, "  s.results_version, t.runs AS n, s.bin, b.lower, b.upper, s.runs, s.count, s.mass,\n"
                "  1.0 * s.count / t.runs AS count_mean,\n"
-               "  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,\n"
+               "  sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1))) AS count_sd,\n  (");
+  views_write_student("(t.runs - 1)", out);
+  fprintf(out, ") * sqrt(max(0, (s.count_squared - 1.0 * s.count * s.count / t.runs) / (t.runs - 1) / t.runs)) AS "
+               "count_hw95,\n"
                "  s.count / (t.fragments * (b.upper - b.lower)) AS density\n"
                "FROM point p JOIN point_total t ON t.point_id = p.point_id\n"
                "  JOIN point_spectrum s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
@@ -223,6 +226,7 @@ static status document(sqlite3 *db, struct error *error) {
       "('spectra', 'mass', 'kg', 'their mass'),"
       "('spectra', 'count_mean', '1', 'fragments in the bin per run'),"
       "('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),"
+      "('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)'),"
       "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
       "integral over mass is 1');"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "

@@ -95,13 +95,16 @@ static void views_and_c_agree(void **state) {
     double width = bins[i].upper - bins[i].lower, n = (double)point.runs.count;
     double mean = number_of(store, "SELECT count_mean FROM spectra WHERE bin = %d", bins[i].bin);
     double scatter = number_of(store, "SELECT count_sd FROM spectra WHERE bin = %d", bins[i].bin);
-    double error_of_mean = number_of(store,
-                                     "SELECT pooled_error(runs, count, count_squared) FROM (SELECT %zu AS runs, "
-                                     "count, count_squared FROM point_spectrum WHERE bin = %d)",
-                                     point.runs.count, bins[i].bin);
+    double hw95 = number_of(store,
+                            "SELECT pooled_hw95(runs, count, count_squared) FROM (SELECT %zu AS runs, "
+                            "count, count_squared FROM point_spectrum WHERE bin = %d)",
+                            point.runs.count, bins[i].bin);
     assert_near(mean / width, bins[i].density, 1e-13 * bins[i].density);
-    assert_near(scatter / sqrt(n) / width, bins[i].standard_error, 1e-13 * bins[i].density);
-    assert_near(error_of_mean / width, bins[i].standard_error, 1e-13 * bins[i].density);
+    assert_near(sample_student(point.runs.count, 0.95) * scatter / sqrt(n) / width, bins[i].half_width,
+                1e-13 * bins[i].density);
+    assert_near(hw95 / width, bins[i].half_width, 1e-13 * bins[i].density);
+    assert_near(number_of(store, "SELECT count_hw95 FROM spectra WHERE bin = %d", bins[i].bin) / width,
+                bins[i].half_width, 1e-11 * bins[i].density);
   }
   free(bins);
   point_release(&point);
@@ -157,7 +160,7 @@ static void runs_that_count_in_order(void **state) {
     assert_true(is);
     OK(point_exponent(store, id, 0, method, window, 0.95, &one, &error));
     assert_int_equal(one.fit.n, rows[i].exponent.fit.n);
-if (isfinite(rows[i].exponent.interval.half_width))
+    if (isfinite(rows[i].exponent.interval.half_width))
       assert_true(one.fit.beta == rows[i].exponent.fit.beta &&
                   one.interval.half_width == rows[i].exponent.interval.half_width);
     OK(estimates_named(i ? "largest_fraction" : "bet", &is, &method, &window, &error));

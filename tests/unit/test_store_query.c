@@ -160,32 +160,40 @@ static void spectra_are_densities(void **state) {
   store_close(store, NULL);
 }
 
-static void groups_pool_runs_not_means(void **state) {
+/* Points are the units of a group that pools over an input; the runs are the units of a point. */
+static void groups_say_what_they_pool(void **state) {
   (void)state;
+  char pooled[ASK_GROUP_POOLED];
   struct store *store = reader();
   struct rows rows = {.count = 0};
   const struct query_sink sink = {.context = &rows, .columns = keep_names, .row = keep_row};
-  OK(ask_group(store, "m", "hardest, largest_fraction", &sink, &error));
+  OK(ask_group(store, "m", "hardest, largest_fraction", &sink, pooled, &error));
   assert_int_equal(rows.count, M);
-  double sd, mean = two_pass(hardest, 6, 0, K, &sd);
+  assert_string_equal(pooled, "material.k");
+  double sd, first = two_pass(hardest, 6, 0, 1, &sd), second = two_pass(hardest, 6, 1, 1, &sd);
+  double scatter = fabs(first - second) / sqrt(2); /* of the means of two points */
   char expected[200];
-  snprintf(expected, sizeof expected, "\n6,fake,3,50,0,0,%.6g,%.6g,%.6g,", mean, sd, sd / sqrt(50));
-  assert_non_null(strstr(rows.text, expected));
-  assert_non_null(strstr(rows.text,
-                         "material_m,engine,results_version,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
-                         "hardest_hw95,largest_fraction_mean"));
+  snprintf(expected, sizeof expected, "\n6,fake,3,2,50,0,0,%.6g,%.6g,%.6g,%.6g,", (first + second) / 2, scatter,
+           scatter / sqrt(2), 12.706204736174 * scatter / sqrt(2));
+  if (!strstr(rows.text, expected))
+    fail_msg("%s not in %s", expected, rows.text);
+  assert_non_null(
+      strstr(rows.text, "material_m,engine,results_version,points,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
+                        "hardest_hw95,largest_fraction_mean"));
   memset(&rows, 0, sizeof rows);
-  OK(ask_group(store, "material.k,m", NULL, &sink, &error));
+  OK(ask_group(store, "material.k,m", NULL, &sink, pooled, &error));
   assert_int_equal(rows.count, M * K);
+  assert_string_equal(pooled, "");
   memset(&rows, 0, sizeof rows);
-  OK(ask_group(store, "", "broken_count", &sink, &error));
+  OK(ask_group(store, "", "broken_count", &sink, pooled, &error));
   assert_int_equal(rows.count, 1);
-  assert_int_equal(ask_group(store, "q", NULL, &sink, &error), STATUS_USAGE);
+  assert_string_equal(pooled, "material.k, material.m");
+  assert_int_equal(ask_group(store, "q", NULL, &sink, pooled, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "material.m"));
-  assert_int_equal(ask_group(store, "m", "fraction", &sink, &error), STATUS_USAGE);
+  assert_int_equal(ask_group(store, "m", "fraction", &sink, pooled, &error), STATUS_USAGE);
   assert_non_null(strstr(error.message, "ambiguous"));
   assert_non_null(strstr(error.message, "largest_fraction, second_fraction"));
-  assert_int_equal(ask_group(store, "m", "largest_fracton", &sink, &error), STATUS_USAGE);
+  assert_int_equal(ask_group(store, "m", "largest_fracton", &sink, pooled, &error), STATUS_USAGE);
   assert_string_equal(error.message, "Quantity 'largest_fracton' is unknown; did you mean 'largest_fraction'?");
   store_close(store, NULL);
 }
@@ -367,7 +375,7 @@ int main(void) {
       cmocka_unit_test(student_is_students),
       cmocka_unit_test(spread_of_equal_values_is_zero),
       cmocka_unit_test(spectra_are_densities),
-      cmocka_unit_test(groups_pool_runs_not_means),
+      cmocka_unit_test(groups_say_what_they_pool),
       cmocka_unit_test(the_same_seeds_are_seen),
       cmocka_unit_test(only_reading_is_allowed),
       cmocka_unit_test(time_limit_stops),

@@ -30,7 +30,7 @@ static void rows_and_columns(void **state) {
                                   edge * 1.2589,      1000 >> (2 * i),
                                   pow(10, 8 - 2 * i), 0.3 * pow(10, 8 - 2 * i)};
   }
-  bins[4].standard_error = bins[4].density; /* reaches down to zero */
+  bins[4].half_width = bins[4].density; /* reaches down to zero */
   struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4};
   struct picture_series series = {"all", 5, bins, 1, &fit, 0};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");

@@ -129,8 +129,9 @@ static void spectrum_density_and_error(void **state) {
   double width = pow(10, 0.1) - 1;
   assert_int_equal(bins[0].count, 6);
   assert_true(fabs(bins[0].density * width - 2) < 1e-13);
-  assert_true(fabs(bins[0].standard_error * width - sqrt(1.0 / 3)) < 1e-13); /* counts 3, 1, 2: s.d. 1, over sqrt 3 */
-  assert_true(bins[1].count == 3 && bins[1].standard_error == 0);
+  assert_true(fabs(bins[0].half_width * width / sample_student(3, 0.95) - sqrt(1.0 / 3)) <
+              1e-13); /* counts 3, 1, 2: s.d. 1, over sqrt 3 */
+  assert_true(bins[1].count == 3 && bins[1].half_width == 0);
   free(bins);
   assert_int_equal(pooled_spectrum(&runs, false, 23, &bins, &count, NULL), STATUS_OK);
   assert_int_equal(count, 1);
