@@ -89,7 +89,7 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit)
   while (end > 0 && line[end - 1] == ' ')
     end--;
   line[end] = 0;
-  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-", line);
+  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-95%", line);
 }
 
 /* Without unicode, beta and plus-minus are spelt out. */

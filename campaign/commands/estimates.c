@@ -107,8 +107,8 @@ static const char *const estimates_legend =
 
 void estimates_explain(struct store *store) {
   fputs(estimates_legend, stderr);
-  quantity_tell_resolution(store, OUTCOME_DEFAULT);
-  quantity_tell_resolution(store, "beta");
+  quantity_tell_resolution(store, OUTCOME_DEFAULT, "");
+  quantity_tell_resolution(store, "beta", "");
 }
 
 status estimates_print(struct store *store, const struct ask_points_choice *choice, enum table_format format, FILE *out,

@@ -67,6 +67,8 @@ static status draw(struct store *store, const struct options *options, const cha
     code = picture_map(path, WIDTH, title, options->quantity, quantity->column[0], quantity->column[1], map.count,
                        (const double(*)[3])map.points, error);
   }
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, options->quantity, quantity->pooled);
   free(map.points);
   return code;
 }
@@ -81,8 +83,6 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   code = draw(store, options, line->arguments[1], error);
-  if (code == STATUS_OK)
-    quantity_tell_resolution(store, options->quantity);
   store_close(store, NULL);
   return code;
 }

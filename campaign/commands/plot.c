@@ -165,7 +165,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code == STATUS_OK)
     code = draw(store, &plot, line->arguments[1], error);
   if (code == STATUS_OK)
-    quantity_tell_resolution(store, plot.quantity.name);
+    quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
   for (size_t i = 0; i < plot.count; i++)
     free(plot.line[i].means);
   store_close(store, NULL);

@@ -96,11 +96,11 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
                          &reading, error);
 }
 
-void quantity_tell_resolution(struct store *store, const char *name) {
+void quantity_tell_resolution(struct store *store, const char *name, const char *pooled) {
   struct ask_resolution resolution;
   char text[UNCERTAINTY_TEXT];
   if (ask_resolution(store, 0, name, &resolution, NULL))
     return;
   uncertainty_resolution(&resolution, text);
-  fprintf(stderr, "clast: %s: intervals are over seeds (95 %%); %s\n", name, text);
+  fprintf(stderr, "clast: %s: intervals are over %s (95 %%); %s\n", name, *pooled ? "points" : "seeds", text);
 }

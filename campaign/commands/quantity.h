@@ -44,7 +44,7 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
                      status (*each)(void *context, const struct quantity_row *row, struct error *error), void *context,
                      struct error *error);
 
-/* A line on stderr: what the intervals hold, and what is known of the resolution. */
-void quantity_tell_resolution(struct store *store, const char *name);
+/* A line on stderr: what the intervals hold, and what is known of the resolution. pooled: of ask_group. */
+void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
 
 #endif

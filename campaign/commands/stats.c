@@ -47,14 +47,14 @@ static status warn_of_twins(struct store *store, struct error *error) {
 }
 
 /* One line for each quantity. */
-static void tell_resolution(struct store *store, const char *names) {
+static void tell_resolution(struct store *store, const char *names, const char *pooled) {
   char name[128];
   if (strcmp(names, "main") == 0)
     names = OUTCOME_DEFAULT;
   while (*names) {
     const size_t length = strcspn(names, ",");
     snprintf(name, sizeof name, "%.*s", (int)length, names);
-    quantity_tell_resolution(store, name + strspn(name, " "));
+    quantity_tell_resolution(store, name + strspn(name, " "), pooled);
     names += length + (names[length] == ',');
   }
 }
@@ -79,7 +79,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code == STATUS_OK && *pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
   if (code == STATUS_OK && format == TABLE_TEXT)
-    tell_resolution(store, options->quantity);
+    tell_resolution(store, options->quantity, pooled);
   if (!code)
     code = warn_of_twins(store, error);
   store_close(store, NULL);

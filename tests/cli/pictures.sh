@@ -33,7 +33,7 @@ import re
 def title(name): # its letters: the highest line of text
     ys = [float(y) for y in re.findall(r'<use[^>]* y="([0-9.]+)"', open(name).read())]
     return ys.count(min(ys))
-assert title('dust.svg') - title('apart.svg') == len(' and other inputs'), 'a mean over angles, too, does not say so'
+assert title('dust.svg') - title('apart.svg') == len(' and threshold.angle'), 'a mean over angles, too, does not say so'
 PY
 expect 0 "$clast" plot small.db beta.svg -x strain --by angle -q beta_masses_from_2
 expect 0 "$clast" estimates small.db --json
