@@ -8,9 +8,10 @@
 
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
 static const char *const window_docs =
-    "fragments of 2 elements (grains or particles) and more (from 1.5 mean element masses), the largest left out\n"
-    "of 5 elements and more (from 4.5 mean element masses), the largest left out\n"
-    "of 10 elements and more (from 9.5 mean element masses), the largest left out";
+    "from 1.5 mean masses of an element (grain or particle). Of one run: without single elements. Of a point: by mass "
+    "alone, so that single grains heavier than that are in it, 4 to 12 % of its fragments where grains scatter\n"
+    "from 4.5 mean element masses\n"
+    "from 9.5 mean element masses";
 static const char *const method_docs =
     "unweighted least squares of log density on log bins of one decade, the largest fragment included: the method of "
     "Kun & Herrmann (1999). Of a point: off until its runs fill every bin; of one run: of the bins that are filled, "

@@ -102,8 +102,8 @@ static const char *const estimates_legend =
     "+-95%: half width of the 95 % interval over seeds (Student's t); one run has none. It does not hold the error of "
     "the resolution.\nbeta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\nLSQ: least "
     "squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every bin.\nbinned, ML: "
-    "maximum likelihood on bins and on masses, without the largest fragment of each run.\nWindows: fragments of at "
-    "least 2, 5, 10 mean masses of a grain or particle (from N - 1/2).\n";
+    "maximum likelihood on bins and on masses, without the largest fragment of each run.\nWindows: from 1.5, 4.5, 9.5 "
+    "mean masses of a grain or particle; the first holds single grains heavier than 1.5 means.\n";
 
 void estimates_explain(struct store *store) {
   fputs(estimates_legend, stderr);
