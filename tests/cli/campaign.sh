@@ -127,7 +127,8 @@ expect 65 "$clast" replay wrong.db 3
 says "1 of"
 # A program without some input computed the same seeds: each counts twice.
 expect 0 "$clast" stats tiny.db
-silent err
+says "pooled over threshold.angle, threshold.strain"
+! grep -q warning err || fail "a warning of twins that are none"
 python -c "
 import sqlite3
 db = sqlite3.connect('older.db')
