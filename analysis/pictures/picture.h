@@ -85,8 +85,9 @@ status picture_spectrum(const char *path, double width, const char *title, const
 
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
  *     lower edge   count   F(m)   +-95% in %      ├──●──┤  ·
- * the point, its 95 % interval over runs, and (·) the series' first fit. columns: width of the terminal, at least
- * 72 are used. unicode: false for ASCII only. It writes no colour, and nothing when there is no fragment. */
+ * the point (○ in bins that begin below complete_mass), its 95 % interval over runs, and (·) the series' first fit.
+ * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. It writes no colour, and nothing
+ * when there is no fragment. */
 void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
                         const struct picture_series *series);
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
-#include "campaign/commands/explain.h"
 #include "campaign/terminal/uncertainty.h"
+#include "schemas/text.h"
 
 static void value_cell(struct table *table, const struct field *row, const void *object) {
   struct field_value value;
