@@ -189,7 +189,7 @@ const struct command plot_command = {
         "t) where there are two runs or more. A second varied input gives one line for each of its values. `clast\n"
         "stats` prints the same numbers. If other inputs vary as well, the mean is over them too, and the title says\n"
         "which; the interval then takes the points as units. For an exponent it draws the fit to the runs of each\n"
-        "point, with its 95 % interval. An axis that spans a factor of 20 or more is logarithmic. The ending chooses "
+        "point, with its 95 % interval. An axis that spans a factor of 20 or more is logarithmic. The ending chooses\n"
         "the format: .png or .svg.",
     .examples =
         "clast plot out.db largest.png -x strain --by angle\nclast plot out.db beta.svg -x strain --by angle -q beta",
