@@ -18,3 +18,12 @@ double cost_predict(const struct cost_model *model, const struct cost_point *poi
   double guess = model->seconds / model->work * point->work;
   return (guess + point->seconds) / (double)(1 + point->runs);
 }
+
+double cost_time_left(const struct cost_left *left) {
+  const double slots = left->slots > 0 ? left->slots : 1;
+  double busy = (left->finished_s + left->under_way_s) / (left->elapsed_s * slots);
+  if (!(left->finished_s > 0) || !(busy > 0) || busy > 1)
+    busy = 1;
+  const double seconds = (left->missing_s - left->under_way_s) / (slots * busy);
+  return seconds > left->longest_s ? seconds : left->longest_s;
+}

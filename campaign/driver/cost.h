@@ -20,4 +20,17 @@ void cost_learn(struct cost_model *model, struct cost_point *point, double wall_
  * order. */
 double cost_predict(const struct cost_model *model, const struct cost_point *point);
 
+/* What the time left follows from, in wall seconds. */
+struct cost_left {
+  double missing_s;   /* predicted, of all runs that are not finished, those under way included */
+  double under_way_s; /* spent on those under way so far, at most what was predicted of each */
+  double finished_s;  /* of the runs finished since `elapsed_s` ago */
+  double elapsed_s;
+  double longest_s; /* the most that one run under way still needs */
+  int slots;
+};
+/* Slots are not busy all the time: a run of a millisecond waits longer for its process and for the store than it takes.
+ * So the share of the slots' time that runs have had until now is the share that they will have. */
+double cost_time_left(const struct cost_left *left);
+
 #endif

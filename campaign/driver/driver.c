@@ -123,9 +123,19 @@ void driver_fields_path(const struct driver *driver, const uint8_t identity[16],
   snprintf(path, size, "%.*s%.*s-fields/%s.h5", folder ? (int)(base - store) : 0, store, stem, base, hex);
 }
 
-/* Seconds left on all slots, from the runs that the points met lack and the mean of the others. Once a second is
- * enough.
- */
+/* Adds what the runs on slots have had, and what the longest of them still needs. */
+static void look_at_flights(const struct driver *driver, double now, struct cost_left *left) {
+  for (size_t i = 0; i < driver->flight_count; i++) {
+    const struct flight *flight = &driver->flights[i];
+    if (!flight->point || flight->replay)
+      continue;
+    const double predicted = cost_predict(&driver->cost, &flight->point->cost), had = now - flight->started;
+    left->under_way_s += fmin(had, predicted);
+    left->longest_s = fmax(left->longest_s, predicted - had);
+  }
+}
+
+/* Seconds left, from the runs that the points met lack and the mean of the others. Once a second is enough. */
 static double time_left(struct driver *driver, double now) {
   if (now - driver->last_left < 1 && !isnan(driver->seconds_left))
     return driver->seconds_left;
@@ -134,13 +144,16 @@ static double time_left(struct driver *driver, double now) {
   if (driver->cost.runs == 0)
     return NAN;
 
-  double seconds = 0;
+  struct cost_left left = {.finished_s = driver->finished_s,
+                           .elapsed_s = now - driver->begin,
+                           .slots = driver->options.slots};
   const double mean = driver->cost.seconds / (double)driver->cost.runs;
   for (size_t i = 0; i < driver->point_count; i++)
-    seconds += (double)point_missing(driver->points[i]) * cost_predict(&driver->cost, &driver->points[i]->cost);
+    left.missing_s += (double)point_missing(driver->points[i]) * cost_predict(&driver->cost, &driver->points[i]->cost);
   const uint64_t unmet = design_points(driver->design) - driver->expanded;
-  seconds += (double)unmet * (double)campaign_replicates_least(driver->campaign) * mean;
-  driver->seconds_left = seconds / (driver->options.slots > 0 ? driver->options.slots : 1);
+  left.missing_s += (double)unmet * (double)campaign_replicates_least(driver->campaign) * mean;
+  look_at_flights(driver, now, &left);
+  driver->seconds_left = cost_time_left(&left);
   return driver->seconds_left;
 }
 

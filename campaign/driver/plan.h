@@ -1,5 +1,5 @@
-/* What a campaign would do and cost. Stores nothing. Times come from a trial run of up to 5 s at the most expensive
- * point looked at. */
+/* What a campaign would do and cost. Stores nothing. Times come from trial runs of up to 5 s: of the most expensive
+ * point looked at, of a coarse version of it that runs to its end, and of other points. */
 #ifndef CLAST_CAMPAIGN_DRIVER_PLAN_H
 #define CLAST_CAMPAIGN_DRIVER_PLAN_H
 
@@ -18,6 +18,8 @@ struct plan {
   uint64_t runs_there;               /* of the points looked at, already in the store */
   bool store_exists;
   bool trial_made, trial_finished; /* finished: the trial is a whole run, not an extrapolation */
+  bool trial_whole;                /* times are of whole runs, timed or told by a coarse run; else upper bounds */
+  double share_of_most;            /* mean time of a run over that of the most expensive; NaN: by the engine's work */
   double trial_s, trial_progress;
   double run_s_mean,
       run_s_most; /* per run; NaN without trial and without finished runs. An upper bound unless finished */

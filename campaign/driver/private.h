@@ -22,7 +22,8 @@ struct flight {        /* a task on a slot */
   struct point *point; /* NULL: this place is free */
   int64_t replicate;
   int attempt;
-  bool replay; /* only for its fields */
+  bool replay;    /* only for its fields */
+  double started; /* s, clock_s() */
   uint8_t identity[16];
   uint64_t seed;
 };
@@ -49,6 +50,7 @@ struct driver {
   struct sample_moments moments;    /* of the main quantity */
   int64_t first_done, first_failed; /* of the first CAMPAIGN_FIRST_RUNS of this invocation */
   int64_t started_done;             /* runs finished now, for the rate */
+  double finished_s;                /* their wall time */
   double begin, last_left, seconds_left;
   int64_t fields_missing; /* files of stored runs that are not there any more */
   int64_t wanted;         /* runs to complete in points met */

@@ -207,6 +207,7 @@ status driver_receive(void *context, const struct farm_report *report, struct er
   } else {
     code = finish_run(driver, &flight, report, error);
     driver->started_done++;
+    driver->finished_s += report->wall_s;
   }
   if (code == STATUS_OK)
     code = driver_window_judge(driver, flight.point, error);

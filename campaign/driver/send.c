@@ -161,6 +161,7 @@ bool driver_send(void *context, struct farm_task *task) {
   }
   if (encode(driver, &flight, flight.point->scene, &task->size) != STATUS_OK)
     return false;
+  flight.started = clock_s();
   *place = flight;
   mark_sent(flight.point, &flight);
   task->id = (uint64_t)(place - driver->flights);

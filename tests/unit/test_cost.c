@@ -1,0 +1,93 @@
+/* What runs cost: the time left of a campaign, and a whole run told by a coarse one. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/analysis.h"
+#include "campaign/driver/cost.h"
+#include "campaign/driver/pilot.h"
+
+#define NEAR(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+static void time_left(void **state) {
+  (void)state;
+  /* Ten runs of 1 s on two busy slots, two of them half done: 9 s of work. */
+  struct cost_left left = {.missing_s = 10, .under_way_s = 1, .finished_s = 9, .elapsed_s = 5, .slots = 2};
+  NEAR(cost_time_left(&left), 4.5, 1e-12);
+  /* Runs of 1 ms that take 10 ms in all: 1000 of them on one slot are 10 s and not 1 s. */
+  left = (struct cost_left){.missing_s = 1, .finished_s = 0.2, .elapsed_s = 2, .slots = 1};
+  NEAR(cost_time_left(&left), 10, 1e-12);
+  /* One long run holds the end up, however many slots are free. */
+  left = (struct cost_left){.missing_s = 60,
+                            .under_way_s = 20,
+                            .finished_s = 380,
+                            .elapsed_s = 100,
+                            .longest_s = 40,
+                            .slots = 4};
+  NEAR(cost_time_left(&left), 40, 1e-12);
+  /* Nothing finished: as if slots were busy. */
+  left = (struct cost_left){.missing_s = 8, .elapsed_s = 3, .slots = 2};
+  NEAR(cost_time_left(&left), 4, 1e-12);
+}
+
+/* The piece stands at a quarter of the hard end after 10 steps; the coarse run had made 5 steps there, and ended after
+ * 20 steps at 0.6: the whole run takes 40 steps. */
+static void whole_runs(void **state) {
+  (void)state;
+  struct pilot_run *piece = calloc(2, sizeof *piece), *coarse = piece + 1;
+  assert_non_null(piece);
+  *piece = (struct pilot_run){.prepare_s = 1, .step_s = 2, .finish_s = 0.5, .steps = 10, .progress = 0.25};
+  *coarse = (struct pilot_run){.steps = 20, .progress = 0.6, .finished = true, .marks = 3};
+  const double steps[3] = {4, 6, 20}, progress[3] = {0.2, 0.3, 0.6};
+  for (int i = 0; i < 3; i++) {
+    coarse->mark_steps[i] = steps[i];
+    coarse->mark_progress[i] = progress[i];
+  }
+  NEAR(pilot_whole(piece, coarse), 1 + 2 * 20.0 / 5 + 0.5, 1e-12);
+  piece->progress = 0.7;
+  assert_true(isnan(pilot_whole(piece, coarse)));
+  piece->progress = 0.25;
+  coarse->finished = false;
+  assert_true(isnan(pilot_whole(piece, coarse)));
+  free(piece);
+}
+
+/* A piece of a real run, with its coarse version, tells the time of the whole run within a factor of 1.5. */
+static void a_run_told_by_its_beginning(void **state) {
+  (void)state;
+  struct scene *scene = NULL, *coarse = NULL;
+  struct error error = {0};
+  char setting[64];
+  struct pilot_run *run = calloc(3, sizeof *run);
+  assert_non_null(run);
+  assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "body.diameter", "0.2", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "charge.energy", "1e4", &error), STATUS_OK);
+  assert_int_equal(pilot_try(scene, 1, 1000, &run[0], &error), STATUS_OK);
+  assert_true(run[0].finished);
+  const double whole = run[0].prepare_s + run[0].step_s + run[0].finish_s;
+  assert_int_equal(pilot_try(scene, 1, whole / 3, &run[1], &error), STATUS_OK);
+  assert_false(run[1].finished);
+  const double work = scene->kind->work(scene->inputs);
+  pilot_coarsen(scene, whole / work, whole / 3, &coarse, setting);
+  assert_non_null(coarse);
+  assert_true(coarse->kind->work(coarse->inputs) < work / 2);
+  assert_int_equal(pilot_try(coarse, 1, 1000, &run[2], &error), STATUS_OK);
+  const double told = pilot_whole(&run[1], &run[2]);
+  assert_true(told < 1.5 * whole && told > whole / 1.5);
+  free(run);
+  scene_free(coarse);
+  scene_free(scene);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(time_left), cmocka_unit_test(whole_runs),
+                                     cmocka_unit_test(a_run_told_by_its_beginning)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
