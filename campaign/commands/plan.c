@@ -137,11 +137,12 @@ const struct command plan_command = {
     .group = "running",
     .arguments = "CAMPAIGN.yaml",
     .summary = "what a campaign would do and cost; stores nothing",
-    .doc = "Checks the campaign, counts its points and runs and those that the store has, and times trial runs for\n"
-           "up to 5 s; times are those of a machine without other work. Prints what is modelled and the expected time, "
-           "memory and disk space. Stores nothing. If the "
-           "campaign\n"
-           "asks for an accuracy, it prints first which settings and how many seeds reach it, at which cost.",
+    .doc =
+        "Checks the campaign, counts its points and runs and those that the store has, and times trial runs for up to\n"
+        "5 s: the beginning of the most expensive run, a coarse run that tells when it ends, and other points. Prints\n"
+        "what is modelled and the expected time (of a machine without other work), memory and disk space. Stores\n"
+        "nothing. If the campaign asks for an accuracy, it prints first which settings and seeds reach it, at which\n"
+        "cost.",
     .examples = "clast plan campaign.yaml\nclast plan campaign.yaml --no-trial --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -14,9 +14,14 @@ static status set_input(struct scene *scene, const char *text, struct error *err
   return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
 }
 
+status scene_option_apply(struct scene *scene, const struct option_list *set, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < set->count; i++)
+    code = set_input(scene, set->items[i], error);
+  return code ? code : scene_check(scene, error);
+}
+
 status scene_option_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error) {
   status code = scene_load(name, NULL, scene, error);
-  for (size_t i = 0; code == STATUS_OK && i < set->count; i++)
-    code = set_input(*scene, set->items[i], error);
-  return code ? code : scene_check(*scene, error);
+  return code ? code : scene_option_apply(*scene, set, error);
 }

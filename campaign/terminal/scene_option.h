@@ -15,4 +15,7 @@
  * free, also on errors. STATUS_USAGE, STATUS_CONTENT, what scene_load returns. */
 status scene_option_load(const char *name, const struct option_list *set, struct scene **scene, struct error *error);
 
+/* The second half of it, for a scene that is there already. */
+status scene_option_apply(struct scene *scene, const struct option_list *set, struct error *error);
+
 #endif

@@ -1,0 +1,177 @@
+/* A study of convergence as a table, as rows for programs, and as a picture. */
+#include "campaign/commands/converge_print.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/pictures/picture.h"
+
+enum { WIDTH = 900 };
+
+status converge_print_knobs(enum table_format format, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
+  for (size_t i = 0; i < knob_count(); i++) {
+    const struct knob *knob = knob_at(i);
+    table_text(table, knob->engine);
+    table_text(table, knob->name);
+    table_text(table, knob_group_names[knob->group]);
+    table_text(table, knob->inputs[0].path);
+    table_text(table, knob->meaning);
+  }
+  return table_end(table, error);
+}
+
+static void print_level(struct table *table, const struct convergence_row *row) {
+  char setting[80];
+  if (row->n == 0)
+    return; /* left out by the budget, or every run failed: said below */
+  snprintf(setting, sizeof setting, "%.64s%s%s", row->setting, row->base ? " *" : "", row->reference ? " ref" : "");
+  table_text(table, row->knob);
+  table_text(table, setting);
+  table_integer(table, row->n);
+  table_real(table, row->mean);
+  table_real(table, row->half_width);
+  table_real(table, row->deviation);
+  table_real(table, row->skew);
+  table_real(table, row->cpu);
+  table_real(table, row->bias);
+  table_real(table, row->bias_half_width);
+  table_real(table, row->correlation);
+  table_real(table, row->correlation_low);
+  table_real(table, row->correlation_high);
+  table_real(table, row->break_even);
+  table_real(table, row->error);
+  table_text(table, row->frontier ? "yes" : "");
+}
+
+/* What the levels of a knob tell together, and why no more of them was run. */
+static void print_limit(const struct study_ladder *ladder, const struct study_found *found) {
+  const struct convergence_limit_row *limit = &found->limit;
+  printf("%s: ", limit->knob);
+  if (!isnan(found->rows[0].step)) {
+    switch ((enum convergence_verdict)limit->verdict) {
+    case CONVERGENCE_ORDER:
+      printf("order %.2g (%.2g to %.2g), limit %.5g (%.5g to %.5g); ", limit->order, limit->order_low,
+             limit->order_high, limit->limit, limit->limit_low, limit->limit_high);
+      break;
+    case CONVERGENCE_NO_ORDER: printf("no order: differences do not shrink, no limit is in sight; "); break;
+    case CONVERGENCE_UNCHANGED: printf("the two finest levels do not differ as far as these seeds tell; "); break;
+    case CONVERGENCE_UNSURE: printf("no order yet: more seeds are needed to tell whether differences shrink; "); break;
+    case CONVERGENCE_TOO_FEW:
+    case CONVERGENCE_VERDICTS: printf("no order: it needs three levels and three seeds; "); break;
+    }
+  }
+  printf("ended: %s", ladder->end);
+  const char *before = "; without";
+  for (size_t l = 0; l < found->count; l++)
+    if (found->rows[l].n == 0) {
+      printf("%s %s", before, found->rows[l].setting);
+      before = ",";
+    }
+  putchar('\n');
+}
+
+static status print_quantity(const struct study *study, size_t from, size_t quantity, size_t count,
+                             const struct study_found *found, struct error *error) {
+  const struct field *row = study->quantity[quantity].row;
+  printf("%s%s, quantity %s%s%s%s\n", from || quantity ? "\n" : "", study->ladder[from].base->name, row->path,
+         row->unit && strcmp(row->unit, "1") != 0 ? " (" : "",
+         row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "",
+         row->unit && strcmp(row->unit, "1") != 0 ? ")" : "");
+  struct table *table = table_new(TABLE_TEXT, stdout);
+  table_columns(table,
+                (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "cpu_s", "bias", "bias_hw95",
+                                      "corr", "corr_low", "corr_high", "break_even", "error", "frontier", NULL});
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++)
+      print_level(table, &found[i].rows[l]);
+  status code = table_end(table, error);
+  for (size_t i = 0; i < count; i++)
+    print_limit(&study->ladder[from + i], &found[i]);
+  return code;
+}
+
+static status print_rows(const struct study *study, size_t count, const struct study_found *found,
+                         struct table *table) {
+  (void)study;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++)
+      for (size_t c = 0; c < convergence_table.count; c++) {
+        const struct field *row = &convergence_table.rows[c];
+        struct field_value value;
+        field_get(row, &found[i].rows[l], &value);
+        if (row->kind == FIELD_TEXT)
+          table_text(table, value.text);
+        else if (row->kind == FIELD_INTEGER)
+          table_integer(table, value.integer);
+        else if (row->kind == FIELD_BOOLEAN)
+          table_boolean(table, value.number != 0);
+        else
+          table_real(table, value.number);
+      }
+  return STATUS_OK;
+}
+
+static const char legend[] =
+    "* the scene's own setting; ref: what bias is measured against. bias: mean less that of ref, with the half width\n"
+    "of its 95 % interval. error: distance to the limit (without one |bias| + half width, which may be too small),\n"
+    "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
+    "the next finer level; a control variate would save time from break_even on.\n";
+
+status converge_print_study(const struct study *study, enum table_format format, bool quiet, struct error *error) {
+  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
+  if (!found)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  status code = STATUS_OK;
+  struct table *table = format == TABLE_TEXT ? NULL : table_new(format, stdout);
+  for (size_t c = 0; table && c < convergence_table.count; c++)
+    table_column(table, convergence_table.rows[c].path, convergence_table.rows[c].unit);
+  for (size_t from = 0, count = 0; code == STATUS_OK && from < study->ladder_count; from += count)
+    for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
+      count = study_of_scene(study, from, q, found);
+      code = table ? print_rows(study, count, found, table) : print_quantity(study, from, q, count, found, error);
+    }
+  if (table)
+    code = table_end(table, error);
+  else if (!quiet) {
+    fflush(stdout);
+    fputs(legend, stderr);
+  }
+  free(found);
+  return code;
+}
+
+status converge_print_picture(const struct study *study, const char *path, struct error *error) {
+  enum { CURVES = 8 };
+  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
+  struct picture_mean means[CURVES][KNOB_LEVELS];
+  struct picture_curve curves[CURVES];
+  size_t drawn = 0;
+  if (!found)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  const size_t count = study_of_scene(study, 0, 0, found);
+  for (size_t i = 0; i < count && drawn < CURVES; i++) {
+    curves[drawn] = (struct picture_curve){.label = found[i].limit.knob, .mean = means[drawn]};
+    for (size_t l = 0; l < found[i].count; l++) {
+      const struct convergence_row *row = &found[i].rows[l];
+      struct picture_mean mean = {row->cpu, row->mean, row->mean - row->half_width, row->mean + row->half_width};
+      if (!isfinite(mean.x) || !isfinite(mean.y))
+        continue;
+      size_t place = curves[drawn].count++;
+      for (; place > 0 && means[drawn][place - 1].x > mean.x; place--)
+        means[drawn][place] = means[drawn][place - 1];
+      means[drawn][place] = mean;
+    }
+    drawn += curves[drawn].count > 0;
+  }
+  char title[400];
+  const struct field *row = study->quantity[0].row;
+  snprintf(title, sizeof title, "%s: %s over the cost of a run, mean with 95 %% interval", study->ladder[0].base->name,
+           row->path);
+  status code = picture_curves(path, WIDTH, title, "processor time of a run (s)", row->path, drawn, curves, error);
+  free(found);
+  return code;
+}
