@@ -83,6 +83,11 @@ static void nearest_is_the_nearest(void **state) {
     }
 }
 
+/* Flaws that are drawn at places of n particles; what stands behind them was given to a particle without one. */
+static size_t drawn(size_t n) {
+  return (size_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
+}
+
 /* Each flaw stands at the particle nearest to its place: found by its strength, which with ranked flaws names it. */
 static void owners_are_nearest(void **state) {
   (void)state;
@@ -98,6 +103,10 @@ static void owners_are_nearest(void **state) {
       const double rank = exp(8.5 * flaws->log_strain[f] + log_kv);
       const uint64_t j = (uint64_t)llround(rank) - 1;
       double q[3];
+      if (rank > (double)drawn(p->n) + 0.5) { /* given to a particle that got none */
+        assert_int_equal(flaws->first[i + 1] - flaws->first[i], 1);
+        continue;
+      }
       assert_true(fabs(rank - (double)(j + 1)) < 1e-6 && j < flaws->count && !seen[j]);
       seen[j] = 1;
       sph_flaws_point(5, 0, j, &body.shape, q);
@@ -126,7 +135,9 @@ static void a_seed_means_the_same_flaws(void **state) {
     memcpy(all, few->log_strain, few->count * sizeof *all);
     qsort(sorted, many->count, sizeof *sorted, sample_ascending);
     qsort(all, few->count, sizeof *all, sample_ascending);
-    assert_memory_equal(sorted, all, few->count * sizeof *all); /* the weakest are the same ones */
+    const size_t same = drawn(p->n);
+    assert_true(same <= few->count && few->count < same + same / 100);
+    assert_memory_equal(sorted, all, same * sizeof *all); /* the weakest are the same ones */
     for (size_t i = 0; i < q->n; i++)
       for (size_t f = many->first[i]; f < many->first[i + 1]; f++) {
         const double *at = bsearch(&many->log_strain[f], sorted, many->count, sizeof *sorted, sample_ascending);
@@ -134,6 +145,8 @@ static void a_seed_means_the_same_flaws(void **state) {
       }
     for (size_t i = 0; i < p->n; i++)
       for (size_t f = few->first[i]; f < few->first[i + 1]; f++) {
+        if (few->log_strain[f] > all[same - 1])
+          continue;
         const double *at = bsearch(&few->log_strain[f], sorted, many->count, sizeof *sorted, sample_ascending);
         assert_non_null(at);
         const uint64_t flaw = (uint64_t)(at - sorted);
@@ -155,8 +168,8 @@ static void a_seed_means_the_same_flaws(void **state) {
   sph_particles_free(q);
 }
 
-/* About n (ln n + 0.58) flaws, as for random particles: surface particles own a little more or less than V/n. Over 12
- * seeds the mean has a standard error of 1.28 n / sqrt 12 = 0.37 n; 12 % of 8.2 n is 2.7 of those. */
+/* About n (ln n + 0.58) flaws, as for random particles: and one for each particle that got none, 0.56 with equal
+ * cells, some more with those that the surface cuts: below 0.5 % of n. */
 static void particles_have_ln_n_flaws(void **state) {
   (void)state;
   const struct sph_body body = sphere(2000);
@@ -174,7 +187,7 @@ static void particles_have_ln_n_flaws(void **state) {
     sph_flaws_free(flaws);
   }
   const double n = (double)p->n, want = n * (log(n) + 0.5772156649);
-  assert_true(fabs(sum / want - 1) < 0.12);
+  assert_true(sum >= want && sum < want + 0.005 * n);
   sph_particles_free(p);
 }
 
@@ -227,8 +240,11 @@ static void ends_have_none(void **state) {
     } else {
       assert_true(n > 0);
       for (size_t f = with->first[i]; f < with->first[i + 1]; f++) { /* and its place is in the middle */
+        const double rank = exp(8.5 * with->log_strain[f] + log_kv);
         double place[3];
-        sph_flaws_point(1, 0, (uint64_t)llround(exp(8.5 * with->log_strain[f] + log_kv)) - 1, &rod.shape, place);
+        if (rank > (double)drawn(p->n) + 0.5)
+          continue;
+        sph_flaws_point(1, 0, (uint64_t)llround(rank) - 1, &rod.shape, place);
         assert_true(fabs(place[2]) <= 0.012);
       }
       /* far from the border: the same flaws, up to where the shorter draw ended */

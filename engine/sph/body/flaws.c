@@ -219,11 +219,9 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
     code = status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
     goto cleanup;
   }
-  if (graded) {
-    for (size_t i = 0; i < n; i++)
-      share[i] = p->mass[first + i] / range.mass;
-    full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
-  }
+  for (size_t i = 0; graded && i < n; i++)
+    share[i] = p->mass[first + i] / range.mass;
+  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
   full.exempt = exempt;
   full.share = share;
 

@@ -58,10 +58,10 @@ void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
  * that with the lower id). law->volume is not used: V is the shape's volume over the particles' distention. With
  * `middle` (NULL: whole body), flaws in the ends are dropped and particles there have none.
  *
- * For bodies of equal particles drawing goes on until each has a flaw. For graded ones n (ln n + 0.5772) flaws are
- * drawn, as many as equal particles need on average; law->number says what a particle without a flaw gets. So the
- * weakest flaw of every particle follows the law exactly. STATUS_MEMORY; STATUS_CONTENT when m, k or the volume is not
- * a positive number, or all particles are in the ends. */
+ * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one; law->number says what a
+ * particle without a flaw gets. (Drawing until each has one would count the smallest cell: cells cut by the surface
+ * made 13 to 17 % more flaws of it.) So the weakest flaw of every particle follows the law exactly. STATUS_MEMORY;
+ * STATUS_CONTENT when m, k or the volume is not a positive number, or all particles are in the ends. */
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape,
                        const struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,
                        struct sph_flaws **out, struct error *error);
