@@ -1,7 +1,7 @@
 #!/bin/sh
 # Sets up, builds, and runs clast on Debian 12. Needs nothing but a shell, and root for packages that are missing.
 #
-#   ./setup.sh demo     install what is missing, build, run the demo campaign
+#   ./setup.sh demo     install what is missing, build clast alone, run the demo campaign
 #   ./setup.sh test     install what is missing, build with warnings as errors, pass every test; again under sanitizers
 #   ./setup.sh build    install what is missing, build build/release/clast
 #   ./setup.sh packages only install what is missing
@@ -41,18 +41,31 @@ install_missing() {
   export DEBIAN_FRONTEND=noninteractive
   apt-get update -qq
   # shellcheck disable=SC2086
-  apt-get install -y -qq --no-install-recommends $missing >/dev/null
+  watched "$(mktemp)" '/^Setting up/ { if (++n % 25 == 0) print "  " n " packages set up" }' \
+    apt-get install -y -q --no-install-recommends $missing
 }
 
-build() { # preset
+# watched LOG AWK COMMAND...: all that COMMAND prints goes into LOG, and what AWK makes of it to the terminal. COMMAND's
+# exit code.
+watched() {
+  log=$1 show=$2
+  shift 2
+  { code=0; "$@" 2>&1 || code=$?; echo "$code" >"$log.code"; } | tee "$log" | awk "$show" >&2
+  return "$(cat "$log.code")"
+}
+
+build() { # build PRESET [TARGET]
   say "building build/$1"
   cmake --preset "$1" >/dev/null
-  if ! cmake --build --preset "$1" -j "$(nproc)" >"build/$1/build.log" 2>&1; then
+  # ninja prints [STEP/STEPS] before each step: a line for every tenth of them
+  if ! NINJA_STATUS='[%f/%t] ' watched "build/$1/build.log" '
+    split($1, step, /[][\/]/) == 4 && int(10 * step[2] / step[3]) > tenths {
+      tenths = int(10 * step[2] / step[3]); print "  " step[2] " of " step[3] " steps"; fflush() }' \
+    cmake --build --preset "$1" -j "$(nproc)" --target "${2:-all}"; then
     grep -E -A12 "^FAILED|error" "build/$1/build.log" >&2
     say "the build failed; all it printed is in build/$1/build.log" >&2
     exit 70
   fi
-  tail -n 1 "build/$1/build.log"
 }
 
 case "${1:-}" in
@@ -65,7 +78,7 @@ case "${1:-}" in
     ;;
   demo)
     install_missing
-    build release
+    build release clast
     say "build/release/clast run campaign/examples/demo.yaml"
     build/release/clast run campaign/examples/demo.yaml
     ;;

@@ -34,7 +34,7 @@ ok() { checks=$((checks + 1)); echo "ok $checks: $*"; }
 expect() {
   local want=$1 got=0
   shift
-  timeout 120 "$@" >out 2>err </dev/null || got=$?
+  timeout 480 "$@" >out 2>err </dev/null || got=$?
   [ "$got" -eq "$want" ] || fail "exit $got, expected $want: $*"
   ok "exit $want: $(echo "$*" | sed "s|$build/||; s|$work/||g" | cut -c1-100)"
 }

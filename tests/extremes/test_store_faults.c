@@ -187,42 +187,44 @@ static void full_disk_loses_nothing_committed(void **state) {
 
 static void without_permission(void **state) {
   (void)state;
-  char path[64];
-  fixture_path(path, "permission");
-  mkdir("test-store-closed", 0755);
-  unlink("test-store-closed/a.db");
-  OK(fill("test-store-closed/a.db", 3, &error));
-  chmod("test-store-closed/a.db", 0444);
-  chmod("test-store-closed", 0555);
+  char closed[] = "/tmp/clast-store-closed-XXXXXX"; /* the current folder may lie where no other user may go */
+  char path[64], fresh[64], copy[64];
+  assert_non_null(mkdtemp(closed));
+  snprintf(path, sizeof path, "%s/a.db", closed);
+  snprintf(fresh, sizeof fresh, "%s/new.db", closed);
+  snprintf(copy, sizeof copy, "%s/copy.db", closed);
+  OK(fill(path, 3, &error));
+  chmod(path, 0444);
+  chmod(closed, 0555);
   pid_t pid = fork();
   if (pid == 0) {
     struct store *store = NULL;
     struct error said = {0};
     if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0))
       _exit(9);
-    if (store_open_writer("test-store-closed/a.db", &store, NULL, 0, &said) != STATUS_IO)
+    if (store_open_writer(path, &store, NULL, 0, &said) != STATUS_IO)
       _exit(1);
     if (!strstr(said.message, "permission"))
       _exit(2);
-    if (store_open_writer("test-store-closed/new.db", &store, NULL, 0, &said) != STATUS_IO)
+    if (store_open_writer(fresh, &store, NULL, 0, &said) != STATUS_IO)
       _exit(3);
-    if (store_open_reader("test-store-closed/a.db", &store, &said) != STATUS_OK)
+    if (store_open_reader(path, &store, &said) != STATUS_OK)
       _exit(4); /* a finished store reads */
     double runs = 0;
     if (query_number(store, "SELECT count(*) FROM run", 0, NULL, &runs, &said) != STATUS_OK || runs != 12)
       _exit(5);
-    if (store_export(store, "test-store-closed/copy.db", &said) != STATUS_IO)
+    if (store_export(store, copy, &said) != STATUS_IO)
       _exit(6);
     store_close(store, NULL);
     _exit(0);
   }
   int ending;
   waitpid(pid, &ending, 0);
-  chmod("test-store-closed", 0755);
-  chmod("test-store-closed/a.db", 0000);
+  chmod(closed, 0755);
+  unlink(path);
+  rmdir(closed);
   assert_true(WIFEXITED(ending));
   assert_int_equal(WEXITSTATUS(ending), 0);
-  chmod("test-store-closed/a.db", 0644);
 }
 
 /* A reader in the middle of a query for the whole time: the writer neither waits nor fails, the reader sees its moment.
