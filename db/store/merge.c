@@ -56,9 +56,14 @@ static status map_parents(sqlite3 *db, struct error *error) {
       doing, error);
 }
 
-/* Copies the runs that are missing here, with numbers from the last one on. */
+/* Copies the runs that are missing here, with numbers from the last one on. Numbers rise in both stores, so that the
+ * order of theirs is that of ours and nothing has to be sorted. */
 static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
-  char *columns = common_columns(db, "run", "");
+  char
+      *columns = sql_name_list(db,
+                               "SELECT a.name FROM pragma_table_info(?1, 'main') a JOIN pragma_table_info(?1, 'other') "
+                               "b USING (name) WHERE name NOT IN ('run_id', 'point_id', 'session_id')",
+                               "run", NULL);
   if (!columns)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result = sql_execute(db,
@@ -70,12 +75,10 @@ static status copy_runs(sqlite3 *db, int64_t *added, struct error *error) {
   if (result == STATUS_OK)
     result = sql_executef(
         db, doing, error,
-        "CREATE TEMP TABLE merge_rows AS SELECT %s FROM other.run WHERE run_id IN (SELECT theirs FROM "
-        "merge_run);UPDATE merge_rows SET run_id = (SELECT ours FROM merge_run WHERE theirs = run_id), point_id = "
-        "(SELECT ours FROM merge_point WHERE theirs = point_id), session_id = (SELECT ours FROM "
-        "merge_session WHERE theirs = session_id);"
-        "INSERT INTO main.run (%s) SELECT %s FROM merge_rows ORDER BY run_id; DROP TABLE merge_rows;",
-        columns + 2, columns + 2, columns + 2);
+        "INSERT INTO main.run (run_id, point_id, session_id%s) SELECT m.ours, (SELECT ours FROM merge_point p WHERE "
+        "p.theirs = o.point_id), (SELECT ours FROM merge_session s WHERE s.theirs = o.session_id)%s FROM merge_run m "
+        "CROSS JOIN other.run o ON o.run_id = m.theirs ORDER BY m.theirs",
+        columns, columns);
   sqlite3_free(columns);
   return result == STATUS_OK ? sql_integer(db, "SELECT count(*) FROM merge_run", 0, added, error) : result;
 }
@@ -87,8 +90,8 @@ static status copy_of_runs(sqlite3 *db, const char *table, struct error *error) 
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
   status result =
       sql_executef(db, doing, error,
-                   "INSERT INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m JOIN other.\"%w\" o ON "
-                   "o.run_id = m.theirs ORDER BY m.ours",
+                   "INSERT INTO main.\"%w\" (run_id%s) SELECT m.ours%s FROM merge_run m CROSS JOIN other.\"%w\" "
+                   "o ON o.run_id = m.theirs ORDER BY m.theirs",
                    table, columns, columns, table);
   sqlite3_free(columns);
   return result;
@@ -208,7 +211,8 @@ static status keep_paths(struct store *store, const char *source, struct error *
 
 static status merge_attached(struct store *store, const char *source, int64_t *added, int64_t *differing,
                              struct error *error) {
-  status result = sql_execute(store->db, "BEGIN IMMEDIATE", doing, error);
+  /* The sums of a million runs are sorted in files, not in memory. */
+  status result = sql_execute(store->db, "PRAGMA temp_store = FILE; BEGIN IMMEDIATE", doing, error);
   if (result != STATUS_OK)
     return result;
   result = count_differing(store->db, differing, error);
@@ -290,7 +294,7 @@ status store_merge(struct store *store, const char *source, int64_t *added, int6
   result = merge_attached(store, source, added, differing, error);
   sqlite3_exec(store->db,
                "DROP TABLE IF EXISTS temp.merge_point; DROP TABLE IF EXISTS temp.merge_session; DROP TABLE IF EXISTS "
-               "temp.merge_run; DETACH other",
+               "temp.merge_run; DETACH other; PRAGMA temp_store = MEMORY",
                NULL, NULL, NULL);
   identities_clear(&store->identities); /* they are read again when they are needed */
   store->identities_loaded = false;
