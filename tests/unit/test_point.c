@@ -14,7 +14,7 @@ enum { RUNS = 8, FAILED = 3 };
 
 static struct store *fill(char path[64], int64_t *point) {
   struct store *store;
-  OK(store_open_writer(fixture_path(path, "point"), &store, NULL, 0, &error));
+  OK(store_open_writer(fixture_path(path, "point-fragments"), &store, NULL, 0, &error));
   struct fixture_inputs inputs;
   struct scene scene = fixture_scene(&inputs, 9, 1e33);
   int64_t campaign, session;
