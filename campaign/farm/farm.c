@@ -65,8 +65,10 @@ static status watch_signals(struct farm *farm, struct error *error) {
 
 int farm_signal(struct farm *farm) {
   struct signalfd_siginfo info;
-  if (read(farm->signals, &info, sizeof info) == (ssize_t)sizeof info)
+  if (read(farm->signals, &info, sizeof info) == (ssize_t)sizeof info) {
+    farm->stopped = true;
     return (int)info.ssi_signo;
+  }
   if (farm->link && farm->launcher && getppid() != farm->launcher) {
     farm->launcher = 0;
     farm->broken = true;
@@ -173,7 +175,9 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   *out = farm;
   return STATUS_OK;
 cleanup:
-  farm->link = NULL; /* MPI stays open, so that the caller can report why; mpirun ends the other ranks */
+  if (farm->ranks == 1)
+    farm_link_close(farm->link, true, 0); /* no other rank waits */
+  farm->link = NULL; /* else MPI stays open, so that the caller can report why; mpirun ends the other ranks */
   farm_stop(farm, NULL);
   return result;
 }
@@ -250,7 +254,8 @@ status farm_stop(struct farm *farm, struct error *error) {
     farm_link_close(farm->link, agree_to_finalize(farm), farm->last);
   if (farm->signals >= 0) {
     close(farm->signals);
-    sigprocmask(SIG_SETMASK, &farm->mask_before, NULL);
+    if (!farm->stopped) /* else the program ends, and another signal must not change its exit code */
+      sigprocmask(SIG_SETMASK, &farm->mask_before, NULL);
   }
   free(farm->peers);
   free(farm);

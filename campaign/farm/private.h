@@ -53,6 +53,7 @@ struct farm {
   struct farm_usage usage;
   /* Stop signals, read from a file: no handler and no global is needed. */
   int signals;
+  bool stopped; /* one has come */
   sigset_t mask_before;
   pid_t launcher; /* parent at the start; if it changes under MPI, mpirun has died */
   bool broken;    /* a rank is lost or does not answer: MPI_Finalize would hang */
