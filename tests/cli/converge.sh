@@ -79,7 +79,10 @@ python - <<'PY'
 import json, sqlite3
 plan = json.load(open('out'))
 chosen, = [a for a in plan['alternatives'] if a['choice'] == 'chosen']
-open('setting', 'w').write(str(float(chosen['setting'])))
+setting = chosen['setting']
+if setting == "the scene's own":  # which alternative is cheapest hangs on measured times
+    setting, = sqlite3.connect('sharp.db').execute("select distinct setting from convergence where base = 1").fetchone()
+open('setting', 'w').write(str(float(setting)))
 assert plan['runs_least'] == chosen['seeds'] > 2, plan
 assert all(a['point_cpu'] is None or a['point_cpu'] >= chosen['point_cpu'] for a in plan['alternatives'])
 PY
