@@ -5,6 +5,8 @@
 ask() { python -c "import sqlite3, sys; print(sqlite3.connect('file:%s?mode=ro' % sys.argv[1], uri=True).execute(sys.argv[2]).fetchone()[0])" "$1" "$2"; }
 
 slow slow
+# The store takes runs once a second: twice the runs, so that work is left after two sessions of a second each.
+sed -i "s/per_point: .*}/per_point: $((2 * slow_seeds))}/" slow.yaml
 expect 0 "$clast" run slow.yaml -j 2 --quiet
 bits slow.db >reference.bits
 runs_in() { ask "$1" 'select count(*) from run' 2>/dev/null || echo 0; }
@@ -29,7 +31,6 @@ ends() { # ends CODE WHAT
 }
 
 # SIGTERM to the whole process group, twice, in two sessions: `timeout`, scancel, preemption. Nothing counts as failed.
-# One slot: the store takes runs once a second, and with two slots the second session could be done before its signal.
 cp slow.yaml term.yaml
 echo 'limits: {attempts: 1}' >>term.yaml
 for i in 1 2; do
@@ -42,7 +43,7 @@ expect 0 "$clast" run term.yaml --store term.db -j 2 --quiet
 same_bits term.db reference.bits "after four SIGTERM"
 
 # kill -9 of the processes that compute, as the kernel does when memory is out: tried again, never given up for good
-sed 's/per_point: .*}/per_point: 1}/; s/14 cm/60 cm/; s/vary:.*/limits: {attempts: 1}/; s/1.5 ms/6 ms/' slow.yaml >killed.yaml
+sed 's/per_point: .*}/per_point: 1}/; s/14 cm/120 cm/; s/vary:.*/limits: {attempts: 1}/; s/1.5 ms/6 ms/' slow.yaml >killed.yaml
 setsid "$clast" run killed.yaml --store killed.db -j 1 >out 2>err &
 pid=$!
 child() { local c; for c in $(pgrep -P "$1"); do child "$c"; [ -n "$(pgrep -P "$c")" ] || echo "$c"; done; }
