@@ -47,6 +47,7 @@ struct field {
                        * active only then; given otherwise, it is refused */
   const char *doc;    /* meaning, one or more sentences */
   const char *source; /* paper and equation, or NULL */
+  const char *label;  /* name on the axis of a chart, in lower case, without unit; NULL: field_label() makes one */
   int main_rank; /* results only: place among the main results, from 1; 0: not a main result. Old stores keep the CHECK
                   * and the index of table run that they were made with: a step of db/store/migrate.c would renew them
                   */
@@ -85,6 +86,14 @@ const char *field_nearest(const struct field_table *table, const char *path);
 
 /* A path as the name of a column: dots become underscores. */
 void field_column_name(const char *path, char *name, size_t size);
+
+/* The name of a row on the axis of a chart: its label, else the last two words of its path ("young modulus", "charge
+ * energy"). */
+void field_label(const struct field *row, char *label, size_t size);
+/* The same for a path without a row. */
+void field_label_path(const char *path, char *label, size_t size);
+/* A unit for people: "kg/mÂ³" for "kg/m^3"; empty for "1" and NULL. */
+void field_label_unit(const char *unit, char *text, size_t size);
 
 /* Fills every row, required ones with zero or NaN; members that no row describes are left alone. */
 void field_defaults(const struct field_table *table, void *object);

@@ -1,9 +1,10 @@
-/* Pictures with cairo, PNG or SVG by the file's ending: broken bodies, spectra, curves, maps, profiles. They need no
- * display and no other program; the background is white. A file appears under its name only when it is whole.
+/* Pictures: broken bodies with cairo, and charts (spectra, curves, maps, profiles, bars) with gnuplot from templates
+ * (chart.h). PNG, SVG or PDF by the file's ending, on white, without a display. A file appears under its name only when
+ * it is whole.
  *
- * Errors of all of them: STATUS_USAGE for an ending other than .png or .svg and when there is nothing to draw,
- * STATUS_IO when the file cannot be written, STATUS_MEMORY. Arrays are borrowed. width: pixels (PNG) or points (SVG),
- * 200 to 8000. title: NULL for none. */
+ * Errors of all of them: STATUS_USAGE for another ending and when there is nothing to draw, STATUS_IO when the file
+ * cannot be written, STATUS_MEMORY; of charts also STATUS_MISSING when there is no gnuplot. Arrays are borrowed. width:
+ * pixels (PNG) or points (SVG, PDF), 200 to 8000. title: NULL for none. */
 #ifndef CLAST_ANALYSIS_PICTURES_PICTURE_H
 #define CLAST_ANALYSIS_PICTURES_PICTURE_H
 
@@ -13,6 +14,20 @@
 
 #include "analysis/pictures/picture_cloud.h"
 #include "analysis/statistics/pooled.h"
+
+/* Where a chart goes. */
+struct picture_page {
+  const char *path;
+  double width;
+  bool keep_script;      /* leave NAME.gp and NAME.dat beside NAME.png: gnuplot draws it again */
+  const char *templates; /* folder with changed templates; NULL: those that are compiled in */
+};
+/* The words of a chart; NULL: none. Long ones are cut into lines. */
+struct picture_words {
+  const char *title, *caption; /* caption: a line under the title, in small letters */
+  const char *x, *y;           /* names of the axes with their units */
+};
+enum { PICTURE_SERIES = 8 }; /* more in one chart cannot be told apart */
 
 /* A broken body of convex polygons (DEM's grains), and the fragment that each belongs to. */
 struct picture_body {
@@ -70,17 +85,22 @@ struct picture_fit {
   const char *label;                            /* "beta 2.03 +- 0.05" */
   double beta, lower, upper, fragments_per_run; /* upper may be HUGE_VAL */
 };
+enum picture_style {
+  PICTURE_DENSITY,    /* F(m): marks in the middle of the bins, with error bars */
+  PICTURE_CUMULATIVE, /* N(>m): a line through the bins' lower edges, with a band */
+  PICTURE_MEASURED,   /* open marks at the bins' lower edges, with error bars: what was measured */
+};
 struct picture_series {
   const char *label;
+  enum picture_style style;
   size_t count;
   const struct pooled_bin *bins; /* of pooled_spectrum() with unit_mass 1 */
   size_t fits;
   const struct picture_fit *fit;
   double complete_mass; /* kg: bins that begin below are grey, as fragments are missing there; 0 or NaN: none is */
 };
-/* Log-log F(m) with error bars (95 % intervals over runs) and lines of the fits. One to eight series. The legend
- * stands beside the frame and makes the picture wider than `width`. */
-status picture_spectrum(const char *path, double width, const char *title, const char *mass_unit, size_t count,
+/* Log-log F(m) with error bars (95 % intervals over runs) and lines of the fits. One to eight series. */
+status picture_spectrum(const struct picture_page *page, const struct picture_words *words, size_t count,
                         const struct picture_series *series, struct error *error);
 
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
@@ -99,7 +119,7 @@ struct picture_profile {
   double at_least[2]; /* the panel shows at least this range; HUGE_VAL, -HUGE_VAL: the range of y */
 };
 /* One to three panels of `count` points, x ascending. STATUS_USAGE also when x has no range. */
-status picture_profile(const char *path, double width, const char *title, const char *x_label, size_t count,
+status picture_profile(const struct picture_page *page, const struct picture_words *words, size_t count,
                        const double *x, size_t panels, const struct picture_profile *panel, struct error *error);
 
 /* A mean with its interval at a value of an input. */
@@ -111,15 +131,23 @@ struct picture_curve {
   size_t count;
   const struct picture_mean *mean; /* x ascending */
 };
-/* One to eight curves: dots with error bars, joined by lines. x is logarithmic when all its values are positive and
- * span a factor of 20 or more. The legend stands beside the frame and makes the picture wider than `width`. */
-status picture_curves(const char *path, double width, const char *title, const char *x_label, const char *y_label,
-                      size_t count, const struct picture_curve *curve, struct error *error);
+/* One to eight curves: marks with error bars, joined by lines. x is logarithmic when all its values are positive and
+ * span a factor of 20 or more. */
+status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
+                      const struct picture_curve *curve, struct error *error);
 
 /* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. The tile of
- * a NaN, or of a place without a point, is white and crossed. Of two points at one place the later one counts. At most
- * 10 000 tiles (STATUS_USAGE). */
-status picture_map(const char *path, double width, const char *title, const char *quantity, const char *x_label,
-                   const char *y_label, size_t count, const double (*points)[3], struct error *error);
+ * a NaN, or of a place without a point, is crossed. Of two points at one place the later one counts. At most 10 000
+ * tiles (STATUS_USAGE). quantity: beside the colours. */
+status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
+                   size_t count, const double (*points)[3], struct error *error);
+
+/* Named values with intervals, as bars in groups: value[g * names + i] belongs to name i of group g. */
+struct picture_bar {
+  double value, low, high; /* low, high: ends of the interval; NaN: none is drawn */
+};
+status picture_bars(const struct picture_page *page, const struct picture_words *words, size_t names,
+                    const char *const *name, size_t groups, const char *const *group, const struct picture_bar *value,
+                    struct error *error);
 
 #endif

@@ -1,6 +1,7 @@
 /* The page, text and colours of pictures. */
 #include "analysis/pictures/picture_canvas.h"
 
+#include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <errno.h>
 #include <math.h>
@@ -23,9 +24,9 @@ static status from_cairo(cairo_status_t code, const char *path, struct error *er
 }
 
 status picture_canvas_named(const char *path, struct error *error) {
-  if (ends_in(path, ".png") || ends_in(path, ".svg"))
+  if (ends_in(path, ".png") || ends_in(path, ".svg") || ends_in(path, ".pdf"))
     return STATUS_OK;
-  return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png or .svg", path);
+  return status_fail(error, STATUS_USAGE, "%s: a picture's name ends in .png, .svg or .pdf", path);
 }
 
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
@@ -39,8 +40,12 @@ status picture_canvas_open(struct picture_canvas *canvas, const char *path, doub
   int length = snprintf(canvas->temporary, sizeof canvas->temporary, "%s.%ld.part", path, (long)getpid());
   if (length < 0 || (size_t)length >= sizeof canvas->temporary)
     return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
-  canvas->surface = canvas->png ? cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height))
-                                : cairo_svg_surface_create(canvas->temporary, width, height);
+  if (canvas->png)
+    canvas->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width), (int)ceil(height));
+  else if (ends_in(path, ".pdf"))
+    canvas->surface = cairo_pdf_surface_create(canvas->temporary, width, height);
+  else
+    canvas->surface = cairo_svg_surface_create(canvas->temporary, width, height);
   canvas->cairo = cairo_create(canvas->surface);
   code = from_cairo(cairo_status(canvas->cairo), path, error);
   if (code) {
@@ -105,12 +110,6 @@ void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size
   cairo_restore(cairo);
 }
 
-void picture_canvas_title(cairo_t *cairo, double x, double font, const char *title) {
-  cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
-  if (title)
-    picture_canvas_text(cairo, x, 2 * font, 1.2 * font, PICTURE_LEFT, true, title);
-}
-
 void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle) {
   double line = 1.9 * font;
   cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
@@ -141,11 +140,6 @@ void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, doub
                         companded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), alpha);
 }
 
-void picture_canvas_series(cairo_t *cairo, size_t series, double alpha) {
-  static const double hues[PICTURE_CANVAS_SERIES] = {255, 30, 145, 320, 85, 200, 0, 285};
-  picture_canvas_colour(cairo, 0.55, 0.15, hues[series % PICTURE_CANVAS_SERIES], alpha);
-}
-
 double picture_canvas_round_length(double length) {
   double decade = pow(10, floor(log10(length)));
   double part = length / decade;
@@ -166,16 +160,6 @@ static void length_text(double metres, char *text, size_t size) {
     snprintf(text, size, "%g mm", metres * 1000);
   else
     snprintf(text, size, "%g \xc2\xb5m", metres * 1e6);
-}
-
-void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent) {
-  char text[16];
-  snprintf(text, sizeof text, exponent < 0 ? "\xe2\x88\x92%d" : "%d", exponent < 0 ? -exponent : exponent);
-  double base = picture_canvas_text_width(cairo, size, false, "10"),
-         raised = picture_canvas_text_width(cairo, 0.72 * size, false, text);
-  double left = x - offset(align, base + raised);
-  picture_canvas_text(cairo, left, y, size, PICTURE_LEFT, false, "10");
-  picture_canvas_text(cairo, left + base, y - 0.38 * size, 0.72 * size, PICTURE_LEFT, false, text);
 }
 
 void picture_canvas_ramp(cairo_t *cairo, enum picture_ramp ramp, double share) {

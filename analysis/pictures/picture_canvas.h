@@ -15,7 +15,7 @@ struct picture_canvas {
   const char *path;
   char temporary[4096];
 };
-/* STATUS_USAGE unless the name ends in .png or .svg. */
+/* STATUS_USAGE unless the name ends in .png, .svg or .pdf. */
 status picture_canvas_named(const char *path, struct error *error);
 status picture_canvas_open(struct picture_canvas *canvas, const char *path, double width, double height,
                            struct error *error);
@@ -27,20 +27,13 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
                          const char *text);
 /* Text centred at (x, y) that reads upwards. */
 void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text);
-/* The title over a plot whose frame begins at x; NULL: none. Sets the colour of the text in any case. */
-void picture_canvas_title(cairo_t *cairo, double x, double font, const char *title);
 /* Title and subtitle at the head of a picture of a body; NULL: none. */
 void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle);
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
-/* The colour of one of several series: each has its hue. */
-enum { PICTURE_CANVAS_SERIES = 8 };
-void picture_canvas_series(cairo_t *cairo, size_t series, double alpha);
 /* The largest of 1, 2, 5 x 10^n that is at most `length`. */
 double picture_canvas_round_length(double length);
-/* 10 with a raised exponent. */
-void picture_canvas_decade(cairo_t *cairo, double x, double y, double size, enum picture_align align, int exponent);
 
 /* Ramps that read in grey and for the colour-blind: lightness changes evenly from one end to the other, in a signed
  * ramp from the middle to both ends. */

@@ -1,66 +1,66 @@
 /* Quantities along a line: one panel each, one above the other over the same axis. */
 #include <math.h>
 
-#include "analysis/pictures/picture.h"
-#include "analysis/pictures/picture_canvas.h"
-#include "analysis/pictures/picture_frame.h"
+#include "analysis/pictures/chart.h"
 
-/* A line through the finite points, and a dot at each when they are few. */
-static void line(const struct picture_frame *f, size_t count, const double *x, const double *y, double hue) {
-  enum { FEW = 120 };
-  cairo_t *cairo = f->cairo;
-  picture_canvas_colour(cairo, 0.5, 0.14, hue, 1);
-  cairo_set_line_width(cairo, 0.14 * f->font);
-  bool begun = false;
-  for (size_t i = 0; i < count; i++) {
-    bool there = isfinite(x[i]) && isfinite(y[i]);
-    if (there && begun)
-      cairo_line_to(cairo, picture_frame_across(f, x[i]), picture_frame_up(f, y[i]));
-    else if (there)
-      cairo_move_to(cairo, picture_frame_across(f, x[i]), picture_frame_up(f, y[i]));
-    begun = there;
-  }
-  cairo_stroke(cairo);
-  for (size_t i = 0; i < count && count <= FEW; i++) {
-    if (!isfinite(x[i]) || !isfinite(y[i]))
-      continue;
-    cairo_arc(cairo, picture_frame_across(f, x[i]), picture_frame_up(f, y[i]), 0.25 * f->font, 0, 2 * M_PI);
-    cairo_fill(cairo);
-  }
+enum { MOST_PANELS = 3 };
+
+static void extend(double range[2], double value) {
+  if (!isfinite(value))
+    return;
+  range[0] = fmin(range[0], value);
+  range[1] = fmax(range[1], value);
 }
 
-status picture_profile(const char *path, double width, const char *title, const char *x_label, size_t count,
-                       const double *x, size_t panels, const struct picture_profile *panel, struct error *error) {
-  const double hues[] = {255, 40, 145};
-  struct picture_frame f = {.font = width / 46};
-  picture_frame_range(count, x, f.x);
-  if (!panels || !(f.x[1] > f.x[0]))
-    return status_fail(error, STATUS_USAGE, "%s: there is nothing to draw", path);
-  picture_frame_widen(f.x, 0.02);
-  struct picture_canvas canvas;
-  double head = (title ? 3 : 1) * f.font, gap = 1.2 * f.font;
-  f.tall = panels > 1 ? 0.3 * width : 0.5 * width;
-  status code = picture_canvas_open(&canvas, path, width, head + (double)panels * (f.tall + gap) + 2.8 * f.font, error);
-  if (code)
-    return code;
-  f.cairo = canvas.cairo;
-  f.left = 7.5 * f.font;
-  f.wide = width - f.left - 1.5 * f.font;
-  for (size_t k = 0; k < panels; k++) {
-    f.top = head + (double)k * (f.tall + gap);
-    picture_frame_range(count, panel[k].y, f.y);
-    if (!(f.y[1] >= f.y[0])) { /* no finite value: an empty frame */
-      f.y[0] = 0;
-      f.y[1] = 1;
-    }
-    f.y[0] = fmin(f.y[0], panel[k].at_least[0]);
-    f.y[1] = fmax(f.y[1], panel[k].at_least[1]);
-    picture_frame_widen(f.y, 0.06);
-    picture_frame_draw(&f, k + 1 == panels, panel[k].label);
-    line(&f, count, x, panel[k].y, hues[k % 3]);
+/* What a panel shows at least, with some space above and below. A panel without a finite value shows 0 to 1. */
+static void range_of(size_t count, const struct picture_profile *panel, double range[2]) {
+  range[0] = panel->at_least[0];
+  range[1] = panel->at_least[1];
+  for (size_t i = 0; i < count; i++)
+    extend(range, panel->y[i]);
+  if (!(range[1] >= range[0])) {
+    range[0] = 0;
+    range[1] = 1;
   }
-  picture_canvas_title(canvas.cairo, f.left, f.font, title);
-  picture_canvas_text(canvas.cairo, f.left + f.wide / 2, f.top + f.tall + 3.1 * f.font, 1.05 * f.font, PICTURE_CENTRE,
-                      false, x_label);
-  return picture_canvas_close(&canvas, STATUS_OK, error);
+  const double margin = range[1] > range[0] ? 0.06 * (range[1] - range[0]) : fmax(0.05 * fabs(range[1]), 1e-300);
+  range[0] -= margin > 1e-300 ? margin : 1;
+  range[1] += margin > 1e-300 ? margin : 1;
+}
+
+status picture_profile(const struct picture_page *page, const struct picture_words *words, size_t count,
+                       const double *x, size_t panels, const struct picture_profile *panel, struct error *error) {
+  double along[2] = {HUGE_VAL, -HUGE_VAL};
+  const char *labels[MOST_PANELS];
+  double low[MOST_PANELS], high[MOST_PANELS];
+  for (size_t i = 0; i < count; i++)
+    extend(along, x[i]);
+  if (panels < 1 || panels > MOST_PANELS || !(along[1] > along[0]))
+    return status_fail(error, STATUS_USAGE, "%s: there is nothing to draw", page->path);
+  struct chart *chart = chart_new("profile");
+  if (!chart)
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for the chart", page->path);
+  chart_words(chart, page, words);
+  chart_number(chart, "panels", (double)panels);
+  chart_number(chart, "x_low", along[0] - 0.02 * (along[1] - along[0]));
+  chart_number(chart, "x_high", along[1] + 0.02 * (along[1] - along[0]));
+  chart_number(chart, "points", (double)count);
+  for (size_t k = 0; k < panels; k++) {
+    double range[2];
+    range_of(count, &panel[k], range);
+    low[k] = range[0];
+    high[k] = range[1];
+    labels[k] = panel[k].label;
+  }
+  chart_numbers(chart, "low", panels, low);
+  chart_numbers(chart, "high", panels, high);
+  chart_texts(chart, "label", panels, labels);
+  chart_columns(chart, "x and the value of each panel");
+  for (size_t i = 0; i < count; i++) {
+    double row[1 + MOST_PANELS] = {x[i]};
+    for (size_t k = 0; k < panels; k++)
+      row[k + 1] = panel[k].y[i];
+    chart_row(chart, panels + 1, row);
+  }
+  chart_block_end(chart);
+  return chart_draw(chart, page, (panels > 1 ? 0.32 * (double)panels : 0.5) * page->width + 90, error);
 }

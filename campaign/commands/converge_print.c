@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/pictures/picture.h"
-
-enum { WIDTH = 900 };
+#include "campaign/terminal/chart_option.h"
 
 status converge_print_knobs(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);
@@ -167,11 +165,15 @@ status converge_print_picture(const struct study *study, const char *path, struc
     }
     drawn += curves[drawn].count > 0;
   }
-  char title[400];
+  char title[800];
   const struct field *row = study->quantity[0].row;
-  snprintf(title, sizeof title, "%s: %s over the cost of a run, mean with 95 %% interval", study->ladder[0].base->name,
-           row->path);
-  status code = picture_curves(path, WIDTH, title, "processor time of a run (s)", row->path, drawn, curves, error);
+  char label[CHART_OPTION_LABEL];
+  chart_option_label(row->path, label);
+  snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, label);
+  const struct picture_page page = chart_option_page(path, NULL);
+  const struct picture_words words = {title, "A mark is a level of a knob: mean over seeds with its 95 % interval",
+                                      "processor time of a run (s)", label};
+  status code = picture_curves(&page, &words, drawn, curves, error);
   free(found);
   return code;
 }

@@ -1,210 +1,32 @@
 /* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
-#include "schemas/unit.h"
-
-enum { WIDTH = 900 };
-
-struct options {
-  const char *caption, *what, *view, *axis, *at;
-};
-
-static status draw_grains(const char *fields, const char *picture, const char *caption, struct error *error) {
-  struct picture_panel panel = {0};
-  status code = picture_body_read(fields, &panel.body, error);
-  if (code)
-    return code;
-  char numbers[160];
-  picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
-  picture_body_clear(&panel.body);
-  return code;
-}
-
-/* A view by its name; NULL leaves *view as it is. */
-static status choose_view(const char *name, enum picture_view *view, struct error *error) {
-  static const char *const names[] = {[PICTURE_CUT] = "cut", [PICTURE_OUTSIDE] = "outside", [PICTURE_APART] = "apart"};
-  if (!name)
-    return STATUS_OK;
-  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
-    if (names[i] && strcmp(name, names[i]) == 0) {
-      *view = (enum picture_view)i;
-      return STATUS_OK;
-    }
-  return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
-}
-
-/* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
-static status choose_look(const struct options *options, struct picture_look *look, const char **what,
-                          struct error *error) {
-  *what = options->what ? options->what : "damage";
-  if (strcmp(*what, "fragments") == 0)
-    *what = NULL;
-  *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .axis = 1, .plane = NAN};
-  status code = choose_view(options->view, &look->view, error);
-  if (code)
-    return code;
-
-  const char *axis = options->axis ? options->axis : "y";
-  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
-    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
-  look->axis = axis[0] - 'x';
-  if (!options->at)
-    return STATUS_OK;
-  if (look->view != PICTURE_CUT)
-    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
-  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
-}
-
-static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
-  size_t used = 0;
-  text[0] = 0;
-  if (*cloud->engine)
-    used = (size_t)snprintf(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
-  if (used < size && isfinite(cloud->time))
-    used += (size_t)snprintf(text + used, size - used, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
-  if (used < size && look->view == PICTURE_CUT)
-    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle",
-             'x' + look->axis, look->plane);
-  else if (used < size && look->view == PICTURE_APART)
-    snprintf(text + used, size - used, ", fragments drawn apart");
-}
-
-/* Reads the quantity to colour by: --what, else damage, or the pressure of what cannot crack. NULL: fragments. */
-static status read_quantity(const char *fields, bool chosen, struct picture_cloud *cloud, const char **what,
-                            char unit[32], struct error *error) {
-  if (!*what)
-    return STATUS_OK;
-  if (!chosen) {
-    if (picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, NULL) == STATUS_OK)
-      return STATUS_OK;
-    *what = "pressure";
-  }
-  return picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, error);
-}
-
-static status draw_particles(const char *fields, const char *picture, const char *caption,
-                             const struct options *options, struct error *error) {
-  struct picture_look look;
-  struct picture_cloud cloud = {0};
-  const char *what;
-  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
-  status code = choose_look(options, &look, &what, error);
-  if (code)
-    return code;
-  code = picture_cloud_read(fields, &cloud, error);
-  if (code)
-    return code;
-  code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
-  if (code)
-    goto cleanup;
-  name_look(&look, &cloud, title, sizeof title);
-  picture_particles_numbers(&cloud, numbers, sizeof numbers);
-  look.title = caption ? caption : title;
-  look.subtitle = numbers;
-  look.quantity = what;
-  look.unit = unit;
-  code = picture_particles(picture, WIDTH, &cloud, &look, error);
-cleanup:
-  picture_cloud_clear(&cloud);
-  return code;
-}
-
-/* Draws profiles along the axis: --what, or distention and damage. */
-static status draw_profile(const char *fields, const char *picture, const struct options *options,
-                           struct error *error) {
-  enum { MOST = 2 };
-  const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
-  struct picture_profile panel[MOST];
-  struct picture_cloud cloud;
-  double *depth = NULL, *values[MOST] = {NULL, NULL};
-  char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
-  size_t count = 0, rows = 0, panels = 0;
-  status code = picture_cloud_read(fields, &cloud, error);
-  if (code)
-    goto cleanup;
-  code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
-  if (code)
-    goto cleanup;
-  for (; panels < MOST && names[panels]; panels++) {
-    code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error);
-    if (code)
-      goto cleanup;
-    if (rows != count) {
-      code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
-      goto cleanup;
-    }
-    snprintf(labels[panels], sizeof labels[panels], strcmp(unit, "1") && *unit ? "%s (%s)" : "%s", names[panels], unit);
-    bool share = !strcmp(names[panels], "damage");
-    panel[panels] = (struct picture_profile){labels[panels],
-                                             values[panels],
-                                             {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
-  }
-  name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
-  code = picture_profile(picture, WIDTH, options->caption ? options->caption : title, "depth at the start (m)", count,
-                         depth, panels, panel, error);
-cleanup:
-  free(depth);
-  for (size_t k = 0; k < MOST; k++)
-    free(values[k]);
-  picture_cloud_clear(&cloud);
-  return code;
-}
-
-/* Grains in the plane have one picture only. An unreadable file is told before that. */
-static status refuse_options(const char *fields, struct error *error) {
-  struct picture_body body;
-  status code = picture_body_read(fields, &body, error);
-  if (code)
-    return code;
-  picture_body_clear(&body);
-  return status_fail(error, STATUS_USAGE,
-                     "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
-                     "are for particles in space",
-                     fields);
-}
-
-static status draw(const char *fields, const char *picture, const struct options *options, struct error *error) {
-  if (!picture_cloud_in_file(fields)) {
-    if (options->what || options->view || options->axis || options->at)
-      return refuse_options(fields, error);
-    return draw_grains(fields, picture, options->caption, error);
-  }
-  if (!options->view || strcmp(options->view, "profile") != 0)
-    return draw_particles(fields, picture, options->caption, options, error);
-  if (options->axis || options->at)
-    return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
-  return draw_profile(fields, picture, options, error);
-}
+#include "campaign/commands/picture_draw.h"
 
 status commands_picture(const char *fields, const char *picture, const char *caption, struct error *error) {
-  return draw(fields, picture, &(struct options){.caption = caption}, error);
+  return picture_draw(fields, picture, &(struct picture_choice){.caption = caption}, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
-  return draw(line->arguments[0], line->arguments[1], line->options, error);
+  return picture_draw(line->arguments[0], line->arguments[1], line->options, error);
 }
 
 static const struct option_row rows[] = {
-    OPTION_ROW_TEXT("caption", 0, "TEXT", struct options, caption, NULL, "Title of the picture."),
+    OPTION_ROW_TEXT("caption", 0, "TEXT", struct picture_choice, caption, NULL, "Title of the picture."),
     OPTION_ROW_TEXT(
-        "what", 0, "QUANTITY", struct options, what, NULL,
+        "what", 0, "QUANTITY", struct picture_choice, what, NULL,
         "Particles: quantity shown by colour: damage (or pressure if nothing can crack), pressure, density, energy, "
         "distention, flaws..., or fragments."),
     OPTION_ROW_TEXT(
-        "view", 0, "VIEW", struct options, view, NULL,
+        "view", 0, "VIEW", struct picture_choice, view, NULL,
         "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the "
         "default "
         "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
         "plate)."),
-    OPTION_ROW_TEXT("axis", 0, "x|y|z", struct options, axis, NULL,
+    OPTION_ROW_TEXT("axis", 0, "x|y|z", struct picture_choice, axis, NULL,
                     "Particles: direction of view, at right angles to a cut (y)."),
-    OPTION_ROW_TEXT("at", 0, "LENGTH", struct options, at, NULL,
+    OPTION_ROW_TEXT("at", 0, "LENGTH", struct picture_choice, at, NULL,
                     "Particles: position of the cut on that axis (the middle of the heaviest fragment)."),
+    CHART_OPTIONS(struct picture_choice, chart),
 };
 
 const struct command picture_command = {
@@ -215,12 +37,12 @@ const struct command picture_command = {
     .doc =
         "Draws the body of a fields file (from simulate, replay, or a campaign that keeps fields). Grains in the\n"
         "plane: every fragment in its own colour, cracks inside fragments as lines. Particles in space: a cut, a view\n"
-        "from outside, or the fragments apart. The ending chooses the format: .png or .svg.",
+        "from outside, or the fragments apart. The ending chooses the format: .png, .svg or .pdf.",
     .examples =
         "clast picture disc.hdf disc.png\nclast picture sphere.hdf spalls.png --what fragments --axis z\n"
         "clast picture crater.hdf pores.png --what distention\nclast picture crater.hdf profile.png --view profile",
     .minimum_arguments = 2,
     .maximum_arguments = 2,
-    COMMAND_OPTIONS(struct options, rows),
+    COMMAND_OPTIONS(struct picture_choice, rows),
     .run = run,
 };

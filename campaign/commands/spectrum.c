@@ -4,6 +4,7 @@
 
 #include "analysis/pictures/picture.h"
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/chart_option.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
@@ -14,9 +15,10 @@ struct options {
   const char *where, *picture;
   bool plot, ascii;
   struct table_options table;
+  struct chart_options chart;
 };
 
-enum { POINTS_MAXIMUM = 8, WIDTH = 900, COLUMNS = 100 }; /* more curves in one picture cannot be told apart */
+enum { POINTS_MAXIMUM = 8, COLUMNS = 100 }; /* more curves in one picture cannot be told apart */
 
 /* Is a pure power law enough? Likelihood ratios against two rivals, in the same windows. */
 static void print_rivals(const struct pooled_rivals *rivals) {
@@ -75,14 +77,22 @@ static status make_series(struct store *store, bool with_rivals, struct drawing 
   return code;
 }
 
+static status draw_picture(const struct options *options, const struct drawing *drawing, struct error *error) {
+  const struct picture_page page = chart_option_page(options->picture, &options->chart);
+  const struct picture_words words =
+      {"Fragment mass spectrum, pooled over seeds",
+       "Bars: 95 % intervals over seeds. Grey: fragments are missing (too few particles)", "fragment mass m (kg)",
+       "F(m), fragments per run and kg"};
+  return picture_spectrum(&page, &words, drawing->count, drawing->series, error);
+}
+
 static status draw(struct store *store, const struct options *options, struct error *error) {
   struct drawing drawing = {0};
   status code = choose_points(store, options->point, &drawing, error);
   for (size_t i = 0; code == STATUS_OK && i < drawing.count; i++)
     code = make_series(store, options->plot, &drawing, i, error);
   if (code == STATUS_OK && options->picture)
-    code = picture_spectrum(options->picture, WIDTH, "fragment mass spectrum", "kg", drawing.count, drawing.series,
-                            error);
+    code = draw_picture(options, &drawing, error);
   for (size_t i = 0; code == STATUS_OK && options->plot && i < drawing.count; i++) {
     printf("%s%s\n", i ? "\n" : "", drawing.series[i].label);
     text_plot_spectrum(stdout, COLUMNS, !options->ascii, "kg", &drawing.series[i]);
@@ -133,6 +143,7 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("plot", 0, struct options, plot,
                     "Plot F(m) as text instead of the table, of --point or of the first eight points."),
     OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
+    CHART_OPTIONS(struct options, chart),
     TABLE_OPTIONS(struct options, table),
 };
 

@@ -183,16 +183,22 @@ static void spectra_are_drawn(void **state) {
                                       1.8 + 0.5 * (double)s, 0.0057, HUGE_VAL, EACH};
     fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH};
   }
-  assert_int_equal(picture_spectrum(at("spectrum.png"), 900, "disc-explosion, 40 runs", "kg/m", 2, series, NULL),
+  assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("spectrum.png"), .width = 900},
+                                    &(struct picture_words){"disc-explosion, 40 runs", NULL, "mass (kg)", "F(m)"}, 2,
+                                    series, NULL),
                    STATUS_OK);
-  assert_int_equal(picture_spectrum(at("spectrum.svg"), 600, NULL, "kg", 1, series, NULL), STATUS_OK);
+  assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("spectrum.svg"), .width = 600},
+                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, 1, series, NULL),
+                   STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("spectrum.png"), &dark, &coloured, &width, &height);
   assert_true(dark > 0.02 && dark < 0.3 && coloured > 0.003);
   series[0].count = 0;
   struct error error;
-  assert_int_equal(picture_spectrum(at("none.png"), 600, NULL, "kg", 1, series, &error), STATUS_USAGE);
+  assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("none.png"), .width = 600},
+                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, 1, series, &error),
+                   STATUS_USAGE);
   free(bins[0]);
   free(bins[1]);
 }
@@ -207,7 +213,8 @@ static void maps_are_drawn(void **state) {
   }
   points[7][2] = NAN;
   const char *const x = "threshold.strain", *const y = "beam.threshold.angle (deg)";
-  assert_int_equal(picture_map(at("map.png"), 900, "beta over both thresholds", "beta", x, y, 24,
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("map.png"), .width = 900},
+                               &(struct picture_words){"beta over both thresholds", NULL, x, y}, "beta", 24,
                                (const double(*)[3])points, NULL),
                    STATUS_OK);
   double dark, coloured;
@@ -215,13 +222,20 @@ static void maps_are_drawn(void **state) {
   ink(at("map.png"), &dark, &coloured, &width, &height);
   assert_true(coloured > 0.3);
   const double loose[5][3] = {{2, 0.1, 5}, {1, 0.1, 4}, {2, 0.3, 7}, {1, 0.1, 4.5}, {3, 0.2, NAN}};
-  assert_int_equal(picture_map(at("loose.png"), 600, NULL, "M_1/M", "x", "y", 5, loose, NULL), STATUS_OK);
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("loose.png"), .width = 600},
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 5, loose, NULL),
+                   STATUS_OK);
   const double nowhere[1][3] = {{NAN, 1, 1}};
-  assert_int_equal(picture_map(at("none.png"), 600, NULL, "M_1/M", "x", "y", 1, nowhere, NULL), STATUS_USAGE);
-  assert_int_equal(picture_map(at("none.png"), 600, NULL, "M_1/M", "x", "y", 0, loose, NULL), STATUS_USAGE);
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 1, nowhere, NULL),
+                   STATUS_USAGE);
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 600},
+                               &(struct picture_words){NULL, NULL, "x", "y"}, "M_1/M", 0, loose, NULL),
+                   STATUS_USAGE);
   for (int i = 0; i < 24; i++)
     points[i][2] = NAN;
-  assert_int_equal(picture_map(at("none.png"), 900, NULL, "beta", x, y, 24, (const double(*)[3])points, NULL),
+  assert_int_equal(picture_map(&(struct picture_page){.path = at("none.png"), .width = 900},
+                               &(struct picture_words){NULL, NULL, x, y}, "beta", 24, (const double(*)[3])points, NULL),
                    STATUS_USAGE);
 }
 
@@ -232,87 +246,130 @@ static void profiles_are_drawn(void **state) {
     x[i] = 0.003 * i, alpha[i] = 1.5 - 0.5 * exp(-0.1 * i), damage[i] = i < 20;
   alpha[7] = NAN; /* a gap */
   const struct picture_profile panels[] = {{"distention", alpha, {HUGE_VAL, -HUGE_VAL}}, {"damage", damage, {0, 1}}};
-  assert_int_equal(picture_profile(at("profile.png"), 900, "Below a crater", "depth (m)", 40, x, 2, panels, NULL),
+  assert_int_equal(picture_profile(&(struct picture_page){.path = at("profile.png"), .width = 900},
+                                   &(struct picture_words){"Below a crater", NULL, "depth (m)", NULL}, 40, x, 2, panels,
+                                   NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("profile.png"), &dark, &coloured, &width, &height);
   assert_true(width == 900 && height > 500 && coloured > 0.002); /* two lines of 2.7 pixels and dots on them */
-  assert_int_equal(picture_profile(at("flat.svg"), 600, NULL, "x", 40, x, 1,
+  assert_int_equal(picture_profile(&(struct picture_page){.path = at("flat.svg"), .width = 600},
+                                   &(struct picture_words){NULL, NULL, "x", NULL}, 40, x, 1,
                                    &(struct picture_profile){"zero", (double[40]){0}, {HUGE_VAL, -HUGE_VAL}}, NULL),
                    STATUS_OK);
-  assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 1, x, 1, panels, NULL), STATUS_USAGE);
-  assert_int_equal(picture_profile(at("none.png"), 600, NULL, "x", 40, x, 0, panels, NULL), STATUS_USAGE);
+  assert_int_equal(picture_profile(&(struct picture_page){.path = at("none.png"), .width = 600},
+                                   &(struct picture_words){NULL, NULL, "x", NULL}, 1, x, 1, panels, NULL),
+                   STATUS_USAGE);
+  assert_int_equal(picture_profile(&(struct picture_page){.path = at("none.png"), .width = 600},
+                                   &(struct picture_words){NULL, NULL, "x", NULL}, 40, x, 0, panels, NULL),
+                   STATUS_USAGE);
 }
 
-/* Where there is blue and where there is red, in the middle of the lines: pixels of each hue in a part of the picture.
+/* The whole of a file. */
+static char *text_of(const char *path) {
+  static char text[200000];
+  FILE *in = fopen(path, "r");
+  assert_non_null(in);
+  text[fread(text, 1, sizeof text - 1, in)] = '\0';
+  fclose(in);
+  return text;
+}
+
+static status curves(const char *name, size_t count, const struct picture_curve *curve) {
+  return picture_curves(&(struct picture_page){.path = at(name), .width = 900, .keep_script = true},
+                        &(struct picture_words){"M_1/M", "seeds", "k (1/m^3)", "largest fraction"}, count, curve, NULL);
+}
+
+/* The numbers that gnuplot gets are the ones given, and a gap stays one; the axis is logarithmic from a factor of 20.
  */
-static int hued(const char *path, bool red, double x0, double x1, double y0, double y1) {
-  cairo_surface_t *surface = cairo_image_surface_create_from_png(path);
-  assert_int_equal(cairo_surface_status(surface), CAIRO_STATUS_SUCCESS);
-  const unsigned char *data = cairo_image_surface_get_data(surface);
-  const int width = cairo_image_surface_get_width(surface), height = cairo_image_surface_get_height(surface);
-  const int stride = cairo_image_surface_get_stride(surface);
-  int count = 0;
-  for (int y = (int)(y0 * height); y < (int)(y1 * height); y++)
-    for (int x = (int)(x0 * width); x < (int)(x1 * width); x++) {
-      const unsigned char *p = data + y * stride + 4 * x; /* blue, green, red */
-      count += red ? p[2] > p[0] + 60 : p[0] > p[2] + 60;
-    }
-  cairo_surface_destroy(surface);
-  return count;
-}
-
 static void curves_are_drawn(void **state) {
   (void)state;
-  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95},
-                                      {10, 0.9, 0.85, 0.95},
-                                      {100, 0.9, 0.85, 0.95}}; /* no gap between them in log x */
-  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1}, {10, NAN, 0, 0}, {100, 0.1, NAN, NAN}};
-  const struct picture_curve curves[] = {{NULL, 3, high}, {NULL, 3, low}};
-  assert_int_equal(picture_curves(at("curves.png"), 900, "M_1/M", "k (1/m^3)", "largest fraction", 2, curves, NULL),
-                   STATUS_OK);
+  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95}, {10, 0.9, 0.85, 0.95}, {100, 0.9, 0.85, 0.95}};
+  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1}, {10, NAN, 0, 0}, {100, 0.125, NAN, NAN}};
+  const struct picture_curve both[] = {{"high", 3, high}, {"low", 3, low}};
+  assert_int_equal(curves("curves.png", 2, both), STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("curves.png"), &dark, &coloured, &width, &height);
-  assert_true(width == 900); /* no legend, no room for one */
-  assert_true(hued(at("curves.png"), false, 0.2, 0.9, 0.1, 0.4) > 1000 &&
-              hued(at("curves.png"), true, 0.2, 0.9, 0.1, 0.4) == 0);
-  assert_true(hued(at("curves.png"), true, 0, 1, 0.6, 0.9) > 100);     /* dots */
-  assert_true(hued(at("curves.png"), true, 0.3, 0.85, 0.1, 0.9) == 0); /* and no line across a gap */
-  /* the dot in the middle of the decades stands in the middle of the axis; a bar is taller than a dot */
-  const double middle = (7.5 + 0.5 * (46 - 8.5)) / 46;
-  const int dot = hued(at("curves.png"), false, middle - 0.01, middle + 0.01, 0, 1),
-            line = hued(at("curves.png"), false, middle - 0.11, middle - 0.09, 0, 1);
-  assert_true(dot > 3 * line && line > 20);
-  assert_true(hued(at("curves.png"), false, middle - 0.002, middle + 0.002, 0, 1) >
-              80); /* a dot alone: 13 lines of 4 pixels */
-  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN},
-                                           {10, 0.9, NAN, NAN},
-                                           {19, 0.9, NAN, NAN}}; /* below a factor of 20: linear */
-  assert_int_equal(picture_curves(at("narrow.png"), 900, NULL, "x", "y", 1,
-                                  &(struct picture_curve){"one label", 3, short_way}, NULL),
-                   STATUS_OK);
-  ink(at("narrow.png"), &dark, &coloured, &width, &height);
-  assert_true(width > 950);
-  const double share = middle * 900 / width;
-  assert_true(hued(at("narrow.png"), false, share - 0.01, share + 0.01, 0, 0.2) >
-              2 * hued(at("narrow.png"), false, share + 0.05, share + 0.07, 0, 0.2));
-  const struct picture_mean uneven[] = {{1, 0.2, 0.1, 0.8},
-                                        {3, 0.2, 0.1, 0.8}}; /* bars reach to their ends, whatever lies between */
-  assert_int_equal(picture_curves(at("uneven.png"), 900, NULL, "x", "y", 1, &(struct picture_curve){NULL, 2, uneven},
-                                  NULL),
-                   STATUS_OK);
-  const int above = hued(at("uneven.png"), false, 0, 1, 0, 0.65), below = hued(at("uneven.png"), false, 0, 1, 0.8, 1);
-  assert_true(above > 5 * below && below > 10);
-  assert_int_equal(picture_curves(at("one.svg"), 600, NULL, "x", "y", 1, &(struct picture_curve){"lonely", 1, high},
-                                  NULL),
-                   STATUS_OK);
-  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 0, NULL, NULL), STATUS_USAGE);
-  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 1, &(struct picture_curve){NULL, 1, &low[1]},
-                                  NULL),
-                   STATUS_USAGE);
-  assert_int_equal(picture_curves(at("none.png"), 600, NULL, "x", "y", 9, curves, NULL), STATUS_USAGE);
+  assert_true(width == 900 && coloured > 0.005);
+  assert_string_equal(text_of(at("curves.dat")), "# x mean low high\n1 0.9 0.85 0.95\n10 0.9 0.85 0.95\n"
+                                                 "100 0.9 0.85 0.95\n\n\n# x mean low high\n1 0.1 NaN NaN\n"
+                                                 "10 NaN NaN NaN\n100 0.125 NaN NaN\n\n\n");
+  const char *script = text_of(at("curves.gp"));
+  assert_non_null(strstr(script, "\nlog_x = 1\n"));
+  assert_non_null(strstr(script, "\noutput_file = './curves.png'\n"));
+  assert_non_null(strstr(script, "0xD55E00")); /* vermilion of Okabe and Ito */
+  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN}, {19, 0.9, NAN, NAN}};
+  assert_int_equal(curves("narrow.pdf", 1, &(struct picture_curve){"one label", 2, short_way}), STATUS_OK);
+  assert_non_null(strstr(text_of(at("narrow.gp")), "\nlog_x = 0\n"));
+  assert_memory_equal(text_of(at("narrow.pdf")), "%PDF", 4);
+  assert_int_equal(curves("one.svg", 1, &(struct picture_curve){"lonely", 1, high}), STATUS_OK);
+  assert_non_null(strstr(text_of(at("one.svg")), "lonely"));
+  assert_int_equal(curves("none.png", 0, NULL), STATUS_USAGE);
+  assert_int_equal(curves("none.png", 1, &(struct picture_curve){NULL, 1, &low[1]}), STATUS_USAGE);
+  assert_int_equal(curves("none.png", 9, both), STATUS_USAGE);
+}
+
+/* Text of users reaches the picture as text: no command, no markup, no file. */
+static void hostile_text_is_text(void **state) {
+  (void)state;
+  const struct picture_mean mean[] = {{1, 2, 1, 3}, {2, 3, 2, 4}};
+  const char *evil = "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n\n! touch hacked\n"
+                     "\x01\xff\xc3 'end";
+  const struct picture_curve curve = {evil, 2, mean};
+  struct picture_page page = {.path = at("| touch hacked ;'`touch hacked`.svg"), .width = 900, .keep_script = true};
+  char path[512];
+  snprintf(path, sizeof path, "%s", page.path);
+  page.path = path;
+  struct error error = {0};
+  if (picture_curves(&page, &(struct picture_words){evil, evil, evil, evil}, 1, &curve, &error))
+    fail_msg("%s", error.message);
+  const char *svg = text_of(path);
+  assert_non_null(strstr(svg, "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n"));
+  assert_null(strchr(svg, 1));
+  assert_int_not_equal(access("hacked", F_OK), 0);
+  assert_int_not_equal(access(at("hacked"), F_OK), 0);
+}
+
+static void bars_are_drawn(void **state) {
+  (void)state;
+  const struct picture_bar bars[] = {{0.1, 0.05, 0.2}, {0.7, NAN, NAN}, {0.3, 0.2, 0.4}, {0.8, 0.7, 0.9}};
+  const char *const names[] = {"impact speed", "seed"}, *const groups[] = {"first order", "total"};
+  const struct picture_page page = {.path = at("bars.png"), .width = 900};
+  const struct picture_words words = {"Indices", NULL, "share of the variance", NULL};
+  assert_int_equal(picture_bars(&page, &words, 2, names, 2, groups, bars, NULL), STATUS_OK);
+  double dark, coloured;
+  int width, height;
+  ink(at("bars.png"), &dark, &coloured, &width, &height);
+  assert_true(coloured > 0.1); /* 0.1 to 0.8 of an axis up to 1, in four bars of a tenth of the height */
+  assert_int_equal(picture_bars(&page, &words, 0, names, 2, groups, bars, NULL), STATUS_USAGE);
+}
+
+/* Without gnuplot, with a template that gnuplot refuses, and with a folder without templates. */
+static void missing_gnuplot_is_told(void **state) {
+  (void)state;
+  const struct picture_mean mean[] = {{1, 2, 1, 3}, {2, 3, 2, 4}};
+  const struct picture_curve curve = {"a", 2, mean};
+  struct picture_page page = {.path = "missing.png", .width = 900};
+  struct error error = {0};
+  char path[4096];
+  snprintf(path, sizeof path, "%s", getenv("PATH"));
+  setenv("PATH", "/nowhere", 1);
+  assert_int_equal(picture_curves(&page, &(struct picture_words){0}, 1, &curve, &error), STATUS_MISSING);
+  assert_non_null(strstr(error.message, "apt-get install gnuplot-nox"));
+  setenv("PATH", path, 1);
+  page.templates = folder;
+  assert_int_equal(picture_curves(&page, &(struct picture_words){0}, 1, &curve, &error), STATUS_MISSING);
+  const char *const names[] = {"frame.gp", "lines.gp"};
+  for (int i = 0; i < 2; i++) {
+    FILE *out = fopen(at(names[i]), "w");
+    fputs(i ? "plot nonsense from here\n" : "set output output_file\n", out);
+    fclose(out);
+  }
+  assert_int_equal(picture_curves(&page, &(struct picture_words){0}, 1, &curve, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "missing.gp"));
+  assert_int_not_equal(access("missing.png", F_OK), 0);
 }
 
 static void errors_leave_nothing(void **state) {
@@ -348,15 +405,39 @@ int main(int count, char **arguments) {
       return 1;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fragments_are_drawn), cmocka_unit_test(spectra_are_drawn),
-      cmocka_unit_test(maps_are_drawn),      cmocka_unit_test(profiles_are_drawn),
-      cmocka_unit_test(curves_are_drawn),    cmocka_unit_test(errors_leave_nothing),
+      cmocka_unit_test(fragments_are_drawn),  cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(maps_are_drawn),       cmocka_unit_test(profiles_are_drawn),
+      cmocka_unit_test(curves_are_drawn),     cmocka_unit_test(hostile_text_is_text),
+      cmocka_unit_test(bars_are_drawn),       cmocka_unit_test(missing_gnuplot_is_told),
+      cmocka_unit_test(errors_leave_nothing),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
-    const char *names[] = {"one.png", "two.png",   "two.svg",     "spectrum.png", "spectrum.svg",
-                           "map.png", "loose.png", "curves.png",  "narrow.png",   "uneven.png",
-                           "one.svg", "nan.png",   "profile.png", "flat.svg"};
+    const char *names[] = {"one.png",
+                           "two.png",
+                           "two.svg",
+                           "spectrum.png",
+                           "spectrum.svg",
+                           "map.png",
+                           "loose.png",
+                           "curves.png",
+                           "curves.gp",
+                           "curves.dat",
+                           "narrow.pdf",
+                           "narrow.gp",
+                           "narrow.dat",
+                           "one.gp",
+                           "one.dat",
+                           "bars.png",
+                           "frame.gp",
+                           "lines.gp",
+                           "| touch hacked ;'`touch hacked`.svg",
+                           "| touch hacked ;'`touch hacked`.gp",
+                           "| touch hacked ;'`touch hacked`.dat",
+                           "one.svg",
+                           "nan.png",
+                           "profile.png",
+                           "flat.svg"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
       unlink(at(names[i]));
     if (sweep(folder) != 0)

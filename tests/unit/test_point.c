@@ -175,7 +175,8 @@ static void runs_that_count_in_order(void **state) {
   assert_int_equal(series.fits, 1);
   assert_near(series.fit->beta, rows[POINT_ESTIMATES - 2].exponent.fit.beta, 0); /* masses, from 5 */
   assert_near(series.fit->fragments_per_run * (RUNS - 1), (double)rows[POINT_ESTIMATES - 2].exponent.fit.n, 1e-9);
-  OK(picture_spectrum("test-point.png", 600, "a point", "kg", 1, &series, &error));
+  OK(picture_spectrum(&(struct picture_page){.path = "test-point.png", .width = 600},
+                      &(struct picture_words){"a point", NULL, "mass (kg)", "F(m)"}, 1, &series, &error));
   assert_int_equal(unlink("test-point.png"), 0);
   point_curve_release(&curve);
   point_release(&point);
@@ -188,7 +189,9 @@ static void runs_that_count_in_order(void **state) {
   OK(point_curve_make(&point, "none", &curve, &error));
   series = point_curve_series(&curve);
   assert_true(series.count == 0 && series.fits == 0);
-  assert_int_equal(picture_spectrum("test-point.png", 600, "a point", "kg", 1, &series, &error), STATUS_USAGE);
+  assert_int_equal(picture_spectrum(&(struct picture_page){.path = "test-point.png", .width = 600},
+                                    &(struct picture_words){"a point", NULL, "mass (kg)", "F(m)"}, 1, &series, &error),
+                   STATUS_USAGE);
   assert_int_not_equal(access("test-point.png", F_OK), 0);
   point_curve_release(&curve);
   point_release(&point);

@@ -37,15 +37,17 @@ static const struct field rows[] = {
                           "two equal discs run into each other",
            .doc = "The protocol: what is done to the body.", .source = "K99 section 3"),
 
-    REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .when = DISCS, .doc = "Diameter of the disc.", .source = "K99 table 1"),
+    REAL(body.diameter, "m", 0.4, 1e-6, 1e6, .when = DISCS, .label = "diameter of the body",
+         .doc = "Diameter of the disc.", .source = "K99 table 1"),
     COUNT(body.columns, 40, 1, 10000, .when = BLOCKS, .doc = "Grains along the block's width (x)."),
     COUNT(body.rows, 20, 2, 10000, .when = BLOCKS,
           .doc = "Grains along the block's height (y): the direction of the load or of the shot."),
 
-    REAL(grain.density, "kg/m^3", 5000, 1e-3, 1e6, .doc = "Mass density of the grains.", .source = "K99 table 1"),
-    REAL(grain.young_modulus, "Pa", 1e9, 1, 1e15, .doc = "Y: modulus of the repulsion of overlapping grains.",
-         .source = "K99 eq. 2 and table 1"),
-    REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5,
+    REAL(grain.density, "kg/m^3", 5000, 1e-3, 1e6, .label = "density of the grains",
+         .doc = "Mass density of the grains.", .source = "K99 table 1"),
+    REAL(grain.young_modulus, "Pa", 1e9, 1, 1e15, .label = "Young's modulus of the grains Y",
+         .doc = "Y: modulus of the repulsion of overlapping grains.", .source = "K99 eq. 2 and table 1"),
+    REAL(grain.spacing, "m", 0.01069, 1e-9, 1e5, .label = "spacing of the grains",
          .doc =
              "Grid constant of the random lattice: the mean size of a grain. The default gives about 1100 grains in a "
              "disc of 0.4 m.",
@@ -55,16 +57,19 @@ static const struct field rows[] = {
                 "a. 0 is a square lattice, 1 uses the whole grid square.",
          .source = "K99 section 2.1; the paper gives no value for its runs"),
 
-    REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15,
+    REAL(beam.young_modulus, "Pa", 5e8, 1, 1e15, .label = "Young's modulus of the beams E",
          .doc = "E: modulus of the beams that join neighbouring grains; the shear modulus is E/2.",
          .source = "K99 eqs. 7-9 and table 1"),
 
     SWITCH(threshold.breaking, 1, .doc = "Beams may break. Off: a purely elastic body."),
     REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .when = "threshold.breaking=true",
-         .doc = "t_epsilon: strain at which an unbent beam breaks.", .source = "K99 eq. 13"),
+         .label = "threshold of beams in strain t_ε", .doc = "t_epsilon: strain at which an unbent beam breaks.",
+         .source = "K99 eq. 13"),
     REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .when = "threshold.breaking=true",
+         .label = "threshold of beams in angle t_Θ",
          .doc = "t_Theta: end rotation at which a hardly stretched beam breaks.", .source = "K99 eq. 13"),
     REAL(threshold.modulus, "1", NAN, 0.1, 1e6, .flags = FIELD_MAY_BE_OFF, .when = "threshold.breaking=true",
+         .label = "Weibull modulus of the thresholds",
          .doc = "Weibull modulus of thresholds drawn for each beam, with the two thresholds above as the law's scales. "
                 "off: all beams have the same thresholds.",
          .source = "off is K99 section 2.3; the law is an option beyond the paper"),
@@ -90,7 +95,7 @@ static const struct field rows[] = {
                "Damping and friction act between grains that a beam joins, too. They decide the outcome more than any "
                "threshold does."),
 
-    REAL(charge.energy, "J/m", 5e4, 1e-12, 1e18, .when = "kind=disc-explosion",
+    REAL(charge.energy, "J/m", 5e4, 1e-12, 1e18, .when = "kind=disc-explosion", .label = "energy of the charge",
          .doc =
              "E_o: kinetic energy given to the neighbours of the central grain, per metre of thickness. Each starts "
              "perpendicular to the common side with a speed proportional to side over mass; the central grain is the "
@@ -98,14 +103,14 @@ static const struct field rows[] = {
          .source = "K99 section 3.3.1 and table 1 (5e9 erg per cm)"),
 
     REAL(impact.speed, "m/s", 400, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=block-impact",
-         .doc = "Speed of the grain in the middle of the lower side, directed into the block.",
+         .label = "impact speed", .doc = "Speed of the grain in the middle of the lower side, directed into the block.",
          .source = "K99 figure II"),
     REAL(impact.angle, "rad", 0, -1.5707963267948966, 1.5707963267948966, .when = "kind=block-impact",
-         .doc = "Angle between that velocity and the inward normal, positive towards +x."),
+         .label = "impact angle", .doc = "Angle between that velocity and the inward normal, positive towards +x."),
 
     CHOICE(loading.direction, directions, .when = "kind=uniaxial",
            .choice_docs = "the sides move apart\nthe sides move towards each other", .doc = "Sense of the load."),
-    REAL(loading.rate, "1/s", 0.5, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = LOADED,
+    REAL(loading.rate, "1/s", 0.5, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = LOADED, .label = "strain rate",
          .doc = "Strain rate once the sides move at constant speed (each side moves at half of rate times height).",
          .source = "K99 section 3.1; the paper gives no value"),
     REAL(loading.ramp, "s", 5e-3, 0, 1e3, .when = LOADED,
@@ -119,6 +124,7 @@ static const struct field rows[] = {
              "to strain_end."),
 
     REAL(collision.speed, "m/s", 200, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=disc-collision",
+         .label = "collision speed",
          .doc = "Speed of approach of the two discs; each has half of it in their common frame."),
     REAL(collision.impact_parameter, "1", 0, 0, 1, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=disc-collision",
          .doc = "Distance of the centres across the approach, over the diameter: 0 is head-on."),

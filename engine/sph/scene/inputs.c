@@ -148,13 +148,16 @@ static const struct field rows[] = {
                .choice_docs =
                    "projectile.radius and the like\na sphere of impact.mass\na sphere with impact.specific_energy",
                .doc = "What decides the projectile's size."),
-    REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .doc = "Mass of the projectile."),
+    REAL(impact.mass, "kg", 2e-4, 1e-30, 1e30, .when = "impact.projectile=mass", .label = "mass of the projectile",
+         .doc = "Mass of the projectile."),
     REAL(impact.specific_energy, "J/kg", 1000, 1e-12, 1e12, .when = "impact.projectile=specific-energy",
+         .label = "specific impact energy Q",
          .doc = "Q: kinetic energy of the projectile over the target's mass; its mass follows from that and from the "
                 "speed."),
-    REAL(impact.speed, "m/s", 3200, 0, 1e6, .when = "kind=impact",
+    REAL(impact.speed, "m/s", 3200, 0, 1e6, .when = "kind=impact", .label = "impact speed",
          .doc = "Speed of the projectile; the target is at rest.", .source = "BA95 section 5.2"),
     REAL(impact.angle, "rad", 0, 0, 1.5707963267948966, .flags = FIELD_BELOW_MAXIMUM, .when = "kind=impact",
+         .label = "impact angle",
          .doc =
              "Angle between the flight and the inward normal where the projectile hits (the target's upper side, z).",
          .source = "BA95 section 5.2"),
@@ -181,10 +184,11 @@ static const struct field rows[] = {
     REAL(vibration.speed, "m/s", 1, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=vibration",
          .doc = "Speed of the ends at the start."),
     REAL(collision.speed, "m/s", 50, 0, 1e6, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=collision",
-         .doc = "Speed of approach; each body has half of it.", .source = "Gray, Monaghan & Swift 2001"),
+         .label = "collision speed", .doc = "Speed of approach; each body has half of it.",
+         .source = "Gray, Monaghan & Swift 2001"),
     REAL(collision.gap, "m", NAN, 0, 1e9, .flags = FIELD_DERIVED, .when = "kind=collision",
          .doc = "Distance of the surfaces at the start; two particle spacings unless given."),
-    REAL(piston.speed, "m/s", 458, 0, 1e5, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=piston",
+    REAL(piston.speed, "m/s", 458, 0, 1e5, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=piston", .label = "piston speed",
          .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
          .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
 
@@ -285,6 +289,7 @@ static const struct field rows[] = {
          .doc = "Fracture counts as over when the mean damage grows by less than this during stop.quiet_time."),
 
     COUNT(fidelity.particles, 10000, 1, 2e9, .when = "kind=impact|stretch|vibration|collision",
+          .label = "number of particles",
           .doc =
               "Number of particles of the target, or of each body of a collision; the lattice may change it a little."),
     COUNT(fidelity.points, 400, 1, 1e6, .when = "kind=piston",

@@ -1,0 +1,53 @@
+/* Charts by gnuplot: a template, the words and numbers that it needs, and the data. For the picture_*.c files only.
+ *
+ * The templates are analysis/pictures/templates/NAME.gp. They are compiled in; a folder with files of the same names
+ * replaces them. A chart becomes a script (its variables, then frame.gp, then the template) and a file of numbers in a
+ * folder of its own, where gnuplot runs. The script holds text from users, such as the names of campaigns, only as
+ * quoted strings that gnuplot does not interpret, and it names only files of that folder. */
+#ifndef CLAST_ANALYSIS_PICTURES_CHART_H
+#define CLAST_ANALYSIS_PICTURES_CHART_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "analysis/pictures/picture.h"
+
+struct chart; /* opaque */
+
+/* NULL: no memory. `template` is borrowed: "lines" for templates/lines.gp. */
+struct chart *chart_new(const char *template);
+/* Sets a variable of the script. Text: line ends stay, other control characters become blanks, bytes that are no UTF-8
+ * become '?'. NULL is "". */
+void chart_text(struct chart *chart, const char *name, const char *text);
+void chart_number(struct chart *chart, const char *name, double value);
+/* An array of `count` texts; gnuplot's first has number 1. texts[i] may be NULL. */
+void chart_texts(struct chart *chart, const char *name, size_t count, const char *const *texts);
+/* An array of `count` numbers. */
+void chart_numbers(struct chart *chart, const char *name, size_t count, const double *values);
+/* The title, the line under it and the names of both axes, cut into lines that fit the page. */
+void chart_words(struct chart *chart, const struct picture_page *page, const struct picture_words *words);
+/* The legend of `count` labels below the frame: in how many columns, and the height of it in pixels. */
+double chart_legend(struct chart *chart, const struct picture_page *page, size_t count, const char *const *labels);
+
+/* Letters of a UTF-8 text, not bytes. */
+size_t chart_letters(const char *text);
+
+/* Numbers of the data file. A value that is not finite is written as NaN. chart_block_end ends a block: the template
+ * reads block b by `index b`, from 0. chart_columns writes a comment that names the columns. */
+void chart_columns(struct chart *chart, const char *names);
+void chart_row(struct chart *chart, size_t count, const double *values);
+void chart_block_end(struct chart *chart);
+
+/* Draws and frees the chart. The file appears under its name when it is whole. height: pixels for page->width.
+ * STATUS_MISSING: no gnuplot on this machine, or no such template in page->templates. STATUS_USAGE: the ending.
+ * STATUS_CONTENT: gnuplot refuses a template of page->templates. STATUS_IO. */
+status chart_draw(struct chart *chart, const struct picture_page *page, double height, struct error *error);
+void chart_free(struct chart *chart); /* NULL is fine */
+
+/* The templates that are compiled in, closed by NULL (generated at build time). */
+struct chart_template {
+  const char *name, *text;
+};
+extern const struct chart_template chart_templates[];
+
+#endif

@@ -1,0 +1,155 @@
+/* gnuplot as a child process. */
+#include "analysis/pictures/chart_run.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { PATH = 4096 };
+
+struct folder {
+  char path[PATH];
+  char script[300], data[300], picture[300]; /* names in it */
+};
+
+void chart_run_stem(const char *path, char *stem, size_t size) {
+  const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+  const char *dot = strrchr(base, '.');
+  snprintf(stem, size, "%.*s", (int)(dot ? (size_t)(dot - base) : strlen(base)), base);
+}
+
+static status fail(const char *path, struct error *error) {
+  return status_fail(error, STATUS_IO, "%s: cannot write the picture: %s. Is its folder there, writable and not full?",
+                     path, strerror(errno));
+}
+
+static void remove_file(const struct folder *folder, const char *name) {
+  char path[PATH + 512];
+  snprintf(path, sizeof path, "%s/%s", folder->path, name);
+  unlink(path);
+}
+
+static void remove_folder(const struct folder *folder) {
+  remove_file(folder, folder->script);
+  remove_file(folder, folder->data);
+  remove_file(folder, folder->picture);
+  remove_file(folder, "messages");
+  rmdir(folder->path);
+}
+
+static bool write_file(const struct folder *folder, const char *name, const char *text, size_t size) {
+  char path[PATH + 512];
+  snprintf(path, sizeof path, "%s/%s", folder->path, name);
+  FILE *out = fopen(path, "w");
+  if (!out)
+    return false;
+  const bool whole = fwrite(text, 1, size, out) == size;
+  return fclose(out) == 0 && whole;
+}
+
+/* gnuplot's exit code in *end; -1: it was killed. STATUS_MISSING: there is no gnuplot. */
+static status run_gnuplot(const struct folder *folder, int *end, struct error *error) {
+  posix_spawn_file_actions_t actions;
+  char script[302];
+  snprintf(script, sizeof script, "./%s", folder->script); /* a name may begin with a dash */
+  char *arguments[] = {"gnuplot", "-d", script, NULL};     /* -d: without start-up files */
+  pid_t child;
+  int state;
+  if (posix_spawn_file_actions_init(&actions))
+    return status_fail(error, STATUS_MEMORY, "no memory to start gnuplot");
+  posix_spawn_file_actions_addchdir_np(&actions, folder->path);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 2, "messages", O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int code = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (code == ENOENT)
+    return status_fail(error, STATUS_MISSING,
+                       "there is no gnuplot on this machine, which draws the charts of clast: `apt-get install "
+                       "gnuplot-nox`. Tables and --plot need none");
+  if (code)
+    return status_fail(error, STATUS_MEMORY, "gnuplot does not start: %s", strerror(code));
+  while (waitpid(child, &state, 0) < 0)
+    if (errno != EINTR)
+      return status_fail(error, STATUS_INTERNAL, "gnuplot was lost: %s", strerror(errno));
+  *end = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+  return STATUS_OK;
+}
+
+/* What gnuplot wrote, on one line. */
+static void read_messages(const struct folder *folder, char *text, size_t size) {
+  char path[PATH + 512];
+  snprintf(path, sizeof path, "%s/messages", folder->path);
+  FILE *in = fopen(path, "r");
+  size_t count = in ? fread(text, 1, size - 1, in) : 0;
+  if (in)
+    fclose(in);
+  text[count] = '\0';
+  for (size_t i = 0; i < count; i++)
+    if ((unsigned char)text[i] < ' ')
+      text[i] = ' ';
+}
+
+static status move(const struct folder *folder, const char *name, const char *to, struct error *error) {
+  char from[PATH + 512];
+  snprintf(from, sizeof from, "%s/%s", folder->path, name);
+  return rename(from, to) == 0 ? STATUS_OK : fail(to, error);
+}
+
+/* NAME.gp and NAME.dat beside the picture. */
+static status move_files(const struct picture_page *page, const struct folder *folder, struct error *error) {
+  char to[PATH + 8];
+  const char *dot = strrchr(page->path, '.');
+  const int stem = (int)(dot - page->path);
+  snprintf(to, sizeof to, "%.*s.gp", stem, page->path);
+  status code = move(folder, folder->script, to, error);
+  snprintf(to, sizeof to, "%.*s.dat", stem, page->path);
+  return code ? code : move(folder, folder->data, to, error);
+}
+
+static status draw(const struct picture_page *page, const struct folder *folder, struct error *error) {
+  char path[PATH + 512], messages[2000];
+  struct stat about;
+  int end = 0;
+  status code = run_gnuplot(folder, &end, error);
+  if (code)
+    return code;
+  snprintf(path, sizeof path, "%s/%s", folder->path, folder->picture);
+  if (end == 0 && stat(path, &about) == 0 && about.st_size > 0)
+    return page->keep_script && (code = move_files(page, folder, error))
+               ? code
+               : move(folder, folder->picture, page->path, error);
+  read_messages(folder, messages, sizeof messages);
+  return status_fail(error, page->templates ? STATUS_CONTENT : STATUS_IO, "%s: gnuplot drew nothing (exit %d): %s",
+                     page->path, end, *messages ? messages : "it does not say why; is the disk full?");
+}
+
+status chart_run(const struct picture_page *page, const struct chart_run_files *files, struct error *error) {
+  struct folder folder;
+  char stem[256];
+  if (strlen(page->path) + 16 > PATH)
+    return status_fail(error, STATUS_USAGE, "the name of the picture is too long");
+  chart_run_stem(page->path, stem, sizeof stem);
+  snprintf(folder.path, sizeof folder.path, "%s.XXXXXX", page->path);
+  snprintf(folder.script, sizeof folder.script, "%s.gp", stem);
+  snprintf(folder.data, sizeof folder.data, "%s.dat", stem);
+  snprintf(folder.picture, sizeof folder.picture, "%s%s", stem, strrchr(page->path, '.'));
+  if (!mkdtemp(folder.path))
+    return fail(page->path, error);
+  status code = write_file(&folder, folder.script, files->script, files->script_size) &&
+                        write_file(&folder, folder.data, files->data, files->data_size)
+                    ? STATUS_OK
+                    : fail(page->path, error);
+  if (code == STATUS_OK)
+    code = draw(page, &folder, error);
+  remove_folder(&folder);
+  return code;
+}

@@ -1,0 +1,13 @@
+# Means over an input with their 95 % intervals, a line for each value of a second input.
+# Block i - 1 of the data is line i: x, mean, low, high.
+if (log_x) { set logscale x }
+if (log_x) { set format x (x_high / x_low > 1e4 ? '10^{%T}' : '%g') }
+if (log_x && x_high / x_low < 100) {
+  do for [d = floor(log10(x_low)):ceil(log10(x_high))] { set xtics add (sprintf('%g', 2 * 10.**d) 2 * 10.**d, sprintf('%g', 5 * 10.**d) 5 * 10.**d) }
+}
+set xrange [x_low:x_high]
+set autoscale yfix
+set offsets 0, 0, graph 0.05, graph 0.05
+set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
+plot for [i = 1:series] data index i - 1 using 1:2:3:4 with yerrorbars lt i dt 1 ps 1.2 notitle, \
+     for [i = 1:series] data index i - 1 using 1:2 with linespoints lt i ps 1.2 title label[i]

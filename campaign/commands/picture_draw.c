@@ -1,0 +1,184 @@
+/* Draws the body of a fields file by what the file holds: grains in the plane, or particles in space. */
+#include "campaign/commands/picture_draw.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/unit.h"
+
+enum { WIDTH = 900 };
+
+static status draw_grains(const char *fields, const char *picture, const char *caption, struct error *error) {
+  struct picture_panel panel = {0};
+  status code = picture_body_read(fields, &panel.body, error);
+  if (code)
+    return code;
+  char numbers[160];
+  picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
+  code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
+  picture_body_clear(&panel.body);
+  return code;
+}
+
+/* A view by its name; NULL leaves *view as it is. */
+static status choose_view(const char *name, enum picture_view *view, struct error *error) {
+  static const char *const names[] = {[PICTURE_CUT] = "cut", [PICTURE_OUTSIDE] = "outside", [PICTURE_APART] = "apart"};
+  if (!name)
+    return STATUS_OK;
+  for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+    if (names[i] && strcmp(name, names[i]) == 0) {
+      *view = (enum picture_view)i;
+      return STATUS_OK;
+    }
+  return status_fail(error, STATUS_USAGE, "--view is cut, outside, apart or profile, not '%s'", name);
+}
+
+/* --what, --view, --axis and --at as a look; `what` NULL: fragments. */
+static status choose_look(const struct picture_choice *options, struct picture_look *look, const char **what,
+                          struct error *error) {
+  *what = options->what ? options->what : "damage";
+  if (strcmp(*what, "fragments") == 0)
+    *what = NULL;
+  *look = (struct picture_look){.view = *what ? PICTURE_CUT : PICTURE_APART, .axis = 1, .plane = NAN};
+  status code = choose_view(options->view, &look->view, error);
+  if (code)
+    return code;
+
+  const char *axis = options->axis ? options->axis : "y";
+  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
+    return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
+  look->axis = axis[0] - 'x';
+  if (!options->at)
+    return STATUS_OK;
+  if (look->view != PICTURE_CUT)
+    return status_fail(error, STATUS_USAGE, "--at is the place of a cut: give --view cut, too");
+  return unit_read(options->at, "m", &look->plane, error) ? STATUS_USAGE : STATUS_OK;
+}
+
+static void name_look(const struct picture_look *look, const struct picture_cloud *cloud, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = 0;
+  if (*cloud->engine)
+    used = (size_t)snprintf(text, size, "%s, seed %lld", cloud->engine, cloud->seed);
+  if (used < size && isfinite(cloud->time))
+    used += (size_t)snprintf(text + used, size - used, ", %.4g \xc2\xb5s", 1e6 * cloud->time);
+  if (used < size && look->view == PICTURE_CUT)
+    snprintf(text + used, size - used, isfinite(look->plane) ? ", cut at %c = %.4g m" : ", cut through the middle",
+             'x' + look->axis, look->plane);
+  else if (used < size && look->view == PICTURE_APART)
+    snprintf(text + used, size - used, ", fragments drawn apart");
+}
+
+/* Reads the quantity to colour by: --what, else damage, or the pressure of what cannot crack. NULL: fragments. */
+static status read_quantity(const char *fields, bool chosen, struct picture_cloud *cloud, const char **what,
+                            char unit[32], struct error *error) {
+  if (!*what)
+    return STATUS_OK;
+  if (!chosen) {
+    if (picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, NULL) == STATUS_OK)
+      return STATUS_OK;
+    *what = "pressure";
+  }
+  return picture_cloud_read_column(fields, cloud, *what, &cloud->value, unit, error);
+}
+
+static status draw_particles(const char *fields, const char *picture, const char *caption,
+                             const struct picture_choice *options, struct error *error) {
+  struct picture_look look;
+  struct picture_cloud cloud = {0};
+  const char *what;
+  char title[FIELD_TEXT_SIZE], numbers[200], unit[32] = "";
+  status code = choose_look(options, &look, &what, error);
+  if (code)
+    return code;
+  code = picture_cloud_read(fields, &cloud, error);
+  if (code)
+    return code;
+  code = read_quantity(fields, options->what != NULL, &cloud, &what, unit, error);
+  if (code)
+    goto cleanup;
+  name_look(&look, &cloud, title, sizeof title);
+  picture_particles_numbers(&cloud, numbers, sizeof numbers);
+  look.title = caption ? caption : title;
+  look.subtitle = numbers;
+  look.quantity = what;
+  look.unit = unit;
+  code = picture_particles(picture, WIDTH, &cloud, &look, error);
+cleanup:
+  picture_cloud_clear(&cloud);
+  return code;
+}
+
+/* Draws profiles along the axis: --what, or distention and damage. */
+static status draw_profile(const char *fields, const char *picture, const struct picture_choice *options,
+                           struct error *error) {
+  enum { MOST = 2 };
+  const char *names[MOST] = {options->what ? options->what : "distention", options->what ? NULL : "damage"};
+  struct picture_profile panel[MOST];
+  struct picture_cloud cloud;
+  double *depth = NULL, *values[MOST] = {NULL, NULL};
+  char unit[32] = "", labels[MOST][100], title[FIELD_TEXT_SIZE];
+  size_t count = 0, rows = 0, panels = 0;
+  status code = picture_cloud_read(fields, &cloud, error);
+  if (code)
+    goto cleanup;
+  code = picture_cloud_read_axis(fields, "depth", &depth, &count, unit, error);
+  if (code)
+    goto cleanup;
+  for (; panels < MOST && names[panels]; panels++) {
+    code = picture_cloud_read_axis(fields, names[panels], &values[panels], &rows, unit, error);
+    if (code)
+      goto cleanup;
+    if (rows != count) {
+      code = status_fail(error, STATUS_CONTENT, "%s is damaged: the columns of its profile differ in length", fields);
+      goto cleanup;
+    }
+    char shown[64];
+    field_label_unit(unit, shown, sizeof shown);
+    snprintf(labels[panels], sizeof labels[panels], *shown ? "%s (%s)" : "%s", names[panels], shown);
+    bool share = !strcmp(names[panels], "damage");
+    panel[panels] = (struct picture_profile){labels[panels],
+                                             values[panels],
+                                             {share ? 0 : HUGE_VAL, share ? 1 : -HUGE_VAL}};
+  }
+  name_look(&(struct picture_look){.view = PICTURE_OUTSIDE}, &cloud, title, sizeof title);
+  const struct picture_page page = chart_option_page(picture, &options->chart);
+  const struct picture_words words = {options->caption ? options->caption : title, NULL, "depth at the start (m)",
+                                      NULL};
+  code = picture_profile(&page, &words, count, depth, panels, panel, error);
+cleanup:
+  free(depth);
+  for (size_t k = 0; k < MOST; k++)
+    free(values[k]);
+  picture_cloud_clear(&cloud);
+  return code;
+}
+
+/* Grains in the plane have one picture only. An unreadable file is told before that. */
+static status refuse_options(const char *fields, struct error *error) {
+  struct picture_body body;
+  status code = picture_body_read(fields, &body, error);
+  if (code)
+    return code;
+  picture_body_clear(&body);
+  return status_fail(error, STATUS_USAGE,
+                     "%s: grains in the plane are drawn by their fragments; --what, --view, --axis and --at "
+                     "are for particles in space",
+                     fields);
+}
+
+status picture_draw(const char *fields, const char *picture, const struct picture_choice *options,
+                    struct error *error) {
+  if (!picture_cloud_in_file(fields)) {
+    if (options->what || options->view || options->axis || options->at)
+      return refuse_options(fields, error);
+    return draw_grains(fields, picture, options->caption, error);
+  }
+  if (!options->view || strcmp(options->view, "profile") != 0)
+    return draw_particles(fields, picture, options->caption, options, error);
+  if (options->axis || options->at)
+    return status_fail(error, STATUS_USAGE, "--axis and --at are for pictures of the body, not for --view profile");
+  return draw_profile(fields, picture, options, error);
+}

@@ -1,0 +1,16 @@
+/* What `clast picture` draws: the body of a fields file, or a profile. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_PICTURE_DRAW_H
+#define CLAST_CAMPAIGN_COMMANDS_PICTURE_DRAW_H
+
+#include "campaign/terminal/chart_option.h"
+
+/* The options of the command; NULL: not given. */
+struct picture_choice {
+  const char *caption, *what, *view, *axis, *at;
+  struct chart_options chart; /* of a profile */
+};
+
+/* STATUS_USAGE: options that do not suit the file; what the pictures return (analysis/pictures/picture.h). */
+status picture_draw(const char *fields, const char *picture, const struct picture_choice *options, struct error *error);
+
+#endif

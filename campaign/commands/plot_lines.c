@@ -1,0 +1,157 @@
+/* Collects the lines of a plot and draws them. */
+#include "campaign/commands/plot_lines.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_LINES = PICTURE_SERIES, MOST_MEANS = 1000, LABEL = 600 };
+
+struct line {
+  char value[200]; /* of the input that tells the lines apart */
+  int64_t version; /* results of another version are another line, they are never mixed */
+  char label[LABEL];
+  struct picture_mean *means; /* owned; room for MOST_MEANS */
+  size_t count;
+};
+
+struct plot_lines {
+  struct quantity quantity;
+  struct line line[MOST_LINES];
+  size_t count;
+};
+
+/* The line of this value and version, made if it is new. */
+static status find_line(struct plot_lines *plot, const char *value, int64_t version, struct line **found,
+                        struct error *error) {
+  for (size_t i = 0; i < plot->count; i++) {
+    *found = &plot->line[i];
+    if (strcmp((*found)->value, value) == 0 && (*found)->version == version)
+      return STATUS_OK;
+  }
+  if (plot->count == MOST_LINES)
+    return status_fail(error, STATUS_USAGE, "more than %d lines cannot be told apart: choose a --by with fewer values",
+                       MOST_LINES);
+
+  struct line *line = &plot->line[plot->count];
+  line->means = malloc(MOST_MEANS * sizeof *line->means);
+  if (!line->means)
+    return status_fail(error, STATUS_MEMORY, "out of memory");
+  snprintf(line->value, sizeof line->value, "%s", value);
+  line->version = version;
+  plot->count++;
+  *found = line;
+  return STATUS_OK;
+}
+
+static status add(void *context, const struct quantity_row *row, struct error *error) {
+  struct plot_lines *plot = context;
+  const struct query_value *x = &row->input[0];
+  if (x->kind == QUERY_TEXT)
+    return status_fail(error, STATUS_USAGE, "%s is no number: it can tell lines apart (--by), but is no axis",
+                       plot->quantity.column[0]);
+  if (x->kind == QUERY_NULL)
+    return STATUS_OK; /* off, or does not apply: it has no place on an axis of numbers */
+
+  char value[sizeof plot->line[0].value] = "";
+  if (plot->quantity.axes == 2 && row->input[1].kind == QUERY_TEXT)
+    snprintf(value, sizeof value, "%s", row->input[1].text);
+  else if (plot->quantity.axes == 2 && row->input[1].kind != QUERY_NULL)
+    snprintf(value, sizeof value, "%.6g", row->input[1].real);
+
+  struct line *line = NULL;
+  status code = find_line(plot, value, row->results_version, &line, error);
+  if (code)
+    return code;
+  if (line->count == MOST_MEANS)
+    return status_fail(error, STATUS_USAGE, "a line of more than %d points cannot be read", MOST_MEANS);
+  for (size_t i = 0; plot->quantity.exponent && i < line->count; i++)
+    if (line->means[i].x == x->real)
+      return status_fail(
+          error, STATUS_USAGE,
+          "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
+          plot->quantity.column[0], x->real);
+  line->means[line->count++] = (struct picture_mean){x->real, row->value, row->lower, row->upper};
+  return STATUS_OK;
+}
+
+static int ascending(const void *a, const void *b) {
+  double x = ((const struct picture_mean *)a)->x;
+  double y = ((const struct picture_mean *)b)->x;
+  return (x > y) - (x < y);
+}
+
+/* "weibull_k (1/m^3) = 5e+34"; the version is told only where there are several of them. */
+static void label_lines(struct plot_lines *plot, const char *by) {
+  bool several = false;
+  for (size_t i = 1; i < plot->count; i++)
+    several |= plot->line[i].version != plot->line[0].version;
+
+  const bool two = plot->quantity.axes == 2;
+  for (size_t i = 0; i < plot->count; i++) {
+    struct line *line = &plot->line[i];
+    char version[40] = "";
+    char input[LABEL - sizeof version] = "";
+    if (two && *line->value)
+      snprintf(input, sizeof input, "%s = %s", by, line->value);
+    else if (two)
+      snprintf(input, sizeof input, "%s: none", by);
+    if (several)
+      snprintf(version, sizeof version, "%sresults_version %lld", two ? ", " : "", (long long)line->version);
+    snprintf(line->label, sizeof line->label, "%s%s", input, version);
+    qsort(line->means, line->count, sizeof *line->means, ascending);
+  }
+}
+
+/* "threshold of beams in angle (rad): mean over seeds" */
+static void title_of(const struct quantity *quantity, const char *y, char *title, size_t size) {
+  char pooled[ASK_GROUP_POOLED], x[CHART_OPTION_LABEL];
+  chart_option_labels(quantity->pooled, pooled, sizeof pooled);
+  chart_option_label(quantity->column[0], x);
+  snprintf(title, size, "%s over %s: %s%s%s", y, x,
+           quantity->exponent ? "fit to all runs of a point" : "mean over seeds", *pooled ? " and " : "", pooled);
+  if (*title >= 'a' && *title <= 'z')
+    *title = (char)(*title - 'a' + 'A');
+}
+
+static status draw(struct store *store, struct plot_lines *plot, const struct picture_page *page, struct error *error) {
+  const struct quantity *quantity = &plot->quantity;
+  char x[CHART_OPTION_LABEL], by[CHART_OPTION_LABEL] = "", y[CHART_OPTION_LABEL], name[CHART_OPTION_LABEL];
+  char title[ASK_GROUP_POOLED + 3 * CHART_OPTION_LABEL], caption[1000];
+  status code = chart_option_axis(store, quantity->column[0], x, error);
+  if (code == STATUS_OK && quantity->axes == 2)
+    code = chart_option_axis(store, quantity->column[1], by, error);
+  if (code == STATUS_OK)
+    code = chart_option_axis(store, quantity->name, y, error);
+  if (code)
+    return code;
+  label_lines(plot, by);
+  struct picture_curve curves[MOST_LINES] = {0};
+  for (size_t i = 0; i < plot->count; i++) {
+    curves[i].label = *plot->line[i].label ? plot->line[i].label : NULL;
+    curves[i].count = plot->line[i].count;
+    curves[i].mean = plot->line[i].means;
+  }
+  chart_option_label(quantity->name, name);
+  title_of(quantity, name, title, sizeof title);
+  chart_option_caption(store, quantity->name, quantity->pooled, caption, sizeof caption);
+  return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
+}
+
+status plot_lines_draw(struct store *store, const char *x, const char *by, const char *quantity,
+                       const struct picture_page *page, struct error *error) {
+  const struct quantity_choice choice =
+      {.axis = {x, by},
+       .name = quantity,
+       .refusal = "a plot has one axis below (--x), at most one input that tells its lines apart (--by, another one), "
+                  "and one quantity"};
+  struct plot_lines plot = {0};
+  status code = quantity_read(store, &choice, &plot.quantity, add, &plot, error);
+  if (code == STATUS_OK)
+    code = draw(store, &plot, page, error);
+  if (code == STATUS_OK)
+    quantity_tell_resolution(store, plot.quantity.name, plot.quantity.pooled);
+  for (size_t i = 0; i < plot.count; i++)
+    free(plot.line[i].means);
+  return code;
+}

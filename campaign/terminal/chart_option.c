@@ -1,0 +1,81 @@
+/* Names of quantities and the page of a chart. */
+#include "campaign/terminal/chart_option.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "campaign/terminal/uncertainty.h"
+#include "db/ask/columns.h"
+#include "db/ask/resolution.h"
+#include "engine/engine.h"
+#include "engine/outcome.h"
+
+enum { WIDTH = 900 };
+
+struct picture_page chart_option_page(const char *path, const struct chart_options *options) {
+  return (struct picture_page){path, WIDTH, options && options->keep_script, options ? options->templates : NULL};
+}
+
+static const struct field *row_of(const struct field_table *table, const char *column) {
+  char name[256];
+  for (size_t i = 0; i < table->count; i++) {
+    field_column_name(table->rows[i].path, name, sizeof name);
+    if (strcmp(name, column) == 0)
+      return &table->rows[i];
+  }
+  return NULL;
+}
+
+void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]) {
+  if (strncmp(column, "beta", 4) == 0 && (column[4] == '\0' || column[4] == '_')) {
+    snprintf(label, CHART_OPTION_LABEL, "exponent \xce\xb2 of F(m) ~ m^-\xce\xb2");
+    return;
+  }
+  char plain[256];
+  field_column_name(column, plain, sizeof plain);
+  const struct field *row = row_of(&outcome_table, plain);
+  for (int input = 0; input < 2 && !row; input++) {
+    const char *name = strncmp(plain, "input_", 6) == 0 ? plain + 6 : plain; /* an input with the name of a result */
+    for (size_t i = 0; i < engine_count() && !row; i++)
+      row = row_of(input ? engine_at(i)->inputs : engine_at(i)->results, input ? name : plain);
+  }
+  if (row)
+    field_label(row, label, CHART_OPTION_LABEL);
+  else
+    field_label_path(column, label, CHART_OPTION_LABEL);
+}
+
+status chart_option_axis(struct store *store, const char *column, char label[CHART_OPTION_LABEL], struct error *error) {
+  char unit[64] = "", shown[96];
+  status code = ask_columns_unit(store, column, unit, sizeof unit, error);
+  chart_option_label(column, label);
+  field_label_unit(unit, shown, sizeof shown);
+  const size_t used = strlen(label);
+  if (*shown)
+    snprintf(label + used, CHART_OPTION_LABEL - used, " (%s)", shown);
+  return code;
+}
+
+void chart_option_labels(const char *paths, char *labels, size_t size) {
+  size_t used = 0;
+  labels[0] = '\0';
+  while (*paths && used < size) {
+    char path[256], label[CHART_OPTION_LABEL];
+    const size_t length = strcspn(paths, ",");
+    snprintf(path, sizeof path, "%.*s", (int)length, paths);
+    chart_option_label(path, label);
+    used += (size_t)snprintf(labels + used, size - used, "%s%s", used ? ", " : "", label);
+    paths += length;
+    paths += strspn(paths, ", ");
+  }
+}
+
+void chart_option_caption(struct store *store, const char *quantity, const char *pooled, char *caption, size_t size) {
+  struct ask_resolution resolution;
+  char text[UNCERTAINTY_TEXT] = "resolution: not known", names[ASK_GROUP_POOLED];
+  if (ask_resolution(store, 0, quantity, &resolution, NULL) == STATUS_OK)
+    uncertainty_resolution(&resolution, text);
+  chart_option_labels(pooled, names, sizeof names);
+  snprintf(caption, size, "Bars: 95 %% intervals over %s%s%s; %s", *pooled ? "points that differ in " : "seeds", names,
+           "", text);
+}
