@@ -18,6 +18,7 @@ static const struct command *const all[] = {
     &estimates_command,
     &stats_command,
     &spectrum_command,
+    &compare_command,
     &query_command,
     &plot_command,
     &map_command,

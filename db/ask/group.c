@@ -184,6 +184,20 @@ static status find_pooled(struct store *store, const struct names *axes, char po
   return code;
 }
 
+static const char quantities_sql[] =
+    "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
+    "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
+    "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)";
+
+status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error) {
+  struct names names = {.count = 0};
+  status code = resolve(store, quantity, "Quantity", quantities_sql, &names, error);
+  if (code == STATUS_OK && names.count != 1)
+    code = status_fail(error, STATUS_USAGE, "one quantity, not '%.128s'", quantity);
+  snprintf(name, ASK_GROUP_NAME, "%s", names.name[0]);
+  return code;
+}
+
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
                  char pooled[ASK_GROUP_POOLED], struct error *error) {
   struct names axes = {.count = 0}, results = {.count = 0};
@@ -191,12 +205,7 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
   if (result == STATUS_OK)
     result = resolve(store, by, "Axis", "SELECT column_name, path FROM axis ORDER BY path", &axes, error);
   if (result == STATUS_OK && quantities)
-    result =
-        resolve(store, quantities, "Quantity",
-                "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
-                "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
-                "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)",
-                &results, error);
+    result = resolve(store, quantities, "Quantity", quantities_sql, &results, error);
   if (result == STATUS_OK)
     result = find_pooled(store, &axes, pooled, error);
   if (result != STATUS_OK)

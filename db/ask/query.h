@@ -60,6 +60,10 @@ enum { ASK_GROUP_POOLED = 512 };
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
                  char pooled[ASK_GROUP_POOLED], struct error *error);
 
+/* The full name of one result column of the view runs from a unique ending of it. STATUS_USAGE names the known ones. */
+enum { ASK_GROUP_NAME = 128 };
+status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error);
+
 /* Two points that share seeds and have no input with two values: each may have inputs that the other lacks. That is
  * what a campaign leaves when it is computed once more by a program with a new input. ask_group counts the runs of
  * both. */

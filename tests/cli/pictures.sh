@@ -104,4 +104,21 @@ says "apt-get install gnuplot-nox"
 expect 0 env PATH=/nowhere "$clast" spectrum small.db --point 1 --plot # text needs none
 expect 0 "$clast" picture disc.h5 disc.pdf
 same "$(head -c 4 disc.pdf)" "%PDF" "a PDF"
-done_after 48
+
+# Points, campaigns and stores side by side: the difference is the table's own, with pairs of seeds.
+expect 0 "$clast" compare small.db:1 small.db:4 --csv
+python - <<'PY'
+import csv, sqlite3
+row, = csv.DictReader(open('out'))
+db = sqlite3.connect('file:small.db?mode=ro', uri=True)
+values = [dict(db.execute('select seed, largest_fraction from run where counts and point_id = ?', (p,))) for p in (1, 4)]
+mean = sum(values[1][s] - values[0][s] for s in values[0]) / 3
+assert row['pairs'] == '3' and abs(float(row['difference']) - mean) < 1e-12, (row, mean)
+PY
+expect 0 "$clast" compare small.db small.db:small --csv
+[ "$(grep -c . out)" -eq 5 ] || fail "four points beside themselves are four rows"
+expect 64 "$clast" compare small.db:1 small.db
+expect 64 "$clast" compare small.db:none small.db
+says "no campaign 'none'"
+expect 66 "$clast" compare none.db small.db
+done_after 53
