@@ -13,6 +13,7 @@ enum random_purpose { /* never changed: they are part of what a seed means */
                       RANDOM_DESIGN = 5,
                       RANDOM_SEED = 6,
                       RANDOM_RESAMPLE = 7,
+                      RANDOM_CELL = 8,
 };
 
 void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, uint64_t bits[4]);
@@ -20,5 +21,7 @@ void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, 
 double random_uniform(uint64_t bits);
 /* One uniform in [0,1): first word of (seed, purpose, item, draw). */
 double random_draw(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw);
+/* Uniform over rotations [Shoemake 1992]. */
+void random_rotation(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, double matrix[3][3]);
 
 #endif

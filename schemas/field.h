@@ -28,8 +28,9 @@ enum field_flags {
   FIELD_BELOW_MAXIMUM = 8, /* maximum itself is out of range */
   FIELD_DERIVED = 16,      /* inputs only: when not given, it follows from other inputs (engine_kind.complete). `number`
                             * is a placeholder until then, and the doc text says what it follows from */
-  FIELD_SILENT_DEFAULT = 32, /* FIELD_CHOICE only: the first choice is left out of the identity. For a choice that came
-                              * later and whose first value changes no bit: stored runs are still found */
+  FIELD_SILENT_DEFAULT = 32, /* FIELD_CHOICE and FIELD_REAL: the first choice, or the default, is left out of the
+                              * identity. For an input that came later and whose first value changes no bit: stored runs
+                              * are still found */
 };
 
 struct field {

@@ -46,6 +46,8 @@ static bool is_written(const struct field_table *table, const struct field *row,
   if (!(row->flags & FIELD_SILENT_DEFAULT))
     return true;
   field_get(row, object, &value);
+  if (row->kind == FIELD_REAL)
+    return value.number != row->number;
   return strcmp(value.text, row->choices[0]) != 0;
 }
 

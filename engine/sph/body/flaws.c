@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
@@ -149,6 +150,7 @@ void sph_flaws_free(struct sph_flaws *flaws) {
     return;
   free(flaws->first);
   free(flaws->log_strain);
+  sph_cells_free(flaws->cells);
   free(flaws);
 }
 
@@ -159,6 +161,7 @@ struct places {
   const struct sph_middle *middle;
   const struct sph_kd_tree *nearest;
   const unsigned char *exempt;
+  const struct sph_cells *cells; /* NULL: particles own flaws */
   uint64_t seed, body;
 };
 
@@ -175,7 +178,9 @@ static size_t nearest_particle(void *context, uint64_t flaw) {
   if (places->middle && sph_bodies_beyond(places->middle, point))
     return SPH_FLAWS_NOBODY;
   const size_t i = sph_kd_tree_find(places->nearest, point);
-  return places->exempt && places->exempt[i] ? SPH_FLAWS_NOBODY : i;
+  if (places->exempt && places->exempt[i])
+    return SPH_FLAWS_NOBODY;
+  return places->cells ? places->cells->of[i] : i;
 }
 
 /* Which particles are in the ends of the body. NULL without memory. */
@@ -196,43 +201,82 @@ static bool is_graded(const struct sph_particles *p, struct sph_range range) {
   return false;
 }
 
+/* Shares of the body's mass. NULL without memory. */
+static double *find_shares(const struct sph_particles *p, struct sph_range range, const struct sph_cells *cells) {
+  double *share = calloc(cells ? cells->count : range.n, sizeof *share);
+  for (size_t i = 0; share && i < range.n; i++)
+    share[cells ? cells->of[i] : i] += p->mass[range.first + i] / range.mass;
+  return share;
+}
+
+/* Cells of which all particles are exempt. NULL without memory. */
+static unsigned char *exempt_cells(const struct sph_cells *cells, const unsigned char *exempt) {
+  unsigned char *out = malloc(cells->count);
+  if (!out)
+    return NULL;
+  memset(out, 1, cells->count);
+  for (size_t i = 0; i < cells->particles; i++)
+    if (!exempt[i])
+      out[cells->of[i]] = 0;
+  return out;
+}
+
+/* Who may own flaws, with what share of the volume. */
+struct owners {
+  struct sph_cells *cells;   /* NULL: particles */
+  unsigned char *ends;       /* by particle: in the ends of the body; NULL: none is */
+  unsigned char *ends_cells; /* by cell: all of its particles are */
+  double *share;             /* by owner; NULL: equal */
+  struct sph_kd_tree *nearest;
+};
+
+static status find_owners(const struct sph_flaw_law *law, const struct sph_particles *p, struct sph_range range,
+                          const struct sph_middle *middle, struct owners *o, struct error *error) {
+  if (law->cell_width > 0) {
+    const status code = sph_cells_make(law->seed, law->body, law->cell_width, p, range, &o->cells, error);
+    if (code)
+      return code;
+  }
+  const bool unequal = o->cells || is_graded(p, range);
+  o->ends = middle ? find_ends(p, range, middle) : NULL;
+  o->ends_cells = o->ends && o->cells ? exempt_cells(o->cells, o->ends) : NULL;
+  o->share = unequal ? find_shares(p, range, o->cells) : NULL;
+  if ((middle && !o->ends) || (o->ends && o->cells && !o->ends_cells) || (unequal && !o->share))
+    return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
+  return sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &o->nearest, error);
+}
+
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape, const struct sph_particles *p,
                        struct sph_range range, const struct sph_middle *middle, struct sph_flaws **out,
                        struct error *error) {
   *out = NULL;
-  const size_t n = range.n, first = range.first;
-  unsigned char *exempt = NULL;
-  double *share = NULL;
-  struct sph_kd_tree *nearest = NULL;
+  struct owners owners = {0};
   struct sph_flaw_law full = *law;
   status code = sph_shape_check(shape, error);
   if (code)
     return code;
-  if (!n)
+  if (!range.n)
     return status_fail(error, STATUS_CONTENT, "a body of no particles has no flaws.");
-  full.volume = sph_shape_volume(shape) / (p->distention ? p->distention[first] : 1);
-
-  const bool graded = is_graded(p, range);
-  exempt = middle ? find_ends(p, range, middle) : NULL;
-  share = graded ? malloc(n * sizeof *share) : NULL;
-  if ((middle && !exempt) || (graded && !share)) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", n);
-    goto cleanup;
-  }
-  for (size_t i = 0; graded && i < n; i++)
-    share[i] = p->mass[first + i] / range.mass;
-  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
-  full.exempt = exempt;
-  full.share = share;
-
-  code = sph_kd_tree_create(n, p->x + first, p->y + first, p->z + first, &nearest, error);
+  code = find_owners(law, p, range, middle, &owners, error);
   if (code)
     goto cleanup;
-  struct places places = {shape, middle, nearest, exempt, law->seed, law->body};
+  const size_t n = owners.cells ? owners.cells->count : range.n;
+  full.volume = sph_shape_volume(shape) / (p->distention ? p->distention[range.first] : 1);
+  full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
+  full.exempt = owners.cells ? owners.ends_cells : owners.ends;
+  full.share = owners.share;
+  struct places places = {shape, middle, owners.nearest, owners.ends, owners.cells, law->seed, law->body};
   code = sph_flaws_make(&full, n, nearest_particle, &places, 0, out, error);
+  if (code)
+    goto cleanup;
+  (*out)->particles = range.n;
+  (*out)->cells = owners.cells;
+  owners.cells = NULL;
 cleanup:
-  sph_kd_tree_free(nearest);
-  free(exempt);
-  free(share);
+  sph_kd_tree_free(owners.nearest);
+  sph_cells_free(owners.cells);
+  free(owners.ends);
+  free(owners.ends_cells);
+  free(owners.share);
   return code;
 }

@@ -16,6 +16,7 @@
 #include <stdint.h>
 
 #include "engine/sph/body/bodies.h"
+#include "engine/sph/body/cells.h"
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
 
@@ -33,13 +34,17 @@ struct sph_flaw_law {
   uint64_t number;
   const double *share;         /* with `number`: part of the volume of each particle; NULL: 1/n */
   const unsigned char *exempt; /* particles that have no flaws (owner() must not name them); NULL: none */
+  double
+      cell_width; /* m, sph_flaws_place: particles of a cell of this width share flaws (cells.h). 0: each has its own */
 };
 
-/* Flaws by particle: particle i has first[i] .. first[i+1]-1, log_strain ascending within it. */
+/* Flaws by owner: owner i has first[i] .. first[i+1]-1, log_strain ascending within it. Owners are the particles, or
+ * the cells where there are some. */
 struct sph_flaws {
-  size_t particles, count;
+  size_t particles, count; /* of the body; of flaws */
   size_t *first;
   double *log_strain;
+  struct sph_cells *cells; /* NULL: particles own flaws */
 };
 
 /* Which of n particles owns the place of flaw `flaw` (0, 1, ...); SPH_FLAWS_NOBODY when the place is outside. Places
@@ -60,7 +65,8 @@ void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
  *
  * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one; law->number says what a
  * particle without a flaw gets. (Drawing until each has one would count the smallest cell: cells cut by the surface
- * made 13 to 17 % more flaws of it.) So the weakest flaw of every particle follows the law exactly. STATUS_MEMORY;
+ * made 13 to 17 % more flaws of it.) So the weakest flaw of every particle follows the law exactly. With
+ * law->cell_width, n counts cells, and a flaw belongs to the cell of the nearest particle. STATUS_MEMORY;
  * STATUS_CONTENT when m, k or the volume is not a positive number, or all particles are in the ends. */
 status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *shape,
                        const struct sph_particles *particles, struct sph_range range, const struct sph_middle *middle,

@@ -225,20 +225,6 @@ static void offsets(const struct sph_lattice *lattice, uint64_t trial, double ou
     out[k] = lattice->turned ? random_uniform(bits[k]) : fmod((double)trial * weyl[k], 1);
 }
 
-static void turn(const struct sph_lattice *lattice, double frame[3][3]) { /* uniform over rotations [Shoemake 1992] */
-  uint64_t bits[4];
-  random_bits(lattice->seed, RANDOM_LATTICE, lattice->body, 0, bits);
-  const double u = random_uniform(bits[0]);
-  const double a = 2 * M_PI * random_uniform(bits[1]), b = 2 * M_PI * random_uniform(bits[2]);
-  const double x = sqrt(1 - u) * sin(a), y = sqrt(1 - u) * cos(a), z = sqrt(u) * sin(b), w = sqrt(u) * cos(b);
-  const double matrix[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                               {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                               {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}};
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++)
-      frame[i][j] = matrix[i][j];
-}
-
 static void stack_layers(struct cut *c, double spacing, double layers) { /* whole layers along a cylinder */
   const double taller = c->shape->length / layers / (spacing * c->cell->side[2]);
   c->side[0] = spacing * period(c->cell, 0) / sqrt(taller);
@@ -346,7 +332,7 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
   c.local = c.layered || shape->kind == SPH_SHAPE_SPHERE;
   sph_shape_frame(shape, c.frame);
   if (lattice->turned)
-    turn(lattice, c.frame);
+    random_rotation(lattice->seed, RANDOM_LATTICE, lattice->body, 0, c.frame);
   for (int k = 0; k < 3; k++) {
     const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]};
     c.side[k] = spacing * period(cell, k);

@@ -52,6 +52,11 @@ RANGE_INLINE double *fracture_own_damage(const struct sph_system *s, const struc
   return sph_solid_has(body, SPH_COLUMN(flaw_damage)) ? s->c.flaw_damage : s->c.damage;
 }
 
+/* The stress that opens flaws: the particle's own, or the mean of its cell. */
+RANGE_INLINE const double *fracture_pressure(const struct sph_system *s, const struct sph_solid *body) {
+  return sph_solid_has(body, SPH_COLUMN(crack_pressure)) ? s->c.crack_pressure : s->c.pressure;
+}
+
 /* What opens and shuts the flaws of a particle. */
 struct fracture_load {
   double strain; /* E eps at the damage of the old state, Pa */
@@ -61,7 +66,7 @@ struct fracture_load {
 /* `largest`: lambda(S). */
 RANGE_INLINE struct fracture_load fracture_load(const struct sph_system *s, const struct sph_solid *body, size_t i,
                                                 double largest) {
-  const double *shear_damage = range_shear_damage(s, body), pressure = s->c.pressure[i];
+  const double *shear_damage = range_shear_damage(s, body), pressure = fracture_pressure(s, body)[i];
   if (!(pressure > 0))
     return (struct fracture_load){largest - pressure, INFINITY};
   const double damage = shear_damage[i] * shear_damage[i] * shear_damage[i];
@@ -99,9 +104,9 @@ RANGE_INLINE void fracture_grow(struct sph_system *s, const struct sph_solid *bo
 }
 
 RANGE_HOOK void fracture_range(struct sph_system *s, const struct sph_solid *body, struct sph_block *b) {
-  const double *pressure = s->c.pressure, *weakest = s->c.weakest, *rate = s->c.damage_rate;
-  const double *xx = s->c.stress[0], *xy = s->c.stress[1], *xz = s->c.stress[2], *yy = s->c.stress[3];
-  const double *yz = s->c.stress[4];
+  const double *pressure = fracture_pressure(s, body), *weakest = s->c.weakest, *rate = s->c.damage_rate;
+  double *const *deviator = sph_solid_has(body, SPH_COLUMN(crack_pressure)) ? s->c.crack_stress : s->c.stress;
+  const double *xx = deviator[0], *xy = deviator[1], *xz = deviator[2], *yy = deviator[3], *yz = deviator[4];
   double above[SPH_BLOCK];
   uint32_t which[SPH_BLOCK];
   const size_t low = b->low, n = b->high - b->low;

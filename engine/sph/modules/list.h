@@ -6,6 +6,7 @@
  *   yield, pressure_strength   the last of them that is on sets the yield limit
  *   tension_limit       after the modules that set the pressure and the yield limit, which it bounds
  *   weibull, fracture   last, because the stress that opens flaws is within the yield limit
+ *   crack_cell          after fracture, whose R_s it sets for cells of particles
  *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
  *   the rest            options of the pair loop, without loops here
  *
@@ -33,6 +34,7 @@
   WITH_LOOPS(tension_limit)                                                                                            \
   WITHOUT(weibull)                                                                                                     \
   WITH_LOOPS(fracture)                                                                                                 \
+  WITHOUT(crack_cell)                                                                                                  \
   WITH_LOOPS(crack_front)                                                                                              \
   WITHOUT(viscosity)                                                                                                   \
   WITHOUT(artificial_stress)                                                                                           \

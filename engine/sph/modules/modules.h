@@ -8,6 +8,7 @@
  *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
+ *   crack_stress, crack_pressure   the stress that opens flaws, where it is not the particle's own
  *   shear_damage   damage that scales the deviator, where it is not all damage (range_tools.h)
  *
  * A step runs the stages in order, block by block, and within a stage the modules in the order of list.h. The pair loop
@@ -76,6 +77,9 @@ struct sph_module {
   size_t (*bytes_prepared)(const void *prepared);
   /* Makes what it prepared and changes in a run again from the columns, after a restart. */
   void (*restored)(struct sph_system *system, const struct sph_solid *body);
+  /* Called once a step between SPH_RETURN and SPH_CRACK, when all blocks of all bodies have their new stress: for what
+   * depends on particles of several blocks. One module of a body may have it. */
+  void (*meet)(struct sph_system *system, const struct sph_solid *body);
   /* Initial values of the body's columns. */
   void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
 };

@@ -6,11 +6,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "engine/sph/step/system_layout.h"
 
 struct sph_weibull_lists {
-  size_t particles, count;
+  size_t lists, count; /* a list for each owner of flaws; flaws */
+  size_t particles;
+  uint32_t *cell; /* by particle: its list; NULL: each has its own */
   /* exact */
   size_t *first;
   double *strain;
@@ -23,6 +26,7 @@ static void free_prepared(void *prepared) {
   struct sph_weibull_lists *w = prepared;
   if (!w)
     return;
+  free(w->cell);
   free(w->first);
   free(w->strain);
   free(w->lowest);
@@ -32,11 +36,11 @@ static void free_prepared(void *prepared) {
 }
 
 static bool fill_exact(struct sph_weibull_lists *w, const struct sph_flaws *flaws) {
-  w->first = malloc((w->particles + 1) * sizeof *w->first);
+  w->first = malloc((w->lists + 1) * sizeof *w->first);
   w->strain = malloc((w->count ? w->count : 1) * sizeof *w->strain);
   if (!w->first || !w->strain)
     return false;
-  for (size_t i = 0; i <= w->particles; i++)
+  for (size_t i = 0; i <= w->lists; i++)
     w->first[i] = flaws->first[i];
   for (size_t f = 0; f < w->count; f++)
     w->strain[f] = exp(flaws->log_strain[f]);
@@ -44,13 +48,13 @@ static bool fill_exact(struct sph_weibull_lists *w, const struct sph_flaws *flaw
 }
 
 static bool fill_compact(struct sph_weibull_lists *w, const struct sph_flaws *flaws) {
-  const size_t room = w->particles ? w->particles : 1;
+  const size_t room = w->lists ? w->lists : 1;
   w->lowest = malloc(room * sizeof *w->lowest);
   w->exponent = malloc(room * sizeof *w->exponent);
   w->total = malloc(room * sizeof *w->total);
   if (!w->lowest || !w->exponent || !w->total)
     return false;
-  for (size_t i = 0; i < w->particles; i++) {
+  for (size_t i = 0; i < w->lists; i++) {
     const size_t first = flaws->first[i], last = flaws->first[i + 1];
     w->total[i] = (uint32_t)(last - first);
     w->lowest[i] = last > first ? exp(flaws->log_strain[first]) : HUGE_VAL;
@@ -58,6 +62,15 @@ static bool fill_compact(struct sph_weibull_lists *w, const struct sph_flaws *fl
     w->exponent[i] = span > 0 ? log((double)(last - first)) / span : 0;
   }
   return true;
+}
+
+static bool fill_cells(struct sph_weibull_lists *w, const struct sph_flaws *flaws) {
+  if (!flaws->cells)
+    return true;
+  w->cell = malloc(w->particles * sizeof *w->cell);
+  if (w->cell)
+    memcpy(w->cell, flaws->cells->of, w->particles * sizeof *w->cell);
+  return w->cell != NULL;
 }
 
 static status prepare(const struct sph_inputs *inputs, const struct sph_particles *particles, struct sph_solid *body,
@@ -68,9 +81,10 @@ static status prepare(const struct sph_inputs *inputs, const struct sph_particle
   struct sph_weibull_lists *w = calloc(1, sizeof *w);
   if (w) {
     w->particles = flaws->particles;
+    w->lists = flaws->cells ? flaws->cells->count : flaws->particles;
     w->count = flaws->count;
   }
-  if (!w || !(compact ? fill_compact : fill_exact)(w, flaws)) {
+  if (!w || !(compact ? fill_compact : fill_exact)(w, flaws) || !fill_cells(w, flaws)) {
     free_prepared(w);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu flaws", flaws->count);
   }
@@ -80,17 +94,24 @@ static status prepare(const struct sph_inputs *inputs, const struct sph_particle
 
 static size_t bytes_prepared(const void *prepared) {
   const struct sph_weibull_lists *w = prepared;
-  return sizeof *w + (w->strain ? (w->particles + 1) * sizeof *w->first + w->count * sizeof *w->strain
-                                : w->particles * (2 * sizeof *w->lowest + sizeof *w->total));
+  return sizeof *w + (w->cell ? w->particles * sizeof *w->cell : 0) +
+         (w->strain ? (w->lists + 1) * sizeof *w->first + w->count * sizeof *w->strain
+                    : w->lists * (2 * sizeof *w->lowest + sizeof *w->total));
 }
 
-double sph_weibull_lowest(const struct sph_weibull_lists *w, size_t i) {
+static size_t list_of(const struct sph_weibull_lists *w, size_t particle) {
+  return w->cell ? w->cell[particle] : particle;
+}
+
+double sph_weibull_lowest(const struct sph_weibull_lists *w, size_t particle) {
+  const size_t i = list_of(w, particle);
   if (!w->strain)
     return w->lowest[i];
   return w->first[i] < w->first[i + 1] ? w->strain[w->first[i]] : HUGE_VAL;
 }
 
-uint32_t sph_weibull_total(const struct sph_weibull_lists *w, size_t i) {
+uint32_t sph_weibull_total(const struct sph_weibull_lists *w, size_t particle) {
+  const size_t i = list_of(w, particle);
   return w->strain ? (uint32_t)(w->first[i + 1] - w->first[i]) : w->total[i];
 }
 
@@ -125,8 +146,8 @@ static uint32_t active_compact(const struct sph_weibull_lists *w, size_t i, doub
   return (uint32_t)open;
 }
 
-uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t i, double strain, double bracket[2]) {
-  return (w->strain ? active_exact : active_compact)(w, i, strain, bracket);
+uint32_t sph_weibull_active(const struct sph_weibull_lists *w, size_t particle, double strain, double bracket[2]) {
+  return (w->strain ? active_exact : active_compact)(w, list_of(w, particle), strain, bracket);
 }
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {

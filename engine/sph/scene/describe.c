@@ -19,8 +19,13 @@ enum { BYTES_BESIDE = 450, BYTES_PER_FLAW = 16, BYTES_ANYWAY = 4 << 20 };
 enum { COST_DOUBLE = 260, COST_FLOAT = 160 };
 static const double euler = 0.57721566490153286;
 
-static double flaws_expected(double particles) {
-  return particles * (log(fmax(particles, 1)) + euler);
+/* Flaws of the target: drawn until each particle, or cell of fracture.cell, has one on average. */
+static double flaws_expected(const struct sph_inputs *in) {
+  const struct sph_shape target = sph_derived_target(in);
+  double owners = (double)in->fidelity.particles;
+  if (in->fracture.cell > 0)
+    owners = fmin(owners, sph_shape_volume(&target) / pow(in->fracture.cell, 3));
+  return owners * (log(fmax(owners, 1)) + euler);
 }
 
 enum { BODIES = 2 };
@@ -59,7 +64,7 @@ size_t sph_describe_memory(const struct sph_inputs *in) {
   double bytes = BYTES_ANYWAY + particles * (sph_system_columns_bytes(need.columns, need.pairs, &in->fidelity) +
                                              BYTES_BESIDE + (double)need.linked);
   if (sph_derived_cracks(&in->target))
-    bytes += flaws_expected(particles) * BYTES_PER_FLAW;
+    bytes += flaws_expected(in) * BYTES_PER_FLAW;
   return bytes < 1e18 ? (size_t)bytes : SIZE_MAX / 2;
 }
 
@@ -165,16 +170,15 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sph_derived_poisson_ratio(&target->material));
   fputc('\n', out);
   if (sph_derived_cracks(target)) {
-    double E = sph_derived_young_modulus(&target->material), m = target->material.weibull.m,
-           n = (double)in->fidelity.particles;
+    double E = sph_derived_young_modulus(&target->material), m = target->material.weibull.m, n = flaws_expected(in);
     double log_kv = log(target->material.weibull.k) +
                     log(sph_derived_target_mass(in) / target->material.density); /* solid volume */
     fprintf(
         out,
         "  flaws: about %.3g; the weakest opens at strain %.3g (%.3g Pa), the last at %.3g (%.3g Pa); cracks grow at "
         "%.0f m/s\n",
-        flaws_expected(n), exp(-log_kv / m), E * exp(-log_kv / m), exp((log(flaws_expected(n)) - log_kv) / m),
-        E * exp((log(flaws_expected(n)) - log_kv) / m), sph_derived_crack_speed(&target->material));
+        n, exp(-log_kv / m), E * exp(-log_kv / m), exp((log(n) - log_kv) / m), E * exp((log(n) - log_kv) / m),
+        sph_derived_crack_speed(&target->material));
   }
   if (sph_derived_has_projectile(in)) {
     struct sph_shape projectile = sph_derived_projectile(in);

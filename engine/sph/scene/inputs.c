@@ -217,6 +217,12 @@ static const struct field rows[] = {
          .doc = "A crack runs on where the tension across its plane is at least this share of the one that opens its "
                 "flaw. 0: any tension will do.",
          .source = "our choice"),
+    REAL(fracture.cell, "m", 0, 0, 1e9, .flags = FIELD_SILENT_DEFAULT, .when = "target.fracture=auto|on",
+         .doc =
+             "Width of the cells that crack as one: their particles share flaws, mean stress and damage. Strength then "
+             "depends on this width and not on the number of particles, where a cell holds several particles. 0: each "
+             "particle cracks by itself, as printed.",
+         .source = "our choice; BA95 for 0"),
 
     REAL(viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
          .source = "Monaghan 1992"),

@@ -55,6 +55,7 @@ struct sph_fracture {
   int crack_radius;    /* enum sph_crack_radius */
   int front;           /* enum sph_crack_front */
   double front_arrest; /* 1 */
+  double cell;         /* m, width of the cells that crack as one; 0: each particle cracks by itself */
 };
 struct sph_viscosity {
   double alpha, beta; /* 1 */

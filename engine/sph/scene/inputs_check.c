@@ -241,6 +241,10 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
                 (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
   if (cracks && in->method.artificial_stress > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
+  if (in->fracture.cell > 0 && in->fracture.front == SPH_CRACK_FRONT_PLANE)
+    REFUSE("fracture.cell and fracture.front: plane are two answers to one question: set one of them");
+  if (in->fracture.cell > 0 && in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
+    REFUSE("fracture.crack_radius: support has no meaning for cells: set it to volume, or fracture.cell: 0 m");
   if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
       2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side",

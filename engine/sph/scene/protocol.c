@@ -174,6 +174,7 @@ static status make_flaws(struct sph_run *run, struct error *error) {
       continue;
     struct sph_flaw_law law = {.weibull = body->material.weibull,
                                .draw = in->fracture.draw,
+                               .cell_width = in->fracture.cell,
                                .seed = run->seed,
                                .body = (uint64_t)b};
     const status code = sph_flaws_place(&law, &run->shape[b], run->start, run->range[b],

@@ -31,9 +31,15 @@ static void choose_hooks(struct sph_system *s, struct sph_solid *b) {
   const bool yields = has_yield_law(b);
 
   add(b->before, &b->before_count, r->predict);
-  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++)
+  for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
+    if (stage == SPH_CRACK)
+      b->first_count = b->before_count;
     if (yields || stage < SPH_YIELD || stage > SPH_RETURN)
       add_stage(s, b, stage, b->before, &b->before_count);
+  }
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (b->modules >> m & 1 && sph_modules_at(m)->meet)
+      b->meet = sph_modules_at(m)->meet;
   sph_hook output = strength ? r->output_whole : r->output_fluid;
   add(b->before, &b->before_count, damage ? r->output_damaged : output);
 

@@ -38,6 +38,8 @@ struct sph_columns {
   double *open_from, *open_below,
       *open_rate;     /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
   double *crack_rate; /* c_g / R_s, 1/s */
+  /* crack_cell */
+  double *crack_stress[5], *crack_pressure; /* Pa, what opens the flaws: means over the cell of the particle */
   /* crack_front */
   double *front_time;                  /* s, when a crack's front reached the particle; infinite: not yet */
   double *front_offset, *front_stress; /* m, Pa: struct sph_crack_front_tip */
@@ -93,6 +95,8 @@ struct sph_solid {
   double lowest_density;
   sph_hook before[SPH_HOOKS], after[SPH_HOOKS]; /* loops of a step, in order: before and after the pair loop */
   size_t before_count, after_count;
+  size_t first_count;                                                    /* of `before`: those that run before `meet` */
+  void (*meet)(struct sph_system *system, const struct sph_solid *body); /* sph_module.meet; NULL: no module has it */
 };
 
 static inline bool sph_solid_has(const struct sph_solid *body, size_t column) {

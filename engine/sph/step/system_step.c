@@ -5,6 +5,8 @@
  *   3. one pair loop
  *   4. rates; half the change of the rates is added to the predicted state
  *
+ * Where a module of a body averages over particles of several blocks (sph_module.meet), step 2 is cut in two there.
+ *
  * All of it happens block by block, so that the columns of a block are read from memory once before the pair loop and
  * once after it. The rates of a block follow as soon as its sums are complete. */
 #include "engine/sph/step/system_layout.h"
@@ -26,20 +28,38 @@ static void look_up_slack(struct sph_system *s, struct sph_block *block) {
   block->slack = 0.99 * sph_pairs_slack(s->pairs, block->low, block->high, s->c.x, s->c.y, s->c.z, s->c.h);
 }
 
+/* The loops before the pair loop of one block: those before its body meets, those after it, or both. */
+static void run_before(struct sph_system *s, struct sph_block *block, bool first, bool last) {
+  const struct sph_solid *body = &s->solid[block->body];
+  const size_t low = first ? 0 : body->first_count, high = last ? body->before_count : body->first_count;
+  struct sph_terms terms;
+  terms.solid_density = s->c.density + block->low;
+  block->terms = &terms;
+  run(s, block, body->before + low, high - low);
+  block->terms = NULL;
+  if (last && block->slack < 0)
+    look_up_slack(s, block);
+}
+
 static void before_pairs(struct sph_system *s) {
+  bool meets = false;
+  for (size_t b = 0; b < s->body_count; b++)
+    meets = meets || s->solid[b].meet;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
 #endif
-  for (size_t k = 0; k < s->block_count; k++) {
-    struct sph_block *block = &s->block[k];
-    struct sph_terms terms;
-    terms.solid_density = s->c.density + block->low;
-    block->terms = &terms;
-    run(s, block, s->solid[block->body].before, s->solid[block->body].before_count);
-    block->terms = NULL;
-    if (block->slack < 0)
-      look_up_slack(s, block);
-  }
+  for (size_t k = 0; k < s->block_count; k++)
+    run_before(s, &s->block[k], true, !meets);
+  if (!meets)
+    return;
+  for (size_t b = 0; b < s->body_count; b++)
+    if (s->solid[b].meet)
+      s->solid[b].meet(s, &s->solid[b]);
+#ifdef _OPENMP
+#pragma omp parallel for schedule(dynamic, 4) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
+#endif
+  for (size_t k = 0; k < s->block_count; k++)
+    run_before(s, &s->block[k], false, true);
 }
 
 /* The first block whose particles begin at index `at` or behind it. */

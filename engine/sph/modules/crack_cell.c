@@ -1,0 +1,145 @@
+/* Cells of a fixed width that crack as one.
+ *
+ *   fracture.cell   width of the cells
+ *
+ * Without this module every particle must fail by a flaw of its own. The threshold of the weakest of them grows as
+ * (k V_p)^(-1/m), so strength grows with the number of particles without end. With it, the particles of a cell are to
+ * fracture what one particle is without it: they share the flaws in the cell, R_s of the cell's volume, the mean stress
+ * and so the damage. Motion is as finely resolved as before. Strength depends on the width of the cells, which is a
+ * length of the rock, not of the method (tests/validation/crack_cell.md).
+ *
+ * Where pores close, too (palpha), the bound that pressure sets to D depends on all damage of a particle, so that D by
+ * flaws may differ a little within a cell. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "engine/sph/material/derived.h"
+#include "engine/sph/modules/ranges.h"
+#include "engine/sph/modules/weibull.h"
+
+enum { BYTES_EACH = 12 };
+
+/* Particles are named by their number within their body, which sorting does not change. */
+struct cells {
+  size_t count, particles;
+  size_t *first;    /* cell k has the particles member[first[k]] ... member[first[k + 1] - 1] */
+  uint32_t *member; /* by ascending number */
+  uint32_t *index;  /* by number: where the particle stands now */
+};
+
+static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
+  return body->flaws != NULL && inputs->fracture.cell > 0;
+}
+
+static void free_prepared(void *prepared) {
+  struct cells *c = prepared;
+  if (!c)
+    return;
+  free(c->first);
+  free(c->member);
+  free(c->index);
+  free(c);
+}
+
+static size_t bytes_prepared(const void *prepared) {
+  const struct cells *c = prepared;
+  return sizeof *c + (c->count + 2) * sizeof *c->first + c->particles * (sizeof *c->member + sizeof *c->index);
+}
+
+/* Counting sort by cell. */
+static void sort_members(struct cells *c, const uint32_t *cell_of) {
+  size_t *next = c->first + 1;
+  for (size_t i = 0; i < c->particles; i++)
+    next[cell_of[i] + 1]++;
+  for (size_t k = 1; k <= c->count; k++)
+    next[k] += next[k - 1];
+  for (size_t i = 0; i < c->particles; i++)
+    c->member[next[cell_of[i]]++] = (uint32_t)i;
+}
+
+static status prepare(const struct sph_inputs *inputs, const struct sph_particles *p, struct sph_solid *body,
+                      struct error *error) {
+  (void)p;
+  const struct sph_cells *given = body->physics.flaws->cells;
+  if (!given)
+    return status_fail(error, STATUS_CONTENT, "fracture.cell is %g m, but the flaws are those of particles",
+                       inputs->fracture.cell);
+  struct cells *c = calloc(1, sizeof *c);
+  if (c) {
+    c->count = given->count;
+    c->particles = given->particles;
+    c->first = calloc(c->count + 2, sizeof *c->first);
+    c->member = malloc(c->particles * sizeof *c->member);
+    c->index = malloc(c->particles * sizeof *c->index);
+  }
+  if (!c || !c->first || !c->member || !c->index) {
+    free_prepared(c);
+    return status_fail(error, STATUS_MEMORY, "no memory for the crack cells of %zu particles", given->particles);
+  }
+  sort_members(c, given->of);
+  body->prepared[SPH_MODULE_crack_cell] = c;
+  return STATUS_OK;
+}
+
+/* Gives the particles of cell k their mean stress, by volume. */
+static void average(struct sph_system *s, const struct cells *c, size_t k) {
+  double sum[6] = {0}, volume = 0;
+  for (size_t m = c->first[k]; m < c->first[k + 1]; m++) {
+    const size_t i = c->index[c->member[m]];
+    const double own = s->c.mass[i] / s->c.density[i];
+    volume += own;
+    for (int d = 0; d < 5; d++)
+      sum[d] += own * s->c.stress[d][i];
+    sum[5] += own * s->c.pressure[i];
+  }
+  for (size_t m = c->first[k]; m < c->first[k + 1]; m++) {
+    const size_t i = c->index[c->member[m]];
+    for (int d = 0; d < 5; d++)
+      s->c.crack_stress[d][i] = sum[d] / volume;
+    s->c.crack_pressure[i] = sum[5] / volume;
+  }
+}
+
+static void meet(struct sph_system *s, const struct sph_solid *body) {
+  struct cells *c = body->prepared[SPH_MODULE_crack_cell];
+  for (size_t i = body->first; i < body->last; i++)
+    c->index[s->id[i] - body->first] = (uint32_t)i;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) num_threads((int)s->in.fidelity.threads) if (s->in.fidelity.threads > 1)
+#endif
+  for (size_t k = 0; k < c->count; k++)
+    average(s, c, k);
+}
+
+static void fill(struct sph_system *s, const struct sph_solid *body, const struct sph_particles *p) {
+  const struct cells *c = body->prepared[SPH_MODULE_crack_cell];
+  const double crack_speed = sph_derived_crack_speed(&body->physics.material);
+  for (size_t k = 0; k < c->count; k++) {
+    double volume = 0;
+    for (size_t m = c->first[k]; m < c->first[k + 1]; m++)
+      volume += p->mass[body->first + c->member[m]] / p->density[body->first + c->member[m]];
+    for (size_t m = c->first[k]; m < c->first[k + 1]; m++)
+      s->c.crack_rate[body->first + c->member[m]] = crack_speed / cbrt(3 * volume / (4 * M_PI));
+  }
+}
+
+static const struct sph_column_need columns[] = {{SPH_COLUMNS_OF(crack_stress), 0, NULL},
+                                                 {SPH_COLUMNS_OF(crack_pressure), 0, NULL},
+                                                 {0}};
+
+const struct sph_module sph_crack_cell_module = {
+    .name = "crack_cell",
+    .doc = "Cells of a fixed width crack as one: their particles share flaws, R_s, mean stress and damage. Strength "
+           "depends on the width of the cells, not on the number of particles.",
+    .source = "our choice; within a cell the law of Benz & Asphaug 1995. Damage over a fixed length: Pijaudier-Cabot & "
+              "Bazant 1987, J. Eng. Mech. 113, 1512",
+    .when = "a body whose material has Weibull parameters, with fracture.cell above 0",
+    .on = on,
+    .columns = columns,
+    .bytes_linked = BYTES_EACH,
+    .prepare = prepare,
+    .free_prepared = free_prepared,
+    .bytes_prepared = bytes_prepared,
+    .meet = meet,
+    .fill = fill,
+};

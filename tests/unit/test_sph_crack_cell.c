@@ -1,0 +1,201 @@
+/* Cells that crack as one (module crack_cell): which particles share a cell, the flaws of a cell, what its particles
+ * share, and the bits. A cube under tension along z, whose ends are held. */
+#include "engine/sph/body/cells.h"
+#include "engine/sph/body/flaws.h"
+#include "engine/sph/step/system_layout.h"
+#include "tests/support/sph_solid.h"
+
+static const double side = 0.01, load = 1e-3; /* m; strain, at which about half of the cells fail */
+
+static struct solid_case pulled(double width, uint64_t seed, struct sph_flaws **flaws) {
+  struct solid_case c = solid_make(1);
+  struct error error;
+  c.physics[0].material = solid_basalt();
+  c.physics[0].strength = true;
+  c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_BOX, .side = {side, side, side}};
+  c.body[0].lattice.particles = 4000;
+  solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
+  const struct sph_middle between = {.axis = {0, 0, 1}, .half = side / 2 - 2 * c.range[0].h};
+  sph_bodies_hold(c.particles, c.range[0], &between, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  struct sph_particles *p = c.particles;
+  const struct sph_material *m = &c.physics[0].material;
+  const double stress = solid_young(m) * load, shrunk = 1 - (1 - 2 * solid_poisson(m)) * load;
+  const struct sph_flaw_law law = {.weibull = {.m = 8.5, .k = 5e34},
+                                   .draw = SPH_FLAWS_POISSON,
+                                   .seed = seed,
+                                   .cell_width = width};
+  for (size_t i = 0; i < p->n; i++) { /* in equilibrium: sigma_zz alone */
+    p->density[i] = m->density * shrunk;
+    p->mass[i] *= shrunk;
+    p->stress[0][i] = p->stress[3][i] = -stress / 3;
+    p->stress[5][i] = 2 * stress / 3;
+  }
+  assert_int_equal(sph_flaws_place(&law, &c.body[0].shape, p, c.range[0], NULL, flaws, &error), STATUS_OK);
+  c.parameters.in.fracture.cell = width;
+  c.physics[0].flaws = *flaws;
+  return c;
+}
+
+/* Two particles of a cell are no farther apart than the diagonal of a cube. There are as many cells as cubes, and those
+ * that the surface cuts. Each cell has a particle. Another seed deals otherwise, the same seed alike. */
+static void cubes(void **state) {
+  (void)state;
+  struct sph_flaws *flaws;
+  struct error error;
+  struct sph_cells *cells[3];
+  const double width = side / 4;
+  struct solid_case c = pulled(0, 1, &flaws);
+  const struct sph_particles *p = c.particles;
+  for (uint64_t k = 0; k < 3; k++)
+    assert_int_equal(sph_cells_make(1 + k % 2, 0, width, p, c.range[0], &cells[k], &error), STATUS_OK);
+  assert_true(cells[0]->count > 64 && cells[0]->count < 216); /* the cube is cut by a turned grid */
+  unsigned char *seen = calloc(cells[0]->count, 1);
+  for (size_t i = 0; i < p->n; i++) {
+    seen[cells[0]->of[i]] = 1;
+    for (size_t j = 0; j < i; j++)
+      if (cells[0]->of[i] == cells[0]->of[j])
+        assert_true(hypot(hypot(p->x[i] - p->x[j], p->y[i] - p->y[j]), p->z[i] - p->z[j]) <= sqrt(3) * width);
+  }
+  assert_null(memchr(seen, 0, cells[0]->count));
+  assert_memory_not_equal(cells[0]->of, cells[1]->of, p->n * sizeof *cells[0]->of);
+  assert_memory_equal(cells[0]->of, cells[2]->of, p->n * sizeof *cells[0]->of);
+  for (int k = 0; k < 3; k++)
+    sph_cells_free(cells[k]);
+  free(seen);
+  sph_flaws_free(flaws);
+  solid_end(&c);
+}
+
+/* The weakest flaw of a cell follows Weibull's law of its volume: k V eps_1^m is an exponential number of mean 1. Cells
+ * of 300 seeds, each weighted alike: the mean of n such numbers scatters by n^(-1/2). */
+static void weakest_flaw(void **state) {
+  (void)state;
+  double sum = 0, count = 0;
+  for (uint64_t seed = 1; seed <= 300; seed++) {
+    struct sph_flaws *flaws;
+    struct solid_case c = pulled(side / 2, seed, &flaws);
+    const struct sph_cells *cells = flaws->cells;
+    double *volume = calloc(cells->count, sizeof *volume);
+    assert_int_equal(flaws->particles, c.particles->n);
+    for (size_t i = 0; i < c.particles->n; i++)
+      volume[cells->of[i]] += side * side * side / (double)c.particles->n;
+    for (size_t k = 0; k < cells->count; k++) {
+      assert_true(flaws->first[k + 1] > flaws->first[k]);
+      sum += 5e34 * volume[k] * exp(8.5 * flaws->log_strain[flaws->first[k]]);
+      count++;
+    }
+    free(volume);
+    sph_flaws_free(flaws);
+    solid_end(&c);
+  }
+  assert_true(count > 2000);
+  assert_true(fabs(sum / count - 1) < 4 / sqrt(count));
+}
+
+/* All particles of a cell have the same damage, to the bit, and the mean stress of the cell. Some cells break. */
+static void shared(void **state) {
+  (void)state;
+  struct sph_flaws *flaws;
+  struct solid_case c = pulled(side / 4, 1, &flaws);
+  const size_t n = c.particles->n, cells = flaws->cells->count;
+  solid_start(&c);
+  for (int step = 0; step < 30; step++)
+    solid_step(&c, INFINITY);
+  const struct sph_system *s = c.system;
+  double *damage = malloc(cells * sizeof *damage), *pressure = malloc(cells * sizeof *pressure);
+  size_t broken = 0, different = 0;
+  memset(damage, 0xff, cells * sizeof *damage); /* NaN */
+  for (size_t i = 0; i < n; i++) {
+    const size_t k = flaws->cells->of[s->id[i]];
+    if (isnan(damage[k])) {
+      damage[k] = s->c.damage[i];
+      pressure[k] = s->c.crack_pressure[i];
+      broken += damage[k] > 0;
+    }
+    assert_true(s->c.damage[i] == damage[k] && s->c.crack_pressure[i] == pressure[k]);
+    different += s->c.pressure[i] != pressure[k];
+  }
+  assert_true(broken > cells / 10 && broken < cells);
+  assert_true(different > n / 2);
+  for (size_t k = 0; k < cells; k++) { /* the end of the step has changed densities by less than 1e-3 since */
+    double sum = 0, volume = 0, largest = 0;
+    for (size_t i = 0; i < n; i++)
+      if (flaws->cells->of[s->id[i]] == k) {
+        const double own = s->c.mass[i] / s->c.density[i];
+        sum += own * s->c.pressure[i];
+        volume += own;
+        largest = fmax(largest, fabs(s->c.pressure[i]));
+      }
+    assert_true(fabs(sum / volume - pressure[k]) < 1e-3 * largest);
+  }
+  free(damage);
+  free(pressure);
+  sph_flaws_free(flaws);
+  solid_end(&c);
+}
+
+/* Cells of one particle are particles: the same flaws up to rounding, and the same damage. */
+static void one_particle_each(void **state) {
+  (void)state;
+  struct sph_flaws *flaws[2];
+  struct solid_case c[2] = {pulled(0, 3, &flaws[0]), pulled(1e-5, 3, &flaws[1])};
+  assert_int_equal(flaws[1]->cells->count, c[1].particles->n);
+  assert_int_equal(flaws[0]->count, flaws[1]->count);
+  for (int k = 0; k < 2; k++) {
+    solid_start(&c[k]);
+    for (int step = 0; step < 20; step++)
+      solid_step(&c[k], INFINITY);
+  }
+  const struct sph_system *a = c[0].system, *b = c[1].system;
+  size_t broken = 0;
+  for (size_t i = 0; i < a->n; i++) {
+    assert_int_equal(a->id[i], b->id[i]);
+    assert_true(fabs(a->c.damage[i] - b->c.damage[i]) < 1e-9);
+    broken += a->c.damage[i] > 0;
+  }
+  assert_true(broken > 100);
+  for (int k = 0; k < 2; k++) {
+    sph_flaws_free(flaws[k]);
+    solid_end(&c[k]);
+  }
+}
+
+static unsigned char *state_of(const struct sph_system *s, size_t *size) {
+  *size = sph_system_state_size(s);
+  unsigned char *bytes = malloc(*size);
+  sph_system_state_save(s, bytes);
+  return bytes;
+}
+
+/* The same bits after a restart while cells break, and with two threads. */
+static void same_bits(void **state) {
+  (void)state;
+  struct sph_flaws *flaws;
+  size_t size;
+  struct solid_case c = pulled(side / 4, 1, &flaws), again = c;
+  again.parameters.in.fidelity.threads = 2;
+  solid_start(&c);
+  for (int step = 0; step < 10; step++)
+    solid_step(&c, INFINITY);
+  unsigned char *before = state_of(c.system, &size);
+  solid_start(&again);
+  assert_true(sph_system_state_load(again.system, before, size));
+  for (int step = 0; step < 10; step++) {
+    solid_step(&c, INFINITY);
+    solid_step(&again, INFINITY);
+  }
+  unsigned char *whole = state_of(c.system, &size), *other = state_of(again.system, &size);
+  assert_memory_equal(whole, other, size);
+  free(before);
+  free(whole);
+  free(other);
+  sph_system_free(again.system);
+  sph_flaws_free(flaws);
+  solid_end(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cubes), cmocka_unit_test(weakest_flaw), cmocka_unit_test(shared),
+                                     cmocka_unit_test(one_particle_each), cmocka_unit_test(same_bits)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
