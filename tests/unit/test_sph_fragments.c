@@ -83,7 +83,8 @@ static void brute(const struct sph_particles *p, const struct sph_fragments_opti
     if (part[i] != SPH_FRAGMENTS_SINGLE)
       continue;
     for (size_t j = 0; j < n; j++) {
-      if (part[j] != SPH_FRAGMENTS_CORE || !(square[i * n + j] <= reach[i * n + j] * fabs(reach[i * n + j])))
+      const double link = reach[i * n + j], depth = link >= 0 && o->layer_width > 0 ? o->layer_width : link;
+      if (part[j] != SPH_FRAGMENTS_CORE || !(square[i * n + j] <= depth * fabs(depth)))
         continue;
       if (best < 0 || square[i * n + j] < square[i * n + (size_t)best] ||
           (square[i * n + j] == square[i * n + (size_t)best] &&
@@ -116,6 +117,7 @@ static void equals_brute_force(void **state) {
     o.damage = 0.3 + 0.01 * (double)(seed % 70);
     o.link_length = 0.7 + 0.1 * (double)(seed % 6);
     o.layer = seed % 4 != 0;
+    o.layer_width = seed % 3 == 1 ? 0.1 * (double)(seed % 13) : 0;
     o.across_bodies = seed % 2;
     for (int d = 0; d < 3; d++)
       if (seed >> d & 1)

@@ -24,6 +24,7 @@ status sph_report_fragments(const struct sph_run *run, double static_strength, b
   struct sph_fragments_options options = sph_fragments_default();
   options.damage = in->fragments.damage;
   options.link_length = in->fragments.link_length;
+  options.layer_width = in->fragments.layer_width;
   options.layer = layer;
   options.whole_shear = !sph_modules_damage_scales_shear(&in->target, in);
   options.h = in->fragments.link_h == INITIAL_H ? run->start->h : NULL;

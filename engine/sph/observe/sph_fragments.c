@@ -127,9 +127,29 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   s->mate[broken] = unbroken;
 }
 
+/* Step 3 with a layer as deep as a given length: a grid for pairs within it. */
+static status choose_mates_within(struct search *s, double width, struct error *error) {
+  const struct sph_particles *p = s->p;
+  struct sph_cell_grid *grid = NULL;
+  double *reach = malloc((p->n + 1) * sizeof *reach);
+  if (!reach)
+    return status_fail(error, STATUS_MEMORY, "no memory for the damaged layers of %zu particles", p->n);
+  for (size_t i = 0; i < p->n; i++)
+    reach[i] = width;
+  const status code = sph_cell_grid_create(p->n, p->x, p->y, p->z, reach, s->role, 1, s->options->periodic, &grid,
+                                           error);
+  free(reach);
+  if (code)
+    return code;
+  sph_cell_grid_visit(grid, true, choose_mate, s);
+  sph_cell_grid_free(grid);
+  return STATUS_OK;
+}
+
 /* Links of the cores, then of their layers. */
 static status link_members(struct search *s, struct error *error) {
   const struct sph_particles *p = s->p;
+  const double width = s->options->layer_width;
   struct sph_cell_grid *grid = NULL;
   status code = sph_cell_grid_create(p->n, p->x, p->y, p->z, s->options->h ? s->options->h : p->h, s->role,
                                      s->options->link_length, s->options->periodic, &grid, error);
@@ -139,9 +159,13 @@ static status link_members(struct search *s, struct error *error) {
   for (size_t i = 0; i < p->n; i++)
     if (s->role[i] == SPH_CELL_GRID_ACTIVE)
       s->core_mass[fragments_root(s->parent, (uint32_t)i)] += p->mass[i];
-  if (s->options->layer)
+  if (s->options->layer && !(width > 0))
     sph_cell_grid_visit(grid, true, choose_mate, s);
   sph_cell_grid_free(grid);
+  if (s->options->layer && width > 0)
+    code = choose_mates_within(s, width, error);
+  if (code)
+    return code;
   for (size_t i = 0; i < p->n; i++)
     if (s->mate[i] != UINT32_MAX) {
       s->out->part[i] = SPH_FRAGMENTS_LAYER;

@@ -6,10 +6,10 @@
  * open slowly. Sound matter (D = 0) has no crack that could open, and stays whole; BA95 does not ask for damage.
  *   2. Cores: friends of friends over unbroken particles (damage below a threshold). Two are friends within link_length
  *      (h_i + h_j)/2.
- *   3. Damaged layer: a broken particle within a link of a core joins the fragment of its nearest unbroken particle. Of
- * two at the same distance the one of the heavier core decides, then the one of the core with the lower first particle.
- *      SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The damaged layer itself
- * links nothing.
+ *   3. Damaged layer: a broken particle within a link, or a given length, of a core joins the fragment of its nearest
+ * unbroken particle. Of two at the same distance the one of the heavier core decides, then the one of the core with the
+ * lower first particle. SPH forces reach two layers deep, so a crack is two layers of broken particles wide. The
+ * damaged layer itself links nothing.
  *   4. Single particles: every other broken particle is a fragment of its own, below the resolution.
  *
  * A core is thus a fragment without its damaged layer. The input fragments.veneer switches step 3 on.
@@ -33,6 +33,7 @@ struct sph_fragments_options {
   double damage;      /* 0..1: a particle is unbroken when its D is below; without damage all are */
   double link_length; /* over the mean h of the two: 1 in BA95 */
   bool layer;         /* step 3 */
+  double layer_width; /* m: the damaged layer is as deep as this; 0: a link */
   bool whole_shear;   /* damage does not scale the deviator (sph_modules_damage_scales_shear): of the static strength */
   bool across_bodies; /* particles of two bodies may be friends. Off by default: bodies that touch are not bonded */
   const double *h;    /* m, by particle: the initial smoothing lengths, so that expanding matter does not link farther.

@@ -66,6 +66,7 @@ struct sph_method {
 };
 struct sph_fragment_rules {
   double static_strength, damage, link_length; /* Pa, 1, 1 */
+  double layer_width;                          /* m; 0: link_length h */
   double dust_mass;                            /* kg */
   int link_h;                                  /* 0 initial, 1 current */
   bool veneer;

@@ -245,6 +245,9 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
     REFUSE("fracture.cell and fracture.front: plane are two answers to one question: set one of them");
   if (in->fracture.cell > 0 && in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
     REFUSE("fracture.crack_radius: support has no meaning for cells: set it to volume, or fracture.cell: 0 m");
+  if (in->fragments.layer_width > 30 * sph_derived_smallest_spacing(in)) /* each finds 1e5 others */
+    REFUSE("fragments.layer_width is %.4g m, more than 30 particle spacings of %.4g m: give a smaller width",
+           in->fragments.layer_width, sph_derived_smallest_spacing(in));
   if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
       2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side",

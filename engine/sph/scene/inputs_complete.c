@@ -93,6 +93,8 @@ void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
     in->stretch.flaw_free = fmax(in->target.length / 10, in->stretch.grip + 2.5 * spacing);
   if (FREE(fragments.static_strength))
     in->fragments.static_strength = static_strength(in);
+  if (FREE(fragments.layer_width))
+    in->fragments.layer_width = in->fracture.cell;
   if (FREE(fragments.dust_mass))
     in->fragments.dust_mass = 1e-3 * sph_derived_target_mass(in);
   if (FREE(stop.quiet_time))
