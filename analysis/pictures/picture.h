@@ -1,4 +1,4 @@
-/* Pictures: broken bodies with cairo, and charts (spectra, curves, maps, profiles, bars) with gnuplot from templates
+/* Pictures: broken bodies with cairo, and charts (spectra, curves, maps, profiles) with gnuplot from templates
  * (chart.h). PNG, SVG or PDF by the file's ending, on white, without a display. A file appears under its name only when
  * it is whole.
  *
@@ -85,14 +85,8 @@ struct picture_fit {
   const char *label;                            /* "beta 2.03 +- 0.05" */
   double beta, lower, upper, fragments_per_run; /* upper may be HUGE_VAL */
 };
-enum picture_style {
-  PICTURE_DENSITY,    /* F(m): marks in the middle of the bins, with error bars */
-  PICTURE_CUMULATIVE, /* N(>m): a line through the bins' lower edges, with a band */
-  PICTURE_MEASURED,   /* open marks at the bins' lower edges, with error bars: what was measured */
-};
 struct picture_series {
   const char *label;
-  enum picture_style style;
   size_t count;
   const struct pooled_bin *bins; /* of pooled_spectrum() with unit_mass 1 */
   size_t fits;
@@ -141,13 +135,5 @@ status picture_curves(const struct picture_page *page, const struct picture_word
  * tiles (STATUS_USAGE). quantity: beside the colours. */
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const double (*points)[3], struct error *error);
-
-/* Named values with intervals, as bars in groups: value[g * names + i] belongs to name i of group g. */
-struct picture_bar {
-  double value, low, high; /* low, high: ends of the interval; NaN: none is drawn */
-};
-status picture_bars(const struct picture_page *page, const struct picture_words *words, size_t names,
-                    const char *const *name, size_t groups, const char *const *group, const struct picture_bar *value,
-                    struct error *error);
 
 #endif

@@ -5,11 +5,6 @@
 
 enum { MOST_FITS = 3, LABELS = PICTURE_SERIES * (1 + MOST_FITS) };
 
-/* Where a bin stands: in its middle; N(>m) at m. */
-static double place(const struct picture_series *series, const struct pooled_bin *bin) {
-  return series->style == PICTURE_DENSITY ? sqrt(bin->lower) * sqrt(bin->upper) : bin->lower;
-}
-
 /* Block: the bins of one series. A bar that reaches down to zero has no lower end on a logarithmic axis. */
 static void write_bins(struct chart *chart, const struct picture_series *series) {
   chart_columns(chart, "mass density low high complete(1)");
@@ -21,7 +16,7 @@ static void write_bins(struct chart *chart, const struct picture_series *series)
     if (low <= 0)
       low = bin->density / 1e3; /* below the frame, or nearly */
     chart_row(chart, 5,
-              (double[]){place(series, bin), bin->density, low, bin->density + bin->half_width,
+              (double[]){sqrt(bin->lower) * sqrt(bin->upper), bin->density, low, bin->density + bin->half_width,
                          !(bin->lower < series->complete_mass)});
   }
   chart_row(chart, 5, (double[]){NAN, NAN, NAN, NAN, NAN}); /* a block is never empty */
@@ -78,7 +73,7 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
                         const struct picture_series *series, struct error *error) {
   double x[2], y[2];
   const char *labels[LABELS];
-  double styles[PICTURE_SERIES], of[LABELS], dashes[LABELS];
+  double of[LABELS], dashes[LABELS];
   size_t lines = 0;
   if (count < 1 || count > PICTURE_SERIES)
     return status_fail(error, STATUS_USAGE, "%s: one to %d spectra in a picture, not %zu", page->path, PICTURE_SERIES,
@@ -93,7 +88,6 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
   chart_number(chart, "series", (double)count);
   for (; lines < count; lines++) {
     labels[lines] = series[lines].label;
-    styles[lines] = series[lines].style;
     write_bins(chart, &series[lines]);
   }
   for (size_t s = 0; s < count; s++)
@@ -104,7 +98,6 @@ status picture_spectrum(const struct picture_page *page, const struct picture_wo
       write_fit(chart, &series[s].fit[i], x[1]);
     }
   chart_number(chart, "fits", (double)(lines - count));
-  chart_numbers(chart, "style", count, styles);
   chart_numbers(chart, "fit_of", lines - count, of);
   chart_numbers(chart, "fit_dash", lines - count, dashes);
   chart_texts(chart, "label", lines, labels);

@@ -76,6 +76,6 @@ void chart_option_caption(struct store *store, const char *quantity, const char 
   if (ask_resolution(store, 0, quantity, &resolution, NULL) == STATUS_OK)
     uncertainty_resolution(&resolution, text);
   chart_option_labels(pooled, names, sizeof names);
-  snprintf(caption, size, "Bars: 95 %% intervals over %s%s%s; %s", *pooled ? "points that differ in " : "seeds", names,
-           "", text);
+  snprintf(caption, size, "Bars: 95 %% intervals over %s%s; %s", *pooled ? "points that differ in " : "seeds", names,
+           text);
 }

@@ -21,7 +21,7 @@ struct chart_options {
 /* A page of the usual width. */
 struct picture_page chart_option_page(const char *path, const struct chart_options *options);
 
-/* "mass share of the largest fragment M₁/M": the name of a column of the views by its row; an exponent is "exponent β
+/* The name of a column of the views by its row: "mass share of the largest fragment M₁/M"; of an exponent "exponent β
  * of F(m)". Without a row: the words of the column. */
 enum { CHART_OPTION_LABEL = 300 };
 void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]);

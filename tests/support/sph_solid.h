@@ -210,4 +210,36 @@ UNUSED static double solid_swing_period(const struct solid_swing *s) {
   return s->crossing[2] - s->crossing[0];
 }
 
+/* A cube of about 4000 basalt particles in equilibrium under tension along z alone, at this strain; its ends along z
+ * are held. The system is not made yet. */
+UNUSED static struct solid_case solid_pulled_cube(double side, double strain) {
+  struct solid_case c = solid_make(1);
+  c.physics[0].material = solid_basalt();
+  c.physics[0].strength = true;
+  c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_BOX, .side = {side, side, side}};
+  c.body[0].lattice.particles = 4000;
+  solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
+  const struct sph_middle between = {.axis = {0, 0, 1}, .half = side / 2 - 2 * c.range[0].h};
+  sph_bodies_hold(c.particles, c.range[0], &between, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
+  struct sph_particles *p = c.particles;
+  const struct sph_material *m = &c.physics[0].material;
+  const double stress = solid_young(m) * strain, shrunk = 1 - (1 - 2 * solid_poisson(m)) * strain;
+  for (size_t i = 0; i < p->n; i++) {
+    p->density[i] = m->density * shrunk;
+    p->mass[i] *= shrunk;
+    p->stress[0][i] = p->stress[3][i] = -stress / 3;
+    p->stress[5][i] = 2 * stress / 3;
+  }
+  return c;
+}
+
+/* The state of a system as a restart file holds it. malloc'd. */
+UNUSED static unsigned char *solid_state(const struct sph_system *system, size_t *size) {
+  *size = sph_system_state_size(system);
+  unsigned char *bytes = malloc(*size);
+  assert_non_null(bytes);
+  sph_system_state_save(system, bytes);
+  return bytes;
+}
+
 #endif

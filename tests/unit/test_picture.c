@@ -332,20 +332,6 @@ static void hostile_text_is_text(void **state) {
   assert_int_not_equal(access(at("hacked"), F_OK), 0);
 }
 
-static void bars_are_drawn(void **state) {
-  (void)state;
-  const struct picture_bar bars[] = {{0.1, 0.05, 0.2}, {0.7, NAN, NAN}, {0.3, 0.2, 0.4}, {0.8, 0.7, 0.9}};
-  const char *const names[] = {"impact speed", "seed"}, *const groups[] = {"first order", "total"};
-  const struct picture_page page = {.path = at("bars.png"), .width = 900};
-  const struct picture_words words = {"Indices", NULL, "share of the variance", NULL};
-  assert_int_equal(picture_bars(&page, &words, 2, names, 2, groups, bars, NULL), STATUS_OK);
-  double dark, coloured;
-  int width, height;
-  ink(at("bars.png"), &dark, &coloured, &width, &height);
-  assert_true(coloured > 0.1); /* 0.1 to 0.8 of an axis up to 1, in four bars of a tenth of the height */
-  assert_int_equal(picture_bars(&page, &words, 0, names, 2, groups, bars, NULL), STATUS_USAGE);
-}
-
 /* Without gnuplot, with a template that gnuplot refuses, and with a folder without templates. */
 static void missing_gnuplot_is_told(void **state) {
   (void)state;
@@ -405,11 +391,10 @@ int main(int count, char **arguments) {
       return 1;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(fragments_are_drawn),  cmocka_unit_test(spectra_are_drawn),
-      cmocka_unit_test(maps_are_drawn),       cmocka_unit_test(profiles_are_drawn),
-      cmocka_unit_test(curves_are_drawn),     cmocka_unit_test(hostile_text_is_text),
-      cmocka_unit_test(bars_are_drawn),       cmocka_unit_test(missing_gnuplot_is_told),
-      cmocka_unit_test(errors_leave_nothing),
+      cmocka_unit_test(fragments_are_drawn),     cmocka_unit_test(spectra_are_drawn),
+      cmocka_unit_test(maps_are_drawn),          cmocka_unit_test(profiles_are_drawn),
+      cmocka_unit_test(curves_are_drawn),        cmocka_unit_test(hostile_text_is_text),
+      cmocka_unit_test(missing_gnuplot_is_told), cmocka_unit_test(errors_leave_nothing),
   };
   int failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (count < 2) {
@@ -428,7 +413,6 @@ int main(int count, char **arguments) {
                            "narrow.dat",
                            "one.gp",
                            "one.dat",
-                           "bars.png",
                            "frame.gp",
                            "lines.gp",
                            "| touch hacked ;'`touch hacked`.svg",

@@ -29,26 +29,10 @@ static struct sph_flaws *one_flaw(const struct sph_particles *p, size_t *middle)
 }
 
 static struct solid_case pulled(int front, double arrest, struct sph_flaws **flaws, size_t *middle) {
-  struct solid_case c = solid_make(1);
-  c.physics[0].material = solid_basalt();
-  c.physics[0].strength = true;
-  c.body[0].shape = (struct sph_shape){.kind = SPH_SHAPE_BOX, .side = {side, side, side}};
-  c.body[0].lattice.particles = 4000;
-  solid_build(&c, SPH_WITH_STRESS | SPH_WITH_DAMAGE | SPH_WITH_HELD);
-  const struct sph_middle between = {.axis = {0, 0, 1}, .half = side / 2 - 2 * c.range[0].h};
-  sph_bodies_hold(c.particles, c.range[0], &between, SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z);
-  struct sph_particles *p = c.particles;
-  const struct sph_material *m = &c.physics[0].material;
-  const double stress = solid_young(m) * load, shrunk = 1 - (1 - 2 * solid_poisson(m)) * load;
-  for (size_t i = 0; i < p->n; i++) { /* in equilibrium: sigma_zz alone */
-    p->density[i] = m->density * shrunk;
-    p->mass[i] *= shrunk;
-    p->stress[0][i] = p->stress[3][i] = -stress / 3;
-    p->stress[5][i] = 2 * stress / 3;
-  }
+  struct solid_case c = solid_pulled_cube(side, load);
   c.parameters.in.fracture.front = front;
   c.parameters.in.fracture.front_arrest = arrest;
-  *flaws = one_flaw(p, middle);
+  *flaws = one_flaw(c.particles, middle);
   c.physics[0].flaws = *flaws;
   return c;
 }
@@ -122,13 +106,6 @@ static void tension_and_off(void **state) {
   assert_int_equal(count_reached(SPH_CRACK_FRONT_PLANE, 0.5, -1), 1); /* compression */
 }
 
-static unsigned char *state_of(const struct sph_system *s, size_t *size) {
-  *size = sph_system_state_size(s);
-  unsigned char *bytes = malloc(*size);
-  sph_system_state_save(s, bytes);
-  return bytes;
-}
-
 /* The same bits after a restart at any step as the front comes to the first neighbours, and with two threads. */
 static void same_bits(void **state) {
   (void)state;
@@ -140,12 +117,12 @@ static void same_bits(void **state) {
   for (int step = 0; step < 8; step++)
     solid_step(&c, INFINITY);
   for (int step = 8; step < 16; step++) {
-    unsigned char *before = state_of(c.system, &size);
+    unsigned char *before = solid_state(c.system, &size);
     solid_start(&again);
     assert_true(sph_system_state_load(again.system, before, size));
     solid_step(&c, INFINITY);
     solid_step(&again, INFINITY);
-    unsigned char *whole = state_of(c.system, &size), *other = state_of(again.system, &size);
+    unsigned char *whole = solid_state(c.system, &size), *other = solid_state(again.system, &size);
     assert_memory_equal(whole, other, size);
     free(before);
     free(whole);

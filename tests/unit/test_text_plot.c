@@ -32,7 +32,7 @@ static void rows_and_columns(void **state) {
   }
   bins[4].half_width = bins[4].density; /* reaches down to zero */
   struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4};
-  struct picture_series series = {"all", PICTURE_DENSITY, 5, bins, 1, &fit, 0};
+  struct picture_series series = {"all", 5, bins, 1, &fit, 0};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
   assert_non_null(strstr(line, "from kg/m"));

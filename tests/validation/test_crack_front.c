@@ -2,45 +2,17 @@
  * its particle and when it runs on (module crack_front).
  *
  * Quick: 3000 and 12 000 particles at 60 /s. CLAST_FULL=1: 12 000, 50 000 and 150 000 at 60 and 360 /s. */
-#include "tests/support/run_case.h"
-
-enum { MOST = 3 };
-
-/* Peak of the mean stress between the grips, Pa. The end of the run is after the peak, and sets how often the stress is
- * recorded. */
-static double peak(const char *front, const char *rate, int particles, const char *end) {
-  char options[4][64];
-  snprintf(options[0], sizeof options[0], "fidelity.particles=%d", particles);
-  snprintf(options[1], sizeof options[1], "stretch.rate=%s", rate);
-  snprintf(options[2], sizeof options[2], "stop.end_time=%s", end);
-  snprintf(options[3], sizeof options[3], "fracture.front=%s", front);
-  const struct sph_inputs inputs = SPH_CASE("tensile-rod", options[0], options[1], options[2], options[3]);
-  struct ran ran = run_case_run(&sph_engine, &inputs, 1);
-  free(ran.fragments);
-  assert_true(ran.results.sph.peak.time < 0.99 * inputs.stop.end_time);
-  return ran.results.sph.peak.stress;
-}
-
-/* Largest over smallest peak stress, less 1. */
-static double spread(const char *front, const char *rate, const char *end) {
-  static const int quick[] = {3000, 12000}, full[MOST] = {12000, 50000, 150000};
-  const int *particles = run_case_full() ? full : quick, count = run_case_full() ? MOST : 2;
-  double least = INFINITY, most = 0;
-  for (int k = 0; k < count; k++) {
-    const double stress = peak(front, rate, particles[k], end);
-    print_message("fracture.front: %-5s %s, %6d particles: peak %.1f MPa\n", front, rate, particles[k], stress / 1e6);
-    least = fmin(least, stress);
-    most = fmax(most, stress);
-  }
-  return most / least - 1;
-}
+#include "tests/validation/rod_strength.h"
 
 static void strength_does_not_grow(void **state) {
   (void)state;
-  assert_true(spread("plane", "60 1/s", "12 us") < 0.05);
-  assert_true(spread("none", "60 1/s", "18 us") > 0.1); /* N^(1/m), as printed */
+  static const int quick[] = {3000, 12000}, full[] = {12000, 50000, 150000};
+  const int *particles = run_case_full() ? full : quick, count = run_case_full() ? 3 : 2;
+  assert_true(rod_strength_spread("fracture.front=plane", "60 1/s", "12 us", count, particles) < 0.05);
+  /* N^(1/m), as printed */
+  assert_true(rod_strength_spread("fracture.front=none", "60 1/s", "18 us", count, particles) > 0.1);
   if (run_case_full())
-    assert_true(spread("plane", "360 1/s", "4 us") < 0.05);
+    assert_true(rod_strength_spread("fracture.front=plane", "360 1/s", "4 us", count, particles) < 0.05);
 }
 
 int main(void) {

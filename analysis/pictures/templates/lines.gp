@@ -9,5 +9,6 @@ set xrange [x_low:x_high]
 set autoscale yfix
 set offsets 0, 0, graph 0.05, graph 0.05
 set key below left Left reverse samplen 2.5 maxcols legend_columns noenhanced
+set key title ' ' # room below the name of the axis
 plot for [i = 1:series] data index i - 1 using 1:2:3:4 with yerrorbars lt i dt 1 ps 1.2 notitle, \
      for [i = 1:series] data index i - 1 using 1:2 with linespoints lt i ps 1.2 title label[i]

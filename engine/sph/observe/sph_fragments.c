@@ -127,7 +127,7 @@ static void choose_mate(void *context, uint32_t i, uint32_t j, double square) {
   s->mate[broken] = unbroken;
 }
 
-/* Step 3 with a layer as deep as a given length: a grid for pairs within it. */
+/* Step 3 where the depth of the layer is given: the pairs within it come from a grid of their own. */
 static status choose_mates_within(struct search *s, double width, struct error *error) {
   const struct sph_particles *p = s->p;
   struct sph_cell_grid *grid = NULL;

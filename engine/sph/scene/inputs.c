@@ -267,12 +267,12 @@ static const struct field rows[] = {
            .doc = "The damaged matter next to a fragment belongs to it. Results tell the largest fragment with and "
                   "without it.",
            .source = "BA95 section 4.4"),
-    REAL(fragments.layer_width, "m", 0, 0, 1e9, .flags = FIELD_SILENT_DEFAULT | FIELD_DERIVED,
-         .when = "fragments.veneer=true",
-         .doc =
-             "Damaged matter nearer than this to a fragment belongs to it. 0: fragments.link_length smoothing lengths, "
-             "so that the layer gets thinner with more particles. fracture.cell unless given.",
-         .source = "our choice; BA95 section 4.4 for 0"),
+    REAL(
+        fragments.layer_width, "m", 0, 0, 1e9, .flags = FIELD_SILENT_DEFAULT | FIELD_DERIVED,
+        .doc =
+            "Depth of the damaged layer of a fragment (fragments.veneer). With 0 it is fragments.link_length smoothing "
+            "lengths, and gets thinner with more particles. Unless given it is fracture.cell.",
+        .source = "our choice; BA95 section 4.4 for 0"),
     REAL(fragments.dust_mass, "kg", NAN, 0, 1e60, .flags = FIELD_DERIVED,
          .doc = "Lighter fragments are dust, whatever the particles weigh; a thousandth of the target's mass unless "
                 "given. Below complete_mass (10 particles) dust is not resolved: with that default take 10000 "

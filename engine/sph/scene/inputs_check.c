@@ -242,7 +242,7 @@ status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
   if (cracks && in->method.artificial_stress > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
   if (in->fracture.cell > 0 && in->fracture.front == SPH_CRACK_FRONT_PLANE)
-    REFUSE("fracture.cell and fracture.front: plane are two answers to one question: set one of them");
+    REFUSE("fracture.cell cannot be used with fracture.front: plane: set fracture.cell: 0 m, or fracture.front: none");
   if (in->fracture.cell > 0 && in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
     REFUSE("fracture.crack_radius: support has no meaning for cells: set it to volume, or fracture.cell: 0 m");
   if (in->fragments.layer_width > 30 * sph_derived_smallest_spacing(in)) /* each finds 1e5 others */
