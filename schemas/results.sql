@@ -528,16 +528,29 @@ WITH first AS (
     k4 + s4 / n AS m4, sqrt(max(0, (q4 - s4 * s4 / n) / (n - 1))) AS d4
   FROM moment
 )
+, unresolved AS MATERIALIZED (SELECT point_id, results_version,
+    max(iif('largest_fraction' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e0, max(iif('largest_fraction' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v0,
+    max(iif('second_fraction' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e1, max(iif('second_fraction' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v1,
+    max(iif('fragment_count' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e2, max(iif('fragment_count' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v2,
+    max(iif('dust_fraction' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e3, max(iif('dust_fraction' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v3,
+    max(iif('mean_fragment_mass' IN (quantity, 'result_' || engine || '_' || quantity), half_width, NULL)) AS e4, max(iif('mean_fragment_mass' IN (quantity, 'result_' || engine || '_' || quantity), verdict, NULL)) AS v4
+  FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)
 SELECT p.point_id, p.engine, p.scene_name AS scene,
   t.results_version, ifnull(t.runs, 0) AS n, ifnull(t.censored, 0) AS censored, ifnull(t.failed, 0) AS failed,
   ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS failed_attempts,
   m0 AS largest_fraction_mean, d0 AS largest_fraction_sd, d0 / sqrt(n) AS largest_fraction_se, s.t * d0 / sqrt(n) AS largest_fraction_hw95,
+  e0 AS largest_fraction_resolution, ifnull(v0, 'not-studied') AS largest_fraction_resolution_verdict,
   m1 AS second_fraction_mean, d1 AS second_fraction_sd, d1 / sqrt(n) AS second_fraction_se, s.t * d1 / sqrt(n) AS second_fraction_hw95,
+  e1 AS second_fraction_resolution, ifnull(v1, 'not-studied') AS second_fraction_resolution_verdict,
   m2 AS fragment_count_mean, d2 AS fragment_count_sd, d2 / sqrt(n) AS fragment_count_se, s.t * d2 / sqrt(n) AS fragment_count_hw95,
+  e2 AS fragment_count_resolution, ifnull(v2, 'not-studied') AS fragment_count_resolution_verdict,
   m3 AS dust_fraction_mean, d3 AS dust_fraction_sd, d3 / sqrt(n) AS dust_fraction_se, s.t * d3 / sqrt(n) AS dust_fraction_hw95,
-  m4 AS mean_fragment_mass_mean, d4 AS mean_fragment_mass_sd, d4 / sqrt(n) AS mean_fragment_mass_se, s.t * d4 / sqrt(n) AS mean_fragment_mass_hw95
+  e3 AS dust_fraction_resolution, ifnull(v3, 'not-studied') AS dust_fraction_resolution_verdict,
+  m4 AS mean_fragment_mass_mean, d4 AS mean_fragment_mass_sd, d4 / sqrt(n) AS mean_fragment_mass_se, s.t * d4 / sqrt(n) AS mean_fragment_mass_hw95,
+  e4 AS mean_fragment_mass_resolution, ifnull(v4, 'not-studied') AS mean_fragment_mass_resolution_verdict
 FROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id
-  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;
+  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version
+  LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;
 
 CREATE VIEW spectra AS -- pooled fragment mass spectrum of every point
 SELECT p.point_id, p.engine, p.scene_name AS scene,
@@ -560,6 +573,24 @@ FROM (
   UNION ALL
   SELECT point_id, NULL, NULL, NULL, NULL, "ordinal", "window", "method", "headline", "lower", "upper", "n", "beta", "standard_error", "hw95", "cutoff_mass", "ks_distance", "log_likelihood", results_version FROM point_estimate
 ) e JOIN point p ON p.point_id = e.point_id;
+
+CREATE VIEW resolution AS -- what finer settings may change in a result, for every point that was studied
+WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),
+of_knob AS (SELECT base_point_id, results_version, quantity, knob,
+    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict = 'no-order') AS diverges
+  FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)
+  GROUP BY base_point_id, results_version, quantity, knob),
+studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),
+of_study AS (SELECT s.point_id, s.results_version, s.quantity,
+    sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,
+    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open
+  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)
+    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version
+    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id
+  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity)
+SELECT point_id, results_version, quantity, max(half_width) AS half_width,
+  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict
+FROM of_study GROUP BY point_id, results_version, quantity;
 
 INSERT INTO column_doc VALUES ('attempt', 'attempt_id', NULL, 'number of the failed attempt', 0);
 
@@ -879,6 +910,10 @@ INSERT INTO column_doc VALUES ('points', 'dust_fraction_hw95', '1', 'half width 
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_mean', '1', 'mean over runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'dust_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
+
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_sd', '1', 'standard deviation between runs: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'dust_fraction_se', '1', 'standard error of the mean: Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 0);
@@ -893,6 +928,10 @@ INSERT INTO column_doc VALUES ('points', 'fragment_count_hw95', '1', 'half width
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_mean', '1', 'mean over runs: Fragments of any size, single grains (dust) included.', 0);
 
+INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution', '1', 'how far finer settings may move the mean (view resolution): Fragments of any size, single grains (dust) included.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'fragment_count_resolution_verdict', '1', 'known, at least, diverges, or not studied: Fragments of any size, single grains (dust) included.', 0);
+
 INSERT INTO column_doc VALUES ('points', 'fragment_count_sd', '1', 'standard deviation between runs: Fragments of any size, single grains (dust) included.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'fragment_count_se', '1', 'standard error of the mean: Fragments of any size, single grains (dust) included.', 0);
@@ -901,6 +940,10 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_hw95', '1', 'half wid
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_mean', '1', 'mean over runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the largest fragment over the total mass, M_1/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'largest_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass of the largest fragment over the total mass, M_1/M.', 0);
+
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard deviation between runs: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M.', 0);
@@ -908,6 +951,10 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard e
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean (Student): Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Second moment over first of all fragment masses (not M_2/M_1).', 0);
+
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, at least, diverges, or not studied: Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
 
@@ -925,11 +972,25 @@ INSERT INTO column_doc VALUES ('points', 'second_fraction_hw95', '1', 'half widt
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_mean', '1', 'mean over runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
+INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution', '1', 'how far finer settings may move the mean (view resolution): Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
+INSERT INTO column_doc VALUES ('points', 'second_fraction_resolution_verdict', '1', 'known, at least, diverges, or not studied: Mass of the second largest fragment over the total mass, M_2/M.', 0);
+
 INSERT INTO column_doc VALUES ('points', 'second_fraction_sd', '1', 'standard deviation between runs: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'second_fraction_se', '1', 'standard error of the mean: Mass of the second largest fragment over the total mass, M_2/M.', 0);
 
 INSERT INTO column_doc VALUES ('points', 'surplus', '1', 'runs left out because a stopping rule decided without them', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all knobs that were studied', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'quantity', NULL, 'the result, as a column of the view runs', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied', 0);
+
+INSERT INTO column_doc VALUES ('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; diverges: the result does not converge', 0);
 
 INSERT INTO column_doc VALUES ('result_dem', 'beams', '1', 'Beams at the start, those of the explosive left out.', 1);
 

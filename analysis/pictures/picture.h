@@ -119,6 +119,7 @@ status picture_profile(const struct picture_page *page, const struct picture_wor
 /* A mean with its interval at a value of an input. */
 struct picture_mean {
   double x, y, low, high; /* low, high: ends of the interval; NaN: none is drawn */
+  double resolution;      /* a thin bar adds it to both ends; NaN: none is drawn */
 };
 struct picture_curve {
   const char *label; /* may be NULL */

@@ -20,14 +20,18 @@ static bool range_of(size_t count, const struct picture_curve *curve, double ran
 }
 
 static void write_curve(struct chart *chart, const struct picture_curve *curve) {
-  chart_columns(chart, "x mean low high");
+  chart_columns(chart, "x mean low high thin_low thin_high");
   for (size_t i = 0; i < curve->count; i++) {
     const struct picture_mean *m = &curve->mean[i];
     const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
-    chart_row(chart, 4, (double[]){m->x, m->y, bar ? m->low : none, bar ? m->high : none});
+    const bool thin = m->resolution > 0;
+    chart_row(chart, 6,
+              (double[]){m->x, m->y, bar ? m->low : none, bar ? m->high : none,
+                         thin ? (bar ? m->low : m->y) - m->resolution : none,
+                         thin ? (bar ? m->high : m->y) + m->resolution : none});
   }
   if (curve->count == 0)
-    chart_row(chart, 4, (double[]){NAN, NAN, NAN, NAN});
+    chart_row(chart, 6, (double[]){NAN, NAN, NAN, NAN, NAN, NAN});
   chart_block_end(chart);
 }
 

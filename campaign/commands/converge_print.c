@@ -155,7 +155,7 @@ status converge_print_picture(const struct study *study, const char *path, struc
     curves[drawn] = (struct picture_curve){.label = found[i].limit.knob, .mean = means[drawn]};
     for (size_t l = 0; l < found[i].count; l++) {
       const struct convergence_row *row = &found[i].rows[l];
-      struct picture_mean mean = {row->cpu, row->mean, row->mean - row->half_width, row->mean + row->half_width};
+      struct picture_mean mean = {row->cpu, row->mean, row->mean - row->half_width, row->mean + row->half_width, NAN};
       if (!isfinite(mean.x) || !isfinite(mean.y))
         continue;
       size_t place = curves[drawn].count++;

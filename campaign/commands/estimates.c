@@ -5,6 +5,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/quantity.h"
 #include "campaign/terminal/rows.h"
+#include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"
 #include "db/ask/point.h"
 
@@ -30,8 +31,9 @@ enum { METHODS = sizeof methods / sizeof methods[0], MASSES = METHODS - 1 };
 /* The first cells of a row: the point and its runs. For people they are blank in all but the first row of a point. */
 static void point_cells(struct printing *printing, const struct ask_points_row *row, bool blank) {
   struct table *table = printing->table;
+  char text[UNCERTAINTY_TEXT];
   if (blank) {
-    for (size_t i = 0; i < row->input_count + 5; i++)
+    for (size_t i = 0; i < row->input_count + 6; i++)
       table_text(table, "");
     return;
   }
@@ -42,6 +44,13 @@ static void point_cells(struct printing *printing, const struct ask_points_row *
   table_integer(table, row->failed);
   table_real(table, row->mean);
   table_real(table, row->half_width);
+  if (printing->format == TABLE_TEXT) {
+    uncertainty_resolution_cell(row->resolution_verdict, row->resolution, text);
+    table_text(table, text);
+    return;
+  }
+  table_real(table, row->resolution);
+  table_text(table, ask_resolution_names[row->resolution_verdict]);
 }
 
 static void window_cells(struct table *table, int window, const struct point_estimate *fits) {
@@ -87,6 +96,9 @@ static void headings(struct printing *printing) {
   table_column(table, "failed", NULL);
   table_column(table, people ? "M_1/M" : "largest_fraction_mean", NULL);
   table_column(table, people ? "+-95%" : "largest_fraction_hw95", NULL);
+  table_column(table, people ? "+-resolution" : "largest_fraction_resolution", NULL);
+  if (!people)
+    table_column(table, "largest_fraction_resolution_verdict", NULL);
   table_columns(table, (const char *const[]){"window", "fragments", NULL});
   for (int m = 0; m < METHODS; m++) {
     char name[64];
@@ -99,8 +111,9 @@ static void headings(struct printing *printing) {
 }
 
 static const char *const estimates_legend =
-    "+-95%: half width of the 95 % interval over seeds (Student's t); one run has none. It does not hold the error of "
-    "the resolution.\nbeta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together.\nLSQ: least "
+    "+-95%: half width of the 95 % interval over seeds (Student's t); one run has none.\n+-resolution: how far finer "
+    "settings may move M_1/M (`clast converge` measures it).\nbeta: exponent of F(m) ~ m^-beta (differential), of all "
+    "runs of a point together.\nLSQ: least "
     "squares on logarithmic bins of one decade, as in the paper; it needs a fragment in every bin.\nbinned, ML: "
     "maximum likelihood on bins and on masses, without the largest fragment of each run.\nWindows: from 1.5, 4.5, 9.5 "
     "mean masses of a grain or particle; the first holds single grains heavier than 1.5 means.\n";

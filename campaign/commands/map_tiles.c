@@ -47,7 +47,7 @@ static status draw(struct store *store, const struct map_tiles *map, const struc
                    struct error *error) {
   const struct quantity *quantity = &map->quantity;
   char x[CHART_OPTION_LABEL], y[CHART_OPTION_LABEL], z[CHART_OPTION_LABEL];
-  char title[ASK_GROUP_POOLED + 400], caption[1000], pooled[ASK_GROUP_POOLED], resolution[900];
+  char title[ASK_GROUP_POOLED + 400], caption[1100], pooled[ASK_GROUP_POOLED], intervals[600], resolution[400];
   status code = chart_option_axis(store, quantity->column[0], x, error);
   if (code == STATUS_OK)
     code = chart_option_axis(store, quantity->column[1], y, error);
@@ -59,12 +59,12 @@ static status draw(struct store *store, const struct map_tiles *map, const struc
   snprintf(title, sizeof title, "%s: %s%s%s", z, quantity->exponent ? "fit to all runs of a point" : "mean over seeds",
            *pooled ? " and " : "", pooled);
   title[0] = (char)toupper((unsigned char)title[0]);
-  chart_option_caption(store, quantity->name, quantity->pooled, resolution, sizeof resolution);
-  const char *from = strchr(resolution, ':') + 1; /* without "Bars:" */
+  chart_option_intervals(quantity->pooled, intervals, sizeof intervals);
+  chart_option_resolution(store, quantity->name, "", resolution, sizeof resolution);
   if (map->widest > 0)
-    snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g:%s", map->widest, from);
+    snprintf(caption, sizeof caption, "At most \xc2\xb1 %.2g: %s; %s", map->widest, intervals, resolution);
   else
-    snprintf(caption, sizeof caption, "No interval: one run a point;%s", strchr(from, ';') + 1);
+    snprintf(caption, sizeof caption, "No interval: one run a point; %s", resolution);
   return picture_map(page, &(struct picture_words){title, caption, x, y}, z, map->count,
                      (const double(*)[3])map->points, error);
 }

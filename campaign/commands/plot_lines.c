@@ -71,7 +71,7 @@ static status add(void *context, const struct quantity_row *row, struct error *e
           error, STATUS_USAGE,
           "several points share %s = %g and one line: their exponents are not averaged; tell them apart by --by",
           plot->quantity.column[0], x->real);
-  line->means[line->count++] = (struct picture_mean){x->real, row->value, row->lower, row->upper};
+  line->means[line->count++] = (struct picture_mean){x->real, row->value, row->lower, row->upper, row->resolution};
   return STATUS_OK;
 }
 
@@ -117,7 +117,7 @@ static void title_of(const struct quantity *quantity, const char *y, char *title
 static status draw(struct store *store, struct plot_lines *plot, const struct picture_page *page, struct error *error) {
   const struct quantity *quantity = &plot->quantity;
   char x[CHART_OPTION_LABEL], by[CHART_OPTION_LABEL] = "", y[CHART_OPTION_LABEL], name[CHART_OPTION_LABEL];
-  char title[ASK_GROUP_POOLED + 3 * CHART_OPTION_LABEL], caption[1000];
+  char title[ASK_GROUP_POOLED + 3 * CHART_OPTION_LABEL], caption[1200], intervals[600], resolution[400];
   status code = chart_option_axis(store, quantity->column[0], x, error);
   if (code == STATUS_OK && quantity->axes == 2)
     code = chart_option_axis(store, quantity->column[1], by, error);
@@ -134,7 +134,9 @@ static status draw(struct store *store, struct plot_lines *plot, const struct pi
   }
   chart_option_label(quantity->name, name);
   title_of(quantity, name, title, sizeof title);
-  chart_option_caption(store, quantity->name, quantity->pooled, caption, sizeof caption);
+  chart_option_intervals(quantity->pooled, intervals, sizeof intervals);
+  chart_option_resolution(store, quantity->name, "thin bars add ", resolution, sizeof resolution);
+  snprintf(caption, sizeof caption, "Bars: %s; %s", intervals, resolution);
   return picture_curves(page, &(struct picture_words){title, caption, x, y}, plot->count, curves, error);
 }
 

@@ -12,7 +12,7 @@
 #include "engine/outcome.h"
 
 /* Columns of ask_group after the axes. */
-enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, COLUMNS = 10 };
+enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, COLUMNS = 12 };
 
 struct reading {
   struct store *store;
@@ -48,7 +48,8 @@ static status take_group(void *context, size_t count, const struct query_value *
   const struct query_value *rest = values + reading->quantity->axes;
   const double mean = rest[MEAN].real;
   const double half_width = rest[HALF_WIDTH].real; /* NaN for one run */
-  const struct quantity_row row = {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width};
+  const struct quantity_row row =
+      {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width, rest[RESOLUTION].real};
   return reading->each(reading->context, &row, error);
 }
 
@@ -64,8 +65,8 @@ static status take_point(void *context, const struct ask_points_row *point, stru
   if (code)
     return code;
   const double half_width = fit.interval.half_width;
-  const struct quantity_row row = {point->inputs, point->results_version, fit.fit.beta, fit.fit.beta - half_width,
-                                   fit.fit.beta + half_width};
+  const struct quantity_row row =
+      {point->inputs, point->results_version, fit.fit.beta, fit.fit.beta - half_width, fit.fit.beta + half_width, NAN};
   return reading->each(reading->context, &row, error);
 }
 

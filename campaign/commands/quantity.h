@@ -36,6 +36,7 @@ struct quantity_row {
   const struct query_value *input; /* one for each axis; borrowed for the call */
   int64_t results_version;
   double value, lower, upper; /* the bounds are of the 95 % interval; NaN: unknown */
+  double resolution;          /* how far finer settings may move the value; NaN: unknown */
 };
 
 /* Passes every value to `each`; `quantity` is filled in before the first call. What `each`

@@ -70,12 +70,20 @@ void chart_option_labels(const char *paths, char *labels, size_t size) {
   }
 }
 
-void chart_option_caption(struct store *store, const char *quantity, const char *pooled, char *caption, size_t size) {
-  struct ask_resolution resolution;
-  char text[UNCERTAINTY_TEXT] = "resolution: not known", names[ASK_GROUP_POOLED];
-  if (ask_resolution(store, 0, quantity, &resolution, NULL) == STATUS_OK)
-    uncertainty_resolution(&resolution, text);
+void chart_option_intervals(const char *pooled, char *text, size_t size) {
+  char names[ASK_GROUP_POOLED];
   chart_option_labels(pooled, names, sizeof names);
-  snprintf(caption, size, "Bars: 95 %% intervals over %s%s; %s", *pooled ? "points that differ in " : "seeds", names,
-           text);
+  snprintf(text, size, "95 %% intervals over %s%s", *pooled ? "points that differ in " : "seeds", names);
+}
+
+void chart_option_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size) {
+  struct ask_resolution resolution;
+  char words[UNCERTAINTY_TEXT] = "resolution: not known";
+  const char *before = "";
+  if (ask_resolution(store, 0, quantity, &resolution, NULL) == STATUS_OK) {
+    uncertainty_resolution(&resolution, words);
+    if (resolution.studied > 0)
+      before = adds;
+  }
+  snprintf(text, size, "%s%s", before, words);
 }

@@ -29,7 +29,9 @@ void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]);
 status chart_option_axis(struct store *store, const char *column, char label[CHART_OPTION_LABEL], struct error *error);
 /* The paths of inputs, separated by ", ", as their names: "impact speed, weibull m". */
 void chart_option_labels(const char *paths, char *labels, size_t size);
-/* What the intervals of a chart hold, and what is known of the resolution, as a caption. pooled: of ask_group. */
-void chart_option_caption(struct store *store, const char *quantity, const char *pooled, char *caption, size_t size);
+/* "95 % intervals over seeds", or over points that differ in the pooled inputs (of ask_group; "": none). */
+void chart_option_intervals(const char *pooled, char *text, size_t size);
+/* What is known of the resolution of a quantity at the points of the store; `adds` goes before it when something is. */
+void chart_option_resolution(struct store *store, const char *quantity, const char *adds, char *text, size_t size);
 
 #endif

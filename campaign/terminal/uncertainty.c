@@ -24,15 +24,33 @@ void uncertainty_seeds(double mean, double half_width, char text[UNCERTAINTY_TEX
 }
 
 void uncertainty_resolution(const struct ask_resolution *resolution, char text[UNCERTAINTY_TEXT]) {
+  const char *up_to = resolution->points > 1 ? "up to " : "";
+  int used = 0;
   switch (resolution->verdict) {
-  case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "+- %.2g (resolution)", resolution->half_width); return;
-  case ASK_RESOLUTION_AT_LEAST:
-    snprintf(text, UNCERTAINTY_TEXT, "+- %.2g or more (resolution)", resolution->half_width);
+  case ASK_RESOLUTION_NOT_STUDIED:
+    snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->scene);
     return;
   case ASK_RESOLUTION_DIVERGES:
     snprintf(text, UNCERTAINTY_TEXT, "resolution: does not converge (`clast converge %s`)", resolution->scene);
     return;
-  case ASK_RESOLUTION_NOT_STUDIED: break;
+  case ASK_RESOLUTION_KNOWN:
+    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g (resolution)", up_to, resolution->half_width);
+    break;
+  case ASK_RESOLUTION_AT_LEAST:
+    used = snprintf(text, UNCERTAINTY_TEXT, "%s+- %.2g or more (resolution)", up_to, resolution->half_width);
+    break;
   }
-  snprintf(text, UNCERTAINTY_TEXT, "resolution: not studied; `clast converge %s` measures it", resolution->scene);
+  if (resolution->studied < resolution->points)
+    snprintf(text + used, UNCERTAINTY_TEXT - (size_t)used,
+             "; studied at %lld of %lld points, `clast converge %s` studies others", (long long)resolution->studied,
+             (long long)resolution->points, resolution->scene);
+}
+
+void uncertainty_resolution_cell(enum ask_resolution_verdict verdict, double half_width, char text[UNCERTAINTY_TEXT]) {
+  switch (verdict) {
+  case ASK_RESOLUTION_KNOWN: snprintf(text, UNCERTAINTY_TEXT, "%.2g", half_width); return;
+  case ASK_RESOLUTION_AT_LEAST: snprintf(text, UNCERTAINTY_TEXT, ">= %.2g", half_width); return;
+  case ASK_RESOLUTION_DIVERGES: snprintf(text, UNCERTAINTY_TEXT, "diverges"); return;
+  case ASK_RESOLUTION_NOT_STUDIED: snprintf(text, UNCERTAINTY_TEXT, "not studied"); return;
+  }
 }

@@ -113,10 +113,16 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
         out);
   write_names(out, axes);
-  fputs("engine, results_version, point_id)\nGROUP BY ", out);
+  fputs("engine, results_version, point_id) LEFT JOIN ", out);
+  const char *list[NAMES];
+  for (size_t i = 0; i < quantities->count; i++)
+    list[i] = quantities->name[i];
+  views_write_resolution(quantities->count, list, out);
+  fputs(" USING (point_id, results_version)\nGROUP BY ", out);
 }
 
-/* The units of a group: the runs of its only point, or the means of its points. */
+/* The units of a group: the runs of its only point, or the means of its points. What finer settings may change is the
+ * most that they may change at one of its points. */
 static char *group_sql(const struct names *axes, const struct names *quantities) {
   char *sql = NULL;
   size_t size = 0;
@@ -133,7 +139,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
     char degrees[32];
     snprintf(degrees, sizeof degrees, "(u%zu - 1)", i);
     views_write_student(degrees, out);
-    fprintf(out, ") AS \"%s_hw95\"", q);
+    fprintf(out, ") AS \"%s_hw95\", e%zu AS \"%s_resolution\", v%zu AS \"%s_resolution_verdict\"", q, i, q, i, q);
   }
   fputs("\nFROM (SELECT ", out);
   write_names(out, axes);
@@ -142,7 +148,11 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
   for (size_t i = 0; i < quantities->count; i++)
     fprintf(out,
             ",\n  avg(p%1$zu) AS m%1$zu, iif(count(p%1$zu) > 1, count(p%1$zu), sum(r%1$zu)) AS u%1$zu, "
-            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu",
+            "iif(count(p%1$zu) > 1, stdev(p%1$zu), max(o%1$zu)) AS d%1$zu,\n  "
+            "iif(count(e%1$zu) = count(*), max(e%1$zu), NULL) AS e%1$zu, CASE WHEN count(e%1$zu) < count(*) THEN "
+            "'not-studied' WHEN max(v%1$zu = 'diverges') THEN 'diverges' WHEN max(v%1$zu = 'at-least') THEN 'at-least' "
+            "ELSE "
+            "'known' END AS v%1$zu",
             i);
   write_points(out, axes, quantities);
   write_names(out, axes);

@@ -80,7 +80,7 @@ struct rows {
   void *context;
 };
 
-enum { FIRST_INPUT = 6 }; /* column of the first input in the question of ask_points_rows */
+enum { FIRST_INPUT = 8 }; /* column of the first input in the question of ask_points_rows */
 
 static status give_row(void *context, size_t count, const struct query_value *values, struct error *error) {
   const struct rows *rows = context;
@@ -90,6 +90,9 @@ static status give_row(void *context, size_t count, const struct query_value *va
                                      .failed = values[3].integer,
                                      .mean = values[4].real,
                                      .half_width = values[5].real,
+                                     .resolution = values[6].real,
+                                     .resolution_verdict = ask_resolution_verdict(
+                                         values[7].kind == QUERY_TEXT ? values[7].text : NULL),
                                      .input_count = count - FIRST_INPUT,
                                      .inputs = values + FIRST_INPUT};
   return rows->each(rows->context, &row, error);
@@ -104,7 +107,9 @@ status ask_points_rows(struct store *store, const struct ask_points_choice *choi
   FILE *out = open_memstream(&sql, &size);
   if (!out)
     return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
-  fputs("SELECT point_id, results_version, n, failed, largest_fraction_mean, largest_fraction_hw95", out);
+  fputs("SELECT point_id, results_version, n, failed, largest_fraction_mean, largest_fraction_hw95, "
+        "largest_fraction_resolution, largest_fraction_resolution_verdict",
+        out);
   for (size_t i = 0; i < input_count; i++) {
     fputs(", ", out);
     sql_write_name(inputs[i], out);

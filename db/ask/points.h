@@ -4,6 +4,7 @@
 #define CLAST_DB_ASK_POINTS_H
 
 #include "db/ask/query.h"
+#include "db/ask/resolution.h"
 
 /* A point's runs of one results_version. */
 struct ask_points_row {
@@ -12,6 +13,8 @@ struct ask_points_row {
   int64_t n, failed;       /* runs that count; runs that failed */
   double mean, half_width; /* of the largest fraction, with the half width of the 95 % interval of its mean. NaN: too
                               few runs */
+  double resolution;       /* what finer settings may change in it; NaN: not known */
+  enum ask_resolution_verdict resolution_verdict;
   size_t input_count;
   const struct query_value *inputs; /* values of the inputs asked for, in their order; borrowed for the call */
 };

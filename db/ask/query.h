@@ -47,11 +47,12 @@ status query_number(struct store *store, const char *sql, size_t parameter_count
  * pooled_spectrum_count_hw95(). The views of a store use none of them, so that any tool can read the views. */
 status ask_register_functions(struct store *store, struct error *error);
 
-/* points, n, failed, censored, and mean, standard deviation, standard error and 95 % half width of each quantity, of
- * all runs that share the named axes. A group of one point is a sample of runs (seeds). A group of several points pools
- * over other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over
- * such points; the scatter of seeds is part of theirs. `pooled` names these inputs ("threshold.angle, material.m"; "":
- * every group has one point).
+/* points, n, failed, censored, and of each quantity mean, standard deviation, standard error, 95 % half width, what
+ * finer settings may change in it and the verdict of that (the most of all points, db/ask/resolution.h), of all runs
+ * that share the named axes. A group of one point is a sample of runs (seeds). A group of several points pools over
+ * other inputs: its points are the units, each with the mean of its runs, and the interval is that of a mean over such
+ * points; the scatter of seeds is part of theirs. `pooled` names these inputs ("threshold.angle, material.m"; "": every
+ * group has one point).
  *
  * `by`: comma-separated paths of varied inputs or unique suffixes of one ("m,k"); "" pools everything. `quantities`:
  * comma-separated result columns or unique suffixes; NULL = the main ones. Results of different results_version are

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* One scene: its name. Several: "SCENE" stays. */
 static status take_scene(void *context, size_t count, const struct query_value *values, struct error *error) {
@@ -13,29 +14,37 @@ static status take_scene(void *context, size_t count, const struct query_value *
   return STATUS_OK;
 }
 
-/* Sum over knobs of what they leave unknown. A point may be a level of several studies: of each knob counts the one
- * that knows least. Of all points together (0) only when there is one. */
-static const char sum_of_knobs[] =
-    "WITH newest AS (SELECT point_id, max(results_version) AS results_version FROM run"
-    "   WHERE point_id = :point"
-    "     OR (:point = 0 AND (SELECT count(*) FROM (SELECT DISTINCT point_id FROM run LIMIT 2)) = 1)"
-    "   GROUP BY point_id),"
-    " knobs AS (SELECT knob, max(resolution) AS resolution, max(open) AS open, max(verdict = 'no-order') AS diverges"
-    "   FROM convergence JOIN newest USING (point_id, results_version)"
-    "   LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)"
-    "   WHERE quantity = :quantity AND resolution IS NOT NULL GROUP BY knob)"
-    " SELECT sum(resolution), max(open), max(diverges) FROM knobs";
+static const char of_points[] =
+    "SELECT count(*), count(half_width), max(half_width), max(verdict = 'diverges'), max(verdict = 'at-least')"
+    " FROM (SELECT point_id, max(results_version) AS results_version FROM point_total"
+    "   WHERE runs > 0 AND :point IN (0, point_id) GROUP BY point_id)"
+    " LEFT JOIN (SELECT * FROM resolution WHERE quantity = :quantity) USING (point_id, results_version)";
 
-static status take_sum(void *context, size_t count, const struct query_value *values, struct error *error) {
+const char *const ask_resolution_names[] = {[ASK_RESOLUTION_NOT_STUDIED] = "not-studied",
+                                            [ASK_RESOLUTION_KNOWN] = "known",
+                                            [ASK_RESOLUTION_AT_LEAST] = "at-least",
+                                            [ASK_RESOLUTION_DIVERGES] = "diverges"};
+
+enum ask_resolution_verdict ask_resolution_verdict(const char *verdict) {
+  for (int i = ASK_RESOLUTION_KNOWN; i <= ASK_RESOLUTION_DIVERGES; i++)
+    if (verdict && strcmp(verdict, ask_resolution_names[i]) == 0)
+      return (enum ask_resolution_verdict)i;
+  return ASK_RESOLUTION_NOT_STUDIED;
+}
+
+static status take_found(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
   struct ask_resolution *out = context;
-  if (values[0].kind == QUERY_NULL)
-    return STATUS_OK; /* no study */
-  out->half_width = values[0].real;
+  out->points = values[0].integer;
+  out->studied = values[1].integer;
+  if (out->studied == 0)
+    return STATUS_OK;
+
+  out->half_width = values[2].real;
   out->verdict = ASK_RESOLUTION_KNOWN;
-  if (values[1].integer)
+  if (values[4].integer)
     out->verdict = ASK_RESOLUTION_AT_LEAST;
-  if (values[2].integer)
+  if (values[3].integer)
     out->verdict = ASK_RESOLUTION_DIVERGES;
   return STATUS_OK;
 }
@@ -49,7 +58,7 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   char id[32];
   snprintf(id, sizeof id, "%lld", (long long)point_id);
   const struct query_parameter parameters[] = {{"point", id}, {"quantity", quantity}};
-  const struct query_sink scene = {.context = out, .row = take_scene}, sum = {.context = out, .row = take_sum};
+  const struct query_sink scene = {.context = out, .row = take_scene}, found = {.context = out, .row = take_found};
   status code = query_run(store,
                           "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE :point = 0 OR point_id "
                           "= :point",
@@ -57,7 +66,5 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
   if (code != STATUS_OK)
     return code;
 
-  double there = 0; /* a store of an earlier program has no studies */
-  code = query_number(store, "SELECT count(*) FROM sqlite_schema WHERE name = 'convergence'", 0, NULL, &there, error);
-  return code == STATUS_OK && there > 0 ? query_run(store, sum_of_knobs, 2, parameters, 0, &sum, error) : code;
+  return code == STATUS_OK ? query_run(store, of_points, 2, parameters, 0, &found, error) : code;
 }

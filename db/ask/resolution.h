@@ -14,14 +14,21 @@ enum ask_resolution_verdict {
 
 struct ask_resolution {
   enum ask_resolution_verdict verdict;
-  double half_width; /* 95 % bound on how far a finer resolution may move the quantity, in its unit; NaN: not known */
-  char scene[128];   /* whose study answers, or is missing; "SCENE" when the store has several scenes */
+  double half_width; /* 95 % bound on how far a finer resolution may move the quantity, in its unit: the largest of the
+                        points; NaN: not known */
+  int64_t points, studied; /* points with runs that were asked for, and how many of them were studied */
+  char scene[128];         /* whose study answers, or is missing; "SCENE" when the store has several scenes */
 };
 
-/* What `clast converge` found with the results_version of the point's newest runs: the sum over the knobs of resolution
- * that were studied there, be the point the scene studied or one of its levels. quantity: a result column of the view
- * runs, beta, or beta_METHOD_WINDOW. point_id 0: all points of the store together. store NULL: a run without a store,
- * never studied. */
+/* "not-studied", "known", "at-least", "diverges": as in the views. */
+extern const char *const ask_resolution_names[];
+/* The verdict that a column of the views or of ask_group names; anything else (also NULL): not studied. */
+enum ask_resolution_verdict ask_resolution_verdict(const char *verdict);
+
+/* What the view resolution says of the point's newest results_version: what `clast converge` found, be the point the
+ * scene studied or one of its levels. quantity: a result column of the view
+ * runs, beta, or beta_METHOD_WINDOW. point_id 0: all points of the store, of which the verdict is the worst of those
+ * studied. store NULL: a run without a store, never studied. */
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error);
 

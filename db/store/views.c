@@ -8,7 +8,7 @@
 #include "engine/outcome.h"
 #include "schemas/text.h"
 
-const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates"};
+const char *const views_names[VIEWS_COUNT] = {"runs", "points", "spectra", "estimates", "resolution"};
 
 size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]) {
   size_t count = 0;
@@ -29,6 +29,13 @@ void views_write_student(const char *degrees, FILE *out) {
           "\n      WHEN %1$s > 10 THEN 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 "
           "+ 1.589534053394 / %1$s) / %1$s) / %1$s) / %1$s END",
           degrees);
+}
+
+/* Studies name a quantity as its engine does; the view runs may have put the engine's table in front. */
+static void write_is_quantity(const char *name, FILE *out) {
+  char *sql = sqlite3_mprintf("%Q IN (quantity, 'result_' || engine || '_' || quantity)", name);
+  fputs(sql ? sql : "NULL", out); /* without memory the next query fails, too */
+  sqlite3_free(sql);
 }
 
 static status each_row(sqlite3 *db, const char *sql, void (*write)(FILE *out, sqlite3_stmt *row), FILE *out,
@@ -140,6 +147,52 @@ static status stored_main_results(sqlite3 *db, size_t *count, const char *names[
   return result;
 }
 
+/* For every point and quantity that a study has: the sum over the knobs of resolution of what each leaves unknown at
+ * the point, or, when the point is no level of the knob, at the scene's own setting. Of several studies counts the one
+ * that knows least. */
+static status write_resolution(sqlite3 *db, FILE *out, struct error *error) {
+  bool studies = false; /* a store of an earlier program has no table for them */
+  status result = schema_has_column(db, "convergence", "resolution", &studies, error);
+  if (result != STATUS_OK)
+    return result;
+  fprintf(out, "resolution AS -- what finer settings may change in a result, for every point that was studied\n");
+  if (!studies)
+    fprintf(out, "SELECT NULL AS point_id, NULL AS results_version, NULL AS quantity, NULL AS half_width, NULL AS "
+                 "verdict WHERE false;\n");
+  else
+    fprintf(
+        out,
+        "WITH level AS (SELECT * FROM convergence WHERE resolution IS NOT NULL),\n"
+        "of_knob AS (SELECT base_point_id, results_version, quantity, knob,\n"
+        "    max(iif(base, resolution, NULL)) AS at_base, max(open) AS open, max(verdict = 'no-order') AS diverges\n"
+        "  FROM level LEFT JOIN convergence_limit USING (base_point_id, results_version, knob, quantity)\n"
+        "  GROUP BY base_point_id, results_version, quantity, knob),\n"
+        "studied AS (SELECT DISTINCT base_point_id, results_version, quantity, point_id FROM level),\n"
+        "of_study AS (SELECT s.point_id, s.results_version, s.quantity,\n"
+        "    sum(coalesce(l.resolution, k.at_base)) AS half_width, max(k.diverges) AS diverges,\n"
+        "    max(k.open OR coalesce(l.resolution, k.at_base) IS NULL) AS open\n"
+        "  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)\n"
+        "    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version\n"
+        "    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id\n"
+        "  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity)\n"
+        "SELECT point_id, results_version, quantity, max(half_width) AS half_width,\n"
+        "  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict\n"
+        "FROM of_study GROUP BY point_id, results_version, quantity;\n");
+  return STATUS_OK;
+}
+
+void views_write_resolution(size_t count, const char *const *names, FILE *out) {
+  fprintf(out, "(SELECT point_id, results_version");
+  for (size_t i = 0; i < count; i++) {
+    fputs(",\n    max(iif(", out);
+    write_is_quantity(names[i], out);
+    fprintf(out, ", half_width, NULL)) AS e%zu, max(iif(", i);
+    write_is_quantity(names[i], out);
+    fprintf(out, ", verdict, NULL)) AS v%zu", i);
+  }
+  fprintf(out, "\n  FROM resolution JOIN point USING (point_id) GROUP BY point_id, results_version)");
+}
+
 static status write_points(sqlite3 *db, FILE *out, struct error *error) {
   const char *names[VIEWS_MAIN_MAXIMUM] = {NULL};
   size_t count = 0;
@@ -148,7 +201,9 @@ static status write_points(sqlite3 *db, FILE *out, struct error *error) {
     return result;
   fprintf(out, "points AS -- statistics of every point, one row per results_version\n");
   views_write_statistics(count, names, out);
-  fprintf(out, "SELECT p.point_id, p.engine, p.scene_name AS scene,\n");
+  fprintf(out, ", unresolved AS MATERIALIZED ");
+  views_write_resolution(count, names, out);
+  fprintf(out, "\nSELECT p.point_id, p.engine, p.scene_name AS scene,\n");
   result = write_axes(db, out, error);
   fprintf(
       out,
@@ -156,12 +211,13 @@ static status write_points(sqlite3 *db, FILE *out, struct error *error) {
       "failed,\n  ifnull(t.surplus, 0) AS surplus, (SELECT count(*) FROM attempt a WHERE a.point_id = p.point_id) AS "
       "failed_attempts");
   for (size_t i = 0; i < count; i++)
-    fprintf(
-        out,
-        ",\n  m%2$zu AS %1$s_mean, d%2$zu AS %1$s_sd, d%2$zu / sqrt(n) AS %1$s_se, s.t * d%2$zu / sqrt(n) AS %1$s_hw95",
-        names[i], i);
+    fprintf(out,
+            ",\n  m%2$zu AS %1$s_mean, d%2$zu AS %1$s_sd, d%2$zu / sqrt(n) AS %1$s_se, s.t * d%2$zu / sqrt(n) AS "
+            "%1$s_hw95,\n  e%2$zu AS %1$s_resolution, ifnull(v%2$zu, 'not-studied') AS %1$s_resolution_verdict",
+            names[i], i);
   fprintf(out, "\nFROM point p NOT INDEXED LEFT JOIN point_total t ON t.point_id = p.point_id\n"
-               "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version;\n");
+               "  LEFT JOIN scatter s ON s.point_id = t.point_id AND s.results_version = t.results_version\n"
+               "  LEFT JOIN unresolved u ON u.point_id = t.point_id AND u.results_version = t.results_version;\n");
   return result;
 }
 
@@ -211,7 +267,7 @@ static status write_estimates(sqlite3 *db, FILE *out, struct error *error) {
 /* Axis columns, statistics and the views' own columns first; the others inherit from the table they come from. */
 static status document(sqlite3 *db, struct error *error) {
   static const char sql[] =
-      "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates');"
+      "DELETE FROM column_doc WHERE table_name IN ('runs', 'points', 'spectra', 'estimates', 'resolution');"
       "INSERT INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, column_name, unit, meaning || "
       "' (input ' || path || ')' FROM axis, "
       "(VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v;"
@@ -228,12 +284,21 @@ static status document(sqlite3 *db, struct error *error) {
       "('spectra', 'count_sd', '1', 'standard deviation of the count between runs'),"
       "('spectra', 'count_hw95', '1', 'half width of the 95 % confidence interval of count_mean (Student)'),"
       "('spectra', 'density', '1/kg', 'fragment number density F(m): share of all fragments per unit mass; its "
-      "integral over mass is 1');"
+      "integral over mass is 1'),"
+      "('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels'),"
+      "('resolution', 'results_version', NULL, 'version of the engine''s results that was studied'),"
+      "('resolution', 'quantity', NULL, 'the result, as a column of the view runs'),"
+      "('resolution', 'half_width', NULL, 'how far finer settings may move the result, in its unit: all "
+      "knobs that were studied'),"
+      "('resolution', 'verdict', NULL, 'known; at least: no limit is known yet, so that half_width may be too small; "
+      "diverges: the result does not converge');"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT 'points', d.column_name || "
       "s.column1, d.unit, s.column2 || d.meaning "
       "FROM column_doc d, (VALUES ('_mean', 'mean over runs: '), ('_sd', 'standard deviation between runs: '), "
       "('_se', 'standard error of the mean: '), ('_hw95', 'half width of the 95 % confidence interval of the mean "
-      "(Student): ')) s WHERE d.table_name = 'run' AND EXISTS (SELECT 1 FROM pragma_table_info('points') c WHERE "
+      "(Student): '), ('_resolution', 'how far finer settings may move the mean (view resolution): '), "
+      "('_resolution_verdict', 'known, at least, diverges, or not studied: ')) s WHERE d.table_name = 'run' AND EXISTS "
+      "(SELECT 1 FROM pragma_table_info('points') c WHERE "
       "c.name = d.column_name || s.column1);"
       "INSERT OR IGNORE INTO column_doc (table_name, column_name, unit, meaning) SELECT v.column1, c.name, d.unit, "
       "d.meaning FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, pragma_table_info(v.column1) c, "
@@ -252,7 +317,8 @@ struct views_text {
 
 static status write_all(sqlite3 *db, struct views_text *text, struct error *error) {
   static status (*const writers[VIEWS_COUNT])(sqlite3 *, FILE *, struct error *) = {write_runs, write_points,
-                                                                                    write_spectra, write_estimates};
+                                                                                    write_spectra, write_estimates,
+                                                                                    write_resolution};
   status result = STATUS_OK;
   *text = (struct views_text){{NULL}};
   for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++) {
@@ -267,7 +333,7 @@ static status write_all(sqlite3 *db, struct views_text *text, struct error *erro
   return result;
 }
 
-/* Drops and creates the four views in the schema `place`: main or temp. */
+/* Drops and creates the views in the schema `place`: main or temp. */
 static status make(sqlite3 *db, const char *place, const struct views_text *text, struct error *error) {
   status result = STATUS_OK;
   for (size_t i = 0; result == STATUS_OK && i < VIEWS_COUNT; i++)

@@ -1,6 +1,6 @@
-/* The views `runs`, `points`, `spectra`, `estimates`: flat tables for any tool, one column per varied input. Plain SQL
- * only, so that a database browser or pandas can open them. clast itself never runs the views of a file
- * (db/store/guard.h): every connection makes temporary ones of the same names, which come first. */
+/* The views `runs`, `points`, `spectra`, `estimates`, `resolution`: flat tables for any tool, one column per varied
+ * input. Plain SQL only, so that a database browser or pandas can open them. clast itself never runs the views of a
+ * file (db/store/guard.h): every connection makes temporary ones of the same names, which come first. */
 #ifndef CLAST_DB_STORE_VIEWS_H
 #define CLAST_DB_STORE_VIEWS_H
 
@@ -8,10 +8,10 @@
 
 #include "db/sql.h"
 
-enum { VIEWS_COUNT = 4 };
+enum { VIEWS_COUNT = 5 };
 extern const char *const views_names[VIEWS_COUNT];
 
-/* Makes all four anew, in the file and for this connection, and their rows in column_doc. Within the caller's
+/* Makes all anew, in the file and for this connection, and their rows in column_doc. Within the caller's
  * transaction. */
 status views_regenerate(sqlite3 *db, struct error *error);
 /* Makes those of this connection. Changes no file: for readers. */
@@ -30,6 +30,10 @@ size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]);
  * expression `scatter` with point_id, results_version, n, the quantile t of views_write_student() and, for the N-th
  * name from 0, its mean mN and standard deviation dN. In C this is sample_summarise(); a test compares the two. */
 void views_write_statistics(size_t count, const char *const *names, FILE *out);
+
+/* SQL of a table expression with point_id, results_version and, for the N-th name from 0 (a column of the view runs),
+ * the half width eN and the verdict vN of the view resolution; NULL for what was not studied. */
+void views_write_resolution(size_t count, const char *const *names, FILE *out);
 
 /* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()
  * for tools without our functions, within 5e-6. */

@@ -134,10 +134,14 @@ static void levels_of_ones_own(void **state) {
   scene_free(scene);
 }
 
-static int integer(struct store *store, const char *sql) {
+static double number(struct store *store, const char *sql) {
   double number = NAN;
   assert_int_equal(query_number(store, sql, 0, NULL, &number, &error), STATUS_OK);
-  return (int)number;
+  return number;
+}
+
+static int integer(struct store *store, const char *sql) {
+  return (int)number(store, sql);
 }
 
 static void findings_replace_earlier_ones(void **state) {
@@ -188,9 +192,9 @@ static void findings_replace_earlier_ones(void **state) {
   scene_free(scene);
 }
 
-/* Adds what a study left unknown at the point, by one knob. */
-static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,
-                    enum convergence_verdict verdict) {
+/* Adds what the knob leaves unknown at the point, which is the scene studied (`base` 0) or a level of it. */
+static void level_of(struct store *store, int64_t base, int64_t point, const char *knob, double resolution, bool open,
+                     enum convergence_verdict verdict) {
   struct convergence_row row;
   struct convergence_limit_row limit;
   field_defaults(&convergence_table, &row);
@@ -201,9 +205,15 @@ static void studied(struct store *store, int64_t point, const char *knob, double
   strcpy(limit.quantity, "largest_fraction");
   row.resolution = resolution;
   row.open = open;
+  row.base = base == 0;
   limit.verdict = verdict;
-  const struct store_convergence study = {point, fixture_kind.results_version, 1, &point, &row, &limit};
+  const struct store_convergence study = {base ? base : point, fixture_kind.results_version, 1, &point, &row, &limit};
   assert_int_equal(store_convergence_set(store, &study, &error), STATUS_OK);
+}
+
+static void studied(struct store *store, int64_t point, const char *knob, double resolution, bool open,
+                    enum convergence_verdict verdict) {
+  level_of(store, 0, point, knob, resolution, open, verdict);
 }
 
 static void a_point_has_the_errors_of_its_knobs(void **state) {
@@ -211,7 +221,7 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   char path[64];
   struct store *store = NULL;
   assert_int_equal(store_open_writer(fixture_path(path, "resolution"), &store, NULL, 0, &error), STATUS_OK);
-  assert_int_equal(fixture_populate(store, 1, 1, 3, false, &error), STATUS_OK);
+  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
   const int64_t point = integer(store, "SELECT min(point_id) FROM run");
   struct ask_resolution found;
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
@@ -223,7 +233,11 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   assert_int_equal(found.verdict, ASK_RESOLUTION_KNOWN);
   assert_true(fabs(found.half_width - 0.06) < 1e-12);
   assert_int_equal(ask_resolution(store, 0, "largest_fraction", &found, &error), STATUS_OK);
-  assert_true(fabs(found.half_width - 0.06) < 1e-12); /* the only point */
+  assert_true(fabs(found.half_width - 0.06) < 1e-12 && found.points == 2 && found.studied == 1);
+  assert_true(fabs(number(store, "SELECT largest_fraction_resolution FROM points WHERE point_id = 1") - 0.06) < 1e-12);
+  assert_int_equal(integer(store, "SELECT count(*) FROM points WHERE largest_fraction_resolution_verdict = "
+                                  "'not-studied'"),
+                   1);
   studied(store, point, "grains", 0.05, true, CONVERGENCE_UNSURE);
   assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
   assert_int_equal(found.verdict, ASK_RESOLUTION_AT_LEAST);
@@ -235,11 +249,31 @@ static void a_point_has_the_errors_of_its_knobs(void **state) {
   assert_int_equal(store_close(store, &error), STATUS_OK);
 }
 
+/* A level of one knob has the errors that the other knobs leave at the scene's own setting. */
+static void a_level_has_the_errors_of_the_other_knobs(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct ask_resolution found;
+  assert_int_equal(store_open_writer(fixture_path(path, "level"), &store, NULL, 0, &error), STATUS_OK);
+  assert_int_equal(fixture_populate(store, 2, 1, 3, false, &error), STATUS_OK);
+  const int64_t point = integer(store, "SELECT min(point_id) FROM run"), finer = point + 1;
+  studied(store, point, "grains", 0.05, false, CONVERGENCE_ORDER);
+  level_of(store, point, finer, "time_step", 0, false, CONVERGENCE_UNCHANGED); /* the scene's own step was not run */
+  assert_int_equal(ask_resolution(store, finer, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(found.verdict == ASK_RESOLUTION_KNOWN && fabs(found.half_width - 0.05) < 1e-12);
+  assert_int_equal(ask_resolution(store, point, "largest_fraction", &found, &error), STATUS_OK);
+  assert_true(found.verdict == ASK_RESOLUTION_AT_LEAST && fabs(found.half_width - 0.05) < 1e-12);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_knob_names_inputs_of_its_engine),
-                                     cmocka_unit_test(ladders_of_all_scenes), cmocka_unit_test(levels_of_ones_own),
+                                     cmocka_unit_test(ladders_of_all_scenes),
+                                     cmocka_unit_test(levels_of_ones_own),
                                      cmocka_unit_test(findings_replace_earlier_ones),
-                                     cmocka_unit_test(a_point_has_the_errors_of_its_knobs)};
+                                     cmocka_unit_test(a_point_has_the_errors_of_its_knobs),
+                                     cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -285,22 +285,23 @@ static status curves(const char *name, size_t count, const struct picture_curve 
  */
 static void curves_are_drawn(void **state) {
   (void)state;
-  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95}, {10, 0.9, 0.85, 0.95}, {100, 0.9, 0.85, 0.95}};
-  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1}, {10, NAN, 0, 0}, {100, 0.125, NAN, NAN}};
+  const struct picture_mean high[] = {{1, 0.9, 0.85, 0.95, 0.1}, {10, 0.9, 0.85, 0.95, NAN}, {100, 0.9, NAN, NAN, 0.2}};
+  const struct picture_mean low[] = {{1, 0.1, 0.1, 0.1, 0}, {10, NAN, 0, 0, NAN}, {100, 0.125, NAN, NAN, NAN}};
   const struct picture_curve both[] = {{"high", 3, high}, {"low", 3, low}};
   assert_int_equal(curves("curves.png", 2, both), STATUS_OK);
   double dark, coloured;
   int width, height;
   ink(at("curves.png"), &dark, &coloured, &width, &height);
   assert_true(width == 900 && coloured > 0.005);
-  assert_string_equal(text_of(at("curves.dat")), "# x mean low high\n1 0.9 0.85 0.95\n10 0.9 0.85 0.95\n"
-                                                 "100 0.9 0.85 0.95\n\n\n# x mean low high\n1 0.1 NaN NaN\n"
-                                                 "10 NaN NaN NaN\n100 0.125 NaN NaN\n\n\n");
+  assert_string_equal(text_of(at("curves.dat")), "# x mean low high thin_low thin_high\n1 0.9 0.85 0.95 0.75 1.05\n"
+                                                 "10 0.9 0.85 0.95 NaN NaN\n100 0.9 NaN NaN 0.7 1.1\n\n\n"
+                                                 "# x mean low high thin_low thin_high\n1 0.1 NaN NaN NaN NaN\n"
+                                                 "10 NaN NaN NaN NaN NaN\n100 0.125 NaN NaN NaN NaN\n\n\n");
   const char *script = text_of(at("curves.gp"));
   assert_non_null(strstr(script, "\nlog_x = 1\n"));
   assert_non_null(strstr(script, "\noutput_file = './curves.png'\n"));
   assert_non_null(strstr(script, "0xD55E00")); /* vermilion of Okabe and Ito */
-  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN}, {19, 0.9, NAN, NAN}};
+  const struct picture_mean short_way[] = {{1, 0.1, NAN, NAN, NAN}, {19, 0.9, NAN, NAN, NAN}};
   assert_int_equal(curves("narrow.pdf", 1, &(struct picture_curve){"one label", 2, short_way}), STATUS_OK);
   assert_non_null(strstr(text_of(at("narrow.gp")), "\nlog_x = 0\n"));
   assert_memory_equal(text_of(at("narrow.pdf")), "%PDF", 4);
@@ -314,7 +315,7 @@ static void curves_are_drawn(void **state) {
 /* Text of users reaches the picture as text: no command, no markup, no file. */
 static void hostile_text_is_text(void **state) {
   (void)state;
-  const struct picture_mean mean[] = {{1, 2, 1, 3}, {2, 3, 2, 4}};
+  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN}, {2, 3, 2, 4, NAN}};
   const char *evil = "'; system('touch hacked'); `touch hacked` \"$(touch hacked)\" @x {/=99 a}_b \\n\n! touch hacked\n"
                      "\x01\xff\xc3 'end";
   const struct picture_curve curve = {evil, 2, mean};
@@ -335,7 +336,7 @@ static void hostile_text_is_text(void **state) {
 /* Without gnuplot, with a template that gnuplot refuses, and with a folder without templates. */
 static void missing_gnuplot_is_told(void **state) {
   (void)state;
-  const struct picture_mean mean[] = {{1, 2, 1, 3}, {2, 3, 2, 4}};
+  const struct picture_mean mean[] = {{1, 2, 1, 3, NAN}, {2, 3, 2, 4, NAN}};
   const struct picture_curve curve = {"a", 2, mean};
   struct picture_page page = {.path = "missing.png", .width = 900};
   struct error error = {0};

@@ -179,7 +179,7 @@ static void groups_say_what_they_pool(void **state) {
     fail_msg("%s not in %s", expected, rows.text);
   assert_non_null(
       strstr(rows.text, "material_m,engine,results_version,points,n,failed,censored,hardest_mean,hardest_sd,hardest_se,"
-                        "hardest_hw95,largest_fraction_mean"));
+                        "hardest_hw95,hardest_resolution,hardest_resolution_verdict,largest_fraction_mean"));
   memset(&rows, 0, sizeof rows);
   OK(ask_group(store, "material.k,m", NULL, &sink, pooled, &error));
   assert_int_equal(rows.count, M * K);

@@ -49,9 +49,27 @@ static void resolution(void **state) {
   found.verdict = ASK_RESOLUTION_DIVERGES;
   uncertainty_resolution(&found, text);
   assert_string_equal(text, "resolution: does not converge (`clast converge basalt-sphere`)");
+  found.verdict = ASK_RESOLUTION_KNOWN;
+  found.points = 9;
+  found.studied = 2;
+  uncertainty_resolution(&found, text);
+  assert_string_equal(text, "up to +- 0.061 (resolution); studied at 2 of 9 points, `clast converge basalt-sphere` "
+                            "studies others");
+}
+
+static void cells(void **state) {
+  (void)state;
+  static const struct {
+    const char *verdict, *expected;
+  } cases[] = {{"known", "0.061"}, {"at-least", ">= 0.061"}, {"diverges", "diverges"}, {NULL, "not studied"}};
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    char text[UNCERTAINTY_TEXT];
+    uncertainty_resolution_cell(ask_resolution_verdict(cases[i].verdict), 0.0612, text);
+    assert_string_equal(text, cases[i].expected);
+  }
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(seeds), cmocka_unit_test(resolution)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(seeds), cmocka_unit_test(resolution), cmocka_unit_test(cells)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
