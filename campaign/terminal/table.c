@@ -1,4 +1,4 @@
-/* Three formats behind one row-by-row interface. */
+/* Four formats behind one row-by-row interface. */
 #include "campaign/terminal/table.h"
 
 #include <errno.h>
@@ -152,7 +152,7 @@ static void header(struct table *table) {
       csv_text(table->columns[c].name, table->out);
       fputs(c + 1 < table->column_count ? "," : "\r\n", table->out);
     }
-  } else {
+  } else if (table->format == TABLE_JSON) {
     fputc('[', table->out);
   }
 }
@@ -203,10 +203,11 @@ static void print_csv(struct table *table, const struct cell *cell) {
 }
 
 static void print_json(struct table *table, const struct cell *cell) {
+  const bool lines = table->format == TABLE_JSON_LINES;
   if (table->cell > 0)
     fputs(", ", table->out);
   else
-    fputs(table->rows ? ",\n {" : "\n {", table->out);
+    fputs(lines ? "{" : table->rows ? ",\n {" : "\n {", table->out);
   text_json_string(table->columns[table->cell].name, table->out);
   fputs(": ", table->out);
   if (cell->kind == CELL_TEXT)
@@ -214,7 +215,7 @@ static void print_json(struct table *table, const struct cell *cell) {
   else
     fputs(cell->kind == CELL_NUMBER ? cell->text : "null", table->out);
   if (table->cell + 1 == table->column_count)
-    fputc('}', table->out);
+    fputs(lines ? "}\n" : "}", table->out);
 }
 
 static void add_cell(struct table *table, struct cell cell) {
@@ -225,7 +226,8 @@ static void add_cell(struct table *table, struct cell cell) {
     header(table);
   switch (table->format) {
   case TABLE_CSV: print_csv(table, &cell); break;
-  case TABLE_JSON: print_json(table, &cell); break;
+  case TABLE_JSON:
+  case TABLE_JSON_LINES: print_json(table, &cell); break;
   case TABLE_TEXT:
     if (table->rows < SAMPLE_ROWS)
       keep(table, &cell);
@@ -269,8 +271,12 @@ void table_integer(struct table *table, int64_t number) {
   add_cell(table, (struct cell){CELL_NUMBER, digits, digits});
 }
 
+static bool is_json(const struct table *table) {
+  return table->format == TABLE_JSON || table->format == TABLE_JSON_LINES;
+}
+
 void table_boolean(struct table *table, bool value) {
-  if (table->format == TABLE_JSON)
+  if (is_json(table))
     add_cell(table, (struct cell){CELL_NUMBER, value ? "true" : "false", ""});
   else
     add_cell(table, (struct cell){CELL_TEXT, value ? "true" : "false", value ? "yes" : "no"});
@@ -283,7 +289,7 @@ void table_real(struct table *table, double number) {
 /* JSON has no infinity. The largest double in its place would be wrong, so it is a text there. */
 static void add_infinity(struct table *table, bool positive) {
   const char *shown = positive ? "inf" : "-inf";
-  if (table->format == TABLE_JSON)
+  if (is_json(table))
     add_cell(table, (struct cell){CELL_TEXT, positive ? "Infinity" : "-Infinity", shown});
   else
     add_cell(table, (struct cell){CELL_NUMBER, shown, shown});

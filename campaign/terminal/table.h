@@ -1,9 +1,10 @@
-/* Rows on stdout, three ways: an aligned table for people, CSV (RFC 4180) and JSON (one array of objects) for programs.
+/* Rows on stdout, four ways: an aligned table for people; CSV (RFC 4180), JSON (one array of objects) and JSON Lines
+ * (one object on each line) for programs.
  *
- * Cells are added in column order, row after row. CSV and JSON are written row by row as they come; the aligned table
- * keeps the first rows to find its widths. CSV and JSON carry numbers so that they read back as the same bits; the
- * aligned table shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null
- * in JSON, "-" in the table. */
+ * Cells are added in column order, row after row. What programs read is written row by row as it comes; the aligned
+ * table keeps the first rows to find its widths. Numbers for programs read back as the same bits; the aligned table
+ * shows five significant digits and the unit in the heading. Missing values and NaN: empty in CSV, null in JSON, "-" in
+ * the table. */
 #ifndef CLAST_CAMPAIGN_TERMINAL_TABLE_H
 #define CLAST_CAMPAIGN_TERMINAL_TABLE_H
 
@@ -13,7 +14,7 @@
 
 #include "schemas/status.h"
 
-enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON };
+enum table_format { TABLE_TEXT, TABLE_CSV, TABLE_JSON, TABLE_JSON_LINES };
 
 struct table;
 

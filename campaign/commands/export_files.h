@@ -1,0 +1,20 @@
+/* Text files of a store, for `clast export`. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_EXPORT_FILES_H
+#define CLAST_CAMPAIGN_COMMANDS_EXPORT_FILES_H
+
+#include "campaign/terminal/table.h"
+#include "db/store/store.h"
+
+/* The rows of a view (runs, points, ...) to the open stream `out`. */
+status export_files_view(struct store *store, const char *view, enum table_format format, FILE *out,
+                         struct error *error);
+
+/* The same into a file; view NULL: the bits. It is written under a temporary name and renamed: a file with its final
+ * name is whole. A pipe or a device (/dev/stdout) is written itself. */
+status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
+                          struct error *error);
+
+/* runs.csv, points.csv, spectra.csv, estimates.csv and column_doc.csv in the folder, which is made. */
+status export_files_folder(struct store *store, const char *folder, struct error *error);
+
+#endif
