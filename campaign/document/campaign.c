@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "campaign/design/design.h"
+#include "campaign/document/campaign_points.h"
 #include "campaign/document/campaign_vary.h"
 #include "db/store/place.h"
 #include "engine/random.h"
@@ -100,6 +101,12 @@ static const struct field design_rows[] = {
      .number = 1,
      .when = "kind=random|latin_hypercube|sobol",
      .doc = "Of the draws, permutations and shifts; the runs' seeds are another matter (`seeds`)."},
+    {.path = "file",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(struct campaign_design_keys, file),
+     .text = "",
+     .doc = "CSV file of the points, relative to this document's folder: a header of input paths, a line for each "
+            "point. \"threshold.angle [deg]\" gives a column's unit; without it, numbers are in SI. Instead of vary."},
 };
 const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
                                                              "How points are made from the varied inputs.");
@@ -204,6 +211,12 @@ static void read_design(document_node *design, struct campaign *campaign) {
     return;
   if (document_kind(design) == DOCUMENT_MAPPING) {
     document_read(design, &campaign_design_table, NULL, &campaign->design);
+    if (document_key(design, "file")) {
+      if (document_count(design) > 1)
+        document_report(design, "design", "a file is the list of points: leave the other keys of design out");
+      campaign->design.kind = CAMPAIGN_LIST;
+      campaign->design.points = 0;
+    }
     return;
   }
   struct field row = design_rows[0];
@@ -262,6 +275,16 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report(node, path, "%s", error.message);
 }
 
+/* The varied inputs, from `vary` or from a file. */
+static bool read_axes(document_node *root, const char *folder, struct campaign *campaign) {
+  document_node *vary = document_key(root, "vary"), *file = key_of(document_key(root, "design"), "file");
+  if (!file)
+    return campaign_vary_read(vary, campaign);
+  if (vary)
+    document_report(vary, "vary", "the columns of design.file are what varies; leave vary out");
+  return campaign_points_read(file, folder, campaign) && !vary;
+}
+
 /* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. */
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
@@ -279,10 +302,13 @@ static void check_points(document_node *root, struct campaign *campaign) {
   }
   for (int i = 0; i < TRIED && design_next(design, values); i++) {
     struct scene *scene = campaign_point_scene(campaign, values, &error);
-    if (!scene) {
+    if (!scene && campaign->point_lines)
+      document_report(where, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
+                      error.message);
+    else if (!scene)
       document_report(node, vary ? "vary" : "scene", "%s", error.message);
+    if (!scene)
       break;
-    }
     scene_free(scene);
   }
   design_free(design);
@@ -295,7 +321,7 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   field_defaults(&campaign_table, campaign);
   bool plain = document_read(root, &campaign_table, also, campaign);
   document_node *scene = document_key(root, "scene");
-  document_node *vary = document_key(root, "vary"), *set = document_key(root, "set");
+  document_node *set = document_key(root, "set");
   read_keep(document_key(root, "keep"), campaign);
   read_design(document_key(root, "design"), campaign);
   check_seeds(root, campaign);
@@ -311,7 +337,7 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
     document_report(scene, "scene", "%s", error.message);
     return;
   }
-  bool varied = campaign_vary_read(vary, campaign);
+  bool varied = read_axes(root, folder, campaign);
   read_set(set, campaign);
   document_node *quantity = document_key(root, "quantity"), *until = key_of(key_of(root, "seeds"), "until");
   document_node *accuracy_quantity = key_of(document_key(root, "accuracy"), "quantity");
@@ -325,12 +351,27 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
     check_points(root, campaign);
 }
 
+/* The document for the store. The sum tells which points it stood for; another file of points is another campaign. */
+static char *text_for_store(const char *document, const struct campaign *campaign) {
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  if (!out)
+    return NULL;
+  fputs(document, out);
+  if (campaign->points_sha256[0])
+    fprintf(out, "%s# design.file: %lld points, sha256 %s\n",
+            *document && document[strlen(document) - 1] != '\n' ? "\n" : "", (long long)campaign->design.points,
+            campaign->points_sha256);
+  return text_close(out, &text);
+}
+
 static status from_document(struct document *document, const char *folder, struct campaign **out, struct error *error) {
   struct campaign *campaign = calloc(1, sizeof *campaign);
   if (!campaign)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   read_all(document_root(document), folder, campaign); /* its defaults clear the whole struct */
-  campaign->text = strdup(document_text(document));
+  campaign->text = text_for_store(document_text(document), campaign);
   if (!campaign->text) {
     campaign_free(campaign);
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
@@ -379,6 +420,7 @@ void campaign_free(struct campaign *campaign) {
     return;
   design_axis_free_all(campaign->axes, campaign->axis_count);
   scene_free(campaign->scene);
+  free(campaign->point_lines);
   free(campaign->text);
   free(campaign);
 }

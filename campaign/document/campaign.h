@@ -10,6 +10,7 @@
  *     set: {contact.friction: 0.2}
  *     seeds: {first: 1, per_point: 30}  # or {until: {quantity: largest_fraction, half_width: 0.01}, max: 200}
  *     design: grid                      # or list, or {kind: random | latin_hypercube | sobol, points: 64, seed: 1}
+ *                                       # or, instead of vary, {file: points.csv}
  *     accuracy: {within: 0.02}          # instead of seeds: settings and number of seeds from a study
  *     keep: {fields: none}              # none | all | extremes | first N
  *     limits: {time: 10 min, memory: 2 GiB, attempts: 2, failures: 20}
@@ -25,9 +26,10 @@ enum campaign_design { CAMPAIGN_GRID, CAMPAIGN_LIST, CAMPAIGN_RANDOM, CAMPAIGN_L
 enum campaign_keep { CAMPAIGN_KEEP_NONE, CAMPAIGN_KEEP_ALL, CAMPAIGN_KEEP_EXTREMES, CAMPAIGN_KEEP_FIRST };
 
 struct campaign_design_keys { /* the mapping form of `design`, table campaign_design_table */
-  int kind;                   /* enum campaign_design */
-  int64_t points;             /* of the sampling designs; 0 for grid and list, whose axes give it */
+  int kind;                   /* enum campaign_design; CAMPAIGN_LIST with a file */
+  int64_t points;             /* of the sampling designs and of a file; 0 for grid and list, whose axes give it */
   int64_t seed;               /* of the sampling designs: for shift, permutations and draws */
+  char file[FIELD_TEXT_SIZE]; /* CSV file of the points, "" for none; campaign_points.h */
 };
 
 struct campaign {
@@ -55,8 +57,10 @@ struct campaign {
 
   struct design_axis *axes; /* owned */
   size_t axis_count;
-  struct scene *scene; /* owned: the scene with `set` applied; axes are applied to copies of it */
-  char *text;          /* owned: the document as read, for the store */
+  int64_t *point_lines;   /* owned: of each point in design.file; NULL without */
+  char points_sha256[65]; /* of design.file; "" without */
+  struct scene *scene;    /* owned: the scene with `set` applied; axes are applied to copies of it */
+  char *text;             /* owned: the document as read, for the store; a last line has the sum of design.file */
 };
 enum { CAMPAIGN_FIRST_RUNS = 50 };
 

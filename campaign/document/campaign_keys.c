@@ -26,10 +26,14 @@ const struct campaign_key campaign_keys[] = {
      .doc = "Inputs of the scene that get one other value for the whole campaign.",
      .forms = "    {contact.friction: 0.2, body.diameter: 8 cm}       path of each, or a unique ending of it\n"},
     {.name = "design",
-     .words = "grid list random latin_hypercube sobol kind points seed",
+     .words = "grid list random latin_hypercube sobol kind points seed file",
      .doc = "How points are made from the varied inputs. Default: grid.",
-     .forms = "    grid, or list                                      of values that are given\n"
-              "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n",
+     .forms =
+         "    grid, or list                                      of values that are given\n"
+         "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
+         "    {file: points.csv}                                 from another program: a header of input paths, a\n"
+         "                                                       line for each point. A column \"threshold.angle\n"
+         "                                                       [deg]\" is in degrees; without a unit, in SI\n",
      .table = &campaign_design_table},
     {.name = "keep",
      .words = "fields none all extremes first",

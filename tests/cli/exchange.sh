@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Points in from other programs, rows out to them: `design: {file: ...}`, `clast export --per`.
+# Points in from other programs, rows out to them: `design: {file: ...}`, `clast export --per`, and every command and Python
+# block of campaign/exchange.md.
 . "$(dirname "$0")/lib.bash"
 
 tiny rows
@@ -46,4 +47,71 @@ expect 64 "$clast" export rows.db
 says "needs a target"
 expect 64 "$clast" export rows.db --per run --csv --jsonl
 expect 66 "$clast" export none.db --per run
-done_after 12
+
+# ---- points in: a design from a file, with units of columns and of cells
+mkdir in
+cat >in/design.yaml <<'YAML'
+name: design
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+design: {file: points.csv}
+seeds: {per_point: 3}
+store: design.db
+YAML
+printf '\xef\xbb\xbf"strain","threshold.angle [deg]"\r\n0.02,2\r\n\r\n# a note\n5 %%,2\n0.02,0.10471975511965977 rad\n"5e-2",6 deg' >in/points.csv
+expect 0 "$clast" run in/design.yaml -j 2 --quiet
+"$clast" query rows.db "select identity, largest_fraction from runs order by 1" --csv >grid.csv
+"$clast" query design.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - grid.csv ||
+  fail "the file's points are not those of the grid"
+ok "points of a file are the runs of the same grid, to the last bit"
+same "$(number design.db "select count(*) from campaign where document like '%# design.file: 4 points, sha256 $(sha256sum in/points.csv | cut -d' ' -f1)%'")" 1 "campaigns with the sum of the file"
+expect 0 "$clast" run in/design.yaml
+says "0 runs computed"
+printf '\n0.03,2\n' >>in/points.csv
+expect 0 "$clast" run in/design.yaml
+says "3 runs computed"
+says "12 found in the store"
+same "$(number design.db "select count(*) from campaign")" 2 "another file of points is another campaign"
+expect 0 "$clast" plan in/design.yaml --no-trial
+
+# points_say TEXT MESSAGE...: the file is refused (65) with all messages.
+points_say() {
+  printf "$1" >in/points.csv
+  expect 65 "$clast" plan in/design.yaml --no-trial
+  local message
+  for message in "${@:2}"; do says "$message"; done
+}
+points_say 'strain,angel\n0.02,2\n' "design.yaml:4:16: error: design.file: points.csv:1:" "angle"
+points_say 'strain,threshold.strain\n0.02,2\n' "points.csv:1: two columns for threshold.strain"
+points_say '"",strain\n1,0.02\n' "points.csv:1: column 1 has no name" "index=False"
+points_say 'strain,threshold.angle [deg]\n0.02,2\n0.02,2 s\n0.02\n0.02,\n-1,2\n' "points.csv:3:" "points.csv:4: 1 cells, but the header has 2" \
+  "points.csv:5: threshold.angle: the cell is empty" "points.csv:6:"
+points_say 'strain,threshold.angle [kg]\n0.02,2\n' "points.csv:2:" "kg"
+points_say 'strain\n"0.02\n' "points.csv:2: a double quote is not closed"
+points_say 'strain\n' "no points"
+points_say '' "no points"
+points_say 'strain,beam.friction\n0.02,\0\n' "points.csv:"
+rm in/points.csv
+expect 65 "$clast" plan in/design.yaml --no-trial
+says "cannot open 'in/points.csv'"
+mkdir in/points.csv
+expect 65 "$clast" plan in/design.yaml --no-trial
+says "no plain file"
+
+# ---- the guide: blocks of yaml and csv whose first line is "# FILE" become files, blocks of sh and python run in order
+mkdir guide bin
+ln -s "$clast" bin/clast
+export PATH=$work/bin:$PATH PYTHONPATH=$source/python PYTHONDONTWRITEBYTECODE=1
+cd guide
+awk '/^```/ { kind = substr($0, 4); file = ""; if (kind == "sh" || kind == "python") n++; next }
+  (kind == "yaml" || kind == "csv") && !file && /^# / { file = $2; if (kind == "csv") next }
+  (kind == "yaml" || kind == "csv") && file { print > file }
+  kind == "sh" || kind == "python" { print > sprintf("block-%02d.%s", n, kind) }' "$source/campaign/exchange.md"
+for block in block-*; do
+  case $block in *.sh) run="bash -e" ;; *) run=/usr/bin/python3 ;; esac
+  timeout 120 $run "$block" >out 2>err </dev/null || fail "exit $? of $block: $(cat "$block")"
+done
+cd ..
+[ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
+ok "blocks of the guide"
+done_after 31
