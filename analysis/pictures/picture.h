@@ -80,30 +80,43 @@ status picture_particles(const char *path, double width, const struct picture_cl
  * particles". */
 void picture_particles_numbers(const struct picture_cloud *cloud, char *text, size_t size);
 
-/* A fitted power law. Its line holds as many fragments per run in [lower, upper) as the fit was made from. */
+/* A fitted power law F(m) ~ m^-beta. Its line holds as many fragments per run in [lower, upper) as the fit was made
+ * from; a cumulative one stands on those that are larger. */
 struct picture_fit {
-  const char *label;                            /* "beta 2.03 +- 0.05" */
-  double beta, lower, upper, fragments_per_run; /* upper may be HUGE_VAL */
+  const char *label;                                            /* "beta 2.03 +- 0.05" */
+  double beta, lower, upper, fragments_per_run, larger_per_run; /* upper may be HUGE_VAL */
+};
+/* Its value in a form at a place of the axis; NaN outside of [lower, upper). */
+double picture_spectrum_fit(const struct picture_fit *fit, const struct pooled_form *form, double place);
+
+struct picture_thin { /* a thin line behind a series: one of its runs */
+  size_t count;
+  const struct pooled_bin *bins;
 };
 struct picture_series {
   const char *label;
   size_t count;
-  const struct pooled_bin *bins; /* of pooled_spectrum() with unit_mass 1 */
+  const struct pooled_bin *bins; /* of pooled_spectrum() */
   size_t fits;
   const struct picture_fit *fit;
   double complete_mass; /* kg: bins that begin below are grey, as fragments are missing there; 0 or NaN: none is */
+  size_t thin_count;
+  const struct picture_thin *thin;
+  bool measured; /* drawn in black, as marks joined by a thin line: what was measured */
 };
-/* Log-log F(m) with error bars (95 % intervals over runs) and lines of the fits. One to eight series. */
-status picture_spectrum(const struct picture_page *page, const struct picture_words *words, size_t count,
-                        const struct picture_series *series, struct error *error);
+/* Log-log spectra of one form with 95 % intervals over runs, as bars or, of cumulative ones, as bands; and lines of the
+ * fits. One to eight series. */
+status picture_spectrum(const struct picture_page *page, const struct picture_words *words,
+                        const struct pooled_form *form, size_t count, const struct picture_series *series,
+                        struct error *error);
 
 /* The same as text for a terminal (text_plot.c). Writes one row per bin:
  *     lower edge   count   F(m)   +-95% in %      ├──●──┤  ·
  * the point (○ in bins that begin below complete_mass), its 95 % interval over runs, and (·) the series' first fit.
- * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. It writes no colour, and nothing
- * when there is no fragment. */
-void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
-                        const struct picture_series *series);
+ * columns: width of the terminal, at least 72 are used. unicode: false for ASCII only. value: name of its column, such
+ * as "F(m)". It writes no colour, and nothing when there is no fragment. */
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, const char *value,
+                        const struct pooled_form *form, const struct picture_series *series);
 
 /* Quantities along a line (such as depth below a crater), one panel each, one above the other. A value that is not
  * finite leaves a gap. */

@@ -16,39 +16,35 @@ static const char *glyph(enum mark mark, bool unicode) {
 }
 
 struct scale {
-  double low, high; /* log10 of density */
+  double low, high; /* log10 of the values */
   int columns;
 };
 
-static int place(const struct scale *scale, double log_density) {
-  double share = (log_density - scale->low) / (scale->high - scale->low);
+static int place(const struct scale *scale, double log_value) {
+  double share = (log_value - scale->low) / (scale->high - scale->low);
   int at = (int)lround(share * (scale->columns - 1));
   if (at < 0)
     return 0;
   return at < scale->columns ? at : scale->columns - 1;
 }
 
-/* log10 of a fit's density at a mass. The fit holds as many fragments in its window as it was made from. NaN outside of
- * the window. */
-static double fit_at(const struct picture_fit *fit, double mass) {
-  if (!isfinite(fit->beta) || mass < fit->lower || mass >= fit->upper || !(fit->fragments_per_run > 0))
-    return NAN;
-  double k = fit->beta - 1, span = isinf(fit->upper) ? 700 : log(fit->upper / fit->lower);
-  double integral = fabs(k * span) < 1e-9 ? span : -expm1(-k * span) / k;
-  return log10(fit->fragments_per_run / (fit->lower * integral)) - fit->beta * log10(mass / fit->lower);
+/* Place on the axis; below it fragments are missing. */
+static double complete_from(const struct pooled_form *form, const struct picture_series *series) {
+  return spectrum_size_of(&form->size, series->complete_mass);
 }
 
-static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_bin *bin,
-                const struct picture_series *series) {
+static void row(FILE *out, const struct scale *scale, bool unicode, const struct pooled_form *form,
+                const struct pooled_bin *bin, const struct picture_series *series) {
   const struct picture_fit *fit = series->fits ? &series->fit[0] : NULL;
   unsigned char line[MOST_PLOT] = {0};
   for (int decade = (int)ceil(scale->low); decade <= scale->high; decade++)
     line[place(scale, decade)] = GRID;
-  double middle = sqrt(bin->lower * bin->upper), fitted = fit ? fit_at(fit, middle) : (double)NAN;
-  int point = place(scale, log10(bin->density));
+  const double middle = form->cumulative ? bin->lower : sqrt(bin->lower * bin->upper);
+  const double fitted = fit ? log10(picture_spectrum_fit(fit, form, middle)) : (double)NAN;
+  int point = place(scale, log10(bin->value));
   if (bin->half_width > 0) {
-    double below = bin->density - bin->half_width;
-    int left = below > 0 ? place(scale, log10(below)) : 0, right = place(scale, log10(bin->density + bin->half_width));
+    double below = bin->value - bin->half_width;
+    int left = below > 0 ? place(scale, log10(below)) : 0, right = place(scale, log10(bin->value + bin->half_width));
     for (int i = left; i <= right; i++)
       line[i] = ERROR_BAR;
     if (below > 0)
@@ -57,10 +53,10 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
   }
   if (isfinite(fitted) && fitted >= scale->low && fitted <= scale->high)
     line[place(scale, fitted)] = FIT;
-  line[point] = bin->lower < series->complete_mass ? INCOMPLETE : POINT;
-  fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->density);
+  line[point] = bin->lower < complete_from(form, series) ? INCOMPLETE : POINT;
+  fprintf(out, "%10.3g %8lld %10.3g", bin->lower, (long long)bin->count, bin->value);
   if (isfinite(bin->half_width))
-    fprintf(out, " %4.0f%%  ", 100 * bin->half_width / bin->density);
+    fprintf(out, " %4.0f%%  ", 100 * bin->half_width / bin->value);
   else
     fprintf(out, " %5s  ", "-");
   int end = scale->columns; /* a line has no trailing blanks */
@@ -72,7 +68,7 @@ static void row(FILE *out, const struct scale *scale, bool unicode, const struct
 }
 
 /* The decades stand over the grid lines, as many as fit. */
-static void heading(FILE *out, const struct scale *scale, const char *mass_unit) {
+static void heading(FILE *out, const struct scale *scale, const char *mass_unit, const char *value) {
   char unit[32], line[MOST_PLOT + 16];
   snprintf(unit, sizeof unit, "from %s", mass_unit);
   memset(line, ' ', sizeof line);
@@ -89,7 +85,7 @@ static void heading(FILE *out, const struct scale *scale, const char *mass_unit)
   while (end > 0 && line[end - 1] == ' ')
     end--;
   line[end] = 0;
-  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", "F(m)", "+-95%", line);
+  fprintf(out, "%10s %8s %10s %5s  %s\n", unit, "count", value, "+-95%", line);
 }
 
 /* Without unicode, beta and plus-minus are spelt out. */
@@ -107,14 +103,14 @@ static void write_label(FILE *out, const char *label, bool unicode) {
   }
 }
 
-void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_unit,
-                        const struct picture_series *series) {
+void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *unit, const char *value,
+                        const struct pooled_form *form, const struct picture_series *series) {
   struct scale scale = {HUGE_VAL, -HUGE_VAL, 0};
   for (size_t b = 0; b < series->count; b++) {
-    if (!(series->bins[b].density > 0))
+    if (!(series->bins[b].value > 0))
       continue;
-    scale.low = fmin(scale.low, log10(series->bins[b].density));
-    scale.high = fmax(scale.high, log10(series->bins[b].density));
+    scale.low = fmin(scale.low, log10(series->bins[b].value));
+    scale.high = fmax(scale.high, log10(series->bins[b].value));
   }
   if (!(scale.high >= scale.low))
     return;
@@ -123,13 +119,13 @@ void text_plot_spectrum(FILE *out, int columns, bool unicode, const char *mass_u
   if (columns < LEAST_COLUMNS)
     columns = LEAST_COLUMNS;
   scale.columns = columns - FRONT < MOST_PLOT ? columns - FRONT : MOST_PLOT;
-  heading(out, &scale, mass_unit);
+  heading(out, &scale, unit, value);
   for (size_t b = 0; b < series->count; b++)
-    if (series->bins[b].density > 0)
-      row(out, &scale, unicode, &series->bins[b], series);
-  if (series->count && series->bins[0].lower < series->complete_mass)
+    if (series->bins[b].value > 0)
+      row(out, &scale, unicode, form, &series->bins[b], series);
+  if (series->count && series->bins[0].lower < complete_from(form, series))
     fprintf(out, "%s below %.3g %s fragments are missing: too few particles\n", glyph(INCOMPLETE, unicode),
-            series->complete_mass, mass_unit);
+            complete_from(form, series), unit);
   if (!series->fits || !series->fit[0].label)
     return;
   fprintf(out, "%s ", glyph(FIT, unicode));

@@ -19,21 +19,38 @@ struct pooled_runs {
   const double *masses;
 };
 
-/* One bin of F(m): fragments per run and per unit of m/unit_mass. */
+/* What a spectrum shows. All zero: F(m), the differential one by mass, with the runs as units. */
+struct pooled_form {
+  bool cumulative; /* N(>m), fragments per run of at least that mass; else fragments per run and kg (or m) */
+  struct spectrum_size size;
+  /* Units of mean and interval: unit u is the runs first_run[u] .. first_run[u + 1] - 1, such as all runs of a point.
+   * Each has the same weight. NULL: every run is a unit. */
+  size_t units;
+  const size_t *first_run;
+};
+/* One bin that holds fragments; of a cumulative spectrum any bin, and it tells what lies above its lower end. */
 struct pooled_bin {
   int bin;
-  double lower, upper; /* kg */
-  int64_t count;       /* over all runs */
-  double density;      /* count / (runs x (upper - lower)/unit_mass) */
-  double half_width;   /* of the 95 % interval of the density over runs (Student's t); NaN for one run */
+  double lower, upper; /* kg, or m */
+  int64_t count;       /* over all runs; cumulative: of this bin and all above */
+  double mass;         /* of these fragments, kg */
+  double value;        /* F or N: the mean over the units */
+  double half_width;   /* of the 95 % interval of the value over the units (Student's t); NaN for one unit */
 };
 /* Half width of the 95 % interval of the mean count per run in a bin, from the scatter between runs (Student's t).
  * count, squares: sum over the runs of their counts and of the squares. NaN for fewer than two runs. */
 double pooled_spectrum_count_hw95(size_t runs, double count, double squares);
 
-/* Non-empty bins, ascending, malloc'd into *bins. unit_mass: 1 for F(m) in 1/kg, the total mass for F(m/M). */
-status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,
+/* Bins in ascending order, malloc'd into *bins: those with fragments; cumulative, all from the first to the last of
+ * them.
+ */
+status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
                        size_t *count, struct error *error);
+
+/* The exponent of a power law has four names: F(m) ~ m^-beta, N(>m) ~ m^-(beta - 1), and by size in d dimensions
+ * F(L) ~ L^-(d (beta - 1) + 1), N(>L) ~ L^-(d (beta - 1)). Its value and its half width in a form. */
+double pooled_spectrum_exponent(const struct pooled_form *form, double beta);
+double pooled_spectrum_half_width(const struct pooled_form *form, double half_width);
 
 struct pooled_exponent {
   struct exponent fit; /* fit.standard_error: as if fragments were independent; fit.upper: the largest of the runs' */

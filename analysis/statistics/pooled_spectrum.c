@@ -1,4 +1,4 @@
-/* The pooled spectrum: densities with intervals from the scatter between runs. */
+/* The pooled spectrum: densities or cumulative numbers with intervals from the scatter between runs or points. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,71 +11,142 @@ double pooled_spectrum_count_hw95(size_t runs, double count, double squares) {
   return sample_student(runs, 0.95) * sqrt(fmax(0, squares - count * count / n) / (n - 1) / n);
 }
 
-/* Lowest and highest bin that holds a fragment; SPECTRUM_NO_BIN and lower when there is none. */
-static size_t span_of(const struct pooled_runs *runs, int *low) {
-  size_t fragments = runs->count ? runs->first[runs->count] : 0;
-  int high = SPECTRUM_NO_BIN;
-  *low = INT32_MAX;
-  for (size_t i = 0; i < fragments; i++) {
-    int bin = spectrum_bin(runs->masses[i]);
-    if (bin == SPECTRUM_NO_BIN)
+static int dimensions_of(const struct pooled_form *form) {
+  if (!(form->size.density > 0))
+    return 1;
+  return form->size.dimensions == 2 ? 2 : 3;
+}
+
+double pooled_spectrum_exponent(const struct pooled_form *form, double beta) {
+  return dimensions_of(form) * (beta - 1) + (form->cumulative ? 0 : 1);
+}
+
+double pooled_spectrum_half_width(const struct pooled_form *form, double half_width) {
+  return dimensions_of(form) * half_width;
+}
+
+/* What is summed up while the runs are read. */
+struct sums {
+  size_t span; /* bins */
+  int low;     /* the first */
+  double *own; /* of the unit under way: fragments by bin */
+  int64_t *count;
+  double *mass, *mean, *square; /* by bin; mean and square: sums over the units of fragments per run */
+};
+
+/* Lowest and highest bin that holds a fragment. */
+static void find_span(const struct pooled_runs *runs, struct sums *sums) {
+  double least = HUGE_VAL, most = 0;
+  for (size_t i = runs->count ? runs->first[0] : 0; runs->count && i < runs->first[runs->count]; i++) {
+    const double mass = runs->masses[i];
+    if (!(mass > 0) || isinf(mass))
       continue;
-    if (bin < *low)
-      *low = bin;
-    if (bin > high)
-      high = bin;
+    least = fmin(least, mass);
+    most = fmax(most, mass);
   }
-  return *low <= high ? (size_t)(high - *low) + 1 : 0;
+  if (!(most > 0))
+    return;
+  sums->low = spectrum_bin(least);
+  sums->span = (size_t)(spectrum_bin(most) - sums->low) + 1;
 }
 
-/* Adds run r to the counts of the bins from `low` on and to the sums of their squares; `own` is scratch. */
-static void add_run(const struct pooled_runs *runs, size_t r, bool with_largest, int low, size_t span, int64_t *own,
-                    struct pooled_bin *bins, double *squares) {
-  for (size_t j = 0; j < span; j++)
-    own[j] = 0;
-  for (size_t i = runs->first[r] + (with_largest ? 0 : 1); i < runs->first[r + 1]; i++) {
-    int bin = spectrum_bin(runs->masses[i]);
-    if (bin != SPECTRUM_NO_BIN)
-      own[bin - low]++;
-  }
-  for (size_t j = 0; j < span; j++) {
-    bins[j].count += own[j];
-    squares[j] += (double)own[j] * (double)own[j];
+/* Masses are in descending order, mostly: the bin of the last fragment is a good guess for the next one. */
+static void add_run(const struct pooled_runs *runs, size_t r, struct sums *sums) {
+  int bin = SPECTRUM_NO_BIN;
+  double from = HUGE_VAL, to = 0; /* edges of `bin` */
+  for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++) {
+    const double mass = runs->masses[i];
+    if (!(mass > 0) || isinf(mass))
+      continue;
+    if (!(mass >= from && mass < to)) {
+      bin = spectrum_bin(mass);
+      from = spectrum_edge(bin);
+      to = spectrum_edge(bin + 1);
+    }
+    const size_t j = (size_t)(bin - sums->low);
+    sums->own[j]++;
+    sums->count[j]++;
+    sums->mass[j] += mass;
   }
 }
 
-status pooled_spectrum(const struct pooled_runs *runs, bool with_largest, double unit_mass, struct pooled_bin **bins,
+/* Adds the fragments per run of a unit, which `runs` runs have, and empties it. */
+static void end_unit(struct sums *sums, bool cumulative, double runs) {
+  double above = 0;
+  for (size_t j = sums->span; j-- > 0;) {
+    above = (cumulative ? above : 0) + sums->own[j];
+    sums->own[j] = 0;
+    sums->mean[j] += above / runs;
+    sums->square[j] += above / runs * (above / runs);
+  }
+}
+
+static void write_bins(const struct sums *sums, const struct pooled_form *form, size_t units, struct pooled_bin *bins,
+                       size_t *count) {
+  struct pooled_bin above = {0};
+  for (size_t j = 0; form->cumulative && j < sums->span; j++) {
+    above.count += sums->count[j];
+    above.mass += sums->mass[j];
+  }
+  for (size_t j = 0; j < sums->span; j++) {
+    if (!sums->count[j] && !form->cumulative)
+      continue;
+    const int bin = sums->low + (int)j;
+    struct pooled_bin *out = &bins[(*count)++];
+    *out = (struct pooled_bin){.bin = bin,
+                               .lower = spectrum_size_of(&form->size, spectrum_edge(bin)),
+                               .upper = spectrum_size_of(&form->size, spectrum_edge(bin + 1)),
+                               .count = sums->count[j],
+                               .mass = sums->mass[j]};
+    const double width = form->cumulative ? 1 : out->upper - out->lower;
+    out->value = sums->mean[j] / (double)units / width;
+    out->half_width = pooled_spectrum_count_hw95(units, sums->mean[j], sums->square[j]) / width;
+    if (!form->cumulative)
+      continue;
+    out->count = above.count;
+    out->mass = above.mass;
+    above.count -= sums->count[j];
+    above.mass -= sums->mass[j];
+  }
+}
+
+static status sum_up(const struct pooled_runs *runs, const struct pooled_form *form, size_t units, struct sums *sums) {
+  const size_t size = sums->span + 1;
+  sums->own = calloc(size, sizeof *sums->own);
+  sums->count = calloc(size, sizeof *sums->count);
+  sums->mass = calloc(size, sizeof *sums->mass);
+  sums->mean = calloc(size, sizeof *sums->mean);
+  sums->square = calloc(size, sizeof *sums->square);
+  if (!sums->own || !sums->count || !sums->mass || !sums->mean || !sums->square)
+    return STATUS_MEMORY;
+  for (size_t u = 0; u < units; u++) {
+    const size_t from = form->first_run ? form->first_run[u] : u, to = form->first_run ? form->first_run[u + 1] : u + 1;
+    for (size_t r = from; r < to; r++)
+      add_run(runs, r, sums);
+    end_unit(sums, form->cumulative, (double)(to - from));
+  }
+  return STATUS_OK;
+}
+
+status pooled_spectrum(const struct pooled_runs *runs, const struct pooled_form *form, struct pooled_bin **bins,
                        size_t *count, struct error *error) {
-  *bins = NULL;
+  const size_t units = form->first_run ? form->units : runs->count;
+  struct sums sums = {0};
   *count = 0;
-  int low;
-  size_t span = span_of(runs, &low);
-  struct pooled_bin *found = calloc(span + 1, sizeof *found);
-  int64_t *own = calloc(span + 1, sizeof *own);
-  double *squares = calloc(span + 1, sizeof *squares); /* of counts: exact integers far below 2^53 */
-  status code = STATUS_OK;
-  if (!found || !own || !squares) {
-    free(found);
-    code = status_fail(error, STATUS_MEMORY, "spectrum: no memory for %zu bins", span);
-    goto cleanup;
+  find_span(runs, &sums);
+  *bins = calloc(sums.span + 1, sizeof **bins);
+  const status code = *bins ? sum_up(runs, form, units, &sums) : STATUS_MEMORY;
+  if (code == STATUS_OK) {
+    write_bins(&sums, form, units, *bins, count);
+  } else {
+    status_fail(error, code, "spectrum: no memory for %zu bins", sums.span);
+    free(*bins);
+    *bins = NULL;
   }
-
-  for (size_t r = 0; r < runs->count; r++)
-    add_run(runs, r, with_largest, low, span, own, found, squares);
-  for (size_t j = 0; j < span; j++) {
-    if (!found[j].count)
-      continue;
-    struct pooled_bin bin = {.bin = low + (int)j, .count = found[j].count};
-    bin.lower = spectrum_edge(bin.bin);
-    bin.upper = spectrum_edge(bin.bin + 1);
-    double width = (bin.upper - bin.lower) / unit_mass, total = (double)bin.count;
-    bin.density = total / ((double)runs->count * width);
-    bin.half_width = pooled_spectrum_count_hw95(runs->count, total, squares[j]) / width;
-    found[(*count)++] = bin;
-  }
-  *bins = found;
-cleanup:
-  free(own);
-  free(squares);
+  free(sums.own);
+  free(sums.count);
+  free(sums.mass);
+  free(sums.mean);
+  free(sums.square);
   return code;
 }

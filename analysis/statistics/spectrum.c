@@ -52,6 +52,18 @@ int spectrum_bin(double mass) {
   return bin;
 }
 
+double spectrum_size_of(const struct spectrum_size *size, double mass) {
+  if (!(size->density > 0))
+    return mass;
+  return size->dimensions == 2 ? sqrt(4 * mass / (M_PI * size->density)) : cbrt(6 * mass / (M_PI * size->density));
+}
+
+double spectrum_size_mass(const struct spectrum_size *size, double place) {
+  if (!(size->density > 0))
+    return place;
+  return M_PI * size->density * (size->dimensions == 2 ? place * place / 4 : place * place * place / 6);
+}
+
 /* How many bins hold something, by stepping from bin to bin: slow, only for callers whose rows are too few. */
 static size_t count_bins(size_t n, const double *masses) {
   size_t count = 0;

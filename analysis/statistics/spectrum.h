@@ -17,6 +17,15 @@ int spectrum_bin(double mass);
 /* Lower edge of a bin, kg. Whole decades from 1e-22 to 1e22 are the doubles nearest to the powers of ten. */
 double spectrum_edge(int bin);
 
+/* The size of a fragment: diameter of the sphere, or in two dimensions of the disc, of its mass and this density. */
+struct spectrum_size {
+  double density; /* kg/m^3; 0: no sizes, an axis of masses */
+  int dimensions; /* 2: masses are kg per metre of thickness; else 3 */
+};
+/* Where a mass stands on the axis: kg, or m. spectrum_size_mass() is the inverse. */
+double spectrum_size_of(const struct spectrum_size *size, double mass);
+double spectrum_size_mass(const struct spectrum_size *size, double place);
+
 struct spectrum_bin_row {
   int bin;
   int64_t count;

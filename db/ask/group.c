@@ -194,6 +194,7 @@ static status find_pooled(struct store *store, const struct names *axes, char po
   return code;
 }
 
+static const char axes_sql[] = "SELECT column_name, path FROM axis ORDER BY path";
 static const char quantities_sql[] =
     "SELECT c.name FROM pragma_table_info('runs') c WHERE c.type IN ('REAL', 'INTEGER') AND c.name NOT IN "
     "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
@@ -208,12 +209,26 @@ status ask_group_quantity(struct store *store, const char *quantity, char name[A
   return code;
 }
 
+status ask_group_columns(struct store *store, const char *by, size_t most, char (*columns)[ASK_GROUP_NAME],
+                         size_t *count, struct error *error) {
+  struct names names = {.count = 0};
+  *count = 0;
+  const status code = resolve(store, by, "Axis", axes_sql, &names, error);
+  if (code)
+    return code;
+  if (names.count > most)
+    return status_fail(error, STATUS_USAGE, "at most %zu inputs, not %zu", most, names.count);
+  for (; *count < names.count; ++*count)
+    snprintf(columns[*count], ASK_GROUP_NAME, "%s", names.name[*count]);
+  return STATUS_OK;
+}
+
 status ask_group(struct store *store, const char *by, const char *quantities, const struct query_sink *sink,
                  char pooled[ASK_GROUP_POOLED], struct error *error) {
   struct names axes = {.count = 0}, results = {.count = 0};
   status result = ask_register_functions(store, error);
   if (result == STATUS_OK)
-    result = resolve(store, by, "Axis", "SELECT column_name, path FROM axis ORDER BY path", &axes, error);
+    result = resolve(store, by, "Axis", axes_sql, &axes, error);
   if (result == STATUS_OK && quantities)
     result = resolve(store, quantities, "Quantity", quantities_sql, &results, error);
   if (result == STATUS_OK)

@@ -1,4 +1,4 @@
-/* Reads the fragments of one point and makes its exponents and its curve. */
+/* Reads the fragments of one point and makes its exponents. */
 #include "db/ask/point.h"
 
 #include <math.h>
@@ -7,39 +7,52 @@
 #include <string.h>
 
 #include "db/ask/query.h"
+#include "engine/engine.h"
+#include "schemas/text.h"
 
 struct growing {
   struct point_data *point;
   size_t mass_capacity, run_capacity;
 };
 
+static status make_room(struct growing *growing, size_t masses) {
+  struct point_data *point = growing->point;
+  if (masses > growing->mass_capacity) {
+    double *grown = realloc(point->masses, 2 * masses * sizeof *grown);
+    if (!grown)
+      return STATUS_MEMORY;
+    point->masses = grown;
+    growing->mass_capacity = 2 * masses;
+  }
+  if (point->runs.count + 2 <= growing->run_capacity)
+    return STATUS_OK;
+  const size_t capacity = growing->run_capacity ? 2 * growing->run_capacity : 32;
+  size_t *first = realloc(point->first, capacity * sizeof *first);
+  if (first)
+    point->first = first;
+  int64_t *run_id = realloc(point->run_id, capacity * sizeof *run_id);
+  if (run_id)
+    point->run_id = run_id;
+  if (!first || !run_id)
+    return STATUS_MEMORY;
+  growing->run_capacity = capacity;
+  return STATUS_OK;
+}
+
 /* Blobs are little-endian float64, the machine's own order on everything that this program is built for. */
 static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct growing *growing = context;
   struct point_data *point = growing->point;
-  if (count != 1 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
+  if (count != 2 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
     return status_fail(error, STATUS_CONTENT,
                        "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
                        (long long)point->point_id);
-  size_t n = values[0].size / sizeof(double), have = point->first[point->runs.count];
-  if (have + n > growing->mass_capacity) {
-    size_t capacity = 2 * (have + n);
-    double *grown = realloc(point->masses, capacity * sizeof *grown);
-    if (!grown)
-      return status_fail(error, STATUS_MEMORY, "no memory for the masses of point %lld", (long long)point->point_id);
-    point->masses = grown;
-    growing->mass_capacity = capacity;
-  }
-  if (point->runs.count + 2 > growing->run_capacity) {
-    size_t capacity = 2 * growing->run_capacity;
-    size_t *grown = realloc(point->first, capacity * sizeof *grown);
-    if (!grown)
-      return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
-    point->first = grown;
-    growing->run_capacity = capacity;
-  }
+  const size_t n = values[0].size / sizeof(double), have = point->first[point->runs.count];
+  if (make_room(growing, have + n))
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point->point_id);
   if (n > 0)
     memcpy(point->masses + have, values[0].blob, n * sizeof(double));
+  point->run_id[point->runs.count] = values[1].integer;
   point->first[++point->runs.count] = have + n;
   return STATUS_OK;
 }
@@ -61,8 +74,60 @@ static status read_complete_mass(struct store *store, struct query_parameter par
   return query_number(store, text, 2, parameters, mass, error);
 }
 
-status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
-                  struct error *error) {
+/* A row of results_version and engine; the engine becomes its dimensions. */
+static status take_version(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  struct query_value *row = context;
+  row[0].integer = values[0].integer;
+  const struct engine_kind *kind = values[1].kind == QUERY_TEXT ? engine_find(values[1].text, NULL) : NULL;
+  row[1].integer = kind && kind->dimensions == 2 ? 2 : 3;
+  return STATUS_OK;
+}
+
+/* The newest version with runs that count, 0: there is none; and the dimensions of the engine. */
+static status read_version(struct store *store, const struct query_parameter *id, struct point_data *out,
+                           struct error *error) {
+  struct query_value row[2] = {{0}};
+  const struct query_sink sink = {row, NULL, take_version};
+  const status code = query_run(store,
+                                "SELECT (SELECT max(results_version) FROM run WHERE point_id = p.point_id AND "
+                                "counts = 1), engine FROM point AS p WHERE point_id = :point",
+                                1, id, 0, &sink, error);
+  if (out->results_version == 0)
+    out->results_version = row[0].integer;
+  out->dimensions = (int)row[1].integer;
+  return code;
+}
+
+static status read_runs(struct store *store, const struct query_parameter parameters[2], const char *where,
+                        struct point_data *out, struct error *error) {
+  struct growing growing = {.point = out};
+  const struct query_sink sink = {.context = &growing, .row = take_run};
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *text = open_memstream(&sql, &size);
+  if (!text || make_room(&growing, 0)) {
+    if (text)
+      fclose(text);
+    free(sql);
+    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)out->point_id);
+  }
+  out->first[0] = 0;
+  fputs("SELECT masses, run_id FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
+        "results_version = :version AND counts = 1",
+        text);
+  if (where)
+    fprintf(text, " AND run_id IN (SELECT run_id FROM runs WHERE point_id = :point AND (%s\n))", where);
+  fputs(" ORDER BY replicate, seed", text);
+  if (!text_close(text, &sql))
+    return status_fail(error, STATUS_MEMORY, "no memory for a question to the store");
+  const status code = query_run(store, sql, 2, parameters, 0, &sink, error);
+  free(sql);
+  return code;
+}
+
+status point_read_where(struct store *store, int64_t point_id, int64_t results_version, const char *where,
+                        struct point_data *out, struct error *error) {
   *out = (struct point_data){.point_id = point_id,
                              .results_version = results_version,
                              .element_mass = NAN,
@@ -70,25 +135,11 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
   char id[32], version[32];
   snprintf(id, sizeof id, "%lld", (long long)point_id);
   struct query_parameter parameters[2] = {{"point", id}, {"version", version}};
-  status code = STATUS_OK;
-  if (results_version == 0) {
-    double newest = NAN;
-    code = query_number(store, "SELECT max(results_version) FROM run WHERE point_id = :point AND counts = 1", 1,
-                        parameters, &newest, error);
-    if (code)
-      return code;
-    out->results_version = isnan(newest) ? 0 : (int64_t)newest;
-  }
+  status code = read_version(store, parameters, out, error);
+  if (code)
+    return code;
   snprintf(version, sizeof version, "%lld", (long long)out->results_version);
-  struct growing growing = {.point = out, .run_capacity = 32};
-  out->first = calloc(growing.run_capacity, sizeof *out->first);
-  if (!out->first)
-    return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)point_id);
-  struct query_sink sink = {.context = &growing, .row = take_run};
-  code = query_run(store,
-                   "SELECT masses FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
-                   "results_version = :version AND counts = 1 ORDER BY replicate, seed",
-                   2, parameters, 0, &sink, error);
+  code = read_runs(store, parameters, where, out, error);
   /* The window from_10 of a run begins at a known number of its mean element masses: complete_mass is never above. */
   if (!code)
     code = query_number(
@@ -108,10 +159,17 @@ status point_read(struct store *store, int64_t point_id, int64_t results_version
   return STATUS_OK;
 }
 
+status point_read(struct store *store, int64_t point_id, int64_t results_version, struct point_data *out,
+                  struct error *error) {
+  return point_read_where(store, point_id, results_version, NULL, out, error);
+}
+
 void point_release(struct point_data *point) {
   free(point->first);
   free(point->masses);
+  free(point->run_id);
   point->first = NULL;
+  point->run_id = NULL;
   point->masses = NULL;
   point->runs = (struct pooled_runs){0};
 }
@@ -151,50 +209,4 @@ status point_estimates(const struct point_data *point, double level, struct poin
     code = estimate(point, methods[i / ESTIMATES_WINDOWS], rows[i].window, level, &rows[i].exponent, error);
   }
   return code;
-}
-
-status point_curve_make(const struct point_data *point, const char *label, struct point_curve *out,
-                        struct error *error) {
-  *out = (struct point_curve){.runs = point->runs.count, .complete_mass = point->complete_mass, .fit = {.beta = NAN}};
-  if (label)
-    snprintf(out->label, sizeof out->label, "%s", label);
-  else
-    snprintf(out->label, sizeof out->label, "point %lld, %zu runs", (long long)point->point_id, out->runs);
-  status code = pooled_spectrum(&point->runs, true, 1, &out->bins, &out->count, error);
-  double lower = point_window(point, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
-  if (code || !(lower > 0))
-    return code;
-  struct pooled_exponent headline;
-  code = pooled_exponent(&point->runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95, &headline, error);
-  if (code) {
-    point_curve_release(out);
-    return code;
-  }
-  if (!isfinite(headline.fit.beta))
-    return STATUS_OK;
-  const double half_width = headline.interval.half_width;
-  if (isfinite(half_width))
-    snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f \xc2\xb1 %.2f (seeds, 95 %%)", headline.fit.beta,
-             half_width);
-  else
-    snprintf(out->fit_label, sizeof out->fit_label, "\xce\xb2 = %.2f (no interval)", headline.fit.beta);
-  out->fit = (struct picture_fit){NULL, headline.fit.beta, headline.fit.lower, headline.fit.upper,
-                                  (double)headline.fit.n / (double)out->runs};
-  return STATUS_OK;
-}
-
-void point_curve_release(struct point_curve *curve) {
-  free(curve->bins);
-  curve->bins = NULL;
-  curve->count = 0;
-}
-
-struct picture_series point_curve_series(struct point_curve *curve) {
-  curve->fit.label = curve->fit_label;
-  return (struct picture_series){.label = curve->label,
-                                 .complete_mass = curve->complete_mass,
-                                 .count = curve->count,
-                                 .bins = curve->bins,
-                                 .fits = isfinite(curve->fit.beta) ? 1u : 0u,
-                                 .fit = &curve->fit};
 }

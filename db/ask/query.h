@@ -65,6 +65,10 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
 enum { ASK_GROUP_NAME = 128 };
 status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error);
 
+/* The columns of comma-separated varied inputs (paths or unique endings), at most `most`; "" is none. */
+status ask_group_columns(struct store *store, const char *by, size_t most, char (*columns)[ASK_GROUP_NAME],
+                         size_t *count, struct error *error);
+
 /* Two points that share seeds and have no input with two values: each may have inputs that the other lacks. That is
  * what a campaign leaves when it is computed once more by a program with a new input. ask_group counts the runs of
  * both. */

@@ -86,6 +86,7 @@ static void release(void *run) {
 
 const struct engine_kind dem_engine = {
     .name = "dem",
+    .dimensions = 2,
     .doc =
         "Discrete elements in the plane: a solid of rigid Voronoi grains on breakable Timoshenko beams, with repulsion "
         "of overlapping grains. Kun, D'Addetta, Herrmann & Ramm (1999), with the corrections that `clast explain` "

@@ -88,6 +88,7 @@ static void release(void *run) {
 
 const struct engine_kind sph_engine = {
     .name = "sph",
+    .dimensions = 3,
     .doc =
         "Solids that crack, in space: smoothed particle hydrodynamics with strength, Tillotson's equation of state and "
         "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` "

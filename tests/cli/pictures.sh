@@ -18,6 +18,53 @@ is_svg() { head -c 200 "$1" | grep -q '<svg\|<?xml' && tail -c 20 "$1" | grep -q
 
 expect 0 "$clast" spectrum small.db --picture spectrum.png
 is_png spectrum.png
+# --where and --by choose the same runs for the table, the text plot and the picture.
+choice=(small.db --where "threshold_strain < 0.03 AND replicate > 0" --by strain)
+expect 0 "$clast" spectrum "${choice[@]}" --csv --picture chosen.png --keep-script
+python - <<'PY'
+import csv, json, sqlite3
+rows = list(csv.DictReader(open("out")))
+assert all(float(r["threshold_strain"]) == 0.02 and r["runs"] == "4" and r["points"] == "2" for r in rows)
+db = sqlite3.connect("small.db")
+(n,) = db.execute("select sum(fragment_count) from runs where counts and threshold_strain < 0.03 and replicate > 0").fetchone()
+assert sum(int(r["fragments"]) for r in rows) == n, n
+drawn = [float(l.split()[1]) for l in open("chosen.dat").read().split("\n\n\n")[0].splitlines() if l and l[0] not in "#" and "NaN" not in l.split()[1]]
+assert len(drawn) == len(rows) and all(abs(d / float(r["density"]) - 1) < 1e-5 for d, r in zip(drawn, rows)), (drawn, rows)
+json.dump(n, open("number", "w"))
+PY
+ok "a condition and an input choose the same runs for table and picture"
+expect 0 "$clast" spectrum "${choice[@]}" --plot --ascii
+same "$(awk '$1 + 0 > 0 && $2 + 0 > 0 {n += $2} END {print n}' out)" "$(cat number)" "fragments of the text plot"
+expect 64 "$clast" spectrum small.db --by nothing
+expect 64 "$clast" spectrum small.db --where "replicate > 99" --plot
+says "none meets --where"
+
+# Beside a measured spectrum: cumulative, by size.
+printf '%s\n' '# source: <made up>' '# complete from: 0.3 kg' 'mass (kg), count' 0.1,3 0.4,6 1.5,4 6,1 >measured.csv
+expect 0 "$clast" spectrum small.db --with measured.csv --csv
+python - <<'PY'
+import csv
+rows = list(csv.DictReader(open("out")))
+assert len(rows) == 4 and all(float(r["from"]) >= 0.3 and 0 <= float(r["distance"]) <= 1 for r in rows), rows
+assert len({r["from"] for r in rows}) == 1 # likelihoods are comparable
+PY
+ok "distances from a measured spectrum"
+expect 0 "$clast" spectrum small.db --with measured.csv --cumulative --size "5000 kg/m^3" --runs --picture beside.svg
+is_svg beside.svg
+grep -q 'measured: &lt;made up>' beside.svg || fail "the source of the measured spectrum is not in the picture"
+grep -q 'N(>L), fragments' beside.svg && grep -q 'intervals over seeds; of' beside.svg && grep -q 'not studied' beside.svg || fail "the picture does not tell its axes and errors"
+ok "what was measured is drawn, and the errors are told"
+expect 0 "$clast" spectrum small.db --point 1 --runs --cumulative --json
+python -c "
+import json; rows = json.load(open('out'))
+first = {}
+for r in rows: first.setdefault(r['run_id'], r)
+assert len(first) == 3 and all(r['number'] == r['fragments'] and r['mass_share'] == 1 for r in first.values())"
+ok "every run by itself"
+expect 64 "$clast" spectrum small.db --size "5 m"
+expect 65 "$clast" spectrum small.db --with small.yaml
+expect 66 "$clast" spectrum small.db --with none.csv
+
 expect 0 "$clast" map small.db map.svg -x strain -y angle
 is_svg map.svg
 expect 0 "$clast" map small.db beta.png -x strain -y angle -q beta_binned_from_2
@@ -121,4 +168,4 @@ expect 64 "$clast" compare small.db:1 small.db
 expect 64 "$clast" compare small.db:none small.db
 says "no campaign 'none'"
 expect 66 "$clast" compare none.db small.db
-done_after 53
+done_after 69

@@ -163,7 +163,8 @@ static void spectra_are_drawn(void **state) {
   (void)state;
   enum { RUNS = 40, EACH = 80 };
   static double masses[2][RUNS * EACH];
-  struct picture_series series[2];
+  const struct pooled_form form = {0};
+  struct picture_series series[2] = {{0}, {0}};
   struct picture_fit fits[2][2];
   struct pooled_bin *bins[2];
   for (size_t s = 0; s < 2; s++) {
@@ -173,22 +174,26 @@ static void spectra_are_drawn(void **state) {
     for (size_t r = 0; r <= RUNS; r++)
       first[r] = r * EACH;
     struct pooled_runs runs = {RUNS, first, masses[s]};
-    assert_int_equal(pooled_spectrum(&runs, true, 1, &bins[s], &series[s].count, NULL), STATUS_OK);
+    assert_int_equal(pooled_spectrum(&runs, &form, &bins[s], &series[s].count, NULL), STATUS_OK);
     series[s].bins = bins[s];
     series[s].label = s ? "threshold 6 %" : "threshold 3 %";
     series[s].fits = 2;
     series[s].fit = fits[s];
     fits[s][0] = (struct picture_fit){s ? "\xce\xb2 = 2.30 \xc2\xb1 0.03 (likelihood)"
                                         : "\xce\xb2 = 1.80 \xc2\xb1 0.02 (likelihood)",
-                                      1.8 + 0.5 * (double)s, 0.0057, HUGE_VAL, EACH};
-    fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH};
+                                      1.8 + 0.5 * (double)s,
+                                      0.0057,
+                                      HUGE_VAL,
+                                      EACH,
+                                      0};
+    fits[s][1] = (struct picture_fit){"least squares", 1.7 + 0.3 * (double)s, 0.0057, 10, EACH, 0};
   }
   assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("spectrum.png"), .width = 900},
-                                    &(struct picture_words){"disc-explosion, 40 runs", NULL, "mass (kg)", "F(m)"}, 2,
-                                    series, NULL),
+                                    &(struct picture_words){"disc-explosion, 40 runs", NULL, "mass (kg)", "F(m)"},
+                                    &form, 2, series, NULL),
                    STATUS_OK);
   assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("spectrum.svg"), .width = 600},
-                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, 1, series, NULL),
+                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, &form, 1, series, NULL),
                    STATUS_OK);
   double dark, coloured;
   int width, height;
@@ -197,7 +202,7 @@ static void spectra_are_drawn(void **state) {
   series[0].count = 0;
   struct error error;
   assert_int_equal(picture_spectrum(&(struct picture_page){.path = at("none.png"), .width = 600},
-                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, 1, series, &error),
+                                    &(struct picture_words){NULL, NULL, "mass (kg)", "F(m)"}, &form, 1, series, &error),
                    STATUS_USAGE);
   free(bins[0]);
   free(bins[1]);

@@ -88,7 +88,7 @@ static void views_and_c_agree(void **state) {
 
   struct pooled_bin *bins;
   size_t count;
-  OK(pooled_spectrum(&point.runs, true, 1, &bins, &count, &error));
+  OK(pooled_spectrum(&point.runs, &(struct pooled_form){0}, &bins, &count, &error));
   OK(ask_register_functions(store, &error));
   assert_near(number(store, "SELECT count(*) FROM spectra"), (double)count, 0);
   for (size_t i = 0; i < count; i++) {
@@ -99,12 +99,12 @@ static void views_and_c_agree(void **state) {
                             "SELECT pooled_hw95(runs, count, count_squared) FROM (SELECT %zu AS runs, "
                             "count, count_squared FROM point_spectrum WHERE bin = %d)",
                             point.runs.count, bins[i].bin);
-    assert_near(mean / width, bins[i].density, 1e-13 * bins[i].density);
+    assert_near(mean / width, bins[i].value, 1e-13 * bins[i].value);
     assert_near(sample_student(point.runs.count, 0.95) * scatter / sqrt(n) / width, bins[i].half_width,
-                1e-13 * bins[i].density);
-    assert_near(hw95 / width, bins[i].half_width, 1e-13 * bins[i].density);
+                1e-13 * bins[i].value);
+    assert_near(hw95 / width, bins[i].half_width, 1e-13 * bins[i].value);
     assert_near(number_of(store, "SELECT count_hw95 FROM spectra WHERE bin = %d", bins[i].bin) / width,
-                bins[i].half_width, 1e-11 * bins[i].density);
+                bins[i].half_width, 1e-11 * bins[i].value);
   }
   free(bins);
   point_release(&point);
@@ -168,17 +168,6 @@ static void runs_that_count_in_order(void **state) {
     assert_int_equal(estimates_named(i ? "beta_ks_from_2" : "beta_masses", &is, &method, &window, &error),
                      STATUS_USAGE);
   }
-  struct point_curve curve;
-  OK(point_curve_make(&point, NULL, &curve, &error));
-  struct picture_series series = point_curve_series(&curve);
-  assert_string_equal(series.label, "point 1, 7 runs");
-  assert_int_equal(series.fits, 1);
-  assert_near(series.fit->beta, rows[POINT_ESTIMATES - 2].exponent.fit.beta, 0); /* masses, from 5 */
-  assert_near(series.fit->fragments_per_run * (RUNS - 1), (double)rows[POINT_ESTIMATES - 2].exponent.fit.n, 1e-9);
-  OK(picture_spectrum(&(struct picture_page){.path = "test-point.png", .width = 600},
-                      &(struct picture_words){"a point", NULL, "mass (kg)", "F(m)"}, 1, &series, &error));
-  assert_int_equal(unlink("test-point.png"), 0);
-  point_curve_release(&curve);
   point_release(&point);
 
   OK(point_read(store, id + 7, 0, &point, &error)); /* no such point */
@@ -186,14 +175,6 @@ static void runs_that_count_in_order(void **state) {
   OK(point_estimates(&point, 0.95, rows, &error));
   for (int i = 0; i < POINT_ESTIMATES; i++)
     assert_true(isnan(rows[i].exponent.fit.beta));
-  OK(point_curve_make(&point, "none", &curve, &error));
-  series = point_curve_series(&curve);
-  assert_true(series.count == 0 && series.fits == 0);
-  assert_int_equal(picture_spectrum(&(struct picture_page){.path = "test-point.png", .width = 600},
-                                    &(struct picture_words){"a point", NULL, "mass (kg)", "F(m)"}, 1, &series, &error),
-                   STATUS_USAGE);
-  assert_int_not_equal(access("test-point.png", F_OK), 0);
-  point_curve_release(&curve);
   point_release(&point);
   OK(store_close(store, &error));
 }

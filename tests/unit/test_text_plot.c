@@ -16,7 +16,7 @@ static char *plot(int columns, bool unicode, const struct picture_series *series
   size_t size = 0;
   FILE *out = open_memstream(&text, &size);
   assert_non_null(out);
-  text_plot_spectrum(out, columns, unicode, "kg/m", series);
+  text_plot_spectrum(out, columns, unicode, "kg/m", "F(m)", &(struct pooled_form){0}, series);
   fclose(out);
   return text;
 }
@@ -26,13 +26,16 @@ static void rows_and_columns(void **state) {
   struct pooled_bin bins[5];
   for (int i = 0; i < 5; i++) { /* a slope of -2: densities 1e8, 1e6 ... */
     double edge = pow(10, i - 4);
-    bins[i] = (struct pooled_bin){10 * (i - 4),       edge,
-                                  edge * 1.2589,      1000 >> (2 * i),
-                                  pow(10, 8 - 2 * i), 0.3 * pow(10, 8 - 2 * i)};
+    bins[i] = (struct pooled_bin){.bin = 10 * (i - 4),
+                                  .lower = edge,
+                                  .upper = edge * 1.2589,
+                                  .count = 1000 >> (2 * i),
+                                  .value = pow(10, 8 - 2 * i),
+                                  .half_width = 0.3 * pow(10, 8 - 2 * i)};
   }
-  bins[4].half_width = bins[4].density; /* reaches down to zero */
-  struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4};
-  struct picture_series series = {"all", 5, bins, 1, &fit, 0};
+  bins[4].half_width = bins[4].value; /* reaches down to zero */
+  struct picture_fit fit = {"\xce\xb2 2.00 \xc2\xb1 0.01", 2, 1e-4, HUGE_VAL, 1e4, 0};
+  struct picture_series series = {.label = "all", .count = 5, .bins = bins, .fits = 1, .fit = &fit};
   char *text = plot(100, false, &series), *line = strtok(text, "\n");
   int last = 1000, rows = 0;
   assert_non_null(strstr(line, "from kg/m"));

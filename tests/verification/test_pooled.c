@@ -122,25 +122,79 @@ static void spectrum_density_and_error(void **state) {
   const size_t first[4] = {0, 5, 8, 11};
   const double masses[11] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN, 10, 1.25, 1};
   struct pooled_runs runs = {3, first, masses};
+  struct pooled_form form = {0};
   struct pooled_bin *bins;
   size_t count;
-  assert_int_equal(pooled_spectrum(&runs, true, 1, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
   assert_int_equal(count, 2);
   double width = pow(10, 0.1) - 1;
   assert_int_equal(bins[0].count, 6);
-  assert_true(fabs(bins[0].density * width - 2) < 1e-13);
+  assert_true(fabs(bins[0].value * width - 2) < 1e-13);
   assert_true(fabs(bins[0].half_width * width / sample_student(3, 0.95) - sqrt(1.0 / 3)) <
               1e-13); /* counts 3, 1, 2: s.d. 1, over sqrt 3 */
   assert_true(bins[1].count == 3 && bins[1].half_width == 0);
   free(bins);
-  assert_int_equal(pooled_spectrum(&runs, false, 23, &bins, &count, NULL), STATUS_OK);
-  assert_int_equal(count, 1);
-  assert_true(fabs(bins[0].density * width / 23 - 2) < 1e-13);
-  free(bins);
   runs.count = 0;
-  assert_int_equal(pooled_spectrum(&runs, true, 1, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
   assert_int_equal(count, 0);
   free(bins);
+}
+
+/* The same three runs, cumulative, by size, and as two points: one of the first two runs, and one of the third. */
+static void spectrum_forms(void **state) {
+  (void)state;
+  const size_t first[4] = {0, 5, 8, 11}, points[3] = {0, 2, 3};
+  const double masses[11] = {11, 1.1, 1.2, 1, 0, 12, 1.05, NAN, 10, 1.25, 1};
+  const struct pooled_runs runs = {3, first, masses};
+  struct pooled_form form = {.cumulative = true};
+  struct pooled_bin *bins;
+  size_t count;
+  assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
+  assert_int_equal(count, 11); /* from 1 to 10 kg, also where there is none */
+  assert_true(bins[0].count == 9 && fabs(bins[0].value - 3) < 1e-13);
+  assert_true(fabs(bins[0].mass - (11 + 1.1 + 1.2 + 1 + 12 + 1.05 + 10 + 1.25 + 1)) < 1e-13);
+  assert_true(fabs(bins[0].half_width / sample_student(3, 0.95) - sqrt(1.0 / 3)) < 1e-13); /* 4, 2, 3 fragments */
+  for (int j = 1; j < 11; j++)
+    assert_true(bins[j].count == 3 && bins[j].value == 1 && bins[j].half_width == 0);
+  free(bins);
+  form = (struct pooled_form){.units = 2, .first_run = points};
+  assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
+  const double width = bins[0].upper - bins[0].lower;
+  assert_true(fabs(bins[0].value * width - 2) < 1e-13); /* 2 a run in both points */
+  assert_true(bins[0].half_width == 0 && count == 2);   /* although the first point's runs differ */
+  free(bins);
+  for (int dimensions = 2; dimensions <= 3; dimensions++) {
+    form = (struct pooled_form){.size = {2700, dimensions}};
+    assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
+    const double size = dimensions == 2 ? sqrt(1 / (2700 * M_PI / 4)) : cbrt(1 / (2700 * M_PI / 6));
+    assert_true(fabs(bins[0].lower / size - 1) < 1e-14);
+    assert_true(fabs(spectrum_size_mass(&form.size, bins[0].lower) - 1) < 1e-14);
+    assert_true(fabs(bins[0].value * (bins[0].upper - bins[0].lower) - 2) < 1e-13);
+    free(bins);
+  }
+}
+
+/* The four names of an exponent: slopes of spectra of a pure power law, against the names. */
+static void exponent_in_forms(void **state) {
+  (void)state;
+  enum { N = 400000 };
+  const size_t first[2] = {0, N};
+  double *masses = malloc(N * sizeof *masses);
+  const double beta = 1.8;
+  assert_non_null(masses);
+  for (size_t i = 0; i < N; i++)
+    masses[i] = pow((double)(N - i) / N, -1 / (beta - 1)); /* N(>m) = N m^(1 - beta), without scatter */
+  const struct pooled_runs runs = {1, first, masses};
+  for (int f = 0; f < 6; f++) {
+    const struct pooled_form form = {.cumulative = f % 2, .size = {f / 2 ? 2000 : 0, f / 2 + 1}};
+    struct pooled_bin *bins;
+    size_t count;
+    assert_int_equal(pooled_spectrum(&runs, &form, &bins, &count, NULL), STATUS_OK);
+    const double slope = -log(bins[20].value / bins[10].value) / log(bins[20].lower / bins[10].lower);
+    assert_true(fabs(slope - pooled_spectrum_exponent(&form, beta)) < 0.01);
+    free(bins);
+  }
+  free(masses);
 }
 
 static void empty_and_bad(void **state) {
@@ -172,6 +226,8 @@ int main(void) {
       cmocka_unit_test(least_squares_pools_too),
       cmocka_unit_test(cutoffs_are_told_apart),
       cmocka_unit_test(spectrum_density_and_error),
+      cmocka_unit_test(spectrum_forms),
+      cmocka_unit_test(exponent_in_forms),
       cmocka_unit_test(empty_and_bad),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,177 @@
+/* A measured spectrum beside simulated ones: Kolmogorov's distance and a likelihood, above the complete mass. */
+#include "analysis/statistics/measured.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void measured_release(struct measured *measured) {
+  free(measured->mass);
+  free(measured->above);
+  *measured = (struct measured){0};
+}
+
+/* Single fragments are binned as simulated ones are; thresholds are their own bins. */
+status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
+                     size_t *count, struct error *error) {
+  struct pooled_form one = {.cumulative = form->cumulative, .size = form->size};
+  *count = 0;
+  if (measured->single && !form->cumulative) {
+    const size_t first[2] = {0, measured->n};
+    const struct pooled_runs runs = {1, first, measured->mass};
+    return pooled_spectrum(&runs, &one, bins, count, error);
+  }
+  *bins = calloc(measured->n + 1, sizeof **bins);
+  if (!*bins)
+    return status_fail(error, STATUS_MEMORY, "no memory for a measured spectrum");
+  for (size_t i = 0; i < measured->n; i++) {
+    const bool last = i + 1 == measured->n;
+    if (i > 0 && measured->mass[i] == measured->mass[i - 1])
+      continue; /* N(>= m) of equal masses is that of the first */
+    struct pooled_bin bin = {.lower = spectrum_size_of(&form->size, measured->mass[i]), .half_width = NAN};
+    if (form->cumulative) {
+      bin.upper = bin.lower;
+      bin.value = measured->above[i];
+    } else if (!last) { /* a class without an upper end has no density */
+      bin.upper = spectrum_size_of(&form->size, measured->mass[i + 1]);
+      bin.value = (measured->above[i] - measured->above[i + 1]) / (bin.upper - bin.lower);
+    }
+    bin.count = (int64_t)llround(measured->above[i] - (form->cumulative || last ? 0 : measured->above[i + 1]));
+    if (bin.value > 0)
+      (*bins)[(*count)++] = bin;
+  }
+  return STATUS_OK;
+}
+
+/* Ascending masses from `from` on. */
+struct sorted {
+  size_t n;
+  const double *mass;
+};
+
+/* How many are at least `mass`, or with `beyond` more than it. */
+static double at_least(const struct sorted *sorted, double mass, bool beyond) {
+  size_t low = 0, high = sorted->n;
+  while (low < high) {
+    const size_t middle = low + (high - low) / 2;
+    if (beyond ? sorted->mass[middle] > mass : sorted->mass[middle] >= mass)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return (double)(sorted->n - low);
+}
+
+/* Two shares of fragments above a mass, and their greatest difference so far. `own`: a run that is taken out of the
+ * pool, or NULL. */
+struct distance {
+  const struct sorted *pool, *own;
+  double whole, most; /* fragments of the pool */
+};
+
+static void look_at(struct distance *d, double mass, bool beyond, double share) {
+  const double rest = at_least(d->pool, mass, beyond) - (d->own ? at_least(d->own, mass, beyond) : 0);
+  d->most = fmax(d->most, fabs(rest / d->whole - share));
+}
+
+/* Of a sample of single masses: the shares differ most on one side of one of its masses. */
+static double distance_of_sample(const struct sorted *sample, const struct sorted *pool, bool own) {
+  struct distance d = {pool, own ? sample : NULL, (double)pool->n - (own ? (double)sample->n : 0), 0};
+  for (size_t i = 0; i < sample->n; i++) {
+    const double mass = sample->mass[i];
+    look_at(&d, mass, false, at_least(sample, mass, false) / (double)sample->n);
+    look_at(&d, mass, true, at_least(sample, mass, true) / (double)sample->n);
+  }
+  return d.most;
+}
+
+/* Of a run at thresholds. */
+static double distance_at(const struct measured *at, size_t first, const struct sorted *run,
+                          const struct sorted *pool) {
+  struct distance d = {pool, run, (double)(pool->n - run->n), 0};
+  for (size_t i = first; i < at->n; i++)
+    look_at(&d, at->mass[i], false, at_least(run, at->mass[i], false) / (double)run->n);
+  return d.most;
+}
+
+static double measured_distance(const struct measured *m, size_t first, const struct sorted *pool) {
+  if (m->single)
+    return distance_of_sample(&(struct sorted){m->n - first, m->mass + first}, pool, false);
+  struct distance d = {pool, NULL, (double)pool->n, 0};
+  for (size_t i = first; i < m->n; i++)
+    look_at(&d, m->mass[i], false, m->above[i] / m->above[first]);
+  return d.most;
+}
+
+/* Measured fragments of at least mass[i], of single ones or thresholds. */
+static double log_likelihood(const struct measured *m, size_t first, double from, const struct sorted *pool) {
+  const int last = m->single ? spectrum_bin(m->mass[m->n - 1]) : 0, begin = m->single ? spectrum_bin(from) : 0;
+  const size_t classes = m->single ? (size_t)(last - begin) + 1 : m->n - first;
+  const struct sorted mine = {m->n - first, m->mass + first};
+  const double whole = (double)pool->n + 0.5 * (double)classes;
+  double sum = 0;
+  for (size_t c = 0; c < classes; c++) { /* the last class has no upper end */
+    const bool open = c + 1 == classes;
+    const double low = m->single ? (c ? spectrum_edge(begin + (int)c) : from) : m->mass[first + c];
+    const double high = open ? HUGE_VAL : m->single ? spectrum_edge(begin + (int)c + 1) : m->mass[first + c + 1];
+    const double here = m->single ? at_least(&mine, low, false) - at_least(&mine, high, false)
+                                  : m->above[first + c] - (open ? 0 : m->above[first + c + 1]);
+    const double there = at_least(pool, low, false) - (open ? 0 : at_least(pool, high, false));
+    sum += here * log((there + 0.5) / whole);
+  }
+  return sum;
+}
+
+/* The masses of run r from `from` on, ascending, into `room`. */
+static struct sorted sort_run(const struct pooled_runs *runs, size_t r, double from, double *room) {
+  size_t n = 0;
+  for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++)
+    if (runs->masses[i] >= from && isfinite(runs->masses[i]))
+      room[n++] = runs->masses[i];
+  qsort(room, n, sizeof *room, sample_ascending);
+  return (struct sorted){n, room};
+}
+
+static void compare_runs(const struct measured *m, size_t first, const struct pooled_runs *runs,
+                         const struct sorted *pool, double *room, struct measured_match *out) {
+  struct sample_moments moments = {0};
+  size_t judged = 0, far = 0;
+  for (size_t r = 0; r < runs->count; r++) {
+    const struct sorted run = sort_run(runs, r, out->from, room);
+    sample_add(&moments, (double)run.n);
+    if (run.n == 0 || run.n == pool->n)
+      continue;
+    judged++;
+    far += (m->single ? distance_of_sample(&run, pool, true) : distance_at(m, first, &run, pool)) >= out->distance;
+  }
+  out->simulated = sample_summarise_moments(&moments, 0.95);
+  if (judged >= 3)
+    out->share = (double)far / (double)judged;
+}
+
+status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
+                        struct measured_match *out, struct error *error) {
+  const size_t all = runs->count ? runs->first[runs->count] : 0;
+  size_t first = 0;
+  complete = fmax(fmax(complete, measured->complete), 0); /* NaN: the other */
+  while (first < measured->n && measured->mass[first] < complete)
+    first++;
+  *out = (struct measured_match){complete, 0, {0, NAN, NAN, NAN, NAN}, NAN, NAN, NAN};
+  if (first == measured->n)
+    return STATUS_OK;
+  if (!measured->single || !(complete > 0))
+    out->from = measured->mass[first];
+  out->fragments = measured->above[first];
+  double *masses = malloc((2 * all + 1) * sizeof *masses);
+  if (!masses)
+    return status_fail(error, STATUS_MEMORY, "no memory to compare a measured spectrum");
+  const struct pooled_runs together = {1, (const size_t[]){0, all}, runs->masses};
+  const struct sorted pool = sort_run(&together, 0, out->from, masses);
+  if (pool.n > 0) {
+    out->distance = measured_distance(measured, first, &pool);
+    out->log_likelihood = log_likelihood(measured, first, out->from, &pool);
+  }
+  compare_runs(measured, first, runs, &pool, masses + all, out);
+  free(masses);
+  return STATUS_OK;
+}

@@ -1,0 +1,52 @@
+/* A measured spectrum of fragments: a CSV file, and its distance from simulated runs.
+ *
+ *     # source: Nakamura & Fujiwara (1991)      lines of remarks; three keys are read: source,
+ *     # complete from: 0.1 g                    from which mass or size on all fragments were found,
+ *     # density: 2.7 g/cm^3                     and the density that turns sizes into masses
+ *     mass (g), count
+ *     0.1, 214
+ *
+ * The first line that is no remark names the columns; cells are divided by commas, semicolons or tabs. One column is
+ * `mass` or `size` (diameter of the sphere of equal volume) with its unit in parentheses. Alone, every row is a
+ * fragment. With `count`, a row tells the fragments from its mass up to the next row's. With `cumulative`, it tells
+ * N(>= m), the fragments of at least this mass. Other columns are left alone. */
+#ifndef CLAST_ANALYSIS_STATISTICS_MEASURED_H
+#define CLAST_ANALYSIS_STATISTICS_MEASURED_H
+
+#include "analysis/statistics/pooled.h"
+
+struct measured {
+  bool single;      /* the mass of every fragment is known; else numbers at thresholds */
+  size_t n;         /* masses, or thresholds */
+  double *mass;     /* kg, ascending; owned */
+  double *above;    /* N(>= mass[i]); owned */
+  double complete;  /* kg; 0: the file does not say */
+  char source[200]; /* "" when the file does not say */
+};
+
+/* size: what turns a column of sizes into masses where the file tells no density (density 0: nothing does).
+ * STATUS_MISSING, STATUS_IO, STATUS_CONTENT with line and remedy, STATUS_MEMORY. After an error *out is empty. */
+status measured_read(const char *path, const struct spectrum_size *size, struct measured *out, struct error *error);
+void measured_release(struct measured *measured); /* a zeroed one is fine */
+
+/* As the bins of a spectrum, to be drawn beside others of the form: malloc'd into *bins. Without intervals. */
+status measured_bins(const struct measured *measured, const struct pooled_form *form, struct pooled_bin **bins,
+                     size_t *count, struct error *error);
+
+/* How well runs agree with what was measured, of fragments of at least `complete` only. Shapes are compared, each with
+ * its own number of fragments; the numbers are told beside them. */
+struct measured_match {
+  double from;      /* kg: fragments of at least this mass; of thresholds the first one from `complete` on */
+  double fragments; /* measured */
+  struct sample_summary simulated; /* fragments per run */
+  double distance;                 /* Kolmogorov's: greatest difference between both shares of fragments above a mass */
+  double share; /* of runs that are at least as far from the pool of the other runs: one experiment is one specimen,
+                   so a share below 0.05 speaks against the pool. NaN for fewer than three runs with fragments */
+  double log_likelihood; /* of the measured fragments in classes of mass (the store's bins, or the thresholds), if each
+                            is drawn from the pool; half a fragment is added to each class. Differences between pools
+                            tell, if `complete` is the same */
+};
+status measured_compare(const struct measured *measured, const struct pooled_runs *runs, double complete,
+                        struct measured_match *out, struct error *error);
+
+#endif

@@ -1,0 +1,219 @@
+/* Reads a measured spectrum. The file may come from anywhere: every cell is checked. */
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/statistics/measured.h"
+#include "schemas/unit.h"
+
+enum { LINE = 4096, CELL = 128, MOST_ROWS = 10000000 };
+
+enum count_kind { SINGLE, COUNTS, CUMULATIVE };
+
+struct row {
+  double mass, number;
+};
+
+struct reading {
+  const char *path;
+  size_t line;
+  struct spectrum_size size;
+  int place, number; /* columns; number -1: none */
+  bool by_size;
+  enum count_kind kind;
+  char unit[CELL], complete[CELL];
+  struct row *rows;
+  size_t count, room;
+  struct measured *out;
+};
+
+static status refuse(const struct reading *r, struct error *error, const char *what, const char *text) {
+  return status_fail(error, STATUS_CONTENT, "%s:%zu: %s '%.80s'", r->path, r->line, what, text);
+}
+
+static char *trim(char *text) {
+  text += strspn(text, " \t\r\n\"");
+  size_t n = strlen(text);
+  while (n > 0 && strchr(" \t\r\n\"", text[n - 1]))
+    text[--n] = '\0';
+  return text;
+}
+
+/* "# density: 2.7 g/cm^3" */
+static status take_remark(struct reading *r, char *text, struct error *error) {
+  char *colon = strchr(text, ':');
+  if (!colon)
+    return STATUS_OK;
+  *colon = '\0';
+  const char *key = trim(text), *value = trim(colon + 1);
+  if (strcmp(key, "source") == 0)
+    snprintf(r->out->source, sizeof r->out->source, "%s", value);
+  else if (strcmp(key, "complete from") == 0)
+    snprintf(r->complete, sizeof r->complete, "%s", value);
+  else if (strcmp(key, "density") == 0 &&
+           (unit_read(value, "kg/m^3", &r->size.density, error) || !(r->size.density > 0)))
+    return refuse(r, error, "the density needs a number and a unit, such as 2.7 g/cm^3, not", value);
+  return STATUS_OK;
+}
+
+/* Divides a line at commas, semicolons or tabs. Returns the cells. */
+static int split(char *line, char *cells[], int most) {
+  int count = 0;
+  for (char *from = line; from && count < most; count++) {
+    char *end = from + strcspn(from, ",;\t");
+    char *next = *end ? end + 1 : NULL;
+    *end = '\0';
+    cells[count] = trim(from);
+    from = next;
+  }
+  return count;
+}
+
+/* "mass (g)" */
+static status take_names(struct reading *r, int count, char *const cells[], struct error *error) {
+  r->place = r->number = -1;
+  for (int i = 0; i < count; i++) {
+    char name[CELL], unit[CELL] = "";
+    if (sscanf(cells[i], "%127[^(](%127[^)])", name, unit) < 1)
+      continue;
+    const char *word = trim(name);
+    const bool size = strcmp(word, "size") == 0 || strcmp(word, "diameter") == 0;
+    if ((size || strcmp(word, "mass") == 0) && r->place < 0) {
+      r->place = i;
+      r->by_size = size;
+      snprintf(r->unit, sizeof r->unit, "%s", *unit ? unit : size ? "m" : "kg");
+    } else if (strcmp(word, "count") == 0 || strcmp(word, "cumulative") == 0) {
+      r->number = i;
+      r->kind = word[1] == 'o' ? COUNTS : CUMULATIVE;
+    }
+  }
+  if (r->place < 0)
+    return refuse(r, error,
+                  "the first line names the columns: mass (g) or size (mm), alone or with count or cumulative; not",
+                  cells[0]);
+  if (r->by_size && !(r->size.density > 0))
+    return status_fail(error, STATUS_CONTENT,
+                       "%s:%zu: sizes need a density: add a line `# density: 2.7 g/cm^3` above the names", r->path,
+                       r->line);
+  return STATUS_OK;
+}
+
+/* "0.5" in the unit of the column, or "0.5 g"; as a mass in kg. */
+static status read_mass(const struct reading *r, const char *text, const char *unit, double *mass,
+                        struct error *error) {
+  char quantity[2 * CELL + 2];
+  double place;
+  snprintf(quantity, sizeof quantity, "%.127s %s", text, unit);
+  const status code = unit_read(quantity, r->by_size ? "m" : "kg", &place, error);
+  if (code || !(place > 0) || !isfinite(place))
+    return refuse(r, error, r->by_size ? "expected a size above 0, not" : "expected a mass above 0, not", quantity);
+  *mass = r->by_size ? spectrum_size_mass(&r->size, place) : place;
+  return STATUS_OK;
+}
+
+static status take_row(struct reading *r, int count, char *const cells[], struct error *error) {
+  struct row row = {.number = 1};
+  if (r->place >= count || r->number >= count)
+    return refuse(r, error, "the line has too few cells; it begins with", cells[0]);
+  status code = read_mass(r, cells[r->place], r->unit, &row.mass, error);
+  if (code)
+    return code;
+  if (r->number >= 0) {
+    char *end;
+    row.number = strtod(cells[r->number], &end);
+    if (end == cells[r->number] || *end || !(row.number >= 0) || !isfinite(row.number))
+      return refuse(r, error, "expected a number of fragments, not", cells[r->number]);
+  }
+  if (r->count == MOST_ROWS)
+    return status_fail(error, STATUS_CONTENT, "%s: more than %d rows", r->path, MOST_ROWS);
+  if (r->count == r->room) {
+    const size_t room = r->room ? 2 * r->room : 256;
+    struct row *rows = realloc(r->rows, room * sizeof *rows);
+    if (!rows)
+      return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
+    r->rows = rows;
+    r->room = room;
+  }
+  r->rows[r->count++] = row;
+  return STATUS_OK;
+}
+
+static status read_lines(struct reading *r, FILE *file, struct error *error) {
+  char line[LINE], *cells[64];
+  bool named = false;
+  status code = STATUS_OK;
+  while (code == STATUS_OK && fgets(line, sizeof line, file)) {
+    r->line++;
+    if (strlen(line) == sizeof line - 1)
+      return status_fail(error, STATUS_CONTENT, "%s:%zu: the line is too long", r->path, r->line);
+    char *text = line;
+    if (r->line == 1 && strncmp(text, "\xef\xbb\xbf", 3) == 0)
+      text += 3;
+    text = trim(text);
+    if (*text == '\0')
+      continue;
+    if (*text == '#') {
+      code = take_remark(r, text + 1, error);
+      continue;
+    }
+    const int count = split(text, cells, 64);
+    code = named ? take_row(r, count, cells, error) : take_names(r, count, cells, error);
+    named = true;
+  }
+  if (code == STATUS_OK && ferror(file))
+    return status_fail(error, STATUS_IO, "%s: cannot be read: %s", r->path, strerror(errno));
+  if (code == STATUS_OK && r->count == 0)
+    return status_fail(error, STATUS_CONTENT, "%s: there is no row with a fragment", r->path);
+  return code;
+}
+
+static int ascending(const void *a, const void *b) {
+  return sample_ascending(&((const struct row *)a)->mass, &((const struct row *)b)->mass);
+}
+
+/* Rows become N(>= m) at ascending masses. */
+static status take_rows(struct reading *r, struct error *error) {
+  struct measured *out = r->out;
+  out->single = r->kind == SINGLE;
+  out->mass = malloc(r->count * sizeof *out->mass);
+  out->above = malloc(r->count * sizeof *out->above);
+  if (!out->mass || !out->above)
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
+  out->n = r->count;
+  qsort(r->rows, r->count, sizeof *r->rows, ascending);
+  double above = 0;
+  for (size_t i = r->count; i-- > 0;) {
+    if (r->kind == CUMULATIVE && r->rows[i].number < above)
+      return status_fail(error, STATUS_CONTENT,
+                         "%s: the cumulative number at %g kg is below that of a larger mass; it counts from this mass "
+                         "upwards",
+                         r->path, r->rows[i].mass);
+    above = r->kind == CUMULATIVE ? r->rows[i].number : above + r->rows[i].number;
+    out->mass[i] = r->rows[i].mass;
+    out->above[i] = above;
+  }
+  if (!(above > 0))
+    return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
+  return STATUS_OK;
+}
+
+status measured_read(const char *path, const struct spectrum_size *size, struct measured *out, struct error *error) {
+  *out = (struct measured){0};
+  struct reading r = {.path = path, .size = *size, .kind = SINGLE, .out = out};
+  FILE *file = fopen(path, "r");
+  if (!file)
+    return status_fail(error, errno == ENOENT ? STATUS_MISSING : STATUS_IO, "%s: %s", path, strerror(errno));
+  status code = read_lines(&r, file, error);
+  fclose(file);
+  if (code == STATUS_OK && *r.complete) {
+    code = read_mass(&r, r.complete, "", &out->complete, error);
+  }
+  if (code == STATUS_OK)
+    code = take_rows(&r, error);
+  free(r.rows);
+  if (code)
+    measured_release(out);
+  return code;
+}

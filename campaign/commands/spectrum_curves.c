@@ -1,0 +1,230 @@
+/* Makes the curves of spectra with their fits, and draws them. */
+#include "campaign/commands/spectrum_curves.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "campaign/terminal/uncertainty.h"
+
+enum { COLUMNS = 100 };
+
+/* "beta = 2.03 +- 0.05 (seeds, 95 %)" by the name that the exponent has in the form. */
+static void label_fit(struct spectrum_curve *curve, double beta, double half_width) {
+  static const char *const names[2][2] = {{"\xce\xb2", "\xce\xb2 \xe2\x88\x92 1"}, {"D + 1", "D"}};
+  const char *name = names[curve->form.size.density > 0][curve->form.cumulative];
+  const double value = pooled_spectrum_exponent(&curve->form, beta);
+  const double width = pooled_spectrum_half_width(&curve->form, half_width);
+  if (isfinite(width))
+    snprintf(curve->fit_label, sizeof curve->fit_label, "%s = %.2f \xc2\xb1 %.2f (seeds, 95 %%)", name, value, width);
+  else
+    snprintf(curve->fit_label, sizeof curve->fit_label, "%s = %.2f (no interval)", name, value);
+}
+
+static status fit_curve(const struct ask_pool *pool, bool with_rivals, struct spectrum_curve *curve,
+                        struct error *error) {
+  const double lower = point_window(&pool->data, (enum estimates_window)ESTIMATES_HEADLINE_WINDOW);
+  struct pooled_exponent headline;
+  if (pool->points != 1 || !(lower > 0))
+    return STATUS_OK;
+  status code = pooled_exponent(&pool->data.runs, (enum exponent_method)ESTIMATES_HEADLINE_METHOD, lower, 0.95,
+                                &headline, error);
+  if (code || !isfinite(headline.fit.beta))
+    return code;
+  const double runs = (double)pool->data.runs.count;
+  label_fit(curve, headline.fit.beta, headline.interval.half_width);
+  curve->fit = (struct picture_fit){NULL,
+                                    headline.fit.beta,
+                                    headline.fit.lower,
+                                    headline.fit.upper,
+                                    (double)headline.fit.n / runs,
+                                    (double)headline.runs / runs};
+  return with_rivals ? pooled_rivals(&pool->data.runs, lower, &curve->rivals, error) : STATUS_OK;
+}
+
+static status make_thin(const struct ask_pool *pool, struct spectrum_curve *curve, struct error *error) {
+  const struct pooled_runs *runs = &pool->data.runs;
+  struct pooled_form form = curve->form;
+  form.first_run = NULL;
+  curve->thin = calloc(runs->count + 1, sizeof *curve->thin);
+  if (!curve->thin)
+    return status_fail(error, STATUS_MEMORY, "no memory for the spectra of %zu runs", runs->count);
+  for (size_t r = 0; r < runs->count; r++) {
+    struct pooled_bin *bins;
+    const status code = pooled_spectrum(&(struct pooled_runs){1, runs->first + r, runs->masses}, &form, &bins,
+                                        &curve->thin[r].count, error);
+    if (code)
+      return code;
+    curve->thin[curve->thin_count++].bins = bins;
+  }
+  return STATUS_OK;
+}
+
+status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
+                            struct spectrum_curve *curve, struct error *error) {
+  const size_t runs = pool->data.runs.count;
+  *curve = (struct spectrum_curve){.form = ask_pool_form(pool, choice->cumulative, choice->density),
+                                   .complete_mass = pool->data.complete_mass,
+                                   .fit = {.beta = NAN}};
+  if (pool->points == 1)
+    snprintf(curve->label, sizeof curve->label, "%s, %zu run%s", pool->label, runs, runs == 1 ? "" : "s");
+  else
+    snprintf(curve->label, sizeof curve->label, "%s, %zu points, %zu runs", pool->label, pool->points, runs);
+  status code = pooled_spectrum(&pool->data.runs, &curve->form, &curve->bins, &curve->count, error);
+  if (code == STATUS_OK)
+    code = fit_curve(pool, with_rivals, curve, error);
+  if (code == STATUS_OK && choice->runs)
+    code = make_thin(pool, curve, error);
+  curve->form.first_run = NULL; /* of the pool, which goes */
+  if (code)
+    spectrum_curves_release(curve);
+  return code;
+}
+
+void spectrum_curves_release(struct spectrum_curve *curve) {
+  for (size_t r = 0; r < curve->thin_count; r++)
+    free((void *)curve->thin[r].bins);
+  free(curve->thin);
+  free(curve->bins);
+  *curve = (struct spectrum_curve){0};
+}
+
+struct picture_series spectrum_curves_series(const struct spectrum_curve *curve) {
+  return (struct picture_series){.label = curve->label,
+                                 .count = curve->count,
+                                 .bins = curve->bins,
+                                 .fits = isfinite(curve->fit.beta) ? 1u : 0u,
+                                 .fit = &curve->fit,
+                                 .complete_mass = curve->complete_mass,
+                                 .thin_count = curve->thin_count,
+                                 .thin = curve->thin};
+}
+
+/* Is a pure power law enough? Likelihood ratios against two rivals, in the same windows. */
+static void print_rivals(const struct pooled_rivals *rivals) {
+  if (rivals->n == 0 || !isfinite(rivals->cutoff_beta))
+    return;
+  printf("  exponential cut-off: ");
+  if (isfinite(rivals->cutoff_mass))
+    printf("beta %.2f, cut-off mass %.3g kg, 2 dlnL %.1f, p %.2g\n", rivals->cutoff_beta, rivals->cutoff_mass,
+           rivals->cutoff_ratio, rivals->cutoff_p);
+  else
+    printf("none\n");
+  printf("  lognormal: 2 dlnL %.1f, p %.2g (small p: better than the pure power law)\n", rivals->lognormal_ratio,
+         rivals->lognormal_p);
+}
+
+struct curves {
+  const struct spectrum_choice *choice;
+  bool with_rivals, several; /* several: a pool is of more than one point */
+  size_t count, most;
+  bool more; /* than are drawn */
+  int64_t point;
+  struct spectrum_curve curve[PICTURE_SERIES];
+};
+
+static status take_pool(void *context, const struct ask_pool *pool, struct error *error) {
+  struct curves *curves = context;
+  if (curves->count == curves->most) {
+    curves->more = true;
+    return STATUS_STOPPED; /* enough */
+  }
+  const status code = spectrum_curves_make(curves->choice, curves->with_rivals, pool, &curves->curve[curves->count],
+                                           error);
+  if (code)
+    return code;
+  struct spectrum_curve *curve = &curves->curve[curves->count];
+  curve->fit.label = curve->fit_label;
+  curves->several |= pool->points > 1;
+  curves->point = curves->count++ == 0 ? pool->data.point_id : 0;
+  return STATUS_OK;
+}
+
+/* What the axes and the intervals are, and what is known of the resolution. */
+static void write_caption(struct store *store, const struct curves *curves, char caption[800]) {
+  static const char *const laws[2][2] = {{"F(m) ~ m^-\xce\xb2, N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)",
+                                          "N(>m) ~ m^-(\xce\xb2 \xe2\x88\x92 1)"},
+                                         {"F(L) ~ L^-(D + 1), N(>L) ~ L^-D", "N(>L) ~ L^-D"}};
+  const struct spectrum_choice *choice = curves->choice;
+  struct ask_resolution resolution;
+  char text[UNCERTAINTY_TEXT] = "resolution: not known";
+  if (ask_resolution(store, curves->point, "beta", &resolution, NULL) == STATUS_OK)
+    uncertainty_resolution(&resolution, text);
+  snprintf(caption, 800,
+           "%s. %s: 95 %% intervals over %s; of \xce\xb2, %s. Grey: fragments are missing (too few particles)",
+           laws[choice->density > 0][choice->cumulative], choice->cumulative ? "Bands" : "Bars",
+           curves->several ? "points" : "seeds", text);
+}
+
+static status draw_picture(struct store *store, const struct curves *curves, const struct picture_page *page,
+                           struct error *error) {
+  static const char *const names[2][2] = {{"F(m), fragments per run and kg", "N(>m), fragments per run"},
+                                          {"F(L), fragments per run and m", "N(>L), fragments per run"}};
+  const struct spectrum_choice *choice = curves->choice;
+  const struct measured *measured = choice->measured;
+  const bool sizes = choice->density > 0;
+  struct picture_series series[PICTURE_SERIES];
+  struct pooled_bin *bins = NULL;
+  size_t count = 0;
+  char caption[800], label[300];
+  struct pooled_form form = {.cumulative = choice->cumulative, .size = {choice->density, 3}};
+  if (curves->count)
+    form = curves->curve[0].form;
+  for (; count < curves->count; count++)
+    series[count] = spectrum_curves_series(&curves->curve[count]);
+  if (measured) {
+    series[count] = (struct picture_series){.measured = true, .complete_mass = measured->complete};
+    const status code = measured_bins(measured, &form, &bins, &series[count].count, error);
+    if (code)
+      return code;
+    snprintf(label, sizeof label, "measured%s%s", *measured->source ? ": " : "", measured->source);
+    series[count].bins = bins;
+    series[count++].label = label;
+  }
+  write_caption(store, curves, caption);
+  const struct picture_words words = {sizes ? "Fragment sizes, pooled over runs" : "Fragment masses, pooled over runs",
+                                      caption, sizes ? "fragment size L (m)" : "fragment mass m (kg)",
+                                      names[sizes][choice->cumulative]};
+  const status code = picture_spectrum(page, &words, &form, count, series, error);
+  free(bins);
+  return code;
+}
+
+static void print_plots(const struct curves *curves, bool ascii) {
+  const bool sizes = curves->choice->density > 0;
+  for (size_t i = 0; i < curves->count; i++) {
+    const struct spectrum_curve *curve = &curves->curve[i];
+    const struct picture_series series = spectrum_curves_series(curve);
+    printf("%s%s\n", i ? "\n" : "", curve->label);
+    text_plot_spectrum(stdout, COLUMNS, !ascii, sizes ? "m" : "kg",
+                       curve->form.cumulative ? (sizes ? "N(>L)" : "N(>m)") : (sizes ? "F(L)" : "F(m)"), &curve->form,
+                       &series);
+    print_rivals(&curve->rivals);
+  }
+}
+
+status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
+                            const struct spectrum_drawing *drawing, struct error *error) {
+  struct curves *curves = calloc(1, sizeof *curves);
+  if (!curves)
+    return status_fail(error, STATUS_MEMORY, "no memory for the spectra");
+  curves->choice = choice;
+  curves->with_rivals = drawing->text;
+  curves->most = choice->measured ? PICTURE_SERIES - 1 : PICTURE_SERIES;
+  status code = ask_pools(store, &choice->pool, take_pool, curves, error);
+  if (code == STATUS_STOPPED && curves->more)
+    code = STATUS_OK;
+  if (code == STATUS_OK && curves->count == 0)
+    code = status_fail(error, STATUS_USAGE, "no finished run to draw: the store has none, or none meets --where");
+  if (code == STATUS_OK && drawing->page)
+    code = draw_picture(store, curves, drawing->page, error);
+  if (code == STATUS_OK && drawing->text)
+    print_plots(curves, drawing->ascii);
+  if (code == STATUS_OK && curves->more)
+    fprintf(stderr, "clast: only the first %zu spectra are drawn; --point, --where and --by choose others\n",
+            curves->count);
+  for (size_t i = 0; i < curves->count; i++)
+    spectrum_curves_release(&curves->curve[i]);
+  free(curves);
+  return code;
+}

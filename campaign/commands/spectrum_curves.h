@@ -1,0 +1,50 @@
+/* The spectra that `clast spectrum` prints and draws, and what was measured beside them. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_SPECTRUM_CURVES_H
+#define CLAST_CAMPAIGN_COMMANDS_SPECTRUM_CURVES_H
+
+#include "analysis/pictures/picture.h"
+#include "analysis/statistics/measured.h"
+#include "campaign/terminal/table.h"
+#include "db/ask/pool.h"
+
+struct spectrum_choice {
+  struct ask_pool_choice pool;
+  bool cumulative, runs;           /* runs: also every run by itself */
+  double density;                  /* kg/m^3: sizes in place of masses; 0: masses */
+  const struct measured *measured; /* NULL: none */
+};
+
+/* One row per bin of each pool (or of each run). */
+status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                            struct error *error);
+/* One row per pool: how far it is from what was measured. */
+status spectrum_table_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                            struct error *error);
+
+/* A pool's spectrum with its headline fit, which only a pool of one point has. */
+struct spectrum_curve {
+  char label[ASK_POOL_LABEL + 64], fit_label[96];
+  struct pooled_form form;
+  struct pooled_bin *bins; /* owned */
+  size_t count;
+  double complete_mass; /* kg; NaN: not known */
+  struct picture_fit fit;
+  struct pooled_rivals rivals; /* n 0: not asked for */
+  struct picture_thin *thin;   /* of each run; owned with their bins */
+  size_t thin_count;
+};
+/* with_rivals: likelihood ratios of the pure power law against others. */
+status spectrum_curves_make(const struct spectrum_choice *choice, bool with_rivals, const struct ask_pool *pool,
+                            struct spectrum_curve *curve, struct error *error);
+void spectrum_curves_release(struct spectrum_curve *curve);                       /* a zeroed one is fine */
+struct picture_series spectrum_curves_series(const struct spectrum_curve *curve); /* borrows the curve */
+
+/* The first eight pools, what was measured included. page NULL: no picture. text: a plot on stdout. */
+struct spectrum_drawing {
+  const struct picture_page *page;
+  bool text, ascii;
+};
+status spectrum_curves_draw(struct store *store, const struct spectrum_choice *choice,
+                            const struct spectrum_drawing *drawing, struct error *error);
+
+#endif

@@ -1,0 +1,171 @@
+/* Spectra as rows, and their distances from what was measured. */
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "campaign/commands/spectrum_curves.h"
+#include "campaign/terminal/rows.h"
+
+struct printing {
+  const struct spectrum_choice *choice;
+  enum table_format format;
+  struct table *table;
+  double complete; /* kg, of all pools */
+};
+
+/* Columns that tell the pools apart: the inputs of --by, or the point. pool NULL: there is none. */
+static void name_pools(struct printing *printing, const struct ask_pool *pool) {
+  printing->table = table_new(printing->format, stdout);
+  for (size_t a = 0; pool && a < pool->axes; a++)
+    table_column(printing->table, pool->column[a], NULL);
+  if (!printing->choice->pool.by)
+    table_column(printing->table, "point_id", NULL);
+  else
+    table_column(printing->table, "points", NULL);
+}
+
+static void tell_pool(struct printing *printing, const struct ask_pool *pool) {
+  for (size_t a = 0; a < pool->axes; a++)
+    rows_cell(printing->table, &pool->input[a]);
+  table_integer(printing->table, printing->choice->pool.by ? (int64_t)pool->points : pool->data.point_id);
+}
+
+static void name_bins(struct printing *printing, const struct ask_pool *pool) {
+  const struct spectrum_choice *choice = printing->choice;
+  const bool sizes = choice->density > 0;
+  const char *unit = sizes ? "m" : "kg";
+  name_pools(printing, pool);
+  struct table *table = printing->table;
+  if (choice->runs)
+    table_column(table, "run_id", NULL);
+  table_column(table, "lower", unit);
+  if (!choice->cumulative)
+    table_column(table, "upper", unit);
+  table_columns(table, (const char *const[]){"runs", "fragments", NULL});
+  table_column(table, choice->cumulative ? "number" : "density", choice->cumulative ? NULL : sizes ? "1/m" : "1/kg");
+  table_column(table, choice->cumulative ? "number_hw95" : "density_hw95",
+               choice->cumulative ? NULL
+               : sizes            ? "1/m"
+                                  : "1/kg");
+  table_column(table, "mass_share", NULL);
+}
+
+/* The bins of a pool, or with run_id of one of its runs. */
+static status print_bins(struct printing *printing, const struct ask_pool *pool, const struct pooled_runs *runs,
+                         const int64_t *run_id, struct error *error) {
+  struct pooled_form form = ask_pool_form(pool, printing->choice->cumulative, printing->choice->density);
+  struct table *table = printing->table;
+  struct pooled_bin *bins;
+  size_t count;
+  double mass = 0;
+  if (run_id)
+    form.first_run = NULL;
+  const status code = pooled_spectrum(runs, &form, &bins, &count, error);
+  if (code)
+    return code;
+  for (size_t b = 0; b < count; b++)
+    mass = form.cumulative ? fmax(mass, bins[b].mass) : mass + bins[b].mass;
+  for (size_t b = 0; b < count && !table_broken(table); b++) {
+    tell_pool(printing, pool);
+    if (run_id)
+      table_integer(table, *run_id);
+    table_real(table, bins[b].lower);
+    if (!form.cumulative)
+      table_real(table, bins[b].upper);
+    table_integer(table, (int64_t)runs->count);
+    table_integer(table, bins[b].count);
+    table_real(table, bins[b].value);
+    table_real(table, bins[b].half_width);
+    table_real(table, bins[b].mass / mass);
+  }
+  free(bins);
+  return table_broken(table) ? STATUS_IO : STATUS_OK;
+}
+
+static status print_pool(void *context, const struct ask_pool *pool, struct error *error) {
+  struct printing *printing = context;
+  const struct pooled_runs *runs = &pool->data.runs;
+  if (!printing->table)
+    name_bins(printing, pool);
+  if (!printing->choice->runs)
+    return print_bins(printing, pool, runs, NULL, error);
+  status code = STATUS_OK;
+  for (size_t r = 0; r < runs->count && code == STATUS_OK; r++)
+    code = print_bins(printing, pool, &(struct pooled_runs){1, runs->first + r, runs->masses}, &pool->data.run_id[r],
+                      error);
+  return code;
+}
+
+/* What was printed before an error stays. */
+static status end_table(struct table *table, status code, struct error *error) {
+  if (code && !table_broken(table)) {
+    (void)table_end(table, NULL);
+    return code;
+  }
+  return table_end(table, error);
+}
+
+status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                            struct error *error) {
+  struct printing printing = {.choice = choice, .format = format};
+  const status code = ask_pools(store, &choice->pool, print_pool, &printing, error);
+  if (!printing.table && code)
+    return code;
+  if (!printing.table)
+    name_bins(&printing, NULL);
+  return end_table(printing.table, code, error);
+}
+
+static void name_matches(struct printing *printing, const struct ask_pool *pool) {
+  name_pools(printing, pool);
+  table_column(printing->table, "from", "kg");
+  table_columns(printing->table, (const char *const[]){"measured", "runs", "fragments_mean", "fragments_hw95",
+                                                       "distance", "runs_as_far", "log_likelihood", NULL});
+}
+
+static status print_match(void *context, const struct ask_pool *pool, struct error *error) {
+  struct printing *printing = context;
+  struct measured_match match;
+  const status code = measured_compare(printing->choice->measured, &pool->data.runs, printing->complete, &match, error);
+  if (code)
+    return code;
+  if (!printing->table)
+    name_matches(printing, pool);
+  tell_pool(printing, pool);
+  table_real(printing->table, match.from);
+  table_real(printing->table, match.fragments);
+  table_integer(printing->table, (int64_t)pool->data.runs.count);
+  table_real(printing->table, match.simulated.mean);
+  table_real(printing->table, match.simulated.half_width);
+  table_real(printing->table, match.distance);
+  table_real(printing->table, match.share);
+  table_real(printing->table, match.log_likelihood);
+  return STATUS_OK;
+}
+
+/* Likelihoods can be compared only from one mass on. */
+static status find_complete(void *context, const struct ask_pool *pool, struct error *error) {
+  struct printing *printing = context;
+  (void)error;
+  printing->complete = fmax(printing->complete, pool->data.complete_mass); /* NaN: the other */
+  return STATUS_OK;
+}
+
+status spectrum_table_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
+                            struct error *error) {
+  struct printing printing = {.choice = choice, .format = format, .complete = choice->measured->complete};
+  status code = ask_pools(store, &choice->pool, find_complete, &printing, error);
+  if (code == STATUS_OK)
+    code = ask_pools(store, &choice->pool, print_match, &printing, error);
+  if (!printing.table && code)
+    return code;
+  if (!printing.table)
+    name_matches(&printing, NULL);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    fprintf(stderr,
+            "clast: fragments from %.3g kg on, where the measured and all simulated spectra are complete. distance: "
+            "Kolmogorov's, of the shapes; runs_as_far: share of the runs that are as far from the other runs as the "
+            "measured one (one experiment is one specimen; below 0.05 speaks against the point)\n",
+            printing.complete);
+  return end_table(printing.table, code, error);
+}

@@ -1,0 +1,179 @@
+/* Measured spectra: what files say, what is refused, and distances with known answers. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "analysis/statistics/measured.h"
+
+static const struct spectrum_size no_size = {0, 3};
+static const char path[] = "test-measured.csv";
+static struct error error;
+
+static status read_text(const char *text, const struct spectrum_size *size, struct measured *out) {
+  FILE *file = fopen(path, "w");
+  assert_non_null(file);
+  fputs(text, file);
+  fclose(file);
+  const status code = measured_read(path, size, out, &error);
+  unlink(path);
+  return code;
+}
+
+static void near(double a, double b) {
+  assert_true(fabs(a - b) <= 1e-12 * fabs(b));
+}
+
+static void the_three_kinds(void **state) {
+  (void)state;
+  struct measured m;
+  assert_int_equal(read_text("\xef\xbb\xbf# source: a paper (1991)\r\n# complete from: 2 g\r\nname;mass (g)\r\n"
+                             "a;5\r\nb;1.5\r\n\r\nc;7\r\n",
+                             &no_size, &m),
+                   STATUS_OK);
+  assert_true(m.single && m.n == 3 && m.above[0] == 3 && m.above[2] == 1);
+  near(m.mass[0], 0.0015);
+  near(m.mass[2], 0.007);
+  near(m.complete, 0.002);
+  assert_string_equal(m.source, "a paper (1991)");
+  measured_release(&m);
+
+  assert_int_equal(read_text("mass (kg),count\n1,10\n4,1\n2,5\n", &no_size, &m), STATUS_OK);
+  assert_true(!m.single && m.n == 3 && m.above[0] == 16 && m.above[1] == 6 && m.above[2] == 1);
+  struct pooled_bin *bins;
+  size_t count;
+  assert_int_equal(measured_bins(&m, &(struct pooled_form){0}, &bins, &count, &error), STATUS_OK);
+  assert_int_equal(count, 2); /* the last class has no upper end */
+  assert_true(bins[0].value == 10 && bins[1].value == 2.5 && isnan(bins[0].half_width));
+  free(bins);
+  measured_release(&m);
+
+  /* Sizes: a sphere of 1 cm and 6/pi g/cm^3 weighs 1 g. The density of the file goes before that of the caller. */
+  assert_int_equal(read_text("# density: 1.909859317102744 g/cm^3\n# complete from: 1 cm\n"
+                             "size (mm)\tcumulative\n10\t7\n20\t2\n",
+                             &(struct spectrum_size){1, 3}, &m),
+                   STATUS_OK);
+  near(m.mass[0], 0.001);
+  near(m.mass[1], 0.008);
+  near(m.complete, 0.001);
+  assert_true(m.above[0] == 7 && m.above[1] == 2);
+  measured_release(&m);
+}
+
+static void bad_files(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *says;
+  } bad[] = {
+      {"weight (g)\n1\n", ":1: the first line names the columns"},
+      {"mass (mm)\n1\n", ":2: expected a mass above 0, not '1 mm'"},
+      {"mass (g)\n1\nx\n", ":3: expected a mass"},
+      {"mass (g)\n-1\n", ":2: expected a mass"},
+      {"mass (g)\nnan\n", ":2: expected a mass"},
+      {"mass (g),count\n1\n", ":2: the line has too few cells"},
+      {"mass (g),count\n1,-3\n", ":2: expected a number of fragments"},
+      {"mass (g),count\n1,inf\n", ":2: expected a number of fragments"},
+      {"mass (g),cumulative\n1,3\n2,5\n", "is below that of a larger mass"},
+      {"mass (g),count\n1,0\n", "there is no fragment in it"},
+      {"size (mm)\n1\n", "sizes need a density"},
+      {"# density: heavy\nsize (mm)\n1\n", ":1: the density needs a number"},
+      {"# complete from: 1 km\nmass (g)\n1\n", "expected a mass"},
+      {"", "there is no row"},
+      {"mass (g)\n", "there is no row"},
+  };
+  struct measured m;
+  for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+    assert_int_equal(read_text(bad[i].text, &no_size, &m), STATUS_CONTENT);
+    if (!strstr(error.message, bad[i].says))
+      fail_msg("%s: %s", bad[i].text, error.message);
+    assert_null(m.mass);
+  }
+  assert_int_equal(measured_read("no-such.csv", &no_size, &m, &error), STATUS_MISSING);
+  assert_int_equal(measured_read(".", &no_size, &m, &error), STATUS_IO);
+}
+
+/* Four runs of masses 1, 2, 3, 4; measured 2.5 and 4, or the same numbers at thresholds. */
+static void distances(void **state) {
+  (void)state;
+  const size_t first[5] = {0, 4, 8, 12, 16};
+  double masses[16];
+  for (int i = 0; i < 16; i++)
+    masses[i] = 4 - i % 4;
+  const struct pooled_runs runs = {4, first, masses};
+  struct measured_match match;
+  double mass[3] = {2.5, 4, 9}, above[3] = {2, 1, 1};
+  struct measured m = {.single = true, .n = 2, .mass = mass, .above = above};
+
+  /* From 2.5 kg, which is the first one, on: pooled 3 and 4. Share above 2.5: 1 and 1/2. */
+  assert_int_equal(measured_compare(&m, &runs, NAN, &match, &error), STATUS_OK);
+  near(match.from, 2.5);
+  near(match.distance, 0.5);
+  near(match.fragments, 2);
+  near(match.simulated.mean, 2);
+  near(match.share + 1, 1); /* no run differs from the others at all */
+
+  /* From 1 kg: shares of 1, 3/4, 1/2, 1/4 at 1, 2, 3, 4; measured 1, 1, 1/2, 1/2. Greatest just below 2.5 */
+  assert_int_equal(measured_compare(&m, &runs, 1, &match, &error), STATUS_OK);
+  near(match.from, 1);
+  near(match.distance, 0.5);
+  near(match.simulated.mean, 4);
+  assert_int_equal(measured_compare(&m, &runs, 3.5, &match, &error), STATUS_OK); /* a 4 each */
+  near(match.distance + 1, 1);
+  near(match.share, 1);
+  near(match.fragments, 1);
+
+  /* Thresholds 2.5, 4 and 9 from 3 on: the first that counts is 4. */
+  m = (struct measured){.n = 3, .mass = mass, .above = above};
+  assert_int_equal(measured_compare(&m, &runs, 3, &match, &error), STATUS_OK);
+  near(match.from, 4);
+  near(match.distance, 1); /* measured: one above 9, simulated none */
+  /* Two classes, 4..9 and from 9, half a fragment added to each: one fragment in the last, of 4 simulated. */
+  near(match.log_likelihood, log(0.5 / 5));
+  assert_int_equal(measured_compare(&m, &runs, 2, &match, &error), STATUS_OK);
+  near(match.from, 2.5);
+  near(match.log_likelihood, log(4.5 / 9.5) + log(0.5 / 9.5));
+  assert_int_equal(measured_compare(&m, &runs, 10, &match, &error), STATUS_OK);
+  assert_true(isnan(match.distance) && match.fragments == 0);
+}
+
+/* One experiment that is a run like the others: its distance is as large as that of a share of the runs which is
+ * uniform in 0..1, so its mean is a half. */
+static void a_run_among_runs(void **state) {
+  (void)state;
+  enum { RUNS = 21, EACH = 30, CASES = 40 };
+  static double masses[RUNS * EACH];
+  size_t first[RUNS + 1];
+  double mass[EACH], above[EACH], mean = 0;
+  uint64_t state_of_draw = 12345;
+  for (int c = 0; c < CASES; c++) {
+    for (size_t r = 0; r <= RUNS; r++)
+      first[r] = r * EACH;
+    for (size_t i = 0; i < RUNS * EACH; i++) {
+      state_of_draw = state_of_draw * 6364136223846793005u + 1442695040888963407u;
+      masses[i] = 1 / (1 - (double)(state_of_draw >> 11) * 0x1p-53);
+    }
+    memcpy(mass, masses + (RUNS - 1) * EACH, sizeof mass);
+    qsort(mass, EACH, sizeof *mass, sample_ascending);
+    for (int i = 0; i < EACH; i++)
+      above[i] = EACH - i;
+    struct measured_match match;
+    assert_int_equal(measured_compare(&(struct measured){true, EACH, mass, above, 0, ""},
+                                      &(struct pooled_runs){RUNS - 1, first, masses}, 1, &match, &error),
+                     STATUS_OK);
+    mean += match.share / CASES;
+  }
+  assert_true(fabs(mean - 0.5) < 4 * sqrt(1 / 12.0 / CASES));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_three_kinds), cmocka_unit_test(bad_files),
+                                     cmocka_unit_test(distances), cmocka_unit_test(a_run_among_runs)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,135 @@
+/* Pools of runs: by point, by an input, by a condition; their order, labels, fragments and values. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "analysis/analysis.h"
+#include "db/ask/pool.h"
+#include "tests/support/store_checks.h"
+
+enum { RUNS = 3 };
+
+struct seen {
+  size_t pools, points, runs, fragments;
+  char labels[600];
+  double sum; /* of masses, or of values */
+  bool stop;
+};
+
+static status look(void *context, const struct ask_pool *pool, struct error *unused) {
+  struct seen *seen = context;
+  (void)unused;
+  seen->pools++;
+  seen->points += pool->points;
+  seen->runs += pool->data.runs.count;
+  assert_int_equal(pool->first_run[0], 0);
+  assert_int_equal(pool->first_run[pool->points], pool->data.runs.count);
+  assert_int_equal(pool->data.point_id, pool->points == 1 ? pool->point[0] : 0);
+  snprintf(seen->labels + strlen(seen->labels), sizeof seen->labels - strlen(seen->labels), "%s; ", pool->label);
+  for (size_t r = 0; r < pool->data.runs.count; r++) {
+    assert_true(pool->data.run_id[r] > 0);
+    if (pool->value) {
+      seen->sum += pool->value[r];
+      continue;
+    }
+    seen->fragments += pool->data.runs.first[r + 1] - pool->data.runs.first[r];
+    for (size_t i = pool->data.runs.first[r]; i < pool->data.runs.first[r + 1]; i++)
+      seen->sum += pool->data.runs.masses[i];
+  }
+  return seen->stop ? STATUS_STOPPED : STATUS_OK;
+}
+
+static struct store *fill(char path[64]) {
+  struct store *store;
+  OK(store_open_writer(fixture_path(path, "pool"), &store, NULL, 0, &error));
+  OK(fixture_populate(store, 2, 3, RUNS, true, &error)); /* m: 6, 7; k: 1e30, 1e31, 1e32 */
+  OK(store_flush(store, &error));
+  return store;
+}
+
+static void pools_of_runs(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = fill(path);
+  struct seen all = {0}, by_m = {0}, some = {0}, none = {0}, one = {0}, everything = {0};
+  OK(ask_pools(store, &(struct ask_pool_choice){0}, look, &all, &error));
+  assert_true(all.pools == 6 && all.points == 6 && all.runs == 6 * RUNS);
+  assert_int_equal(all.fragments, 6 * RUNS * FIXTURE_FRAGMENTS);
+  assert_near(all.sum, number(store, "SELECT sum(total_mass) FROM run"), 1e-9);
+
+  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, look, &by_m, &error));
+  assert_true(by_m.pools == 2 && by_m.points == 6 && by_m.runs == 6 * RUNS);
+  assert_string_equal(by_m.labels, "m 6; m 7; ");
+  assert_near(by_m.sum, all.sum, 1e-9);
+  OK(ask_pools(store, &(struct ask_pool_choice){.by = ""}, look, &everything, &error));
+  assert_true(everything.pools == 1 && everything.points == 6);
+  assert_string_equal(everything.labels, "all points; ");
+
+  /* A condition leaves runs and points out. */
+  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m", .where = "material_k > 5e30 AND replicate = 1"}, look, &some,
+               &error));
+  assert_true(some.pools == 2 && some.points == 4 && some.runs == 4);
+  assert_near(some.sum, number(store, "SELECT sum(total_mass) FROM runs WHERE material_k > 5e30 AND replicate = 1"),
+              1e-9);
+  OK(ask_pools(store, &(struct ask_pool_choice){.where = "replicate > 99"}, look, &none, &error));
+  assert_int_equal(none.pools, 0);
+  OK(ask_pools(store, &(struct ask_pool_choice){.point = 2, .where = "replicate = 0 OR replicate = 2"}, look, &one,
+               &error));
+  assert_true(one.pools == 1 && one.runs == 2);
+  assert_string_equal(one.labels, "m 6, k 1e+31 1/m^3; ");
+
+  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){.where = "no_such > 1"}, look, &none, &error),
+                   STATUS_USAGE);
+  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){.by = "no_such"}, look, &none, &error), STATUS_USAGE);
+  struct seen first = {.stop = true};
+  assert_int_equal(ask_pools(store, &(struct ask_pool_choice){0}, look, &first, &error), STATUS_STOPPED);
+  assert_int_equal(first.pools, 1);
+  OK(store_close(store, &error));
+}
+
+static void pools_of_values(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = fill(path);
+  struct seen by_k = {0}, some = {0};
+  OK(ask_pool_values(store, &(struct ask_pool_choice){.by = "k"}, "largest_fraction", look, &by_k, &error));
+  assert_true(by_k.pools == 3 && by_k.points == 6 && by_k.runs == 6 * RUNS);
+  assert_near(by_k.sum, number(store, "SELECT sum(largest_fraction) FROM run"), 1e-12);
+  OK(ask_pool_values(store, &(struct ask_pool_choice){.where = "material_m > 6.5 AND replicate < 2"}, "hardest", look,
+                     &some, &error));
+  assert_true(some.pools == 3 && some.runs == 6);
+  assert_near(some.sum, 3 * (0 + 0.5), 1e-12);
+  assert_int_equal(ask_pool_values(store, &(struct ask_pool_choice){0}, "no_such", look, &some, &error), STATUS_USAGE);
+  OK(store_close(store, &error));
+}
+
+/* The units of a pool's interval: its runs, or its points. */
+static status units(void *context, const struct ask_pool *pool, struct error *unused) {
+  (void)context, (void)unused;
+  const struct pooled_form form = ask_pool_form(pool, true, 0);
+  struct pooled_bin *bins;
+  size_t count;
+  OK(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
+  assert_near(bins[0].value, FIXTURE_FRAGMENTS, 1e-9);
+  assert_int_equal(form.first_run != NULL, pool->points > 1);
+  free(bins);
+  return STATUS_OK;
+}
+
+static void pools_as_forms(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = fill(path);
+  OK(ask_pools(store, &(struct ask_pool_choice){.by = "m"}, units, NULL, &error));
+  OK(ask_pools(store, &(struct ask_pool_choice){0}, units, NULL, &error));
+  OK(store_close(store, &error));
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(pools_of_runs), cmocka_unit_test(pools_of_values),
+                                     cmocka_unit_test(pools_as_forms)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
