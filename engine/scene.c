@@ -157,6 +157,16 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
   return code ? code : read_document(document, name, out, error);
 }
 
+status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error) {
+  *out = NULL;
+  struct document *document = NULL;
+  status code = document_parse(name, json, strlen(json), &document, error);
+  if (code)
+    return code;
+  document_take_si(document);
+  return read_document(document, name, out, error);
+}
+
 struct scene *scene_copy(const struct scene *scene) {
   struct scene *copy = create(scene->kind);
   if (!copy)

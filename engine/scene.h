@@ -23,6 +23,8 @@ const char *scene_builtin_text(const char *name); /* the document, or NULL */
  * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error);
+/* The JSON of scene_json, as stores keep it: its numbers are SI. */
+status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error);
 struct scene *scene_copy(const struct scene *scene);
 void scene_free(struct scene *scene);
 

@@ -112,6 +112,10 @@ status document_finish(struct document *document, const char **report) {
   return STATUS_CONTENT;
 }
 
+void document_take_si(struct document *document) {
+  document->si = true;
+}
+
 const char *document_text(const struct document *document) {
   return document->text;
 }

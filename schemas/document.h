@@ -22,6 +22,10 @@ status document_open(const char *path, struct document **out, struct error *erro
 status document_parse(const char *name, const char *text, size_t size, struct document **out, struct error *error);
 void document_free(struct document *document); /* NULL is fine */
 
+/* From here on numbers without a unit are in SI: for a document that the program wrote, or that it accepted when it did
+ * not ask for units. */
+void document_take_si(struct document *document);
+
 const char *document_text(const struct document *document); /* the file as read, NUL-terminated */
 
 enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };

@@ -42,6 +42,7 @@ struct document {
   document_node *root, *nodes;
   struct document_error errors[DOCUMENT_MOST_ERRORS];
   char *report;
+  bool si; /* numbers without a unit are in SI */
 };
 
 /* Bytes that must never reach libfyaml or a terminal: NUL, invalid UTF-8, control characters, tabs as indentation.

@@ -91,7 +91,8 @@ static status read_value(const document_node *node, const struct field *row, str
     return status_fail(error, STATUS_CONTENT, "expected true or false, got a text in quotes; remove the quotes");
   if (!node->plain && row->kind == FIELD_INTEGER && unitless)
     return status_fail(error, STATUS_CONTENT, "expected a whole number, got a text in quotes; remove the quotes");
-  return field_parse(row, own_spelling(row, node->text), value, error);
+  const char *text = own_spelling(row, node->text);
+  return node->document->si ? field_parse_si(row, text, value, error) : field_parse(row, text, value, error);
 }
 
 bool document_value(document_node *node, const struct field *row, struct field_value *value) {

@@ -255,12 +255,27 @@ void field_describe_choices(const struct field *row, char *text, size_t size) {
   }
 }
 
+bool field_needs_unit(const struct field *row) {
+  const bool number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+  return number && (row->flags & FIELD_PERCENT || (row->unit && strcmp(row->unit, "1") != 0));
+}
+
+/* A bound as a user would write it: "0", "1e-7" of a row in percent. */
+static void print_bound(const struct field *row, double bound, char text[64]) {
+  struct field bare = *row;
+  bare.kind = FIELD_REAL;
+  bare.unit = "1";
+  const struct field_value value = {.kind = FIELD_REAL, .number = bound};
+  field_print(&bare, &value, text, 64);
+  text[strcspn(text, " ")] = 0;
+}
+
 void field_describe_range(const struct field *row, char *text, size_t size) {
-  char low[32], high[32];
-  const char *unit = row->unit && strcmp(row->unit, "1") ? row->unit : "";
+  char low[64], high[64];
+  const char *unit = row->flags & FIELD_PERCENT ? "%" : row->unit && strcmp(row->unit, "1") ? row->unit : "";
   const char *space = *unit ? " " : "";
-  field_print_number(row->minimum, low);
-  field_print_number(row->maximum, high);
+  print_bound(row, row->minimum, low);
+  print_bound(row, row->maximum, high);
   bool has_low = row->minimum > -HUGE_VAL, has_high = row->maximum < HUGE_VAL;
   const char *from = row->flags & FIELD_ABOVE_MINIMUM ? "above" : "at least";
   const char *to = row->flags & FIELD_BELOW_MAXIMUM ? "below" : "at most";

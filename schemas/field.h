@@ -31,6 +31,8 @@ enum field_flags {
   FIELD_SILENT_DEFAULT = 32, /* FIELD_CHOICE and FIELD_REAL: the first choice, or the default, is left out of the
                               * identity. For an input that came later and whose first value changes no bit: stored runs
                               * are still found */
+  FIELD_PERCENT = 64, /* FIELD_REAL of unit "1": a strain or share that people give in percent and that may exceed 1. A
+                       * number without % is refused */
 };
 
 struct field {
@@ -118,8 +120,12 @@ void field_set_unchecked(const struct field *row, void *object, const struct fie
 /* The same without storing: *out is `value` in the row's own kind. */
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error);
-/* From text as a user types it: "5 km/s", "off", "true", a choice. Dimension and range are checked. */
+/* A number of this row needs a unit behind it when a user writes it (0 does not). */
+bool field_needs_unit(const struct field *row);
+/* From text as a user types it: "5 km/s", "off", "true", a choice. Dimension, unit and range are checked. */
 status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error);
+/* The same, and a number without a unit is in SI: for what the program itself wrote. */
+status field_parse_si(const struct field *row, const char *text, struct field_value *value, struct error *error);
 /* What a number's row accepts: "above 0 m", "at least 1 and at most 12". */
 void field_describe_range(const struct field *row, char *text, size_t size);
 /* What a choice's row accepts: "weak, strong or off". */
@@ -131,7 +137,8 @@ void field_copy_text(char to[FIELD_TEXT_SIZE], const char *from);
 
 /* Shortest decimal text that reads back as the same double: "5000", "0.05", "1e30"; "off" for NaN. */
 void field_print_number(double number, char text[32]);
-/* Human text of a value, SI with unit ("5000 m/s"), shortest digits that round-trip. Returns length as snprintf. */
+/* Human text of a value, SI with unit ("5000 m/s", "3 %" of a row in percent), shortest digits that round-trip. Returns
+ * length as snprintf. */
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size);
 
 /* Resolved object as JSON text (nested, active rows only, shortest round-trip numbers, "off" as "off"). malloc'd. */

@@ -23,6 +23,8 @@ static void explain_range(const struct field *row, FILE *out) {
   field_describe_range(row, range, sizeof range);
   if (row->unit && strcmp(row->unit, "1"))
     fprintf(out, " in %s", row->unit);
+  if (row->flags & FIELD_PERCENT)
+    fputs(" in percent", out);
   if (strncmp(range, "a number", 8) != 0)
     fprintf(out, ", %s", range);
   if (row->flags & FIELD_MAY_BE_OFF)

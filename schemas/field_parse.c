@@ -56,7 +56,31 @@ static status parse_text(const struct field *row, const char *text, struct field
   return STATUS_OK;
 }
 
-status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error) {
+static status percent_missing(const struct field *row, const char *text, int length, struct error *error) {
+  char percent[32];
+  field_print_number(100 * strtod(text, NULL), percent);
+  return status_fail(error, STATUS_CONTENT, "%s: %.*s is a percentage or a fraction; write '%.*s %%' or '%s %%'",
+                     row->path, length, text, length, text, percent);
+}
+
+/* "threshold.angle=4" would be 229 degrees: who leaves the unit out may mean any. */
+static status check_unit(const struct field *row, const char *text, struct error *error) {
+  if (!field_needs_unit(row) || !unit_is_bare(text) || strtod(text, NULL) == 0)
+    return STATUS_OK;
+
+  const char *unit = row->unit ? row->unit : "1", *usual = unit_usual(unit);
+  text += strspn(text, " ");
+  const int length = (int)strcspn(text, " ") < QUOTE ? (int)strcspn(text, " ") : QUOTE;
+  if (strcmp(unit, "1") == 0)
+    return percent_missing(row, text, length, error);
+  if (usual)
+    return status_fail(error, STATUS_CONTENT, "%s: %.*s has no unit; write '%.*s %s' or '%.*s %s'", row->path, length,
+                       text, length, text, usual, length, text, unit);
+  return status_fail(error, STATUS_CONTENT, "%s: %.*s has no unit; write '%.*s %s'", row->path, length, text, length,
+                     text, unit);
+}
+
+static status parse(const struct field *row, const char *text, struct field_value *value, struct error *error) {
   struct field_value came = {.kind = row->kind};
   status code = STATUS_OK;
   switch (row->kind) {
@@ -70,4 +94,13 @@ status field_parse(const struct field *row, const char *text, struct field_value
     break;
   }
   return code ? code : field_set_value(row, &came, value, error);
+}
+
+status field_parse_si(const struct field *row, const char *text, struct field_value *value, struct error *error) {
+  return parse(row, text, value, error);
+}
+
+status field_parse(const struct field *row, const char *text, struct field_value *value, struct error *error) {
+  const status code = check_unit(row, text, error);
+  return code ? code : parse(row, text, value, error);
 }

@@ -24,7 +24,8 @@ static void print_plain(char *to, const char *mantissa, size_t count, long expon
   *to = 0;
 }
 
-void field_print_number(double number, char text[32]) {
+/* The number times 10^ten: its own shortest digits, with the point elsewhere. */
+static void print_shifted(double number, long ten, char text[32]) {
   if (isnan(number)) {
     strcpy(text, "off");
     return;
@@ -46,7 +47,7 @@ void field_print_number(double number, char text[32]) {
   for (; digits[i] != 'e'; i++)
     if (digits[i] != '.')
       mantissa[count++] = digits[i];
-  const long exponent = strtol(digits + i + 1, NULL, 10);
+  const long exponent = strtol(digits + i + 1, NULL, 10) + (number == 0 ? 0 : ten);
 
   char *to = text;
   if (digits[0] == '-')
@@ -61,13 +62,18 @@ void field_print_number(double number, char text[32]) {
     sprintf(to, "%c.%.*se%ld", mantissa[0], (int)count - 1, mantissa + 1, exponent);
 }
 
+void field_print_number(double number, char text[32]) {
+  print_shifted(number, 0, text);
+}
+
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
-  const char *unit = row->unit && strcmp(row->unit, "1") ? row->unit : "";
+  const bool percent = row->flags & FIELD_PERCENT;
+  const char *unit = percent ? "%" : row->unit && strcmp(row->unit, "1") ? row->unit : "";
   const char *space = *unit ? " " : "";
   char number[32];
   switch (row->kind) {
   case FIELD_REAL:
-    field_print_number(value->number, number);
+    print_shifted(value->number, percent ? 2 : 0, number); /* decimal shifts are exact in unit_read, too */
     if (isnan(value->number))
       return snprintf(buffer, size, "%s", number);
     return snprintf(buffer, size, "%s%s%s", number, space, unit);

@@ -9,9 +9,10 @@
 
 /* A decimal number, perhaps with a unit behind it. A schema cannot judge the unit or the value in SI: the reader does.
  * The last part keeps `$` from matching before a line end. */
-#define NUMBER_AND_UNIT                                                                                                \
-  "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?( *| *[^-+0-9. ,_\\\\n][^,_\\\\n]*| "                     \
-  "+1/[^,_\\\\n]+)$(?!\\\\n)"
+#define NUMBER          "^ *[-+]?([0-9]+\\\\.?[0-9]*|\\\\.[0-9]+)([eE][-+]?[0-9]+)?"
+#define UNIT            " *[^-+0-9. ,_\\\\n][^,_\\\\n]*| +1/[^,_\\\\n]+)$(?!\\\\n)"
+#define NUMBER_AND_UNIT NUMBER "( *|" UNIT /* the unit may be left out */
+#define NUMBER_IN_UNIT  NUMBER "(" UNIT
 
 static void margin(int indent, FILE *out) {
   fprintf(out, "\n%*s", 2 * indent, "");
@@ -34,23 +35,38 @@ static void range(const struct field *row, FILE *out) {
   }
 }
 
+/* A number alone, within the row's range; of a row with a unit only 0. */
+static void bare(const struct field *row, FILE *out) {
+  const bool zero = row->flags & FIELD_ABOVE_MINIMUM ? row->minimum < 0 : row->minimum <= 0;
+  if (field_needs_unit(row)) {
+    fputs(zero ? "{\"const\": 0}, " : "", out);
+    return;
+  }
+  fputs("{\"type\": \"number\"", out);
+  range(row, out);
+  fputs("}, ", out);
+}
+
 static void type(const struct field *row, FILE *out) {
   switch (row->kind) {
   case FIELD_REAL:
-    fputs("\"anyOf\": [{\"type\": \"number\"", out);
-    range(row, out);
-    fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}", out);
+    fputs("\"anyOf\": [", out);
+    bare(row, out);
+    fprintf(out, "{\"type\": \"string\", \"pattern\": \"%s\"}",
+            field_needs_unit(row) ? NUMBER_IN_UNIT : NUMBER_AND_UNIT);
     if (row->flags & FIELD_MAY_BE_OFF)
       fputs(", {\"const\": \"off\"}", out);
     fputc(']', out);
     break;
   case FIELD_INTEGER:
-    if (row->unit && strcmp(row->unit, "1"))
-      fputs("\"anyOf\": [{", out);
+    if (field_needs_unit(row)) {
+      fputs("\"anyOf\": [", out);
+      bare(row, out);
+      fputs("{\"type\": \"string\", \"pattern\": \"" NUMBER_IN_UNIT "\"}]", out);
+      break;
+    }
     fputs("\"type\": \"integer\"", out);
     range(row, out);
-    if (row->unit && strcmp(row->unit, "1"))
-      fputs("}, {\"type\": \"string\", \"pattern\": \"" NUMBER_AND_UNIT "\"}]", out);
     break;
   case FIELD_BOOLEAN: fputs("\"type\": \"boolean\"", out); break;
   case FIELD_CHOICE:
@@ -90,7 +106,9 @@ static void description(const struct field *row, FILE *out) {
   if (row->doc)
     fputs(row->doc, words);
   if (is_number && row->unit && strcmp(row->unit, "1"))
-    fprintf(words, " In %s, unless another unit is written.", row->unit);
+    fprintf(words, " With its unit, such as %s.", row->unit);
+  if (row->flags & FIELD_PERCENT)
+    fputs(" In percent: 3 %.", words);
   if (is_number && row->flags & FIELD_MAY_BE_OFF)
     fputs(" Or `off`.", words);
   if (row->kind == FIELD_CHOICE)
@@ -114,7 +132,13 @@ static void default_value(const struct field *row, FILE *out) {
   struct field_value value;
   field_default(row, &value);
   fputs(", \"default\": ", out);
-  field_json_value(row, &value, out);
+  if (!field_needs_unit(row)) {
+    field_json_value(row, &value, out);
+    return;
+  }
+  char text[FIELD_TEXT_SIZE];
+  field_print(row, &value, text, sizeof text);
+  text_json_string(text, out);
 }
 
 static bool same_start(const char *a, const char *b, size_t length) {

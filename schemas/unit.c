@@ -422,6 +422,22 @@ static status read_unit(const char *rest, const struct unit *want, const char *w
   return unit_same_dimension(want, got) ? STATUS_OK : wrong_dimension(want, want_text, got, rest, error);
 }
 
+bool unit_is_bare(const char *text) {
+  text += strspn(text, " ");
+  const size_t length = scan(text).length;
+  return length && text[length + strspn(text + length, " ")] == 0;
+}
+
+const char *unit_usual(const char *unit) {
+  static const char *const usual[][2] = {{"rad", "deg"},    {"1", "%"},           {"m", "cm"},         {"s", "us"},
+                                         {"m/s", "km/s"},   {"Pa", "GPa"},        {"kg", "g"},         {"J/m", "kJ/m"},
+                                         {"J/kg", "kJ/kg"}, {"kg/m^3", "g/cm^3"}, {"1/m^3", "1/cm^3"}, {"B", "MiB"}};
+  for (size_t i = 0; i < sizeof usual / sizeof usual[0]; i++)
+    if (strcmp(usual[i][0], unit) == 0)
+      return usual[i][1];
+  return NULL;
+}
+
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error) {
   struct unit want, got;
   status code = unit_parse(expected_unit, &want, error);

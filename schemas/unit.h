@@ -22,6 +22,11 @@ struct unit {
 status unit_parse(const char *text, struct unit *unit, struct error *error);
 bool unit_same_dimension(const struct unit *a, const struct unit *b);
 
+/* True for a number alone: no unit behind it. */
+bool unit_is_bare(const char *text);
+/* Another unit that people often use where `unit` is expected ("deg" for "rad"); NULL when there is none. */
+const char *unit_usual(const char *unit);
+
 /* "5 km/s" with expected "m/s" -> 5000. A number without a unit is in the expected unit. Refuses NaN, inf, hex floats,
  * trailing text, wrong dimension; messages say which unit was expected and what came. The result is the double nearest
  * to the exact decimal value whenever the unit is a power of ten of SI. */

@@ -17,7 +17,7 @@ struct options {
 /* Computes the run `from` again. Its scene is parsed into *scene; result and scene are the caller's, also on errors. */
 static status compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
                       struct run_result *result, struct error *error) {
-  status code = scene_parse("scene of the run", from->scene, scene, error);
+  status code = scene_parse_json("scene of the run", from->scene, scene, error);
   if (code)
     return code;
 

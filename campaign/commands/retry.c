@@ -49,7 +49,7 @@ static status read_store(const char *path, int64_t campaign, char **name, char *
 /* The campaign of the document, with raised limits and more attempts. *out is the caller's, also on errors. */
 static status raise_limits(const struct options *options, const char *name, const char *document, int64_t attempts,
                            struct campaign **out, struct error *error) {
-  status code = campaign_parse(name, document, strlen(document), options->folder, out, error);
+  status code = campaign_parse_stored(name, document, options->folder, out, error);
   if (code)
     return code;
   struct campaign *campaign = *out;

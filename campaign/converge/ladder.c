@@ -212,7 +212,7 @@ status ladder_turn(const struct knob *knob, struct scene *scene, const char *set
   status code = find_inputs(&making, error);
   if (code != STATUS_OK)
     return code;
-  if (field_parse(making.rows[0], setting, &value, error) != STATUS_OK)
+  if (field_parse_si(making.rows[0], setting, &value, error) != STATUS_OK)
     return STATUS_USAGE;
   return same_value(making.rows[0], &value, &making.own[0]) ? STATUS_OK : set_inputs(&making, &value, scene, error);
 }

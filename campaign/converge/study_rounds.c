@@ -177,8 +177,14 @@ static status make_axes(const struct rounds *rounds, struct campaign *campaign, 
 }
 
 static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
-  fprintf(out, " ");
-  field_json_value(row, value, out);
+  fputc(' ', out);
+  if (!field_needs_unit(row)) {
+    field_json_value(row, value, out);
+    return;
+  }
+  char text[FIELD_TEXT_SIZE];
+  field_print(row, value, text, sizeof text);
+  text_json_string(text, out);
 }
 
 /* The round as a campaign's document: what `clast run` would do, for the store. JSON values are YAML. */

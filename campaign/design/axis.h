@@ -33,6 +33,8 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
                         struct field_value *value);
+/* axes[index] for people, every number with its unit: "1 %, 3 %", "uniform from 1 GPa to 2 GPa". */
+void design_axis_describe(const struct design_axis *axes, size_t index, FILE *out);
 /* Level of a LEVELS axis that quantile u falls in. */
 size_t design_axis_level(const struct design_axis *axis, double u);
 

@@ -159,10 +159,10 @@ static void read_set(document_node *set, struct campaign *campaign) {
     const char *key = NULL;
     struct error error = {0};
     document_node *node = document_item(set, i, &key);
-    const char *text = document_scalar(node);
+    struct field_value value;
     char path[320];
     snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    if (!text || !key) {
+    if (!key || document_kind(node) != DOCUMENT_SCALAR) {
       document_report(node, path, "expected one value; several values belong in `vary`");
       continue;
     }
@@ -174,7 +174,9 @@ static void read_set(document_node *set, struct campaign *campaign) {
           row = NULL;
           break;
         }
-    if (!row || scene_set_text(campaign->scene, key, text, &error) != STATUS_OK)
+    if (!row)
+      document_report(node, path, "%s", error.message);
+    else if (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK)
       document_report(node, path, "%s", error.message);
   }
 }
@@ -387,15 +389,27 @@ static status from_document(struct document *document, const char *folder, struc
   return STATUS_OK;
 }
 
-status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
-                      struct error *error) {
+static status from_text(const char *name, const char *text, size_t size, const char *folder, bool si,
+                        struct campaign **out, struct error *error) {
   struct document *document = NULL;
   *out = NULL;
   status code = document_parse(name, text, size, &document, error);
+  if (code == STATUS_OK && si)
+    document_take_si(document);
   if (code == STATUS_OK)
     code = from_document(document, folder, out, error);
   document_free(document);
   return code;
+}
+
+status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
+                      struct error *error) {
+  return from_text(name, text, size, folder, false, out, error);
+}
+
+status campaign_parse_stored(const char *name, const char *text, const char *folder, struct campaign **out,
+                             struct error *error) {
+  return from_text(name, text, strlen(text), folder, true, out, error);
 }
 
 status campaign_load(const char *path, struct campaign **out, struct error *error) {

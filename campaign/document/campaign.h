@@ -73,6 +73,9 @@ status campaign_load(const char *path, struct campaign **out, struct error *erro
 /* `folder` is what `scene` is relative to (NULL: the current one). */
 status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
                       struct error *error);
+/* The document of a store, which may be from before units were asked for: numbers without one are SI. */
+status campaign_parse_stored(const char *name, const char *text, const char *folder, struct campaign **out,
+                             struct error *error);
 void campaign_free(struct campaign *campaign); /* NULL is fine */
 
 /* Replicates of a point at least, and at most. Equal for per_point. */

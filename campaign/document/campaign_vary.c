@@ -33,6 +33,10 @@ static struct field number_row(const struct reading *r, const char *unit, double
   return row;
 }
 
+static unsigned own_percent(const struct reading *r) {
+  return r->axis->row->flags & FIELD_PERCENT;
+}
+
 static bool read_number(struct reading *r, document_node *node, const char *what, const struct field *row, double *x) {
   struct field_value value;
   if (!node) {
@@ -147,8 +151,8 @@ static bool read_truncation(struct reading *r, bool positive) {
 }
 
 static bool read_normal(struct reading *r, document_node *node) {
-  struct field any = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, 0);
-  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM);
+  struct field any = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
+  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM | own_percent(r));
   r->axis->kind = DESIGN_AXIS_NORMAL;
   if (document_kind(node) != DOCUMENT_MAPPING)
     return wrong(r, node, "expected {mean: m, sd: s}");
@@ -159,7 +163,7 @@ static bool read_normal(struct reading *r, document_node *node) {
 }
 
 static bool read_lognormal(struct reading *r, document_node *node) {
-  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM);
+  struct field positive = number_row(r, r->axis->row->unit, 0, HUGE_VAL, FIELD_ABOVE_MINIMUM | own_percent(r));
   struct field sigma = number_row(r, "1", 0, 100, FIELD_ABOVE_MINIMUM);
   r->axis->kind = DESIGN_AXIS_LOGNORMAL;
   if (document_kind(node) != DOCUMENT_MAPPING)
@@ -193,7 +197,7 @@ static bool read_linked(struct reading *r, document_node *node) {
   }
   r->axis->a = 1;
   struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
-  struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, 0);
+  struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
   document_node *factor_node = document_key(r->node, "factor"), *offset_node = document_key(r->node, "offset");
   bool good = true;
   if (!is_number(row) || !is_number(r->axis->row))

@@ -273,8 +273,10 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
   fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
   fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
           plan->points == 1 ? "" : "s");
-  for (size_t i = 0; i < campaign->axis_count; i++)
-    fprintf(out, "%s%s", i ? ", " : " over ", campaign->axes[i].row->path);
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    fprintf(out, "\n%-8s  %s: ", i ? "" : "over", campaign->axes[i].row->path);
+    design_axis_describe(campaign->axes, i, out);
+  }
   fprintf(out, "\nruns      %llu", (unsigned long long)plan->runs_least);
   if (range)
     fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
@@ -311,6 +313,24 @@ static void number(FILE *out, const char *name, double value) {
     fprintf(out, ", \"%s\": null", name);
 }
 
+static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
+  char *values = NULL;
+  size_t size = 0;
+  FILE *text = open_memstream(&values, &size);
+  if (!text)
+    return;
+  design_axis_describe(campaign->axes, index, text);
+  const struct field *row = campaign->axes[index].row;
+  fputs(index ? ", {\"path\": " : "{\"path\": ", out);
+  text_json_string(row->path, out);
+  fputs(", \"unit\": ", out);
+  text_json_string(row->unit ? row->unit : "", out);
+  fputs(", \"values\": ", out);
+  text_json_string(fclose(text) == 0 ? values : "", out);
+  fputc('}', out);
+  free(values);
+}
+
 char *plan_json(const struct campaign *campaign, const struct plan *plan, int slots) {
   char *text = NULL;
   size_t size = 0;
@@ -323,11 +343,15 @@ char *plan_json(const struct campaign *campaign, const struct plan *plan, int sl
   text_json_string(campaign->scene_reference, out);
   fputs(", \"store\": ", out);
   text_json_string(campaign->store, out);
-  fprintf(
-      out,
-      ", \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": %llu",
-      (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at,
-      (unsigned long long)plan->runs_least, (unsigned long long)plan->runs_most, (unsigned long long)plan->runs_there);
+  fputs(", \"axes\": [", out);
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    axis_json(campaign, i, out);
+  fprintf(out,
+          "], \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": "
+          "%llu",
+          (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at,
+          (unsigned long long)plan->runs_least, (unsigned long long)plan->runs_most,
+          (unsigned long long)plan->runs_there);
   fprintf(out, ", \"store_exists\": %s, \"trial_made\": %s, \"trial_finished\": %s, \"slots\": %d",
           plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false",
           plan->trial_finished ? "true" : "false", slots);

@@ -274,7 +274,7 @@ static status check_identities(struct report *report, struct error *error) {
     int64_t point_id = sqlite3_column_int64(points, 0);
     if (!engine_find(sql_text(points, 3), NULL))
       continue;
-    if (scene_parse(sql_text(points, 2), sql_text(points, 1), &scene, &why) != STATUS_OK) {
+    if (scene_parse_json(sql_text(points, 2), sql_text(points, 1), &scene, &why) != STATUS_OK) {
       say(report, "point %lld: its scene cannot be read: %.600s", (long long)point_id, why.message);
       continue;
     }

@@ -4,7 +4,7 @@
 
 tiny tiny
 expect 0 "$clast" plan tiny.yaml
-prints "12"; [ ! -e tiny.db ] || fail "plan made a store"
+prints "threshold.strain: 2 %, 5 %"; prints "12"; [ ! -e tiny.db ] || fail "plan made a store"
 expect 0 "$clast" plan tiny.yaml --no-trial --json
 python -c "import json; d = json.load(open('out')); assert isinstance(d, dict) and d, d"
 expect 0 "$clast" run tiny.yaml --dry-run

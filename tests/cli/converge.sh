@@ -5,7 +5,7 @@
 disc=(disc-explosion --set body.diameter='8 cm' --set charge.energy='2 kJ/m' --set stop.end_time='1 ms')
 expect 0 "$clast" converge --list
 prints "particles"; prints "grains"
-expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=0.012,0.01069,0.009 -q largest_fraction,broken \
+expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm -q largest_fraction,broken \
   --seeds 4 --max-seeds 8 --within '0.01 %' --store disc.db --picture disc.png -j 2
 says "56 runs computed"; prints "most seeds allowed"; prints "grains"; [ -s disc.png ] || fail "no picture"
 same "$(number disc.db "select count(*) from convergence where n = 8")" 16 "levels of two knobs and two quantities"
@@ -32,7 +32,7 @@ assert checked == 8, checked
 PY
 ok "mean and bias are those of the runs"
 # The same command computes nothing; a later one goes on.
-expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=0.012,0.01069,0.009 --seeds 4 --max-seeds 8 \
+expect 0 "$clast" converge "${disc[@]}" --knob time_step --knob grains=1.2cm,1.069cm,0.9cm --seeds 4 --max-seeds 8 \
   --within '0.01 %' --store disc.db --json -j 2
 says "0 runs computed"
 python -c "
@@ -103,7 +103,7 @@ expect 64 "$clast" converge disc-explosion --knob grains=many,2
 expect 64 "$clast" converge disc-explosion --within wide
 expect 64 "$clast" converge disc-explosion -q largest_fraction,broken --within 0.1
 expect 64 "$clast" converge disc-explosion --set contact.friction
-expect 65 "$clast" converge block-impact --knob grains=0.01
+expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
 done_after 30

@@ -34,7 +34,7 @@ sede: 3
 set: {threshold.strian: 2 %, grain.density: 5 km/s, contact.friction: .nan}
 vary:
   threshold.angle: [2 deg, 4 m]
-  threshold.strain: [2 %, -1]
+  threshold.strain: [2 %, -1 %]
 seeds: {per_point: 0}
 store: x.db
 YAML
@@ -46,7 +46,7 @@ campaign twice.yaml 'name: x\nname: y\nscene: disc-explosion'; run 65 twice.yaml
 campaign scene.yaml 'name: x\nscene: disc-explosoin\nstore: x.db'; run 65 scene.yaml; says "disc-explosion"
 campaign scenefile.yaml 'name: x\nscene: none/such.yaml\nstore: x.db'
 run 65 scenefile.yaml; says "scenefile.yaml:2:"; says "none/such.yaml"
-campaign number.yaml 'name: x\nscene: disc-explosion\nvary: {threshold.strain: [1e999]}\nstore: x.db'; run 65 number.yaml
+campaign number.yaml 'name: x\nscene: disc-explosion\nvary: {threshold.strain: [1e999 %]}\nstore: x.db'; run 65 number.yaml
 campaign million.yaml 'name: x\nscene: disc-explosion\nvary: {threshold.strain: {from: 1 %, to: 5 %, n: 100000000000000000000}}\nstore: x.db'
 run 65 million.yaml
 campaign inactive.yaml 'name: x\nscene: disc-explosion\nset: {impact.speed: 3 m/s}\nstore: x.db'; run 65 inactive.yaml; says "impact.speed"
@@ -64,6 +64,25 @@ expect 64 "$clast" simulate disc-explosion --set threshold.strain='3 kg'
 says "kg"
 expect 64 "$clast" simulate disc-explosion --set treshold.strain=3%
 says "threshold.strain"
-expect 65 "$clast" simulate disc-explosion --set impact.speed=3
+expect 65 "$clast" simulate disc-explosion --set impact.speed=3m/s
 says "impact.speed"
-done_after 39
+
+# A bare number where a unit belongs: 4 would be 229 degrees, 5 would be 500 %. In documents and on the command line, alone and in
+# every form of an axis. 0 is 0 in any unit.
+expect 64 "$clast" simulate disc-explosion --set threshold.angle=4
+says "write '4 deg' or '4 rad'"
+expect 64 "$clast" simulate disc-explosion --set threshold.strain=5
+says "write '5 %' or '500 %'"
+for form in '[2]' '[2 deg, 3]' '{from: 1, to: 7 deg, n: 3}' '{log: [1 deg, 7], n: 3}' '{uniform: [1, 7 deg]}' \
+  '{normal: {mean: 4, sd: 1 deg}}' '{normal: {mean: 4 deg, sd: 1}}' '{lognormal: {median: 4, sigma: 0.1}}'; do
+  campaign bare.yaml "name: x\nscene: disc-explosion\nvary: {threshold.angle: $form}\nstore: x.db"
+  run 65 bare.yaml; says "bare.yaml:3:"; says "has no unit; write"
+done
+campaign bare.yaml 'name: x\nscene: disc-explosion\nset: {threshold.strain: 0.03}\nlimits: {time: 60}\nstore: x.db'; run 65 bare.yaml
+says "bare.yaml:3:"; says "write '0.03 %' or '3 %'"; says "bare.yaml:4:"; says "write '60 us' or '60 s'"
+printf 'engine: dem\nthreshold: {angle: 4}\n' >bare_scene.yaml
+expect 65 "$clast" explain ./bare_scene.yaml
+says "bare_scene.yaml:2:20"
+campaign zero.yaml 'name: x\nscene: disc-explosion\nset: {contact.normal_damping: 0, stop.least_time: 0}\nstore: x.db'
+expect 0 "$clast" plan zero.yaml --no-trial
+done_after 52

@@ -4,9 +4,9 @@
 . "$(dirname "$0")/../cli/lib.bash"
 
 small=(--set "body.diameter=8 cm" --set "stop.end_time=1 ms")
-expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.time_step=1e-4
+expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.time_step=1e-4s
 says "fidelity.time_step"; one_error; prints "invalid"
-expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.energy_bound=1e-9 --json
+expect 1 "$clast" simulate disc-explosion "${small[@]}" --set fidelity.energy_bound=1e-7% --json
 says "energy"; prints '"state": "energy"'
 expect 65 "$clast" simulate disc-explosion --set "body.diameter=1000 km"
 says "too large"; one_error

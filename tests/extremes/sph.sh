@@ -35,9 +35,9 @@ says "GB of memory"
 ok "more particles than memory"
 
 # Any speed, size and flaws: a run with a status.
-for change in impact.speed=0 "impact.speed=70 km/s" target.radius=1um target.radius=1e6 target.material.weibull.k=1e200 \
+for change in impact.speed=0 "impact.speed=70 km/s" target.radius=1um target.radius=1000km "target.material.weibull.k=1e200 1/m^3" \
   target.material.weibull.m=1 target.material.weibull.m=200; do
-  write "projectile: {radius: $([[ $change == target.radius=1um ]] && echo 0.3 um || { [[ $change == target.radius=1e6 ]] && echo 300 km || echo 1 cm; })}"
+  write "projectile: {radius: $([[ $change == target.radius=1um ]] && echo 0.3 um || { [[ $change == target.radius=1000km ]] && echo 300 km || echo 1 cm; })}"
   got=0
   timeout 100 "$clast" simulate ./scene.yaml --seed 1 "${small[@]}" --set "$change" --json >out 2>err || got=$?
   [ "$got" -eq 0 ] || [ "$got" -eq 1 ] || fail "exit $got with $change"

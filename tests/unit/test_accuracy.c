@@ -131,7 +131,8 @@ static void the_cheapest_that_reaches_it(void **state) {
 static void a_varied_input_is_no_choice(void **state) {
   (void)state;
   struct accuracy accuracy;
-  struct campaign *campaign = campaign_of(HEAD "vary: {fidelity.time_step: [1e-6, 5e-7]}\naccuracy: {within: 0.06}\n");
+  struct campaign *campaign = campaign_of(HEAD
+                                          "vary: {fidelity.time_step: [1e-6 s, 5e-7 s]}\naccuracy: {within: 0.06}\n");
   store_study(campaign, false);
   assert_int_equal(accuracy_find(campaign, "t.yaml", path, &accuracy, &error), STATUS_OK);
   assert_int_equal(accuracy.count, 1);

@@ -131,8 +131,8 @@ static void bad_documents_are_told_what_to_do(void **state) {
   bad(HEAD "vary: {threshold.strain: [1 m]}\n", "t.yaml:3:|vary.threshold.strain|m");
   bad(HEAD "vary: {threshold.strain: [-1 %]}\n", "t.yaml:3:|vary.threshold.strain");
   bad(HEAD "vary: {threshold.strain: [.nan, 1 %]}\n", "t.yaml:3:|vary.threshold.strain");
-  bad(HEAD "vary: {threshold.strain: {log: [0.01, 0.06]}}\n", "'n', the number of values, is missing");
-  bad(HEAD "vary: {threshold.strain: {log: [0.06, 0.01], n: 3}}\n", "the smaller value first");
+  bad(HEAD "vary: {threshold.strain: {log: [1 %, 6 %]}}\n", "'n', the number of values, is missing");
+  bad(HEAD "vary: {threshold.strain: {log: [6 %, 1 %], n: 3}}\n", "the smaller value first");
   bad(HEAD "vary: {contact.friction: {log: [0, 1], n: 3}}\n", "both ends above zero");
   bad(HEAD "vary: {threshold.strain: {from: 1 %, n: 3}}\n", "'to' is missing");
   bad(HEAD "vary: {threshold.strain: {from: 1 %, to: 2 %, n: 1}}\n", "t.yaml:3:|vary.threshold.strain");
@@ -245,10 +245,72 @@ static void examples_are_ready_to_run(void **state) {
   assert_int_equal(seen, 11);
 }
 
+/* Documents and scenes of stores from before units were asked for. */
+static void stored_numbers_are_si(void **state) {
+  (void)state;
+  static const char text[] = "name: x\nscene: disc-explosion\nset: {threshold.angle: 0.1}\n"
+                             "vary: {threshold.strain: [0.02, 3 %]}\nlimits: {time: 60}\n";
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  assert_int_equal(campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error), STATUS_CONTENT);
+  for (size_t i = 0; i < 3; i++)
+    assert_non_null(
+        strstr(error.message, (const char *[]){"'0.1 deg' or '0.1 rad'", "'0.02 %' or '2 %'", "'60 s'"}[i]));
+  assert_int_equal(campaign_parse_stored("t.yaml", text, NULL, &campaign, &error), STATUS_OK);
+  assert_true(campaign->axes[0].levels[0].number == 0.02 && campaign->time_limit == 60);
+
+  char *json = scene_json(campaign->scene); /* bare SI numbers, as in every store */
+  struct scene *again = NULL;
+  assert_non_null(json);
+  assert_int_equal(scene_parse("t", json, &again, &error), STATUS_CONTENT);
+  assert_int_equal(scene_parse_json("t", json, &again, &error), STATUS_OK);
+  uint8_t first[16], second[16];
+  scene_identity(campaign->scene, 1, first);
+  scene_identity(again, 1, second);
+  assert_memory_equal(first, second, sizeof first);
+  scene_free(again);
+  free(json);
+  campaign_free(campaign);
+}
+
+static void axis_text(const char *vary, const char *expected) {
+  char text[400], *words = NULL;
+  size_t size = 0;
+  struct campaign *campaign = NULL;
+  struct error error = {0};
+  snprintf(text, sizeof text, "name: x\nscene: disc-explosion\nvary: {%s}\ndesign: {kind: random, points: 4}\n", vary);
+  if (campaign_parse("t.yaml", text, strlen(text), NULL, &campaign, &error))
+    fail_msg("%s", error.message);
+  FILE *out = open_memstream(&words, &size);
+  design_axis_describe(campaign->axes, campaign->axis_count - 1, out);
+  fclose(out);
+  assert_string_equal(words, expected);
+  free(words);
+  campaign_free(campaign);
+}
+
+static void axes_are_shown_with_units(void **state) {
+  (void)state;
+  axis_text("threshold.strain: [1 %, 0.1 %]", "1 %, 0.1 %");
+  axis_text("threshold.angle: [4 deg]", "0.0698132 rad (4 deg)");
+  axis_text("beam.young_modulus: {uniform: [1 GPa, 2 GPa]}", "uniform from 1e9 Pa to 2e9 Pa");
+  axis_text("charge.energy: {log_uniform: [1 kJ/m, 1 MJ/m]}", "uniform in the logarithm from 1000 J/m to 1e6 J/m");
+  axis_text("threshold.strain: {normal: {mean: 3 %, sd: 1 %}, truncated: [1 %, 5 %]}",
+            "normal, mean 3 %, standard deviation 1 %, not below 1 %, not above 5 %");
+  axis_text("grain.density: {lognormal: {median: 5 g/cm^3, sigma: 0.1}}",
+            "lognormal, median 5000 kg/m^3, sigma of the natural logarithm 0.1");
+  axis_text("grain.young_modulus: [1 GPa, 2 GPa], beam.young_modulus: {linked: grain.young_modulus, factor: 0.5}",
+            "follows grain.young_modulus: 0.5 times it");
+  axis_text("threshold.strain: {from: 1 %, to: 20 %, n: 20}",
+            "1 %, 2 %, 3 %, 4 %, 5 %, 6 %, 7 %, 8 %, 9 %, 10 %, 11 % ... 20 %: 20 values");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(defaults_and_units),
       cmocka_unit_test(every_kind_of_axis),
+      cmocka_unit_test(stored_numbers_are_si),
+      cmocka_unit_test(axes_are_shown_with_units),
       cmocka_unit_test(independent_seeds_follow_the_point),
       cmocka_unit_test(bad_documents_are_told_what_to_do),
       cmocka_unit_test(all_errors_come_at_once),

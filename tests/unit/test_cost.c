@@ -67,8 +67,8 @@ static void a_run_told_by_its_beginning(void **state) {
   struct pilot_run *run = calloc(2, sizeof *run);
   assert_non_null(run);
   assert_int_equal(scene_load("disc-explosion", NULL, &scene, &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "body.diameter", "0.2", &error), STATUS_OK);
-  assert_int_equal(scene_set_text(scene, "charge.energy", "1e4", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "body.diameter", "0.2 m", &error), STATUS_OK);
+  assert_int_equal(scene_set_text(scene, "charge.energy", "1e4 J/m", &error), STATUS_OK);
   assert_int_equal(pilot_try(scene, 1, 1000, &run[0], &error), STATUS_OK);
   assert_true(run[0].finished);
   const double work = scene->kind->work(scene->inputs);

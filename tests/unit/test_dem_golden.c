@@ -17,8 +17,8 @@ static void bits_change_only_with_the_version(void **state) {
   struct dem_inputs disc = DEM_CASE("disc-explosion", "body.diameter=12 cm", "charge.energy=4 kJ/m",
                                     "stop.end_time=1 ms");
   struct dem_inputs block = DEM_CASE("block-impact", "body.columns=12", "body.rows=8", "stop.end_time=0.5 ms",
-                                     "threshold.modulus=8", "contact.friction=0.3", "contact.tangential_damping=1e4",
-                                     "fidelity.integrator=gear");
+                                     "threshold.modulus=8", "contact.friction=0.3",
+                                     "contact.tangential_damping=1e4 1/s", "fidelity.integrator=gear");
   assert_int_equal(changed("disc", &disc, GOLDEN_DISC) + changed("block", &block, GOLDEN_BLOCK), 0);
 }
 

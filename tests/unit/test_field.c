@@ -202,7 +202,11 @@ static void parses_or_says_why(void **state) {
       {"body.count", "many", NULL, "body.count: expected a number, got 'many'"},
       {"body.count", "99999999999999999999", NULL, "body.count: expected a whole number, got 1e20"},
       {"memory", "2 GiB", "2147483648 B", NULL},
-      {"memory", "9007199254740993", "9007199254740993 B", NULL}, /* beyond 2^53: no double in between */
+      {"body.length", "3", NULL, "body.length: 3 has no unit; write '3 cm' or '3 m'"},
+      {"body.length", " 3e-2 ", NULL, "body.length: 3e-2 has no unit; write '3e-2 cm' or '3e-2 m'"},
+      {"law_of.angle", "4", NULL, "law_of.angle: 4 has no unit; write '4 deg' or '4 rad'"},
+      {"memory", "9", NULL, "memory: 9 has no unit; write '9 MiB' or '9 B'"},
+      {"memory", "9007199254740993 B", "9007199254740993 B", NULL}, /* beyond 2^53: no double in between */
       {"memory", "3 m", NULL, "memory: expected an amount of memory such as B, got a length (m)"},
       {"broken", "true", "true", NULL},
       {"broken", "yes", NULL, "broken: expected true or false, got 'yes'"},
@@ -238,6 +242,37 @@ static void parses_or_says_why(void **state) {
   assert_int_equal(field_parse(row("name"), lengthy, &value, &error), STATUS_CONTENT);
   assert_string_equal(error.message, "name: expected at most 255 bytes of text, got 256");
   assert_int_equal(field_parse(row("name"), lengthy + 1, &value, &error), STATUS_OK);
+}
+
+/* A strain of 5 is 5 % to most people and 500 % to a program. */
+static void percentages_are_written_as_such(void **state) {
+  (void)state;
+  const struct field strain =
+      {.path = "strain", .kind = FIELD_REAL, .unit = "1", .minimum = 1e-9, .maximum = 1e3, .flags = FIELD_PERCENT};
+  static const struct {
+    const char *text, *shown;
+    double number;
+  } cases[] = {{"3 %", "3 %", 0.03},         {"7%", "7 %", 0.07},
+               {"0.1 %", "0.1 %", 0.001},    {"1e-7 %", "1e-7 %", 1e-9},
+               {"1e5 %", "100000 %", 1000},  {"14.285714285714285 %", "14.285714285714285 %", 1.0 / 7},
+               {"123.5 %", "123.5 %", 1.235}};
+  struct field_value value, again;
+  struct error error;
+  char shown[64];
+  for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+    assert_int_equal(field_parse(&strain, cases[i].text, &value, &error), STATUS_OK);
+    assert_true(value.number == cases[i].number);
+    field_print(&strain, &value, shown, sizeof shown);
+    assert_string_equal(shown, cases[i].shown);
+    assert_int_equal(field_parse(&strain, shown, &again, &error), STATUS_OK);
+    assert_true(again.number == value.number);
+  }
+  assert_int_equal(field_parse(&strain, "5", &value, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "strain: 5 is a percentage or a fraction; write '5 %' or '500 %'");
+  assert_int_equal(field_parse_si(&strain, "5", &value, &error), STATUS_OK); /* of a store */
+  assert_true(value.number == 5);
+  assert_int_equal(field_parse(&strain, "2000000 %", &value, &error), STATUS_CONTENT);
+  assert_string_equal(error.message, "strain: expected at least 1e-7 and at most 100000 %, got 2e6 %");
 }
 
 static void sets_what_suits(void **state) {
@@ -432,11 +467,17 @@ static void bytes_are_pinned_and_guarded(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(defaults_fill_everything), cmocka_unit_test(finds_by_suffix),
-      cmocka_unit_test(distances_count_slips),    cmocka_unit_test(conditions_chain),
-      cmocka_unit_test(parses_or_says_why),       cmocka_unit_test(sets_what_suits),
-      cmocka_unit_test(json_and_identity),        cmocka_unit_test(explains),
-      cmocka_unit_test(bytes_round_trip),         cmocka_unit_test(bytes_are_pinned_and_guarded),
+      cmocka_unit_test(defaults_fill_everything),
+      cmocka_unit_test(finds_by_suffix),
+      cmocka_unit_test(distances_count_slips),
+      cmocka_unit_test(conditions_chain),
+      cmocka_unit_test(parses_or_says_why),
+      cmocka_unit_test(percentages_are_written_as_such),
+      cmocka_unit_test(sets_what_suits),
+      cmocka_unit_test(json_and_identity),
+      cmocka_unit_test(explains),
+      cmocka_unit_test(bytes_round_trip),
+      cmocka_unit_test(bytes_are_pinned_and_guarded),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

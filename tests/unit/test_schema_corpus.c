@@ -129,10 +129,17 @@ static void generate(const struct engine_kind *engine) {
                             nextafter(row->minimum, HUGE_VAL),
                             row->number};
     for (size_t k = 0; k < 6 && (row->kind == FIELD_REAL || row->kind == FIELD_INTEGER); k++) {
-      char text[32];
+      char text[64];
       if (!isfinite(edges[k]))
         continue;
       field_print_number(edges[k], text);
+      emit_row(engine, row, text);
+      /* Behind a unit the schema knows no range: only what is in it. */
+      const struct field_value edge = {.kind = row->kind, .number = edges[k], .integer = (int64_t)edges[k]};
+      struct field_value ignored;
+      if ((k != 0 && k != 5) || !field_needs_unit(row) || field_set_value(row, &edge, &ignored, NULL))
+        continue;
+      field_print(row, &edge, text, sizeof text);
       emit_row(engine, row, text);
     }
     for (size_t c = 0; row->kind == FIELD_CHOICE && row->choices[c]; c++)

@@ -252,14 +252,14 @@ static void stop_rules(void **state) {
   assert_int_equal(ran.count, 1);
   free(ran.fragments);
 
-  inputs = SMALL("fidelity.energy_bound=1e-9");
+  inputs = SMALL("fidelity.energy_bound=1e-7 %");
   ran = run_case_run(&sph_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "fidelity.energy_bound"));
   assert_null(strstr(ran.outcome.message, "energy.clamped"));
   free(ran.fragments);
 
-  inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "fidelity.energy_bound=1e-3"); /* cold rubber */
+  inputs = SPH_CASE("colliding-cylinders", "fidelity.particles=300", "fidelity.energy_bound=0.1 %"); /* cold rubber */
   ran = run_case_run(&sph_engine, &inputs, 1);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_non_null(strstr(ran.outcome.message, "energy.clamped"));
@@ -640,20 +640,20 @@ static void ends_of_the_ranges(void **state) {
 #define NOTHING "impact.angle=0"
   extreme("impact.speed=0", NOTHING, NOTHING, NOTHING);
   extreme("fidelity.precision=float", NOTHING, NOTHING, NOTHING); /* groups that share a list, and have none */
-  extreme("impact.speed=1e-3", NOTHING, NOTHING, NOTHING);
+  extreme("impact.speed=1e-3 m/s", NOTHING, NOTHING, NOTHING);
   extreme("impact.speed=70 km/s", NOTHING, NOTHING, NOTHING);
   extreme("impact.speed=1e6 m/s", NOTHING, NOTHING, NOTHING);
-  extreme("target.radius=1e-6", "projectile.radius=2e-7", NOTHING, NOTHING);
-  extreme("target.radius=1e6", "projectile.radius=2e5", NOTHING, NOTHING);
+  extreme("target.radius=1e-6 m", "projectile.radius=2e-7 m", NOTHING, NOTHING);
+  extreme("target.radius=1e6 m", "projectile.radius=2e5 m", NOTHING, NOTHING);
   const char *const m[] = {"target.material.weibull.m=1", "target.material.weibull.m=8.5",
                            "target.material.weibull.m=200"};
-  const char *const k[] = {"target.material.weibull.k=1", "target.material.weibull.k=1e100",
-                           "target.material.weibull.k=1e200"};
+  const char *const k[] = {"target.material.weibull.k=1 1/m^3", "target.material.weibull.k=1e100 1/m^3",
+                           "target.material.weibull.k=1e200 1/m^3"};
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       extreme(m[i], k[j], NOTHING, NOTHING);
-  extreme("target.radius=1e6", "projectile.radius=2e5", m[2], k[2]);
-  extreme("target.radius=1e-6", "projectile.radius=2e-7", m[0], k[0]);
+  extreme("target.radius=1e6 m", "projectile.radius=2e5 m", m[2], k[2]);
+  extreme("target.radius=1e-6 m", "projectile.radius=2e-7 m", m[0], k[0]);
   extreme("fidelity.particles=2", "projectile.radius=3 cm", NOTHING, NOTHING);
   struct sph_inputs alone = run_case(scene,
                                      (const char *const[]){"fidelity.particles=1", "fidelity.projectile_spacing=1",
@@ -664,8 +664,8 @@ static void ends_of_the_ranges(void **state) {
   if (sph_engine.prepare(&alone, 1, &run, &error))
     fail_msg("one particle against another: %s", error.message);
   sph_engine.free(run);
-  extreme("target.material.density=1e-3", NOTHING, NOTHING, NOTHING);
-  extreme("target.material.tillotson.A=1e15", NOTHING, NOTHING, NOTHING);
+  extreme("target.material.density=1e-3 kg/m^3", NOTHING, NOTHING, NOTHING);
+  extreme("target.material.tillotson.A=1e15 Pa", NOTHING, NOTHING, NOTHING);
   extreme("target.strength=false", "projectile.strength=false", NOTHING, NOTHING);
   extreme("impact.angle=89.9 deg", "projectile.radius=1 cm", "impact.angle=89.9 deg", "impact.speed=3 km/s");
   extreme("target.spin=1e9 rad/s", NOTHING, NOTHING, NOTHING);

@@ -157,7 +157,7 @@ static void a_name_gives_the_values(void **state) {
   free(a);
   free(b);
 
-  in = good("target: {material: {name: custom, density: 1000}}");
+  in = good("target: {material: {name: custom, density: 1000 kg/m^3}}");
   assert_true(in.target.material.density == 1000 && isnan(in.target.material.tillotson.A));
 }
 
@@ -187,7 +187,7 @@ static void pressure_strength(void **state) {
 
 static void missing_values_are_named(void **state) {
   (void)state;
-  refused("target: {material: {name: custom, density: 1000}}", "target.material.tillotson.A is needed");
+  refused("target: {material: {name: custom, density: 1000 kg/m^3}}", "target.material.tillotson.A is needed");
   refused("target: {fracture: on, material: {name: aluminium}}",
           "target.material.weibull.m is needed because fracture is on, and the material 'aluminium' has none: give it, "
           "or set "
@@ -195,7 +195,7 @@ static void missing_values_are_named(void **state) {
   refused("target: {fracture: on, material: {name: aluminium, weibull: {m: 9}}}", "target.material.weibull.k");
   refused("target: {material: {name: aluminium, weibull: {m: 9}}}", "weibull.m is given without weibull.k");
   refused("target: {material: {shear_modulus: off}}", "target.strength: false");
-  accepted("target: {fracture: on, material: {name: aluminium, weibull: {m: 9, k: 1e35}}}");
+  accepted("target: {fracture: on, material: {name: aluminium, weibull: {m: 9, k: 1e35 1/m^3}}}");
   accepted("target: {strength: false}\nprojectile: {strength: false}");
   refused("projectile: {material: {name: custom}}", "projectile.material.density");
   refused("target: {material: {tillotson: {E_cv: 1 MJ/kg}}}", "E_cv");
@@ -225,7 +225,7 @@ static void what_cannot_be_run_is_refused(void **state) {
   refused("impact: {projectile: mass, mass: 1e-12 kg}", "fidelity.projectile_spacing");
   refused("impact: {projectile: specific-energy, speed: 0}", "impact.speed 0");
   refused("impact: {speed: 1 km/s, gap: 1 m}\nstop: {end_time: 1 us}", "impact.gap");
-  refused("impact: {speed: 1e-9}", "time steps");
+  refused("impact: {speed: 1e-9 m/s}", "time steps");
   accepted("impact: {angle: 89.9 deg}");
   refused("method: {artificial_stress: 0.3}", "artificial_stress");
   refused("target: {shape: box, width: 2 cm}\nsides: {far: damped, depth: 1 cm}", "undamped");
@@ -245,7 +245,7 @@ static void what_cannot_be_run_is_refused(void **state) {
   for (double m = 1; m <= 200; m *= 1.9)
     for (double k = 0; k <= 200; k += 40) {
       char text[200];
-      snprintf(text, sizeof text, "target: {material: {weibull: {m: %g, k: 1e%g}}}", m, k);
+      snprintf(text, sizeof text, "target: {material: {weibull: {m: %g, k: 1e%g 1/m^3}}}", m, k);
       accepted(text);
     }
 }

@@ -62,7 +62,7 @@ static const struct field rows[] = {
          .source = "K99 eqs. 7-9 and table 1"),
 
     SWITCH(threshold.breaking, 1, .doc = "Beams may break. Off: a purely elastic body."),
-    REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .when = "threshold.breaking=true",
+    REAL(threshold.strain, "1", 0.03, 1e-9, 1e3, .flags = FIELD_PERCENT, .when = "threshold.breaking=true",
          .label = "threshold of beams in strain t_ε", .doc = "t_epsilon: strain at which an unbent beam breaks.",
          .source = "K99 eq. 13"),
     REAL(threshold.angle, "rad", 4 * DEGREE, 1e-9, 1e3, .when = "threshold.breaking=true",
@@ -116,7 +116,7 @@ static const struct field rows[] = {
     REAL(loading.ramp, "s", 5e-3, 0, 1e3, .when = LOADED,
          .doc = "Time of constant acceleration from rest to that speed: it keeps elastic waves small.",
          .source = "K99 section 3.1; the paper gives no value"),
-    REAL(loading.strain_end, "1", 0.01, 0, 0.9, .flags = FIELD_ABOVE_MINIMUM, .when = LOADED,
+    REAL(loading.strain_end, "1", 0.01, 0, 0.9, .flags = FIELD_ABOVE_MINIMUM | FIELD_PERCENT, .when = LOADED,
          .doc = "Strain between the held layers at which the run ends."),
     REAL(loading.residual, "1", 0.3, 0, 1, .flags = FIELD_MAY_BE_OFF | FIELD_BELOW_MAXIMUM, .when = "kind=compression",
          .doc =
@@ -148,7 +148,7 @@ static const struct field rows[] = {
     CHOICE(fidelity.integrator, integrators,
            .choice_docs = "velocity Verlet: the everyday choice\nfifth-order Gear predictor-corrector: the paper's",
            .doc = "How the equations of motion are integrated.", .source = "K99 section 2.3 for `gear`"),
-    REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM,
+    REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc =
              "The run ends with state `energy` when the closed ledger drifts by more than this share of the energy put "
              "in. off: it only reports the drift."),
