@@ -10,9 +10,12 @@ cd "$(dirname "$0")"
 
 packages="build-essential cmake ninja-build pkg-config
 libfyaml-dev libopenmpi-dev openmpi-bin libsqlite3-dev libhdf5-dev libgsl-dev libplfit-dev librandom123-dev
-libcairo2-dev libcmocka-dev libqhull-dev uthash-dev clang-format
+libcairo2-dev zlib1g-dev libcmocka-dev libqhull-dev uthash-dev clang-format
 gnuplot-nox
 python3 python3-jsonschema python3-ruamel.yaml sqlite3"
+# The page of `clast report` is bundled by npm; its tests open it in a browser. The demo needs neither.
+page_packages="nodejs npm"
+test_packages="chromium"
 
 say() { printf '\n== %s\n' "$*" >&2; }
 
@@ -21,13 +24,14 @@ usage() {
   exit "$1"
 }
 
-install_missing() {
+install_missing() { # install_missing PACKAGE...
   command -v apt-get >/dev/null || {
-    echo "setup.sh: this is not Debian (no apt-get). Install the equivalents of: $(echo $packages)" >&2
+    echo "setup.sh: this is not Debian (no apt-get). Install the equivalents of: $*" >&2
     exit 66
   }
   missing=
-  for package in $packages; do
+  for package in "$@"; do
+    [ "$package" != npm ] || ! command -v npm >/dev/null || continue # Node's own packages bring npm, and exclude Debian's
     case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null || true)" in
       "install ok installed") ;;
       *) missing="$missing $package" ;;
@@ -69,22 +73,23 @@ build() { # build PRESET [TARGET]
   fi
 }
 
+# shellcheck disable=SC2086 # lists of packages
 case "${1:-}" in
   packages)
-    install_missing
+    install_missing $packages $page_packages $test_packages
     ;;
   build)
-    install_missing
+    install_missing $packages $page_packages
     build release
     ;;
   demo)
-    install_missing
+    install_missing $packages
     build release clast
     say "build/release/clast run campaign/examples/demo.yaml"
     build/release/clast run campaign/examples/demo.yaml
     ;;
   test)
-    install_missing
+    install_missing $packages $page_packages $test_packages
     build ci
     say "tests, release build"
     ctest --preset ci -j "$(nproc)"

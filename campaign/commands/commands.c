@@ -23,6 +23,7 @@ static const struct command *const all[] = {
     &plot_command,
     &map_command,
     &picture_command,
+    &report_command,
     /* the store */ &check_command,
     &export_command,
     &merge_command,

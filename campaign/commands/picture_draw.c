@@ -10,14 +10,19 @@
 
 enum { WIDTH = 900 };
 
-static status draw_grains(const char *fields, const char *picture, const char *caption, struct error *error) {
+static double width_of(const struct picture_choice *options) {
+  return options->width > 0 ? options->width : WIDTH;
+}
+
+static status draw_grains(const char *fields, const char *picture, const struct picture_choice *options,
+                          struct error *error) {
   struct picture_panel panel = {0};
   status code = picture_body_read(fields, &panel.body, error);
   if (code)
     return code;
   char numbers[160];
   picture_fragments_numbers(&panel.body, "grains", numbers, sizeof numbers);
-  code = picture_fragments(picture, WIDTH, caption, numbers, 1, &panel, error);
+  code = picture_fragments(picture, width_of(options), options->caption, numbers, 1, &panel, error);
   picture_body_clear(&panel.body);
   return code;
 }
@@ -105,7 +110,7 @@ static status draw_particles(const char *fields, const char *picture, const char
   look.subtitle = numbers;
   look.quantity = what;
   look.unit = unit;
-  code = picture_particles(picture, WIDTH, &cloud, &look, error);
+  code = picture_particles(picture, width_of(options), &cloud, &look, error);
 cleanup:
   picture_cloud_clear(&cloud);
   return code;
@@ -174,7 +179,7 @@ status picture_draw(const char *fields, const char *picture, const struct pictur
   if (!picture_cloud_in_file(fields)) {
     if (options->what || options->view || options->axis || options->at)
       return refuse_options(fields, error);
-    return draw_grains(fields, picture, options->caption, error);
+    return draw_grains(fields, picture, options, error);
   }
   if (!options->view || strcmp(options->view, "profile") != 0)
     return draw_particles(fields, picture, options->caption, options, error);

@@ -8,6 +8,7 @@
 struct picture_choice {
   const char *caption, *what, *view, *axis, *at;
   struct chart_options chart; /* of a profile */
+  double width;               /* of a body, pixels; 0: as usual */
 };
 
 /* STATUS_USAGE: options that do not suit the file; what the pictures return (analysis/pictures/picture.h). */

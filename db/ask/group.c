@@ -200,6 +200,10 @@ static const char quantities_sql[] =
     "('run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus', 'counts', "
     "'rank', 'attempt', 'finished_at') AND c.name NOT IN (SELECT column_name FROM axis)";
 
+status ask_group_quantities(struct store *store, const struct query_sink *sink, struct error *error) {
+  return query_run(store, quantities_sql, 0, NULL, 0, sink, error);
+}
+
 status ask_group_quantity(struct store *store, const char *quantity, char name[ASK_GROUP_NAME], struct error *error) {
   struct names names = {.count = 0};
   status code = resolve(store, quantity, "Quantity", quantities_sql, &names, error);

@@ -69,6 +69,9 @@ status ask_group_quantity(struct store *store, const char *quantity, char name[A
 status ask_group_columns(struct store *store, const char *by, size_t most, char (*columns)[ASK_GROUP_NAME],
                          size_t *count, struct error *error);
 
+/* The names of all result columns of the view runs, one row each. */
+status ask_group_quantities(struct store *store, const struct query_sink *sink, struct error *error);
+
 /* Two points that share seeds and have no input with two values: each may have inputs that the other lacks. That is
  * what a campaign leaves when it is computed once more by a program with a new input. ask_group counts the runs of
  * both. */

@@ -39,6 +39,15 @@ status lock_take(const char *path, int *descriptor, bool *held, struct error *er
   return result;
 }
 
+bool lock_is_held(const char *path) {
+  struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+  const bool held = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  if (descriptor >= 0)
+    close(descriptor);
+  return held;
+}
+
 const char *lock_network_file_system(int descriptor) {
   struct statfs file_system;
   if (fstatfs(descriptor, &file_system) != 0)

@@ -12,6 +12,9 @@
  * descriptor of a file drops SQLite's record locks on it. STATUS_IO; *held: because another process holds the lock. A
  * child that is forked later shares the lock until it ends or executes another program. */
 status lock_take(const char *path, int *descriptor, bool *held, struct error *error);
+/* Is another process writing the store? For a file that this process has not opened: closing any descriptor of a file
+ * drops SQLite's record locks on it. */
+bool lock_is_held(const char *path);
 /* The name of the network file system that the file is on, where locks and shared memory are not reliable; NULL: none.
  */
 const char *lock_network_file_system(int descriptor);

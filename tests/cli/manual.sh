@@ -11,7 +11,7 @@ one_error
 cmp clast.1 "$build/man/man1/clast.1" || fail "the page the build made is another: build all first"
 DESTDIR=$work/image cmake --install "$build" --prefix /usr >out 2>err || fail "cmake --install with DESTDIR"
 templates=$(cd "$source/analysis/pictures/templates" && printf './usr/share/clast/templates/%s ' *.gp)
-same "$(cd image && find . -type f | sort | xargs)" "./usr/bin/clast $templates./usr/share/man/man1/clast.1" \
+same "$(cd image && find . -type f | sort | xargs)" "./usr/bin/clast ./usr/share/clast/report.html $templates./usr/share/man/man1/clast.1" \
   "installed files"
 cmp clast.1 image/usr/share/man/man1/clast.1 || fail "the installed page is another"
 

@@ -15,7 +15,7 @@ import sys
 program, build, source = sys.argv[1:4]
 os.chdir(source)
 FOLDERS = ("schemas", "engine", "analysis", "db", "campaign")
-FILE_ENDINGS = (".c", ".h", ".yaml", ".db", ".png", ".svg", ".h5", ".hdf", ".hdf5", ".json")
+FILE_ENDINGS = (".c", ".js", ".html", ".h", ".yaml", ".db", ".png", ".svg", ".h5", ".hdf", ".hdf5", ".json")
 checked = 0
 failures = 0
 

@@ -1,0 +1,82 @@
+// What was asked, what was computed and by which program, what failed, and what this page leaves out.
+import {body, element, fill, list, table} from './elements.js';
+import * as questions from './questions.js';
+import {ask} from './stores.js';
+import {number, plural} from './words.js';
+
+const sum = (points, key) => points.reduce((total, point) => total + (point[key] ?? 0), 0);
+
+function varied(store) {
+  return store.axes.map((axis) => {
+    const values = [...new Set(store.points.map((point) => point[axis.column_name]))];
+    const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
+    const shown = values.length <= 8 ? values.map((value) => number(value)).join(', ')
+      : `${values.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`;
+    return [axis.path, shown, axis.unit && axis.unit !== '1' ? axis.unit : '', axis.meaning];
+  });
+}
+
+function computed(store) {
+  const {points} = store;
+  const counted = sum(points, 'n'), failed = sum(points, 'failed'), censored = sum(points, 'censored'), surplus = sum(points, 'surplus');
+  const parts = [`${plural(counted, 'run')} in statistics`];
+  if (censored) parts.push(`${censored} of them met their end time while fragments may still have been breaking`);
+  if (failed) parts.push(`${failed} without a usable result`);
+  if (surplus) parts.push(`${surplus} surplus (beyond the prefix of a stopping rule)`);
+  const without = points.filter((point) => !point.n).length;
+  if (without) parts.push(`${plural(without, 'point')} without a counted run`);
+  return parts.join('; ');
+}
+
+function programs(store) {
+  const sessions = ask(store, questions.sessions);
+  const names = new Set(sessions.map((s) => `clast ${s.version ?? '?'}, commit ${s.commit_id ?? '?'}, ${s.compiler ?? ''} on ${s.host}`));
+  const last = sessions[sessions.length - 1];
+  return [...names].join('; ') + (last ? `. Last session: ${last.started_at} to ${last.ended_at ?? '(running or killed)'}` : '');
+}
+
+function thinned(store) {
+  if (store.whole) return store.partial ? 'nothing; but the file was being written when it was copied: without its -wal file the last runs may be missing' : 'nothing';
+  const {facts} = store, parts = ['fragment masses of single runs'];
+  const kept = ask(store, questions.keptRuns)[0].n, all = sum(store.points, 'n') + sum(store.points, 'failed');
+  if (kept < all) parts.push(`single runs: of ${all}, ${kept} are here, the first ${plural(Number(facts.replicates_kept), 'seed')} of ${Number(facts.runs_of_every_nth_point) > 1 ? `every ${facts.runs_of_every_nth_point}th` : 'each'} point`);
+  if (Number(facts.results_left_out)) parts.push(`${plural(Number(facts.results_left_out), 'result')} of single runs (their means are here)`);
+  if (Number(facts.spectra_of_every_nth_point) > 1) parts.push(`spectra, but of every ${facts.spectra_of_every_nth_point}th point`);
+  if (Number(facts.pictures_not_drawn)) parts.push(`${plural(Number(facts.pictures_not_drawn), 'picture')}: the fields files cannot be read`);
+  return `${parts.join('; ')}. Results of single runs have 7 digits. Statistics are of all runs. Drop the whole store below to see all of it.`;
+}
+
+function failures(store) {
+  const rows = [...ask(store, questions.failedRuns), ...ask(store, questions.failedAttempts)];
+  if (rows.length === 0) return element('p', {}, 'Nothing failed.');
+  return table('What failed: runs without a usable result, and attempts that ended by a limit or a crash',
+    ['reason', 'number', 'one message'], rows.map((row) => [row.reason, row.n, row.example || '']));
+}
+
+function one(store) {
+  const campaigns = ask(store, questions.campaigns);
+  return element('div', {},
+    element('h3', {}, store.name),
+    list([
+      ['campaigns', campaigns.map((c) => `${c.name} (${c.added_at})`).join(', ') || 'none'],
+      ['computed', `${plural(store.points.length, 'point')}; ${computed(store)}`],
+      ['by', programs(store)],
+      ['left out here', thinned(store)],
+    ]),
+    store.axes.length ? table('Inputs that were varied', ['input', 'values', 'unit', 'meaning'], varied(store)) : element('p', {}, 'No input was varied.'),
+    failures(store),
+    ...campaigns.map((c) => element('details', {}, element('summary', {}, `The campaign file of ${c.name}`), element('pre', {}, c.document))));
+}
+
+export function showAsked(stores) {
+  fill(body('asked'), ...stores.map(one));
+}
+
+export function showTitle(stores) {
+  const names = [...new Set(stores.flatMap((store) => ask(store, questions.campaigns).map((c) => c.name)))];
+  const title = names.length ? names.join(', ') : stores.map((store) => store.name).join(', ');
+  document.title = `${title} - clast`;
+  document.getElementById('title').textContent = title;
+  const {facts} = stores[0];
+  document.getElementById('made').textContent = `Made ${facts.made_at} by ${facts.program}.`;
+}

@@ -1,0 +1,55 @@
+// Charts by Vega-Lite. Their expressions are interpreted, not compiled: the page's policy forbids eval.
+import {View, parse} from 'vega';
+import {compile} from 'vega-lite';
+import {expressionInterpreter} from 'vega-interpreter';
+import {command, download, element, fill} from './elements.js';
+import {csv} from './words.js';
+
+// Okabe and Ito's colours, told apart without colour vision; marks and dashes differ, too.
+export const COLOURS = ['#0072B2', '#D55E00', '#009E73', '#CC79A7', '#E69F00', '#000000'];
+export const SHAPES = ['circle', 'square', 'triangle-up', 'diamond', 'cross', 'triangle-down'];
+export const DASHES = [[1, 0], [6, 3], [2, 2], [8, 3, 2, 3], [4, 4], [10, 4]];
+
+const CONFIG = {
+  font: 'system-ui, "DejaVu Sans", sans-serif',
+  axis: {labelFontSize: 12, titleLimit: 330, titleFontSize: 13, titleFontWeight: 'normal', gridOpacity: 0.5, labelOverlap: true},
+  legend: {labelFontSize: 12, titleFontSize: 13, titleFontWeight: 'normal', labelLimit: 260, titleLimit: 260},
+  view: {stroke: '#c8c8c8'},
+  range: {category: COLOURS},
+};
+
+const views = new Map(); // by figure
+
+// Draws a figure: the chart, a caption, and what can be taken away. about: {name, description, caption, command, columns,
+// rows}; columns and rows are the numbers that the chart shows.
+export async function draw(figure, spec, about) {
+  views.get(figure)?.finalize();
+  views.delete(figure);
+  const chart = element('div', {class: 'chart', role: 'img', 'aria-label': about.description});
+  const tools = element('div', {class: 'tools'},
+    element('button', {type: 'button', click: async () => download(`${about.name}.svg`, 'image/svg+xml', await views.get(figure).toSVG())}, 'SVG'),
+    element('button', {type: 'button', click: () => download(`${about.name}.csv`, 'text/csv', csv(about.columns, about.rows))}, 'CSV'),
+    about.command ? command(about.command) : null);
+  fill(figure, chart, element('figcaption', {}, about.caption), tools);
+  const width = Math.max(240, figure.clientWidth);
+  const whole = {$schema: 'https://vega.github.io/schema/vega-lite/v6.json', background: 'white', config: CONFIG,
+    width, autosize: {type: 'fit', contains: 'padding'}, ...spec};
+  const view = new View(parse(compile(whole).spec, null, {ast: true}),
+    {expr: expressionInterpreter, renderer: 'svg', container: chart, hover: true});
+  views.set(figure, view);
+  await view.runAsync();
+  return view;
+}
+
+export function nothing(figure, text) {
+  views.get(figure)?.finalize();
+  views.delete(figure);
+  fill(figure, element('p', {class: 'note'}, text));
+}
+
+// A scale of positive numbers that span a factor of 20 is logarithmic.
+export function scale(values) {
+  const numbers = values.filter((value) => typeof value === 'number');
+  const low = Math.min(...numbers), high = Math.max(...numbers);
+  return low > 0 && high / low >= 20 ? {type: 'log', nice: false} : {zero: false};
+}

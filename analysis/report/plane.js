@@ -1,0 +1,217 @@
+// The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click or a brush, or
+// in the table of points without a mouse.
+import {body, element, fill, select, table} from './elements.js';
+import {COLOURS, draw, nothing, scale} from './chart.js';
+import * as questions from './questions.js';
+import {changed, chosenPoints, state, store} from './state.js';
+import {halfWidth} from './statistics.js';
+import {ask, has, newest} from './stores.js';
+import {label, number, plural, shellFile, withError} from './words.js';
+
+const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
+
+function statistics(from, quantity) {
+  if (quantity === 'beta') return newest(ask(from, questions.exponents));
+  if (from.quantities.main.includes(quantity)) return newest(ask(from, questions.mainStatistics(quantity)));
+  if (has(from, 'means')) return newest(ask(from, questions.otherStatistics, {quantity}));
+  return newest(ask(from, questions.statisticsOfRuns(quantity)).map((row) => ({...row, hw95: halfWidth(row.sd, row.n)})));
+}
+
+// Every point with the mean of the quantity, the half width of its interval over seeds, and the error that the
+// resolution leaves.
+export function cells(from, quantity) {
+  const known = new Map(statistics(from, quantity).map((row) => [row.point_id, row]));
+  const studied = has(from, 'resolution')
+    ? new Map(ask(from, questions.resolution, {quantity}).map((row) => [row.point_id, row])) : new Map();
+  return from.points.map((point) => {
+    const {mean = null, hw95 = null} = known.get(point.point_id) ?? {};
+    const resolution = studied.get(point.point_id)?.half_width ?? null;
+    return {...point, mean, hw95, resolution};
+  });
+}
+
+const placeOf = (value) => (value === null || value === undefined ? 'does not apply' : typeof value === 'number' ? Number(value.toPrecision(7)) : String(value));
+
+function axisOf(column, rows, title) {
+  const values = [...new Set(rows.map((row) => row[column]))];
+  const numeric = values.every((value) => typeof value === 'number');
+  if (numeric && values.length > MOST_CELLS) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title}};
+  const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
+  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0}}};
+}
+
+function tooltip(columns, title) {
+  return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
+    {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}];
+}
+
+function data(quantity) {
+  return cells(store(), quantity).map((cell) => ({
+    ...cell,
+    [state.x]: placeOf(cell[state.x]),
+    ...(state.y ? {[state.y]: placeOf(cell[state.y])} : {}),
+    shown: withError(cell.mean, cell.hw95),
+    text: number(cell.mean, 3),
+    low: cell.mean - cell.hw95,
+    high: cell.mean + cell.hw95,
+    resolutionText: cell.resolution === null ? 'not studied' : `± ${number(cell.resolution, 2)}`,
+  }));
+}
+
+const CHOSEN = {name: 'chosen', value: []};
+const isChosen = 'indexof(chosen, datum.point_id) >= 0';
+
+function planeSpec(rows, title) {
+  const x = axisOf(state.x, rows, label(state.stores, state.x)), y = axisOf(state.y, rows, label(state.stores, state.y));
+  const grid = x.discrete && y.discrete;
+  const flip = y.discrete ? {...y.encoding, sort: y.encoding.sort.slice().reverse()} : y.encoding;
+  const columns = grid ? new Set(rows.map((row) => row[state.x])).size : 99;
+  const middle = rows.map((row) => row.mean).filter((mean) => mean !== null).sort((a, b) => a - b);
+  const half = ((middle[0] ?? 0) + (middle[middle.length - 1] ?? 0)) / 2;
+  const place = {x: x.encoding, y: flip};
+  const several = rows.length > new Set(rows.map((row) => JSON.stringify([row[state.x], row[state.y]]))).size;
+  const layers = [{
+    params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
+    mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, cursor: 'pointer'},
+    encoding: {...place,
+      color: {field: 'mean', type: 'quantitative', title, scale: {scheme: 'viridis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
+      stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
+      strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
+      tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
+  }];
+  const room = (document.getElementById('plane-chart').clientWidth - 90) / columns; // pixels of a cell
+  if (grid && room >= 50 && !several)
+    layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
+      transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g'))", as: 'cell'},
+        {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text', as: 'cell'}],
+      encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
+  const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
+  return {params: [CHOSEN], data: {values: rows}, height, layer: layers};
+}
+
+function lineSpec(rows, title) {
+  const x = axisOf(state.x, rows, label(state.stores, state.x));
+  const numeric = rows.every((row) => typeof row[state.x] === 'number');
+  const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(rows.map((row) => row[state.x]))} : x.encoding;
+  const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false}};
+  return {params: [CHOSEN], data: {values: rows}, height: 340, layer: [
+    {mark: {type: 'rule', strokeWidth: 1.5}, encoding: {x: place, y: {...y, field: 'low'}, y2: {field: 'high'}}},
+    {params: [{name: 'brush', select: {type: 'interval', encodings: ['x']}}],
+      mark: {type: 'point', filled: true, size: 110, cursor: 'pointer', color: COLOURS[0]},
+      encoding: {x: place, y, stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
+        strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
+        tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}}]};
+}
+
+// A brush over cells lists values, one over a scale has two ends.
+function within(place, row) {
+  return Object.entries(place).every(([column, range]) => {
+    if (!Array.isArray(range)) return true;
+    const value = row[column];
+    const ends = range.length === 2 && range.every((end) => typeof end === 'number') && !axisOf(column, plane.rows, '').discrete;
+    const inLine = state.y === '' || state.y === null;
+    if (ends || (inLine && range.length === 2 && typeof value === 'number')) return value >= Math.min(...range) && value <= Math.max(...range);
+    return range.includes(value);
+  });
+}
+
+export function choose(ids) {
+  state.chosen = new Set(ids);
+  changed('chosen');
+}
+
+const plane = {view: null, rows: [], waiting: 0};
+
+function listen(view) {
+  view.addSignalListener('brush', (_, place) => {
+    clearTimeout(plane.waiting);
+    plane.waiting = setTimeout(() => {
+      if (place && Object.keys(place).length) choose(plane.rows.filter((row) => within(place, row)).map((row) => row.point_id));
+    }, 80);
+  });
+  view.addEventListener('click', (_, item) => {
+    const id = item?.datum?.point_id;
+    if (id === undefined) return;
+    const ids = new Set(state.chosen);
+    if (!ids.delete(id)) ids.add(id);
+    choose(ids);
+  });
+}
+
+function commandOf() {
+  const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
+  const from = shellFile(store().name);
+  if (!state.x) return `clast stats ${from} --quantity ${quantity}`;
+  if (state.y) return `clast map ${from} map.png -x ${state.x} -y ${state.y} -q ${quantity}`;
+  return `clast plot ${from} plot.png -x ${state.x} -q ${quantity}`;
+}
+
+const WHAT_ERRORS = 'The ± is the half width of the 95 % interval over seeds. It does not hold the error of the resolution';
+function resolutionSentence(rows) {
+  const studied = rows.filter((row) => row.resolution !== null);
+  if (studied.length === 0) return `${WHAT_ERRORS}, which was not studied (clast converge).`;
+  return `${WHAT_ERRORS}; that is known of ${plural(studied.length, 'point')}, at most ± ${number(Math.max(...studied.map((row) => row.resolution)), 2)}.`;
+}
+
+export async function showPlane() {
+  const figure = document.getElementById('plane-chart');
+  const title = label(state.stores, state.quantity);
+  const rows = (plane.rows = data(state.quantity));
+  const known = rows.filter((row) => row.mean !== null);
+  if (known.length === 0) return nothing(figure, 'No point has a value of this quantity.');
+  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points.`;
+  if (!state.x) {
+    nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}`);
+    return;
+  }
+  const inputs = [state.x, state.y].filter(Boolean);
+  const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
+    name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}; the table of points below has the numbers`,
+    caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'resolution'],
+    rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.resolution]),
+  });
+  plane.view = view;
+  listen(view);
+  showChosen();
+}
+
+export function showChosen() {
+  const points = chosenPoints();
+  plane.view?.signal('chosen', points.map((point) => point.point_id)).run();
+  const named = points.slice(0, 3).map((point) => `point ${point.point_id}`).join(', ');
+  document.getElementById('chosen').textContent = points.length
+    ? `Chosen: ${named}${points.length > 3 ? ` and ${points.length - 3} more` : ''} (${plural(points.reduce((sum, point) => sum + (point.n ?? 0), 0), 'run')}).` : 'No point is chosen.';
+  for (const box of body('points').querySelectorAll('input')) box.checked = state.chosen.has(Number(box.value));
+}
+
+export function showPoints() {
+  const axes = store().axes.map((axis) => axis.column_name);
+  const rows = plane.rows.slice(0, 1000);
+  const boxes = (row) => element('input', {type: 'checkbox', value: row.point_id, checked: state.chosen.has(row.point_id), 'aria-label': `point ${row.point_id}`,
+    change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
+  fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
+    ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution'],
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => number(row[axis])), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText])));
+}
+
+export function showChoices() {
+  const {axes, quantities} = store();
+  const options = (columns) => columns.map((column) => [column, label(state.stores, column)]);
+  const columns = axes.map((axis) => axis.column_name);
+  const set = (key) => (value) => {
+    state[key] = value;
+    if (key === 'x' && state.y === value) state.y = columns.find((column) => column !== value) ?? null;
+    changed('plane');
+  };
+  const parts = [];
+  if (state.stores.length > 1)
+    parts.push(select('store', 'Store', state.stores.map((one, i) => [String(i), one.name]), String(state.active), (value) => {
+      state.active = Number(value);
+      state.chosen = new Set();
+      changed('store');
+    }));
+  parts.push(select('quantity', 'Quantity', options([...quantities.main, 'beta', ...quantities.others]), state.quantity, set('quantity')));
+  if (columns.length > 0) parts.push(select('x', 'Across', options(columns), state.x, set('x')));
+  if (columns.length > 1) parts.push(select('y', 'Up', [['', '(nothing: a line)'], ...options(columns.filter((column) => column !== state.x))], state.y ?? '', set('y')));
+  fill(document.getElementById('choices'), ...parts);
+}

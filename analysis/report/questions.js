@@ -1,0 +1,59 @@
+// All SQL text of the page. The page reads small SQLite files of its own (db/ask/page.h) and whole stores that a reader
+// drops on it; both have these tables or views. No text of a file becomes SQL: names are quoted by name().
+
+export const name = (text) => `"${String(text).replaceAll('"', '""')}"`;
+
+export const tables = 'SELECT name FROM sqlite_schema';
+export const columns = 'SELECT name FROM pragma_table_info(:table)';
+export const facts = 'SELECT name, value FROM fact';
+export const labels = 'SELECT column_name, label FROM label';
+export const units = `SELECT column_name, min(unit) AS unit FROM column_doc WHERE unit <> '1'
+  GROUP BY column_name HAVING count(DISTINCT unit) = 1`;
+export const axes = 'SELECT column_name, path, unit, meaning FROM axis ORDER BY path';
+export const canned = 'SELECT name, doc, sql, parameters FROM question';
+
+export const campaigns = 'SELECT campaign_id, name, document, added_at FROM campaign ORDER BY campaign_id';
+export const sessions = `SELECT started_at, ended_at, outcome, host, json_extract(facts, '$.version') AS version,
+  json_extract(facts, '$.commit') AS commit_id, json_extract(facts, '$.compiler') AS compiler
+  FROM session ORDER BY session_id`;
+export const failedRuns = `SELECT state AS reason, count(*) AS n, min(message) AS example FROM runs
+  WHERE counts = 0 AND surplus = 0 GROUP BY state`;
+export const failedAttempts = 'SELECT reason, count(*) AS n, min(message) AS example FROM attempt GROUP BY reason';
+
+// Newer versions of results come later.
+export const points = (axes) => `SELECT point_id, scene, results_version, n, failed, censored, surplus, failed_attempts
+  ${axes.map((axis) => `, ${name(axis)}`).join('')} FROM points ORDER BY point_id, results_version`;
+export const mainStatistics = (quantity) => `SELECT point_id, results_version, n, ${name(`${quantity}_mean`)} AS mean,
+  ${name(`${quantity}_sd`)} AS sd, ${name(`${quantity}_hw95`)} AS hw95 FROM points ORDER BY results_version`;
+export const otherStatistics = 'SELECT point_id, results_version, n, mean, sd, hw95 FROM means WHERE quantity = :quantity ORDER BY results_version';
+export const otherQuantities = 'SELECT DISTINCT quantity FROM means';
+// Of a whole store, which has no table of means: two moments about the first value.
+export const statisticsOfRuns = (quantity) => `SELECT point_id, results_version, count(${name(quantity)}) AS n,
+  avg(${name(quantity)}) AS mean, sqrt(max(0, avg(d * d) - avg(d) * avg(d)) * count(d) / (count(d) - 1)) AS sd
+  FROM (SELECT *, ${name(quantity)} - first_value(${name(quantity)}) OVER (PARTITION BY point_id, results_version) AS d
+  FROM runs WHERE counts) GROUP BY point_id, results_version ORDER BY results_version`;
+export const ranges = (names) => `SELECT ${names.map((n, i) => `min(${name(n)}) AS l${i}, max(${name(n)}) AS h${i}`).join(', ')} FROM runs WHERE counts`;
+export const exponents = `SELECT point_id, results_version, n, beta AS mean, hw95, lower, upper FROM estimates
+  WHERE run_id IS NULL AND headline ORDER BY results_version`;
+export const resolution = 'SELECT point_id, half_width, open, diverges FROM resolution WHERE quantity = :quantity';
+
+export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra
+  WHERE point_id = :point ORDER BY results_version, lower`;
+export const completeMass = `SELECT mean FROM means WHERE quantity = 'complete_mass' AND point_id = :point ORDER BY results_version DESC LIMIT 1`;
+export const completeMassOfRuns = 'SELECT avg(complete_mass) AS mean FROM runs WHERE counts AND point_id = :point';
+
+export const values = (quantity) => `SELECT results_version, ${name(quantity)} AS value FROM runs
+  WHERE counts AND point_id = :point AND ${name(quantity)} IS NOT NULL ORDER BY results_version, replicate`;
+export const runs = (columns) => `SELECT run_id, point_id, replicate, CAST(seed AS TEXT) AS seed, state, counts, surplus
+  ${columns.map((column) => `, ${name(column)}`).join('')} FROM runs WHERE point_id = :point ORDER BY replicate, seed`;
+export const run = 'SELECT * FROM runs WHERE run_id = :run';
+export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile';
+export const pictureOfRun = 'SELECT run_id, quantile, png FROM picture WHERE run_id = :run';
+export const differences = 'SELECT * FROM difference WHERE quantity = :quantity';
+export const keptRuns = 'SELECT count(*) AS n FROM runs';
+
+// For readers: what the box for SQL begins with, the first run of a point, and the values of a histogram.
+export const start = 'SELECT * FROM points';
+export const firstRun = (point) => `(SELECT min(run_id) FROM runs WHERE point_id = ${Number(point)})`;
+export const valuesForShell = (quantity, points) => `SELECT point_id, seed, ${quantity} FROM runs WHERE counts` +
+  (points.length <= 20 ? ` AND point_id IN (${points.map(Number).join(', ')})` : '');

@@ -1,0 +1,57 @@
+// The runs of the chosen points, and one run: its picture, or the command that computes it again.
+import {body, command, element, fill, list, table} from './elements.js';
+import * as questions from './questions.js';
+import {chosenPoints, state, store} from './state.js';
+import {ask, has} from './stores.js';
+import {label, number, plural, shellFile} from './words.js';
+
+const SHOWN = 200;
+let order = {column: null, down: false};
+
+function columnsOf(from) {
+  const wanted = [...new Set([state.quantity, ...from.quantities.main, 'wall_time'])];
+  return wanted.filter((column) => from.runColumns.has(column));
+}
+
+function pictureOf(row) {
+  const place = row.quantile === 0 ? 'least' : row.quantile === 1 ? 'largest' : 'median';
+  return element('figure', {}, element('img', {src: URL.createObjectURL(new Blob([row.png], {type: 'image/png'})), alt: `The broken body of run ${row.run_id}`}),
+    element('figcaption', {}, `Run ${row.run_id}: ${place} ${label(state.stores, store().facts.default_quantity ?? '')} of its point`));
+}
+
+function showRun(id) {
+  const from = store(), [row] = ask(from, questions.run, {run: id});
+  const [picture] = has(from, 'picture') ? ask(from, questions.pictureOfRun, {run: id}) : [];
+  const file = shellFile(from.name);
+  const pairs = Object.entries(row).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
+    .map(([column, value]) => [label(state.stores, column), number(value, 7)]);
+  fill(document.getElementById('run'), element('h3', {tabindex: -1, id: 'run-title'}, `Run ${id}`),
+    picture ? pictureOf(picture) : element('p', {}, 'Its picture is not on this page. These commands compute the run again, bit by bit, and draw it:'),
+    element('p', {}, command(`clast replay ${file} ${id} --fields run${id}.h5`)),
+    element('p', {}, command(`clast picture run${id}.h5 run${id}.png`)),
+    element('details', {}, element('summary', {}, 'All that this page knows of it'), list(pairs)));
+  document.getElementById('run-title').focus();
+}
+
+function sorted(rows, columns) {
+  if (!order.column || !columns.includes(order.column)) return rows;
+  const key = order.column, sign = order.down ? -1 : 1;
+  return rows.sort((a, b) => sign * (typeof a[key] === 'number' && typeof b[key] === 'number' ? a[key] - b[key] : String(a[key] ?? '').localeCompare(String(b[key] ?? ''))));
+}
+
+export function showRuns() {
+  const from = store(), results = columnsOf(from), columns = ['run_id', 'point_id', 'seed', 'state', ...results];
+  const rows = sorted(chosenPoints().flatMap((point) => ask(from, questions.runs(results), {point: point.point_id})), columns);
+  const heading = (column) => ({run_id: 'run', point_id: 'point', seed: 'seed', state: 'state'})[column] ?? label(state.stores, column);
+  const cell = (row, column) => column === 'run_id'
+    ? element('button', {type: 'button', 'aria-label': `run ${row.run_id}`, click: () => showRun(row.run_id)}, String(row.run_id)) : number(row[column]);
+  const pictures = has(from, 'picture') ? chosenPoints().slice(0, 4).flatMap((point) => ask(from, questions.pictures, {point: point.point_id})) : [];
+  fill(document.getElementById('run'));
+  fill(body('runs'),
+    rows.length ? table(`${plural(rows.length, 'run')} of the chosen points${rows.length > SHOWN ? `; ${SHOWN} of them are listed` : ''}. A heading sorts; a run's number shows it.`,
+      columns.map(heading), rows.slice(0, SHOWN).map((row) => columns.map((column) => cell(row, column))), (i) => {
+        order = {column: columns[i], down: order.column === columns[i] && !order.down};
+        showRuns();
+      }) : element('p', {class: 'note'}, 'No run of the chosen points is on this page.'),
+    pictures.length ? element('div', {class: 'pictures'}, ...pictures.map(pictureOf)) : null);
+}

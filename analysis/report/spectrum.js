@@ -1,0 +1,94 @@
+// The fragment mass spectrum of the chosen points with its band and the fitted power law: each point for itself, or all
+// of them together when they are too many to be told apart.
+import {COLOURS, DASHES, SHAPES, draw, nothing} from './chart.js';
+import * as questions from './questions.js';
+import {chosenPoints, state, store} from './state.js';
+import {pool} from './statistics.js';
+import {ask, has, newest} from './stores.js';
+import {label, number, plural, shellFile, withError} from './words.js';
+
+export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(point[axis.column_name])}`).join(', ');
+
+export const nameOf = (from, point) =>
+  `${state.stores.length > 1 ? `${from.name}: ` : ''}${inputsOf(from, point) || `point ${point.point_id}`}, ${plural(point.n ?? 0, 'run')}`;
+
+function binsOf(from, point) {
+  const rows = ask(from, questions.spectrum, {point: point.point_id});
+  const version = rows[rows.length - 1]?.results_version;
+  return rows.filter((row) => row.results_version === version && row.count > 0);
+}
+
+function completeMass(from, points) {
+  const question = has(from, 'means') ? questions.completeMass : from.runColumns.has('complete_mass') ? questions.completeMassOfRuns : null;
+  const values = question ? points.map((point) => ask(from, question, {point: point.point_id})[0]?.mean).filter((mean) => mean > 0) : [];
+  return values.length ? Math.max(...values) : 0;
+}
+
+// The points of other stores at the same place as these.
+export function partners(point) {
+  const same = (other, candidate) => other.axes.length === store().axes.length && other.axes.every((axis) => candidate[axis.column_name] === point[axis.column_name]);
+  return state.stores.filter((other) => other !== store())
+    .flatMap((other) => other.points.filter((candidate) => same(other, candidate)).slice(0, 1).map((candidate) => ({from: other, point: candidate})));
+}
+
+// [{name, bins, points, from}] of what is drawn.
+function curves() {
+  const points = chosenPoints().filter((point) => point.n > 0);
+  let each = points.map((point) => ({from: store(), point}));
+  if (state.stores.length > 1 && points.length <= 2) each = each.flatMap((one) => [one, ...partners(one.point)]);
+  if (each.length <= COLOURS.length)
+    return each.map(({from, point}) => ({name: nameOf(from, point), from, points: [point], bins: binsOf(from, point)})).filter((curve) => curve.bins.length);
+  const spectra = points.map((point) => binsOf(store(), point)).filter((bins) => bins.length);
+  return spectra.length ? [{name: `${plural(spectra.length, 'point')} together`, from: store(), points, bins: pool(spectra)}] : [];
+}
+
+// The line of m^-beta that holds as many fragments per run in its window as the fit was made from.
+function fitOf(curve) {
+  if (curve.points.length !== 1) return null;
+  const fit = newest(ask(curve.from, questions.exponents)).find((row) => row.point_id === curve.points[0].point_id);
+  if (!fit || !(fit.lower > 0) || fit.mean === null) return null;
+  const upper = Math.min(fit.upper ?? Infinity, Math.max(...curve.bins.map((bin) => bin.upper)));
+  const power = 1 - fit.mean;
+  const integral = Math.abs(power) < 1e-9 ? Math.log(upper / fit.lower) : (upper ** power - fit.lower ** power) / power;
+  const factor = fit.n / curve.points[0].n / integral;
+  return {text: `β = ${withError(fit.mean, fit.hw95)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
+}
+
+function bandOf(curve) {
+  return curve.bins.map((bin) => {
+    const width = bin.upper - bin.lower, density = bin.count_mean / width, half = (bin.count_hw95 ?? 0) / width;
+    return {name: curve.name, mass: Math.sqrt(bin.lower * bin.upper), lower: bin.lower, upper: bin.upper, density, low: Math.max(density - half, density / 20),
+      high: density + half, hw95: bin.count_hw95 === null ? null : half, count: bin.count, shown: `${number(density, 3)}${bin.count_hw95 === null ? '' : ` ± ${number(half, 2)}`}`};
+  });
+}
+
+export async function showSpectrum() {
+  const figure = document.querySelector('#spectrum figure');
+  const drawn = curves();
+  if (drawn.length === 0)
+    return nothing(figure, chosenPoints().length ? 'No spectrum of the chosen points is on this page (see "left out here").' : 'Choose a point.');
+  const rows = drawn.flatMap(bandOf), fits = drawn.map(fitOf), complete = completeMass(drawn[0].from, drawn[0].points);
+  const names = drawn.map((curve) => curve.name);
+  const x = {field: 'mass', type: 'quantitative', scale: {type: 'log', nice: false}, title: 'fragment mass m (kg)', axis: {format: '.0e', tickCount: 6}};
+  const y = (field) => ({field, type: 'quantitative', scale: {type: 'log'}, title: 'F(m), fragments per kg and run', axis: {format: '.0e', tickCount: 6}});
+  const legend = drawn.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null;
+  const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend};
+  const layer = [
+    {mark: {type: 'area', opacity: 0.2, tooltip: null}, encoding: {x, y: y('low'), y2: {field: 'high'}, color: colour}},
+    {mark: {type: 'point', filled: true, size: 50}, encoding: {x, y: y('density'), color: colour,
+      shape: {field: 'name', type: 'nominal', scale: {domain: names, range: SHAPES}, legend},
+      opacity: {condition: {test: `datum.lower < ${complete}`, value: 0.3}, value: 1},
+      tooltip: [{field: 'name', title: 'point'}, {field: 'mass', format: '.3~e', title: 'm (kg)'}, {field: 'shown', title: 'F(m)'}, {field: 'count', title: 'fragments'}]}},
+    {data: {values: fits.flatMap((fit) => fit?.ends ?? [])}, mark: {type: 'line', strokeWidth: 2, clip: true}, encoding: {x, y: y('density'),
+      color: colour, strokeDash: {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend}}},
+  ];
+  const told = drawn.map((curve, i) => `${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`).join('; ');
+  const point = drawn[0].points.length === 1 ? ` --point ${drawn[0].points[0].point_id}` : '';
+  await draw(figure, {data: {values: rows}, height: 340, layer}, {
+    name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
+    caption: `${told}. Bands: 95 % intervals over seeds. Lines: F(m) ~ m^-β by maximum likelihood.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
+    command: `clast spectrum ${shellFile(drawn[0].from.name)}${point} --picture spectrum.png`,
+    columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
+    rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),
+  });
+}

@@ -1,0 +1,47 @@
+// What the reader has chosen. It is kept in the address, so that a link shows the same and a page that loads itself
+// again stays as it was. An address is data: unknown words in it are dropped.
+
+export const state = {stores: [], active: 0, quantity: null, x: null, y: null, chosen: new Set(), sql: null};
+
+export const store = () => state.stores[state.active];
+export const chosenPoints = () => store().points.filter((point) => state.chosen.has(point.point_id));
+
+const listeners = [];
+export const onChange = (listener) => listeners.push(listener);
+
+// what: 'store', 'plane' (quantity and axes) or 'chosen'
+export function changed(what) {
+  writeAddress();
+  for (const listener of listeners) listener(what);
+}
+
+export function writeAddress() {
+  const words = new URLSearchParams();
+  if (state.active) words.set('store', state.active);
+  for (const key of ['quantity', 'x', 'y', 'sql']) if (state[key]) words.set(key, state[key]);
+  if (state.chosen.size && state.chosen.size <= 200) words.set('points', [...state.chosen].join('.'));
+  history.replaceState(null, '', `#${words}`);
+}
+
+export function readAddress() {
+  const words = new URLSearchParams(location.hash.slice(1));
+  state.active = Math.min(Math.max(0, Number(words.get('store')) || 0), state.stores.length - 1);
+  for (const key of ['quantity', 'x', 'y', 'sql']) state[key] = words.get(key);
+  const known = new Set(store().points.map((point) => point.point_id));
+  state.chosen = new Set((words.get('points') ?? '').split('.').map(Number).filter((id) => known.has(id)));
+}
+
+// Fills in what is not chosen, or not known in this store.
+export function complete() {
+  const {axes, quantities, facts, points} = store();
+  const known = [...quantities.main, ...quantities.others, 'beta'];
+  if (!known.includes(state.quantity)) state.quantity = known.includes(facts.default_quantity) ? facts.default_quantity : known[0];
+  const columns = axes.map((axis) => axis.column_name);
+  if (!columns.includes(state.x)) state.x = columns[0] ?? null;
+  if ((state.y && !columns.includes(state.y)) || state.y === state.x || state.y === null)
+    state.y = state.y === '' ? '' : columns.find((column) => column !== state.x) ?? null;
+  if (state.chosen.size === 0 && points.length > 0) {
+    const first = points.find((point) => point.n > 0) ?? points[0];
+    state.chosen.add(first.point_id);
+  }
+}

@@ -1,0 +1,46 @@
+// What the page computes itself. Means and intervals of whole points come from clast; these are for points together,
+// and for whole stores, which hold only the main results ready.
+
+// Two-sided 95 % quantile of Student's t: the table up to 10 degrees of freedom, then the series in 1/degrees by which
+// the store's views do the same (db/store/views.c).
+const T95 = [12.706204736174, 4.302652729749, 3.182446305284, 2.776445105198, 2.570581835636, 2.446911851145,
+  2.364624251592, 2.306004135204, 2.262157162798, 2.228138851986];
+export function student(degrees) {
+  if (!(degrees >= 1)) return NaN;
+  if (degrees <= 10) return T95[degrees - 1];
+  const x = 1 / degrees;
+  return 1.959963984540 + (2.372271230299 + (2.822498615740 + (2.555849679508 + 1.589534053394 * x) * x) * x) * x;
+}
+
+export const halfWidth = (sd, n) => (n > 1 && sd !== null ? (student(n - 1) * sd) / Math.sqrt(n) : null);
+
+// values in ascending order; linear between neighbours.
+export function quantile(sorted, p) {
+  const place = p * (sorted.length - 1), below = Math.floor(place);
+  return below + 1 < sorted.length ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]) : sorted[below];
+}
+
+export function summary(values) {
+  const n = values.length;
+  const mean = values.reduce((sum, value) => sum + value, 0) / n;
+  const sd = n > 1 ? Math.sqrt(values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (n - 1)) : null;
+  const sorted = Float64Array.from(values).sort();
+  return {n, mean, sd, hw95: halfWidth(sd, n), least: sorted[0], quarter: quantile(sorted, 0.25), median: quantile(sorted, 0.5),
+    threeQuarters: quantile(sorted, 0.75), largest: sorted[n - 1]};
+}
+
+// Spectra of several points as one: fragments per kg and run, and the half width of its 95 % interval. The runs of a
+// point are independent, and so are points: variances of means add, weighted by runs.
+export function pool(spectra) {
+  const runs = spectra.reduce((sum, bins) => sum + (bins[0]?.n ?? 0), 0);
+  const places = new Map();
+  for (const bins of spectra)
+    for (const bin of bins) {
+      const place = places.get(bin.lower) ?? {lower: bin.lower, upper: bin.upper, count: 0, variance: 0, n: runs};
+      place.count += bin.count;
+      place.variance += bin.n * (bin.count_sd ?? 0) ** 2;
+      places.set(bin.lower, place);
+    }
+  return [...places.values()].sort((a, b) => a.lower - b.lower).map(({variance, ...bin}) => ({...bin,
+    count_mean: bin.count / runs, count_hw95: runs > spectra.length ? (student(runs - spectra.length) * Math.sqrt(variance)) / runs : null}));
+}

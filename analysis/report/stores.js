@@ -1,0 +1,105 @@
+// The stores of the page: those within it, and whole ones that are dropped on it.
+import initSqlJs from 'sql.js';
+import * as questions from './questions.js';
+
+let SQL; // sql.js, when it has started
+
+async function unpack(text) {
+  const packed = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// All rows of a question as objects. Numbers that a double cannot hold are cast to text by the questions.
+export function ask(store, sql, parameters = {}) {
+  return answer(store, sql, parameters, Infinity).objects();
+}
+
+// Column names and at most `most` rows.
+export function answer(store, sql, parameters, most) {
+  const statement = store.db.prepare(sql);
+  try {
+    statement.bind(Object.fromEntries(Object.entries(parameters).map(([key, value]) => [`:${key}`, value])));
+    const columns = statement.getColumnNames();
+    const rows = [];
+    let more = false;
+    while (statement.step()) {
+      more = rows.length === most;
+      if (more) break;
+      rows.push(statement.get());
+    }
+    const objects = () => rows.map((row) => Object.fromEntries(columns.map((column, i) => [column, row[i]])));
+    return {columns, rows, more, objects};
+  } finally {
+    statement.free();
+  }
+}
+
+export const has = (store, table) => store.tables.has(table);
+
+// The newest version of results of each point; rows come in the order of versions.
+export function newest(rows) {
+  return [...new Map(rows.map((row) => [row.point_id, row])).values()];
+}
+
+// Results that differ between runs, by name: the main ones first.
+function quantitiesOf(store) {
+  const main = store.pointColumns.filter((column) => column.endsWith('_mean')).map((column) => column.slice(0, -5));
+  const others = has(store, 'means') ? ask(store, questions.otherQuantities).map((row) => row.quantity) : variedResults(store, main);
+  return {main, others};
+}
+
+const NO_RESULTS = new Set(['run_id', 'point_id', 'session_id', 'replicate', 'seed', 'results_version', 'surplus',
+  'counts', 'rank', 'attempt', 'finished_at']);
+function variedResults(store, main) {
+  const axes = new Set(store.axes.map((axis) => axis.column_name));
+  const names = [...store.runColumns].filter((name) => !NO_RESULTS.has(name) && !axes.has(name) && !main.includes(name));
+  if (names.length === 0) return [];
+  const [row] = ask(store, questions.ranges(names));
+  return names.filter((_, i) => typeof row[`l${i}`] === 'number' && typeof row[`h${i}`] === 'number' && row[`l${i}`] < row[`h${i}`]);
+}
+
+function describe(store) {
+  store.tables = new Set(ask(store, questions.tables).map((row) => row.name));
+  for (const needed of ['runs', 'points', 'spectra', 'estimates', 'axis', 'campaign', 'session'])
+    if (!has(store, needed)) throw new Error(`it is no store of clast (it has no ${needed})`);
+  const columns = (table) => ask(store, questions.columns, {table}).map((row) => row.name);
+  const read = (table, question) => (has(store, table) ? ask(store, question) : []);
+  store.facts = Object.fromEntries(read('fact', questions.facts).map((row) => [row.name, row.value]));
+  store.labels = new Map(read('label', questions.labels).map((row) => [row.column_name, row.label]));
+  store.units = new Map(read('column_doc', questions.units).map((row) => [row.column_name, row.unit]));
+  store.axes = ask(store, questions.axes);
+  store.pointColumns = columns('points');
+  store.runColumns = new Set(columns('runs'));
+  store.points = newest(ask(store, questions.points(store.axes.map((axis) => axis.column_name))));
+  store.quantities = quantitiesOf(store);
+  store.canned = read('question', questions.canned);
+  return store;
+}
+
+export async function openEmbedded() {
+  SQL = await initSqlJs({wasmBinary: await unpack(document.getElementById('wasm').textContent), useOldExtensionFunctions: false});
+  const stores = [];
+  for (const element of document.querySelectorAll('script.store')) {
+    const db = new SQL.Database(await unpack(element.textContent));
+    element.remove();
+    const store = describe({db, whole: false});
+    store.name = store.facts.store;
+    stores.push(store);
+  }
+  return stores;
+}
+
+// A store in WAL mode without its -wal file can be read once its header says otherwise (bytes 18 and 19).
+export async function openFile(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const partial = bytes[18] === 2;
+  if (partial) bytes[18] = bytes[19] = 1;
+  const store = {db: new SQL.Database(bytes), whole: true, partial, name: file.name};
+  try {
+    return describe(store);
+  } catch (error) {
+    store.db.close();
+    throw error;
+  }
+}

@@ -1,0 +1,84 @@
+/* `clast report STORE...`: a page for a browser, in one file. */
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/report_make.h"
+
+enum { EVERY_MOST = 86400 };
+
+struct options {
+  const char *output;
+  bool watch;
+  int64_t every;
+};
+
+/* demo.html in the current folder for the store folder/demo.db. */
+static void name_page(const char *store, char *name, size_t size) {
+  const char *slash = strrchr(store, '/'), *base = slash ? slash + 1 : store;
+  const char *dot = strrchr(base, '.');
+  snprintf(name, size, "%.*s.html", (int)(dot && dot > base ? (size_t)(dot - base) : strlen(base)), base);
+}
+
+/* Makes the page again and again while a campaign writes one of the stores, and once more at its end. */
+static status watch(struct report_choice *choice, int64_t every, size_t *size, struct error *error) {
+  bool running;
+  do {
+    running = report_make_running(choice);
+    choice->refresh = running ? every : 0;
+    const status code = report_make(choice, size, error);
+    if (code)
+      return code;
+    if (running) {
+      fprintf(stderr, "%s written; again in %lld s, while the campaign runs\n", choice->output, (long long)every);
+      sleep((unsigned)every);
+    }
+  } while (running);
+  return STATUS_OK;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  char name[4096];
+  size_t size = 0;
+  name_page(line->arguments[0], name, sizeof name);
+  struct report_choice choice = {.count = line->count,
+                                 .stores = line->arguments,
+                                 .output = options->output ? options->output : name};
+  for (size_t i = 0; i < choice.count; i++)
+    if (strcmp(choice.output, choice.stores[i]) == 0)
+      return status_fail(error, STATUS_USAGE, "the page would overwrite the store %s: name another file with -o",
+                         choice.output);
+  const status code = options->watch ? watch(&choice, options->every, &size, error)
+                                     : report_make(&choice, &size, error);
+  if (code == STATUS_OK)
+    fprintf(stderr, "%s written (%.2f MB); open it in a browser\n", choice.output, 1e-6 * (double)size);
+  return code;
+}
+
+static const struct option_row option_rows[] = {
+    OPTION_ROW_TEXT("output", 'o', "PAGE.html", struct options, output, NULL,
+                    "Name of the page; otherwise that of the first store with .html, in the current folder."),
+    OPTION_ROW_FLAG("watch", 0, struct options, watch,
+                    "Make the page again while a campaign writes a store, and once more when it ends. An open page "
+                    "loads itself again."),
+    OPTION_ROW_INTEGER("every", 0, "S", struct options, every, 1, EVERY_MOST, "10",
+                       "With --watch: seconds from one page to the next."),
+};
+
+const struct command report_command = {
+    .name = "report",
+    .group = "results",
+    .arguments = "STORE...",
+    .summary = "a page for a browser: inputs, spectra, seeds, runs, SQL",
+    .doc = "Writes one HTML file that needs no network and no server: what was asked and computed, by which program,\n"
+           "and what failed; maps of any result over the varied inputs, spectra, scatter over seeds and runs of the\n"
+           "points that you choose; a box for SQL. Of large stores it holds a part of the single runs and says which;\n"
+           "statistics are of all runs. Bodies are drawn for runs whose fields are kept. Several stores are compared.",
+    .examples = "clast report out.db\nclast report before.db after.db -o both.html\nclast report out.db --watch",
+    .minimum_arguments = 1,
+    .maximum_arguments = REPORT_STORES,
+    COMMAND_OPTIONS(struct options, option_rows),
+    .run = run,
+};

@@ -1,0 +1,121 @@
+/* What goes into a page: the stores' data, the names of their columns, and pictures of runs whose fields are kept. */
+#include "campaign/commands/report_make.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "analysis/report/page.h"
+#include "campaign/build_facts.h"
+#include "campaign/commands/picture_draw.h"
+#include "db/ask/page.h"
+#include "db/store/lock.h"
+#include "engine/atomic_file.h"
+#include "engine/outcome.h"
+
+enum { PICTURES = 24, PICTURE_WIDTH = 480, PICTURE_BYTES = 700000 /* of one page */ };
+
+struct making {
+  const struct report_choice *choice;
+  struct store *store;
+  struct ask_page *page;
+  size_t picture_bytes, not_drawn;
+};
+
+static status add_facts(struct making *making, const char *name, struct error *error) {
+  char now[32], refresh[32];
+  const time_t seconds = time(NULL);
+  strftime(now, sizeof now, "%Y-%m-%d %H:%M:%S UTC", gmtime(&seconds));
+  snprintf(refresh, sizeof refresh, "%lld", (long long)making->choice->refresh);
+  const char *facts[][2] = {{"store", name},
+                            {"made_at", now},
+                            {"program", "clast " BUILD_VERSION ", commit " BUILD_COMMIT},
+                            {"default_quantity", OUTCOME_DEFAULT},
+                            {"refresh", refresh}};
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < sizeof facts / sizeof facts[0]; i++)
+    code = ask_page_fact(making->page, facts[i][0], facts[i][1], error);
+  return code;
+}
+
+static status add_label(void *context, const char *column, struct error *error) {
+  struct making *making = context;
+  char label[CHART_OPTION_LABEL];
+  const status code = chart_option_axis(making->store, column, label, error);
+  return code ? code : ask_page_label(making->page, column, label, error);
+}
+
+/* Draws into a file beside the page. A fields file that is gone or damaged has no picture: the page says so. */
+static status add_picture(void *context, const struct ask_page_kept *run, struct error *error) {
+  struct making *making = context;
+  unsigned char *png = NULL;
+  size_t size = 0;
+  char path[4096];
+  if (making->picture_bytes >= PICTURE_BYTES)
+    return STATUS_OK;
+  snprintf(path, sizeof path, "%s.%ld.png", making->choice->output, (long)getpid());
+  status code = picture_draw(run->fields, path, &(struct picture_choice){.width = PICTURE_WIDTH}, NULL);
+  if (code) {
+    making->not_drawn++;
+    return STATUS_OK;
+  }
+  code = atomic_file_read(path, "picture", &png, &size, error);
+  unlink(path);
+  if (code == STATUS_OK && making->picture_bytes + size <= PICTURE_BYTES) {
+    making->picture_bytes += size;
+    code = ask_page_picture(making->page, run, png, size, error);
+  }
+  free(png);
+  return code;
+}
+
+static status add_store(struct making *making, const char *name, struct page_data *data, struct error *error) {
+  char not_drawn[32];
+  making->not_drawn = 0;
+  status code = store_open_reader(name, &making->store, error);
+  if (code)
+    return code;
+  code = ask_page_make(making->store, &making->page, error);
+  if (code == STATUS_OK)
+    code = add_facts(making, name, error);
+  if (code == STATUS_OK)
+    code = ask_page_columns(making->page, add_label, making, error);
+  if (code == STATUS_OK)
+    code = ask_page_kept(making->store, PICTURES, add_picture, making, error);
+  snprintf(not_drawn, sizeof not_drawn, "%zu", making->not_drawn);
+  if (code == STATUS_OK)
+    code = ask_page_fact(making->page, "pictures_not_drawn", not_drawn, error);
+  if (code == STATUS_OK)
+    code = ask_page_file(making->page, &data->bytes, &data->size, error);
+  ask_page_free(making->page);
+  making->page = NULL;
+  store_close(making->store, NULL);
+  return code;
+}
+
+status report_make(const struct report_choice *choice, size_t *size, struct error *error) {
+  struct making making = {.choice = choice};
+  struct page_data data[REPORT_STORES] = {{0}};
+  unsigned char *html = NULL;
+  size_t html_size = 0;
+  status code = page_empty(&html, &html_size, error);
+  if (code == STATUS_OK)
+    code = atomic_file_try(choice->output, "page", error);
+  for (size_t i = 0; code == STATUS_OK && i < choice->count; i++)
+    code = add_store(&making, choice->stores[i], &data[i], error);
+  if (code == STATUS_OK)
+    code = page_write(choice->output, html, html_size, choice->count, data, size, error);
+  for (size_t i = 0; i < choice->count; i++)
+    free(data[i].bytes);
+  free(html);
+  return code;
+}
+
+bool report_make_running(const struct report_choice *choice) {
+  bool running = false;
+  for (size_t i = 0; i < choice->count; i++)
+    running = running || lock_is_held(choice->stores[i]);
+  return running;
+}

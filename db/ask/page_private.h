@@ -1,0 +1,30 @@
+/* The open page. For db/ask/page*.c only. */
+#ifndef CLAST_DB_ASK_PAGE_PRIVATE_H
+#define CLAST_DB_ASK_PAGE_PRIVATE_H
+
+#include "db/ask/page.h"
+#include "db/sql.h"
+
+/* What a page holds at most, so that it stays small: with 10 000 runs it has to stay below 3 MB. */
+enum {
+  ASK_PAGE_RUNS = 10000,     /* single runs */
+  ASK_PAGE_VALUES = 150000,  /* results of single runs */
+  ASK_PAGE_MEANS = 40000,    /* rows of the table means */
+  ASK_PAGE_SPECTRUM = 20000, /* rows of the table spectra */
+  ASK_PAGE_ATTEMPTS = 500,   /* failed attempts, and failed runs */
+};
+
+struct ask_page {
+  sqlite3 *db; /* in memory */
+};
+
+/* Makes a table of the rows that a question to the store gives. Real numbers of columns that begin at `rounded` (from
+ * 0) are rounded to single precision: 7 digits, and they compress well. */
+enum { ASK_PAGE_EXACT = 1000 }; /* no column is rounded */
+status ask_page_copy(struct ask_page *page, struct store *store, const char *table, const char *sql, size_t rounded,
+                     struct error *error);
+
+/* Fills in `runs` and `means`. */
+status ask_page_runs(struct ask_page *page, struct store *store, struct error *error);
+
+#endif

@@ -1,0 +1,62 @@
+# The page of `clast report`: how it is made here, what it shows in report.py (headless Chromium; not under sanitizers,
+# where the page is the same).
+. "$(dirname "$0")/lib.bash"
+
+tiny small
+sed -i "s|^name: .*|name: \"</script><img src=x onerror=hacked=1>\\\\\"'\&<b>\"|" small.yaml
+expect 0 "$clast" run small.yaml -j 2 --quiet
+expect 0 "$clast" report small.db
+says "small.html written"
+[ "$(stat -c %s small.html)" -lt 1600000 ] || fail "a page of 12 runs is larger than 1.6 MB"
+grep -q '<img src=x' small.html && fail "a name of the store is HTML in the page"
+grep -qE '(src|href)="?(https?:)?//' small.html && fail "the page names a file of a network"
+grep -q "default-src 'none'" small.html || fail "the page has no security policy"
+ok "a small page of its own"
+
+expect 66 "$clast" report none.db
+expect 64 "$clast" report small.db -o small.db
+says "overwrite"
+expect 64 "$clast" report
+expect 74 "$clast" report small.db -o no/such/folder/page.html
+echo text >text.db
+expect 65 "$clast" report text.db
+[ ! -e text.html ] || fail "a page of no store was left behind"
+mkdir alone
+cp "$clast" alone/
+expect 66 alone/clast report small.db
+says "apt-get install nodejs npm"
+
+# A page that is made again while a campaign runs, and a last time when it ends.
+slow watched
+"$clast" run watched.yaml -j 1 --quiet >/dev/null 2>&1 &
+campaign=$!
+for _ in $(seq 100); do ! "$clast" status watched.db >/dev/null 2>&1 || break; sleep 0.05; done
+expect 0 "$clast" report watched.db --watch --every 1
+wait "$campaign" || fail "the watched campaign failed"
+[ "$(grep -c 'while the campaign runs' err)" -ge 1 ] || fail "the page was not made while the campaign ran"
+expect 0 "$clast" report watched.db -o last.html
+python - <<'PY'
+import base64, gzip, re, sqlite3
+def data(page):
+    (text,) = re.findall(r'class="store">([^<]*)<', open(page).read())
+    db = sqlite3.connect(':memory:')
+    db.deserialize(gzip.decompress(base64.b64decode(text)))
+    return db
+watched, last = data('watched.html'), data('last.html')
+for question in ("select count(*) from runs", "select value from fact where name = 'refresh'"):
+    a, b = (db.execute(question).fetchone() for db in (watched, last))
+    assert a == b, (question, a, b)
+PY
+ok "the page of a watched campaign ends with all its runs"
+
+if [ "$sanitized" -eq 0 ]; then
+  command -v chromium >/dev/null || fail "chromium is missing: ./setup.sh packages installs it"
+  tiny other "set: {body.diameter: 8 cm, charge.energy: 3 kJ/m, stop.end_time: 1 ms}"
+  sed -i '3d' other.yaml
+  expect 0 "$clast" run other.yaml -j 2 --quiet
+  python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db || fail "the page in a browser"
+  ok "the page in a browser"
+  done_after 14
+else
+  done_after 12
+fi
