@@ -309,7 +309,6 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   cease_time REAL, -- [s] Time when fracture ceased: damage has grown by less than stop.quiet_growth since. Off when fracture has not ceased.
   mean_damage REAL, -- [1] Mean damage D of the target at the end, weighted by mass.
   undamaged_fraction REAL, -- [1] Mass share of the target's particles with damage below fragments.damage. Particles that only the static strength breaks count as undamaged.
-  mean_distention REAL, -- [1] Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.
   largest_bare_fraction REAL, -- [1] M_1/M of the core: mass of the largest fragment without its damaged layer over the target's mass, with the static strength.
   largest_veneer_fraction REAL, -- [1] M_1/M: mass of the largest fragment with its damaged layer over the target's mass, with the static strength.
   largest_dynamic_fraction REAL, -- [1] M_1/M with the damaged layer and without the static strength.
@@ -324,10 +323,6 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
   crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
   crater_compaction_share REAL, -- [1] Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
-  compaction_mass_fraction REAL, -- [1] Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.
-  compaction_volume REAL, -- [m^3] Impact: volume that the retained matter lost as its pores closed; off without pores.
-  compaction_depth REAL, -- [m] Impact: depth at the start of the deepest compacted particle near the axis; off without pores.
-  compaction_reach REAL, -- [m] Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off without pores.
   energy_kinetic REAL, -- [J] Kinetic energy at the end.
   energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
   energy_damped REAL, -- [J] Energy that damped sides removed.
@@ -339,10 +334,10 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   angular_momentum_error REAL, -- [1] Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target's extent. Only axes count across which nothing is periodic.
   limited_courant REAL, -- [1] Share of the steps limited by the speed of sound and viscosity, or by a damped side.
   limited_force REAL, -- [1] Share of the steps limited by the acceleration.
-  limited_damage REAL, -- [1] Share of the steps limited by the growth of damage.
-  limited_distention REAL, -- [1] Share of the steps limited by the closing of pores.
   limited_energy REAL, -- [1] Share of the steps limited by the change of internal energy.
   limited_density REAL, -- [1] Share of the steps limited by the change of density.
+  limited_distention REAL, -- [1] Share of the steps limited by the closing of pores.
+  limited_damage REAL, -- [1] Share of the steps limited by the growth of damage.
   neighbours REAL, -- [1] Mean number of neighbours within 2h at the end.
   peak_stress REAL, -- [Pa] Stretch: largest mean axial stress between the grips.
   peak_strain REAL, -- [1] Stretch: strain (strain rate times time) at the largest stress.
@@ -350,18 +345,23 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   cracks REAL, -- [1] Stretch: number of parts of more than 1 % of the rod's mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.
   frequency REAL, -- [1/s] Vibration: frequency of the first mode, from its zero crossings.
   rebound REAL, -- [1] Collision: speed of separation of the bodies over their speed of approach.
-  shock_speed REAL, -- [m/s] Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.
+  shock_speed REAL, -- [m/s] Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.
   shock_speed_exact REAL, -- [m/s] Piston: speed of the shock by the jump conditions.
   shock_density REAL, -- [kg/m^3] Piston: mean density behind the shock, in the middle half between piston and shock.
   shock_density_exact REAL, -- [kg/m^3] Piston: density behind the shock by the jump conditions.
   shock_pressure REAL, -- [Pa] Piston: mean pressure behind the shock, in the same region.
   shock_pressure_exact REAL, -- [Pa] Piston: pressure behind the shock by the jump conditions.
-  shock_distention REAL, -- [1] Piston: mean distention behind the shock, in the same region; off without pores.
-  shock_distention_exact REAL, -- [1] Piston: distention behind the shock by the jump conditions and the crush curve.
-  precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.
+  precursor_speed REAL, -- [m/s] Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.
   precursor_speed_exact REAL, -- [m/s] Piston: speed of the precursor by the jump conditions.
   precursor_pressure REAL, -- [Pa] Piston: mean pressure between precursor and shock.
   precursor_pressure_exact REAL, -- [Pa] Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.
+  mean_distention REAL, -- [1] Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.
+  compaction_mass_fraction REAL, -- [1] Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or more to below 1.01. Off without pores.
+  compaction_volume REAL, -- [m^3] Impact: volume that the retained matter lost as its pores closed; off without pores.
+  compaction_depth REAL, -- [m] Impact: depth at the start of the deepest compacted particle near the axis; off without pores.
+  compaction_reach REAL, -- [m] Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off without pores.
+  shock_distention REAL, -- [1] Piston: mean distention behind the shock, in the same region; off without pores.
+  shock_distention_exact REAL, -- [1] Piston: distention behind the shock by the jump conditions and the crush curve.
   precursor_distention REAL, -- [1] Piston: mean distention between precursor and shock.
   precursor_distention_exact REAL -- [1] Piston: distention behind the precursor on the elastic branch.
 ) STRICT;
@@ -442,7 +442,6 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."cease_time",
   "result_sph"."mean_damage",
   "result_sph"."undamaged_fraction",
-  "result_sph"."mean_distention",
   "result_sph"."largest_bare_fraction",
   "result_sph"."largest_veneer_fraction",
   "result_sph"."largest_dynamic_fraction",
@@ -457,10 +456,6 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."crater_radius",
   "result_sph"."crater_volume",
   "result_sph"."crater_compaction_share",
-  "result_sph"."compaction_mass_fraction",
-  "result_sph"."compaction_volume",
-  "result_sph"."compaction_depth",
-  "result_sph"."compaction_reach",
   "result_sph"."energy_kinetic" AS "result_sph_energy_kinetic",
   "result_sph"."energy_internal",
   "result_sph"."energy_damped",
@@ -472,10 +467,10 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."angular_momentum_error",
   "result_sph"."limited_courant",
   "result_sph"."limited_force",
-  "result_sph"."limited_damage",
-  "result_sph"."limited_distention",
   "result_sph"."limited_energy",
   "result_sph"."limited_density",
+  "result_sph"."limited_distention",
+  "result_sph"."limited_damage",
   "result_sph"."neighbours",
   "result_sph"."peak_stress",
   "result_sph"."peak_strain",
@@ -489,12 +484,17 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   "result_sph"."shock_density_exact",
   "result_sph"."shock_pressure",
   "result_sph"."shock_pressure_exact",
-  "result_sph"."shock_distention",
-  "result_sph"."shock_distention_exact",
   "result_sph"."precursor_speed",
   "result_sph"."precursor_speed_exact",
   "result_sph"."precursor_pressure",
   "result_sph"."precursor_pressure_exact",
+  "result_sph"."mean_distention",
+  "result_sph"."compaction_mass_fraction",
+  "result_sph"."compaction_volume",
+  "result_sph"."compaction_depth",
+  "result_sph"."compaction_reach",
+  "result_sph"."shock_distention",
+  "result_sph"."shock_distention_exact",
   "result_sph"."precursor_distention",
   "result_sph"."precursor_distention_exact",
   lower(hex(r.identity)) AS identity
@@ -1156,7 +1156,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure', 'Pa', 'Piston
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 1);
 
@@ -1184,7 +1184,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure', 'Pa', 'Piston: me
 
 INSERT INTO column_doc VALUES ('result_sph', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 1);
 
@@ -1444,7 +1444,7 @@ INSERT INTO column_doc VALUES ('runs', 'precursor_pressure', 'Pa', 'Piston: mean
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_pressure_exact', 'Pa', 'Piston: exact pressure behind the precursor: P_e, or less when the piston is slow.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and when the shock is faster.', 0);
+INSERT INTO column_doc VALUES ('runs', 'precursor_speed', 'm/s', 'Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there is none, and when the shock is faster.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'precursor_speed_exact', 'm/s', 'Piston: speed of the precursor by the jump conditions.', 0);
 
@@ -1498,7 +1498,7 @@ INSERT INTO column_doc VALUES ('runs', 'shock_pressure', 'Pa', 'Piston: mean pre
 
 INSERT INTO column_doc VALUES ('runs', 'shock_pressure_exact', 'Pa', 'Piston: pressure behind the shock by the jump conditions.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 0);
+INSERT INTO column_doc VALUES ('runs', 'shock_speed', 'm/s', 'Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. The front is where density passes the mean of the values ahead and behind. Off when the piston is too slow for a shock.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'shock_speed_exact', 'm/s', 'Piston: speed of the shock by the jump conditions.', 0);
 

@@ -1,5 +1,5 @@
 /* The law of damage of one particle in plain C, from the flaws as they were drawn: what the engine's loops
- * (fracture_loop.h) must give. */
+ * (fracture.h) must give. */
 #ifndef CLAST_TESTS_GRADY_KIPP_H
 #define CLAST_TESTS_GRADY_KIPP_H
 

@@ -3,7 +3,7 @@
  * middle. */
 #include "engine/sph/body/flaws.h"
 #include "engine/sph/material/derived.h"
-#include "engine/sph/modules/crack_front.h"
+#include "engine/sph/modules/crack_front_links.h"
 #include "engine/sph/step/system_layout.h"
 #include "tests/support/sph_solid.h"
 

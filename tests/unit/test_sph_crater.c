@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "engine/sph/modules/palpha_results.h"
 #include "engine/sph/observe/crater.h"
 
 enum { SIDE = 60, HIGH = 30 };
@@ -35,14 +36,20 @@ static void near(double got, double want, double relative, const char *what) {
 static const struct sph_crater_options options = {.count = SIDE * SIDE * HIGH,
                                                   .mass = SIDE * SIDE * HIGH * 1e-6,
                                                   .spacing = 1e-3,
-                                                  .ejection_speed = 5,
-                                                  .distention = 2};
+                                                  .ejection_speed = 5};
+
+/* Crater, ejecta and what closed pores left, in matter of distention `initial` at the start. */
+static void measure(const struct sph_particles *start, const struct sph_particles *now,
+                    const struct sph_crater_options *o, double initial, struct sph_results *results) {
+  assert_int_equal(sph_crater_measure(start, now, o, results, NULL), STATUS_OK);
+  sph_palpha_results_compaction(start, now, o, initial, results);
+}
 
 static void untouched(void **state) {
   (void)state;
   struct sph_particles *p = slab();
   struct sph_results c = {0};
-  assert_int_equal(sph_crater_measure(p, p, &options, &c, NULL), STATUS_OK);
+  measure(p, p, &options, 2, &c);
   assert_true(c.crater.volume == 0 && c.crater.depth == 0 && c.crater.radius == 0 && c.ejecta.mass_fraction == 0 &&
               c.compaction.volume == 0 && c.compaction.mass_fraction == 0);
   sph_particles_free(p);
@@ -64,7 +71,7 @@ static void thrown_out(void **state) {
       now->z[i] -= 10e-3; /* a pit far from the axis */
   }
   struct sph_results c = {0};
-  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  measure(start, now, &options, 2, &c);
   near(c.ejecta.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "ejected mass");
   near(c.ejecta.momentum, (double)count * 20e-6, 1e-12, "ejected momentum");
   /* columns of two spacings, highest particle of each: the edge is blurred by a column, and shallow rims are not seen
@@ -75,7 +82,7 @@ static void thrown_out(void **state) {
   assert_true(c.compaction.volume == 0);
   assert_true(c.crater.compaction_share == 0);
   now->rest_distention[0] = 1; /* half a cubic millimetre of pores, against the ejecta's volume */
-  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  measure(start, now, &options, 2, &c);
   near(c.crater.compaction_share, 0.5 / (0.5 + (double)count), 1e-12, "share of compaction, with the ejecta's volume");
   sph_particles_free(start);
   sph_particles_free(now);
@@ -94,7 +101,7 @@ static void compacted(void **state) {
       count++;
     }
   struct sph_results c = {0};
-  assert_int_equal(sph_crater_measure(start, now, &options, &c, NULL), STATUS_OK);
+  measure(start, now, &options, 2, &c);
   assert_true(c.ejecta.mass_fraction == 0);
   near(c.compaction.mass_fraction * options.mass, (double)count * 1e-6, 1e-12, "compacted mass");
   near(c.compaction.volume, (double)count * 0.5e-9, 1e-12, "closed pores");
@@ -130,7 +137,7 @@ static void nothing_left(void **state) {
   struct sph_crater_options ball = options;
   struct sph_results c = {0};
   ball.count = n;
-  assert_int_equal(sph_crater_measure(start, now, &ball, &c, NULL), STATUS_OK);
+  measure(start, now, &ball, 2, &c);
   near(c.crater.volume, (double)n * 1e-9, 0.15,
        "volume"); /* columns as above: their corners are wider than the ball, their ends half a layer shorter */
   near(c.crater.radius, radius, 0.1, "radius");
@@ -145,10 +152,8 @@ static void hardly_porous(void **state) {
   struct sph_particles *start = slab(), *now = slab();
   for (size_t i = 0; i < now->n; i++)
     start->distention[i] = start->rest_distention[i] = 1.005, now->rest_distention[i] = i ? 1.0049 : 1;
-  struct sph_crater_options few = options;
   struct sph_results c = {0};
-  few.distention = 1.005;
-  assert_int_equal(sph_crater_measure(start, now, &few, &c, NULL), STATUS_OK);
+  measure(start, now, &options, 1.005, &c);
   assert_true(c.compaction.mass_fraction == 0 && c.compaction.depth == 0 && c.compaction.volume > 0);
   sph_particles_free(start);
   sph_particles_free(now);

@@ -27,14 +27,19 @@ static struct sph_particles *make(const struct sph_body *body, int arrays, struc
   return p;
 }
 
+static struct sph_flaws *place(const struct sph_flaw_law *law, const struct sph_body *body,
+                               const struct sph_particles *p, struct sph_range range, const struct sph_middle *middle) {
+  struct sph_flaws *flaws = NULL;
+  struct error error = {0};
+  if (sph_flaws_place(law, &body->shape, p, range, middle, &flaws, &error))
+    fail_msg("%s", error.message);
+  return flaws;
+}
+
 static struct sph_flaws *flaws_of(const struct sph_body *body, const struct sph_particles *p, struct sph_range range,
                                   int draw, uint64_t seed, const struct sph_middle *middle) {
   const struct sph_flaw_law law = {.weibull = {8.5, 5e34}, .draw = draw, .seed = seed};
-  struct sph_flaws *flaws = NULL;
-  struct error error = {0};
-  if (sph_flaws_place(&law, &body->shape, p, range, middle, &flaws, &error))
-    fail_msg("%s", error.message);
-  return flaws;
+  return place(&law, body, p, range, middle);
 }
 
 static size_t brute(size_t n, const double *x, const double *y, const double *z, const double q[3], size_t self) {
@@ -197,13 +202,15 @@ static void the_weakest_scatters_by_the_law(void **state) {
   (void)state;
   const struct sph_body body = sphere(8);
   struct sph_range range;
-  struct sph_particles *p = make(&body, SPH_WITH_DISTENTION, &range);
-  for (size_t i = 0; i < p->n; i++)
-    p->distention[i] = 2;
+  struct sph_particles *p = make(&body, 0, &range);
   const int seeds = 3000;
   double sum = 0, squares = 0;
   for (int seed = 0; seed < seeds; seed++) {
-    struct sph_flaws *flaws = flaws_of(&body, p, range, SPH_FLAWS_POISSON, (uint64_t)seed, NULL);
+    const struct sph_flaw_law law = {.weibull = {8.5, 5e34},
+                                     .solid_ratio = 2,
+                                     .draw = SPH_FLAWS_POISSON,
+                                     .seed = (uint64_t)seed};
+    struct sph_flaws *flaws = place(&law, &body, p, range, NULL);
     double least = HUGE_VAL;
     for (size_t f = 0; f < flaws->count; f++)
       least = fmin(least, flaws->log_strain[f]);

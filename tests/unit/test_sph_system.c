@@ -68,7 +68,7 @@ static void see_sums(struct sph_system *s, const struct sph_solid *body, struct 
   }
 }
 
-/* Every limit of the step as motion_loop.h says it, from the columns, while a blow goes on; the step is the least of
+/* Every limit of the step as motion.h says it, from the columns, while a blow goes on; the step is the least of
  * them. */
 static void limits_by_hand(void **state) {
   (void)state;

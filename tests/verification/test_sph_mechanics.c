@@ -9,9 +9,11 @@
 
 #include "engine/random.h"
 #include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/range_tools.h"
 #include "engine/sph/step/system_layout.h"
 /* the loops themselves, for their formulas (this build's own CPU class) */
-#include "engine/sph/modules/fracture_loop.h"
+#define SPH_MODULE_LOOPS
+#include "engine/sph/modules/declarations.h"
 
 static const double spacing = 1e-3;
 

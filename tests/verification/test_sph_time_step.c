@@ -1,6 +1,6 @@
 /* Results with fracture at the default time step against those at a tenth of it, seed by seed. Before results_version 6
  * an explicit step of damage went past the state in which pressure shuts the flaws, and ejecta were off by -30 to +40 %
- * (fracture_loop.h says how damage is advanced now).
+ * (fracture.h says how damage is advanced now).
  *
  * Quick: two scenes, small bodies. CLAST_FULL=1: the six scenes of sph_time_step.md, and steps between. */
 #include "analysis/statistics/sample.h"

@@ -22,7 +22,7 @@
 struct sph_body {
   struct sph_shape shape;
   struct sph_lattice lattice;
-  double density;        /* kg/m^3, bulk (with pores) */
+  double density;        /* kg/m^3, bulk */
   double h_over_spacing; /* NaN: SPH_BODIES_H */
 };
 

@@ -261,7 +261,7 @@ status sph_flaws_place(const struct sph_flaw_law *law, const struct sph_shape *s
   if (code)
     goto cleanup;
   const size_t n = owners.cells ? owners.cells->count : range.n;
-  full.volume = sph_shape_volume(shape) / (p->distention ? p->distention[range.first] : 1);
+  full.volume = sph_shape_volume(shape) / (law->solid_ratio > 0 ? law->solid_ratio : 1);
   full.number = (uint64_t)ceil((double)n * (log((double)n) + 0.5772156649015329));
   full.exempt = owners.cells ? owners.ends_cells : owners.ends;
   full.share = owners.share;

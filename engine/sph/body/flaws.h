@@ -24,8 +24,9 @@ enum sph_flaw_draw { SPH_FLAWS_RANKED, SPH_FLAWS_POISSON };
 
 struct sph_flaw_law {
   struct sph_weibull weibull;
-  double volume; /* m^3, of solid matter */
-  int draw;      /* enum sph_flaw_draw */
+  double volume;      /* m^3, of solid matter */
+  double solid_ratio; /* sph_flaws_place: density of the solid over that of the body; 0: 1 */
+  int draw;           /* enum sph_flaw_draw */
   uint64_t seed;
   uint64_t body; /* bodies of one seed have different flaws */
   /* 0: draw until every particle has a flaw. Else, for bodies whose particles differ much in size, the number of flaws
@@ -60,7 +61,7 @@ status sph_flaws_make(const struct sph_flaw_law *law, size_t n, sph_flaws_owner 
 void sph_flaws_free(struct sph_flaws *flaws); /* NULL is fine */
 
 /* The flaws of a body. Their points are uniform in the shape; each flaw belongs to the nearest particle (of two, to
- * that with the lower id). law->volume is not used: V is the shape's volume over the particles' distention. With
+ * that with the lower id). law->volume is not used: V is the shape's volume over law->solid_ratio. With
  * `middle` (NULL: whole body), flaws in the ends are dropped and particles there have none.
  *
  * n (ln n + 0.5772) flaws are drawn, as many as equal cells need on average until each has one; law->number says what a

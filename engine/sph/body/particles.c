@@ -19,31 +19,31 @@ size_t sph_particles_memory(void) {
 static const struct {
   size_t offset;
   int array;
+  double initial;
 } columns[] = {
-#define COLUMN(member, array)                                                                                          \
-  { offsetof(struct sph_particles, member), array }
-    COLUMN(x, 0),
-    COLUMN(y, 0),
-    COLUMN(z, 0),
-    COLUMN(vx, 0),
-    COLUMN(vy, 0),
-    COLUMN(vz, 0),
-    COLUMN(mass, 0),
-    COLUMN(density, 0),
-    COLUMN(energy, 0),
-    COLUMN(h, 0),
-    COLUMN(pressure, 0),
-    COLUMN(stress[0], SPH_WITH_STRESS),
-    COLUMN(stress[1], SPH_WITH_STRESS),
-    COLUMN(stress[2], SPH_WITH_STRESS),
-    COLUMN(stress[3], SPH_WITH_STRESS),
-    COLUMN(stress[4], SPH_WITH_STRESS),
-    COLUMN(stress[5], SPH_WITH_STRESS),
-    COLUMN(damage_cbrt, SPH_WITH_DAMAGE),
-    COLUMN(damping, SPH_WITH_DAMPING),
-    COLUMN(distention, SPH_WITH_DISTENTION),
-    COLUMN(rest_distention, SPH_WITH_DISTENTION),
-#undef COLUMN
+#define ARRAY(member, array)                                                                                           \
+  { offsetof(struct sph_particles, member), array, 0 }
+    ARRAY(x, 0),
+    ARRAY(y, 0),
+    ARRAY(z, 0),
+    ARRAY(vx, 0),
+    ARRAY(vy, 0),
+    ARRAY(vz, 0),
+    ARRAY(mass, 0),
+    ARRAY(density, 0),
+    ARRAY(energy, 0),
+    ARRAY(h, 0),
+    ARRAY(pressure, 0),
+    ARRAY(stress[0], SPH_WITH_STRESS),
+    ARRAY(stress[1], SPH_WITH_STRESS),
+    ARRAY(stress[2], SPH_WITH_STRESS),
+    ARRAY(stress[3], SPH_WITH_STRESS),
+    ARRAY(stress[4], SPH_WITH_STRESS),
+    ARRAY(stress[5], SPH_WITH_STRESS),
+    ARRAY(damage_cbrt, SPH_WITH_DAMAGE),
+    ARRAY(damping, SPH_WITH_DAMPING),
+#define PARTICLE_COLUMN(FLAG, member, absent, ...) {offsetof(struct sph_particles, member), SPH_WITH_##FLAG, absent},
+#include "engine/sph/modules/declarations.h"
 };
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
@@ -59,6 +59,8 @@ static bool allocate(struct sph_particles *p, int arrays) {
     *column_of(p, k) = calloc(n, sizeof(double));
     if (!*column_of(p, k))
       return false;
+    for (size_t i = 0; columns[k].initial != 0 && i < n; i++)
+      (*column_of(p, k))[i] = columns[k].initial;
   }
   p->body = calloc(n, 1);
   p->held = arrays & SPH_WITH_HELD ? calloc(n, 1) : NULL;
@@ -80,10 +82,6 @@ status sph_particles_make(size_t n, int arrays, struct sph_particles **out, stru
   if (!p || !allocate(p, arrays)) {
     sph_particles_free(p);
     return status_fail(error, STATUS_MEMORY, "no memory for %zu particles", n);
-  }
-  for (size_t i = 0; p->distention && i < n; i++) {
-    p->distention[i] = 1;
-    p->rest_distention[i] = 1;
   }
   *out = p;
   return STATUS_OK;

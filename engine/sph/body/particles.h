@@ -14,12 +14,19 @@ enum sph_freedom { /* bits of `held` */
                    SPH_HELD_Z = 4, /* keeps its velocity whatever the forces are (grips, pistons) */
 };
 
+enum sph_array { /* what modules declare has its flag behind these four */
+                 SPH_ARRAYS_OF_ALL = 3,
+#define PARTICLE_ARRAYS(FLAG, column) SPH_ARRAY_##FLAG,
+#include "engine/sph/modules/declarations.h"
+};
+
 enum sph_particle_arrays { /* which of the optional arrays exist */
                            SPH_WITH_STRESS = 1,
                            SPH_WITH_DAMAGE = 2,
                            SPH_WITH_HELD = 4,
                            SPH_WITH_DAMPING = 8,
-                           SPH_WITH_DISTENTION = 16,
+#define PARTICLE_ARRAYS(FLAG, column) SPH_WITH_##FLAG = 1 << SPH_ARRAY_##FLAG,
+#include "engine/sph/modules/declarations.h"
 };
 
 struct sph_particles {
@@ -27,18 +34,18 @@ struct sph_particles {
   double *x, *y, *z;    /* m */
   double *vx, *vy, *vz; /* m/s */
   double *mass;         /* kg */
-  double *density;      /* kg/m^3, bulk (with pores) */
+  double *density;      /* kg/m^3, bulk */
   double *energy;       /* J/kg, specific internal */
   double *h;            /* m, smoothing length; support is 2h */
   double *pressure;     /* Pa, undamaged, bulk; filled when read back */
   uint8_t *body;        /* 0 target, 1 projectile, ...: index into the bodies given to sph_system_create; ascending */
   /* optional */
-  double *stress[6];       /* Pa, deviatoric xx xy xz yy yz zz, undamaged, bulk */
-  double *damage_cbrt;     /* D^(1/3), tension and compaction together */
-  uint8_t *held;           /* enum sph_freedom bits */
-  double *damping;         /* 1/s: dv/dt = -damping v, for far sides that waves leave by */
-  double *distention;      /* alpha = rho_s/rho >= 1 */
-  double *rest_distention; /* alpha after unloading to P = 0 (palpha.h); filled when read back */
+  double *stress[6];   /* Pa, deviatoric xx xy xz yy yz zz, undamaged, bulk */
+  double *damage_cbrt; /* D^(1/3), tension and compaction together */
+  uint8_t *held;       /* enum sph_freedom bits */
+  double *damping;     /* 1/s: dv/dt = -damping v, for far sides that waves leave by */
+#define PARTICLE_COLUMN(FLAG, member, ...) double *member;
+#include "engine/sph/modules/declarations.h"
 };
 
 /* D of particle i; 0 without damage. */
@@ -48,7 +55,7 @@ static inline double sph_particles_damage(const struct sph_particles *p, size_t 
 }
 
 /* Allocates the arrays for n particles; `arrays` are the flags of enum sph_particle_arrays. All are zero, but
- * distentions are 1. STATUS_MEMORY. */
+ * columns of modules have their `absent` value. STATUS_MEMORY. */
 status sph_particles_make(size_t n, int arrays, struct sph_particles **out, struct error *error);
 void sph_particles_free(struct sph_particles *particles); /* NULL is fine */
 

@@ -21,19 +21,19 @@ double sph_derived_crack_speed(const struct sph_material *m) {
   return 0.4 * sqrt((sph_derived_bulk_modulus(m) + 4 * m->shear_modulus / 3) / m->density);
 }
 
-bool sph_derived_porous(const struct sph_material *m) {
-  return m->porosity.curve != SPH_CRUSH_NONE && m->porosity.distention > 1;
+double sph_derived_solid_ratio(const struct sph_material *m) {
+  return m->porosity.curve != SPH_CRUSH_NONE && m->porosity.distention > 1 ? m->porosity.distention : 1;
 }
 
 double sph_derived_bulk_density(const struct sph_material *m) {
-  return sph_derived_porous(m) ? m->density / m->porosity.distention : m->density;
+  return m->density / sph_derived_solid_ratio(m);
 }
 
 /* The pressure responds with A, even where K is given. */
 double sph_derived_longitudinal_speed(const struct sph_material *m, bool strength) {
   const double shear2 = strength ? 4.0 / 3 * m->shear_modulus / m->density : 0;
   double bulk2 = m->tillotson.A / m->density;
-  if (sph_derived_porous(m) && !isnan(m->porosity.sound_speed))
+  if (sph_derived_solid_ratio(m) > 1 && !isnan(m->porosity.sound_speed))
     bulk2 = m->porosity.sound_speed * m->porosity.sound_speed;
   return sqrt(bulk2 + shear2);
 }

@@ -10,8 +10,8 @@ double sph_derived_bulk_modulus(const struct sph_material *material);  /* Pa, K;
 double sph_derived_young_modulus(const struct sph_material *material); /* Pa, 9 K mu/(3 K + mu) */
 double sph_derived_poisson_ratio(const struct sph_material *material);
 double sph_derived_crack_speed(const struct sph_material *material);  /* m/s, c_g = 0.4 sqrt((K + 4 mu/3)/rho_0) */
-bool sph_derived_porous(const struct sph_material *material);         /* a crush curve and a distention above 1 */
-double sph_derived_bulk_density(const struct sph_material *material); /* kg/m^3 of a body at rest, pores included */
+double sph_derived_solid_ratio(const struct sph_material *material);  /* density of the solid over that of the body */
+double sph_derived_bulk_density(const struct sph_material *material); /* kg/m^3 of a body at rest */
 /* m/s, longitudinal, of a body at rest. */
 double sph_derived_longitudinal_speed(const struct sph_material *material, bool strength);
 

@@ -9,7 +9,7 @@
 #include "schemas/text.h"
 
 /* What may be off is off unless given; what else has no default must be given. */
-#define REAL(member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                                      \
+#define MATERIAL_CHOICE_VALUE(member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                     \
   {.path = #member_,                                                                                                   \
    .kind = FIELD_REAL,                                                                                                 \
    .unit = unit_,                                                                                                      \
@@ -21,9 +21,9 @@
    .when = when_,                                                                                                      \
    .doc = doc_,                                                                                                        \
    .source = source_},
-#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                               \
-  REAL(member_, unit_, NAN, low_, high_, flags_, NULL, doc_, source_)
-#define CHOICE(member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)                                   \
+#define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_)                                      \
+  MATERIAL_CHOICE_VALUE(member_, unit_, NAN, low_, high_, flags_, NULL, doc_, source_)
+#define MATERIAL_CHOICE(member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)                          \
   {.path = #member_,                                                                                                   \
    .kind = FIELD_CHOICE,                                                                                               \
    .offset = offsetof(struct sph_material, member_),                                                                   \
@@ -33,11 +33,20 @@
    .doc = doc_,                                                                                                        \
    .source = source_},
 
-static const struct field rows[] = {SPH_MATERIAL_ROWS(VALUE, CHOICE, REAL)};
+static const struct field rows[] = {SPH_MATERIAL_COMMON(MATERIAL_VALUE)
+#include "engine/sph/modules/declarations.h"
+};
 
 const struct field_table
     sph_materials_table = FIELD_TABLE(rows, struct sph_material, "sph material",
                                       "The values of a solid that the scene's physics may ask for.");
+
+size_t sph_materials_row(size_t offset) {
+  size_t row = 0;
+  while (rows[row].offset != offset)
+    row++;
+  return row;
+}
 
 size_t sph_materials_count(void) {
   size_t count = 0;

@@ -9,6 +9,8 @@
 
 extern const struct field_table sph_materials_table; /* describes struct sph_material */
 
+/* The row of a member of struct sph_material, by its offset. */
+size_t sph_materials_row(size_t offset);
 size_t sph_materials_count(void);
 const char *sph_materials_name(size_t index);     /* sorted; NULL beyond the last */
 const char *sph_materials_text(const char *name); /* the document, or NULL */

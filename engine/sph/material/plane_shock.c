@@ -62,7 +62,7 @@ static struct sph_front front_of(const struct matter *m, const struct sph_front 
 status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error) {
   static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};
-  const bool porous = sph_derived_porous(material);
+  const bool porous = sph_derived_solid_ratio(material) > 1;
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
   status code = porous ? sph_palpha_prepare(&material->porosity, material, &law, error) : STATUS_OK;
@@ -93,4 +93,16 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
     return status_fail(error, STATUS_CONTENT,
                        "no shock wave in this matter moves it at %.6g m/s: give another piston.speed", piston);
   return STATUS_OK;
+}
+
+static void describe_front(const char *name, const struct sph_front *f, FILE *out) {
+  fprintf(out, "  exact %s: %.6g m/s; behind it %.4g Pa, %.6g kg/m^3, distention %.6g, matter at %.4g m/s\n", name,
+          f->speed, f->pressure, f->density, f->distention, f->velocity);
+}
+
+void sph_plane_shock_describe(const struct sph_plane_shock *shock, FILE *out) {
+  if (shock->has_precursor)
+    describe_front("elastic precursor", &shock->precursor, out);
+  if (shock->has_shock)
+    describe_front("shock", &shock->shock, out);
 }

@@ -16,6 +16,7 @@
 #define CLAST_ENGINE_SPH_MATERIAL_PLANE_SHOCK_H
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "engine/sph/material/material.h"
 #include "schemas/status.h"
@@ -35,5 +36,7 @@ struct sph_plane_shock {
 /* STATUS_CONTENT: values that make no law, or a piston so fast or slow that no pressure up to 1e16 Pa stops it. */
 status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error);
+/* The fronts that there are, a line each. */
+void sph_plane_shock_describe(const struct sph_plane_shock *shock, FILE *out);
 
 #endif

@@ -8,14 +8,14 @@
  * and so the damage. Motion is as finely resolved as before. Strength depends on the width of the cells, which is a
  * length of the rock, not of the method (tests/validation/crack_cell.md).
  *
- * Where pores close, too (palpha), the bound that pressure sets to D depends on all damage of a particle, so that D by
- * flaws may differ a little within a cell. */
+ * Where another module damages the body, too, the bound that pressure sets to D depends on all damage of a particle, so
+ * that D by flaws may differ a little within a cell. */
 #include <math.h>
 #include <stdlib.h>
 
 #include "engine/sph/material/derived.h"
 #include "engine/sph/modules/ranges.h"
-#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/weibull_lists.h"
 
 enum { BYTES_EACH = 12 };
 

@@ -1,4 +1,4 @@
-/* Cracks that run on beyond the particle of their flaw (crack_front_loop.h has the equations).
+/* Cracks that run on beyond the particle of their flaw (crack_front.h has the equations).
  *
  *   fracture.front         plane turns the module on
  *   fracture.front_arrest  least tension before a front, over that which opens its flaw
@@ -9,7 +9,7 @@
  *
  * Neighbours are those of the body at the start: a front runs through rock that is still one piece. It does not cross
  * the periodic sides of a box. */
-#include "engine/sph/modules/crack_front.h"
+#include "engine/sph/modules/crack_front_links.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Deviatoric stress of a solid: Hooke's law in a turning frame, up to the yield limit (elastic_loop.h).
+/* Deviatoric stress of a solid: Hooke's law in a turning frame, up to the yield limit (elastic.h).
  *
  *   material.shear_modulus   mu: needed
  *   material.yield_stress    needed, may be off (the body never yields); the laws of yield read it

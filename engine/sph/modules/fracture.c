@@ -1,4 +1,5 @@
-/* Damage that grows from open flaws (material/fracture.h has the law, fracture_loop.h the loops, weibull.c the flaws).
+/* Damage that grows from open flaws (material/fracture.h has the law, modules/fracture.h the loops, weibull.c the
+ * flaws).
  *
  *   fracture.growth, fracture.cap   rate and largest damage with n open flaws
  *   fracture.crack_radius           R_s of the rate c_g/R_s
@@ -7,7 +8,7 @@
 
 #include "engine/sph/material/derived.h"
 #include "engine/sph/modules/ranges.h"
-#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/weibull_lists.h"
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
   (void)inputs;

@@ -1,5 +1,6 @@
 /* The modules of the solid, in the order in which they act within a stage. This is the only list of them: the
- * descriptors (modules.c) and the loops of every CPU class (ranges_body.h, which defines SPH_MODULE_LOOPS) follow.
+ * descriptors (modules.c), the loops of every CPU class (ranges_body.h) and what modules declare (declarations.h)
+ * follow.
  *
  *   elastic             first, because the others act on its stress
  *   tillotson, palpha   the last of them that is on sets the pressure
@@ -10,18 +11,29 @@
  *   crack_front         after fracture, whose thresholds, rates and caps it changes for the next step
  *   the rest            options of the pair loop, without loops here
  *
- * To add a module: NAME.c with its descriptor, NAME_loop.h with its loops, and a line in each of the two lists below.
- * Values that it needs of a material are rows of material/material.h. */
-#ifdef SPH_MODULE_LOOPS
+ * motion.h is no module: it has what every body has.
+ *
+ * To add a module: NAME.c with its descriptor, NAME.h with what it declares and its loops, and a line in each of the
+ * two lists below. */
+#ifdef SPH_MODULE_DECLARATIONS
 
-#include "engine/sph/modules/crack_front_loop.h"
-#include "engine/sph/modules/elastic_loop.h"
-#include "engine/sph/modules/fracture_loop.h"
-#include "engine/sph/modules/palpha_loop.h"
-#include "engine/sph/modules/pressure_strength_loop.h"
-#include "engine/sph/modules/tension_limit_loop.h"
-#include "engine/sph/modules/tillotson_loop.h"
-#include "engine/sph/modules/yield_loop.h"
+/* The order of rows and columns. */
+/* clang-format off */
+#include "engine/sph/modules/motion.h"
+#include "engine/sph/modules/elastic.h"
+#include "engine/sph/modules/tillotson.h"
+#include "engine/sph/modules/palpha.h"
+#include "engine/sph/modules/yield.h"
+#include "engine/sph/modules/pressure_strength.h"
+#include "engine/sph/modules/tension_limit.h"
+#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/fracture.h"
+#include "engine/sph/modules/crack_cell.h"
+#include "engine/sph/modules/crack_front.h"
+#include "engine/sph/modules/viscosity.h"
+#include "engine/sph/modules/artificial_stress.h"
+#include "engine/sph/modules/gradient_correction.h"
+/* clang-format on */
 
 #else
 

@@ -1,6 +1,7 @@
 /* Which modules a body has, and what they need. */
 #include "engine/sph/modules/modules.h"
 
+#include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
 
@@ -44,6 +45,21 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs) {
   const struct sph_body_physics physics = sph_derived_physics(body, NULL);
   return !(sph_modules_columns(sph_modules_of(&physics, inputs), &physics) >> SPH_COLUMN(shear_damage) & 1);
+}
+
+void sph_modules_complete_material(struct sph_material *material, const bool *given) {
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (list[m]->complete_material)
+      list[m]->complete_material(material, given);
+}
+
+void sph_modules_report(const struct sph_run *run, struct sph_results *results) {
+  uint64_t modules = 0;
+  for (size_t b = 0; b < run->system->body_count; b++)
+    modules |= run->system->solid[b].modules;
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (modules >> m & 1 && list[m]->report)
+      list[m]->report(run, results);
 }
 
 size_t sph_modules_bytes_in_pairs(uint64_t modules) {

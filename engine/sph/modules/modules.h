@@ -1,11 +1,11 @@
 /* Physics modules of the solid, as descriptors. Off means absent: the loops of a module run only on bodies that have
  * it, and columns that no body needs are not allocated. The scene decides which modules a body has.
  *
- * A module owns its physics: NAME.c has its description, columns, checks and what it prepares, NAME_loop.h its loops
- * over particles, compiled once per CPU class (ranges.h). It acts on other modules only through columns and through
- * struct sph_terms (system_layout.h), never by a flag inside their loops:
- *   solid_density  density of the solid matter, which the equation of state publishes
- *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
+ * A module owns its physics: NAME.c has its description, checks, what it prepares and reports; NAME.h has what it
+ * declares (inputs, values of a material, columns, results: declarations.h), and its loops over particles, compiled
+ * once per CPU class (ranges.h). It acts on other modules only through columns and through struct sph_terms
+ * (system_layout.h), never by a flag inside their loops: solid_density  density of the solid matter, which the equation
+ * of state publishes yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
  *   crack_stress, crack_pressure   the stress that opens flaws, where it is not the particle's own
@@ -49,6 +49,8 @@ struct sph_column_need {
 };
 
 struct sph_particles;
+struct sph_results;
+struct sph_run;
 struct sph_solid;
 
 struct sph_module {
@@ -82,6 +84,11 @@ struct sph_module {
   void (*meet)(struct sph_system *system, const struct sph_solid *body);
   /* Initial values of the body's columns. */
   void (*fill)(struct sph_system *system, const struct sph_solid *body, const struct sph_particles *particles);
+  /* Values of a material that follow from others: `given` says of each row of sph_materials_table whether the scene
+   * gives it. Whether or not the module is on. */
+  void (*complete_material)(struct sph_material *material, const bool *given);
+  /* Its results, when the other ones are filled; in runs with a body that has the module. */
+  void (*report)(const struct sph_run *run, struct sph_results *results);
 };
 
 #define SPH_MODULE_EXTERN(name) extern const struct sph_module sph_##name##_module;
@@ -98,6 +105,9 @@ void sph_modules_set_up(const struct sph_body_physics *body, const struct sph_in
 /* Does damage scale the deviator of a body by 1 - D? Not where a module publishes the damage that does (shear_damage).
  */
 bool sph_modules_damage_scales_shear(const struct sph_body_inputs *body, const struct sph_inputs *inputs);
+/* complete_material of all modules; `report` of those that a body of the run has. */
+void sph_modules_complete_material(struct sph_material *material, const bool *given);
+void sph_modules_report(const struct sph_run *run, struct sph_results *results);
 /* Bytes per particle that they link (sph_module.bytes_linked). */
 size_t sph_modules_bytes_linked(uint64_t modules);
 /* Bytes per particle that they add to the pair loop's records. */

@@ -1,5 +1,5 @@
 /* Pores far below the resolution as one number per particle, the distention alpha (material/palpha.h has the law and
- * its equations, palpha_loop.h the loops).
+ * its equations, modules/palpha.h the loops, palpha_results.c the results).
  *
  *   material.porosity.*        the crush curve and the elastic branch; curve: none and distention 1 are a solid
  *   fidelity.distention_step   largest change of alpha in a step
@@ -10,8 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/sph/material/materials.h"
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/material/tillotson.h"
+#include "engine/sph/modules/palpha_results.h"
 #include "engine/sph/modules/ranges.h"
 
 static bool on(const struct sph_body_physics *body, const struct sph_inputs *inputs) {
@@ -30,6 +32,16 @@ static status check_material(const struct sph_material *m, struct error *error) 
                        "porosity: distention %.9g is a fraction of %.9g, but fraction is %.9g: give one of the two",
                        p->distention, 1 - 1 / p->distention, p->fraction);
   return p->distention > 1 ? sph_palpha_prepare(p, m, &law, error) : STATUS_OK;
+}
+
+/* By whichever of its two names the porosity was given; the material's own distention otherwise. */
+static void complete_material(struct sph_material *m, const bool *given) {
+  const size_t distention = sph_materials_row(offsetof(struct sph_material, porosity.distention)),
+               fraction = sph_materials_row(offsetof(struct sph_material, porosity.fraction));
+  if (given[fraction] && !given[distention])
+    m->porosity.distention = 1 / (1 - m->porosity.fraction);
+  else if (!given[fraction])
+    m->porosity.fraction = 1 - 1 / m->porosity.distention;
 }
 
 static bool with_strength(const struct sph_body_physics *body) {
@@ -114,4 +126,6 @@ const struct sph_module sph_palpha_module = {
     .free_prepared = free,
     .bytes_prepared = bytes_prepared,
     .fill = fill,
+    .complete_material = complete_material,
+    .report = sph_palpha_results,
 };

@@ -1,4 +1,4 @@
-/* Yield stress of rock under pressure: intact rock by Lundborg's law, broken rock by friction (pressure_strength_loop.h
+/* Yield stress of rock under pressure: intact rock by Lundborg's law, broken rock by friction (pressure_strength.h
  * has the equations).
  *
  *   material.pressure_strength.law               lundborg turns the module on; yield_stress is not used then

@@ -9,7 +9,7 @@
 
 struct sph_ranges {
   const sph_hook *module[SPH_MODULES]; /* SPH_STAGES loops of each; NULL: the module has none */
-  /* Loops of every body, whatever its modules (motion_loop.h). */
+  /* Loops of every body, whatever its modules (motion.h). */
   sph_hook predict;                                       /* x v rho u h */
   sph_hook output_fluid, output_whole, output_damaged;    /* columns that the pair loop reads */
   sph_hook hold;                                          /* held freedoms and damping: the new accelerations */

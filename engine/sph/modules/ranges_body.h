@@ -1,9 +1,8 @@
 /* Instantiates the range loops for one CPU class: the including file sets RANGES_TABLE. */
 #include "engine/sph/modules/ranges.h"
 
-#include "engine/sph/modules/motion_loop.h"
 #define SPH_MODULE_LOOPS
-#include "engine/sph/modules/list.h"
+#include "engine/sph/modules/declarations.h"
 
 const struct sph_ranges RANGES_TABLE = {
 #define HOOKS(name) [SPH_MODULE_##name] = name##_hooks,

@@ -1,4 +1,4 @@
-/* A spall strength for matter without flaws, and torn matter (tension_limit_loop.h).
+/* A spall strength for matter without flaws, and torn matter (tension_limit.h).
  *
  *   material.tension_limit   Pa; off: no limit
  *

@@ -1,4 +1,4 @@
-/* Tillotson's equation of state (material/tillotson.h, tillotson_loop.h). Every body has it, directly or behind a
+/* Tillotson's equation of state (material/tillotson.h, modules/tillotson.h). Every body has it, directly or behind a
  * module that sets the pressure of the body from that of its solid matter.
  *
  *   material.density, material.tillotson.*   all needed */

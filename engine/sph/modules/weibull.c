@@ -1,8 +1,8 @@
-/* The flaws of one body, ready for the step (weibull.h).
+/* The flaws of one body, ready for the step (weibull_lists.h).
  *
  *   material.weibull.m, material.weibull.k   n(eps) = k eps^m flaws per volume open below the strain eps
  *   fidelity.flaws                           exact or compact lists */
-#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/weibull_lists.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,20 +1,21 @@
-/* The flaws of one body, as thresholds of strain per particle. Exact: every threshold of every particle, ascending.
- * Compact: (lowest, exponent, number) per particle, with
- *   n(eps) = min(total, floor((eps/lowest)^q)),  q = ln(total)/ln(highest/lowest),
- * a power law that counts 1 at the lowest and all at the highest threshold; so codes of this kind save memory (Benz &
- * Asphaug 1994). A threshold beyond the range of a double is infinite (it never opens) or 0. */
-#ifndef CLAST_ENGINE_SPH_MODULES_WEIBULL_H
-#define CLAST_ENGINE_SPH_MODULES_WEIBULL_H
+/* What weibull.c declares: the flaws of a material, how they are drawn and how they are kept. */
 
-#include <stdbool.h>
+MATERIAL_MEMBERS(struct sph_weibull { double m, k; } weibull;) /* 1, m^-3 */
 
-#include "engine/sph/body/flaws.h"
+MATERIAL_VALUE(weibull.m, "1", 1, 200, SPH_MATERIAL_OFF, FRACTURE,
+               "Weibull's m: n(eps) = k eps^m flaws per volume are weaker than the strain eps. Large m: all flaws "
+               "alike. off: no flaws.",
+               "Benz & Asphaug 1995, eq. 11")
+MATERIAL_VALUE(weibull.k, "1/m^3", 1, 1e200, SPH_MATERIAL_OFF, FRACTURE,
+               "Weibull's k (papers print 1/cm^3, which is 1e6 of these). off: no flaws.",
+               "Benz & Asphaug 1995, eq. 11")
 
-struct sph_weibull_lists; /* opaque; body->prepared[SPH_MODULE_weibull] */
-
-double sph_weibull_lowest(const struct sph_weibull_lists *lists, size_t particle);
-uint32_t sph_weibull_total(const struct sph_weibull_lists *lists, size_t particle);
-/* Number of open flaws; the same for every strain with bracket[0] <= strain < bracket[1]. */
-uint32_t sph_weibull_active(const struct sph_weibull_lists *lists, size_t particle, double strain, double bracket[2]);
-
-#endif
+INPUT_CHOICE(
+    fracture, draw, SPH_CHOICES("ranked", "poisson"), .number = SPH_FLAWS_POISSON, .when = "target.fracture=auto|on",
+    .choice_docs = "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
+                   "small\n"
+                   "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
+    .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`")
+INPUT_CHOICE(fidelity, flaws, SPH_CHOICES("exact", "compact"), .when = "target.fracture=auto|on",
+             .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
+             .doc = "How a particle's flaws are stored.")

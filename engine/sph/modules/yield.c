@@ -1,4 +1,4 @@
-/* Von Mises' yield limit, Y0 (1 - u/u_melt) and 0 beyond (yield_loop.h).
+/* Von Mises' yield limit, Y0 (1 - u/u_melt) and 0 beyond (yield.h).
  *
  *   material.yield_stress   Y0; off: the body never yields
  *   material.melt_energy    u_melt; off: the limit does not depend on the energy

@@ -1,4 +1,4 @@
-/* Crater, ejecta and closed pores of a target. */
+/* Crater and ejecta of a target. */
 #include "engine/sph/observe/crater.h"
 
 #include <math.h>
@@ -6,25 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE_MOST = 2048 };            /* columns along one side */
-static const double compacted = 1.01; /* distention below which matter counts as compacted */
+enum { SIDE_MOST = 2048 }; /* columns along one side */
 
-static double distention(const struct sph_particles *start, size_t i) {
-  return start->distention ? start->distention[i] : 1;
+bool sph_crater_is_ejected(const struct sph_particles *now, size_t i, const struct sph_crater_options *o) {
+  return now->vz[i] > o->ejection_speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
 }
 
-/* Distention at P = 0. Fractured matter is under (undamaged) tension, which opens the pores of the elastic branch
- * again; at rest only the pores that are closed for good count. */
-static double at_rest(const struct sph_particles *now, size_t i) {
-  return now->rest_distention ? now->rest_distention[i] : 1;
+double sph_crater_off_axis(const struct sph_particles *p, size_t i, const struct sph_crater_options *o) {
+  return hypot(p->x[i] - o->axis[0], p->y[i] - o->axis[1]);
 }
 
-static bool is_ejected(const struct sph_particles *now, size_t i, double speed) {
-  return now->vz[i] > speed || !isfinite(now->x[i] + now->y[i] + now->z[i]);
-}
-
-static double off_axis(const struct sph_particles *p, size_t i, const double axis[2]) {
-  return hypot(p->x[i] - axis[0], p->y[i] - axis[1]);
+double sph_crater_top(const struct sph_particles *start, const struct sph_crater_options *o, double spacings) {
+  double top = -HUGE_VAL;
+  for (size_t i = o->first; i < o->first + o->count; i++)
+    if (sph_crater_off_axis(start, i, o) < spacings * o->spacing)
+      top = fmax(top, start->z[i]);
+  return top;
 }
 
 /* A map of columns over the target's outline at the start. */
@@ -79,7 +76,7 @@ static void fill_map(const struct sph_particles *start, const struct sph_particl
       m->before[at] = fmax(m->before[at], start->z[i]);
       m->bottom[at] = fmin(m->bottom[at], start->z[i]);
     }
-    if (!is_ejected(now, i, o->ejection_speed) && column_of(m, now->x[i], now->y[i], &at))
+    if (!sph_crater_is_ejected(now, i, o) && column_of(m, now->x[i], now->y[i], &at))
       m->after[at] = fmax(m->after[at], now->z[i]);
   }
 }
@@ -156,51 +153,27 @@ static status measure_hole(const struct map *m, const struct sph_crater_options 
   return STATUS_OK;
 }
 
-/* Sums over the target's particles. Near the axis: within two spacings. */
-static void measure_matter(const struct sph_particles *start, const struct sph_particles *now,
+/* Sums over the target's particles. Without a module that compacts matter, all of the crater is ejecta. */
+static void measure_ejecta(const struct sph_particles *start, const struct sph_particles *now,
                            const struct sph_crater_options *o, struct sph_results *results) {
-  double top = -HUGE_VAL;
-  for (size_t i = o->first; i < o->first + o->count; i++)
-    if (off_axis(start, i, o->axis) < 2 * o->spacing)
-      top = fmax(top, start->z[i]);
-
-  double ejected_mass = 0, momentum = 0, ejecta_volume = 0, compacted_mass = 0, closed_volume = 0, depth = 0, reach = 0;
+  double mass = 0, momentum = 0, volume = 0;
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    double alpha = at_rest(now, i), alpha_start = distention(start, i);
-    double closed = o->distention > 1 ? (alpha_start - alpha) / alpha_start : 0;
-    double volume = start->mass[i] / start->density[i];
-    bool crushed = closed > 0 && alpha < compacted && alpha_start >= compacted;
-    if (crushed)
-      compacted_mass += now->mass[i];
-    if (is_ejected(now, i, o->ejection_speed)) {
-      ejected_mass += now->mass[i];
-      momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
-      ejecta_volume += volume;
+    if (!sph_crater_is_ejected(now, i, o))
       continue;
-    }
-    closed_volume += fmax(closed, 0) * volume; /* the volume of the solid does not change */
-    if (crushed && off_axis(start, i, o->axis) < 2 * o->spacing)
-      depth = fmax(depth, top - start->z[i]);
-    if (closed > 0 && alpha_start - alpha > 0.01 * (o->distention - 1))
-      reach = fmax(reach, hypot(off_axis(start, i, o->axis), top - start->z[i]));
+    mass += now->mass[i];
+    momentum += isfinite(now->vz[i]) ? now->mass[i] * now->vz[i] : 0;
+    volume += start->mass[i] / start->density[i];
   }
-
-  results->ejecta.mass_fraction = sph_results_share(ejected_mass, o->mass);
+  results->ejecta.mass_fraction = sph_results_share(mass, o->mass);
   results->ejecta.momentum = sph_results_finite(momentum);
-  results->crater.compaction_share = sph_results_share(closed_volume, closed_volume + ejecta_volume);
-  if (!(o->distention > 1))
-    return;
-  results->compaction.mass_fraction = sph_results_share(compacted_mass, o->mass);
-  results->compaction.volume = sph_results_finite(closed_volume);
-  results->compaction.depth = depth;
-  results->compaction.reach = reach;
+  results->crater.compaction_share = sph_results_share(0, volume);
 }
 
 status sph_crater_measure(const struct sph_particles *start, const struct sph_particles *now,
                           const struct sph_crater_options *o, struct sph_results *results, struct error *error) {
   if (!o->count || !(o->spacing > 0))
     return STATUS_OK;
-  measure_matter(start, now, o, results);
+  measure_ejecta(start, now, o, results);
 
   struct map map;
   status code = make_map(start, o, &map, error);
@@ -214,23 +187,22 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
 
 size_t sph_crater_profile(const struct sph_particles *start, const struct sph_particles *now,
                           const struct sph_crater_options *o, struct sph_crater_layer *layers, size_t most) {
-  double top = -HUGE_VAL;
-  for (size_t i = o->first; i < o->first + o->count; i++)
-    if (off_axis(start, i, o->axis) < 1.5 * o->spacing)
-      top = fmax(top, start->z[i]);
+  double top = sph_crater_top(start, o, 1.5);
   memset(layers, 0, most * sizeof *layers);
   for (size_t i = o->first; i < o->first + o->count; i++) {
-    if (!(off_axis(start, i, o->axis) < 1.5 * o->spacing) || is_ejected(now, i, o->ejection_speed))
+    if (!(sph_crater_off_axis(start, i, o) < 1.5 * o->spacing) || sph_crater_is_ejected(now, i, o))
       continue;
     double layer = floor((top - start->z[i]) / o->spacing + 0.5);
     if (!(layer >= 0 && layer < (double)most))
       continue;
     struct sph_crater_layer *l = &layers[(size_t)layer];
     l->depth += 1; /* the number of particles, until the loop ends */
-    l->distention += at_rest(now, i);
     l->damage += sph_particles_damage(now, i);
     l->pressure += now->pressure[i];
     l->velocity += now->vz[i];
+#define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
+  l->member += now->of_impact ? now->of_impact[i] : absent;
+#include "engine/sph/modules/declarations.h"
   }
 
   size_t count = 0;
@@ -238,8 +210,14 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
     struct sph_crater_layer l = layers[k];
     if (!(l.depth > 0))
       continue;
-    layers[count++] = (struct sph_crater_layer){(double)k * o->spacing, l.distention / l.depth, l.damage / l.depth,
-                                                l.pressure / l.depth, l.velocity / l.depth};
+    layers[count++] = (struct sph_crater_layer){
+        .depth = (double)k * o->spacing,
+        .damage = l.damage / l.depth,
+        .pressure = l.pressure / l.depth,
+        .velocity = l.velocity / l.depth,
+#define PROFILE_COLUMN(member, ...) .member = l.member / l.depth,
+#include "engine/sph/modules/declarations.h"
+    };
   }
   return count;
 }

@@ -21,6 +21,13 @@ void sph_plate_look(const struct sph_run *run, const struct sph_particles *parti
 /* State of the plate in layers of one spacing by their depth at the start; velocity along x. Fills at most `most`
  * layers and returns how many. */
 size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *layers, size_t most);
+/* Where the state behind each front is measured, as they stand now: from one place to the other, m. */
+struct sph_plate_regions {
+  double shock[2], precursor[2];
+};
+struct sph_plate_regions sph_plate_regions(const struct sph_run *run);
+/* Mean of a column of the particles last read over a region; NaN without particles there. */
+double sph_plate_mean(const struct sph_run *run, const double *column, const double region[2]);
 /* Fills the results shock.* and precursor.* from the recorded curve and from the particles last read. */
 void sph_plate_report(const struct sph_run *run, struct sph_results *results);
 

@@ -46,9 +46,11 @@ size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *lay
     if (k >= count)
       continue;
     double n = run->layer[k].count;
-    layers[k].distention += (p->distention ? p->distention[i] : 1) / n;
     layers[k].pressure += p->pressure[i] / n;
     layers[k].velocity += p->vx[i] / n;
+#define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
+  layers[k].member += (p->of_plate ? p->of_plate[i] : absent) / n;
+#include "engine/sph/modules/declarations.h"
   }
   return count;
 }
@@ -95,57 +97,46 @@ static double speed(const struct sph_run *run, size_t offset) {
   return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
 }
 
-/* Means over the particles between two places. */
-struct plateau {
-  double density, pressure, distention;
-};
-
-static struct plateau between(const struct sph_run *run, double low, double high) {
-  const struct sph_particles *p = run->now;
-  struct plateau sum = {0};
-  double n = 0;
-  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
-    if (!(p->x[i] > low && p->x[i] < high))
-      continue;
-    sum.density += p->density[i];
-    sum.pressure += p->pressure[i];
-    sum.distention += p->distention ? p->distention[i] : (double)NAN;
-    n++;
-  }
-  return (struct plateau){sum.density / n, sum.pressure / n, sum.distention / n}; /* NaN without particles */
-}
-
-/* The middle half from the piston to the front. */
-static void report_shock(const struct sph_run *run, double piston, double shock, struct sph_results *r) {
-  const struct sph_plane_shock *exact = &run->exact;
-  struct plateau p = between(run, piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4);
-  r->shock.speed = speed(run, offsetof(struct sph_sample, front));
-  r->shock.density = p.density;
-  r->shock.pressure = p.pressure;
-  r->shock.distention = p.distention;
-  r->shock.speed_exact = exact->shock.speed;
-  r->shock.density_exact = exact->shock.density;
-  r->shock.pressure_exact = exact->shock.pressure;
-  r->shock.distention_exact = run->now->distention ? exact->shock.distention : (double)NAN;
-}
-
-/* Well ahead of the shock, which is some spacings wide, and behind the precursor's own rise. */
-static void report_precursor(const struct sph_run *run, double from, double precursor, struct sph_results *r) {
-  const struct sph_plane_shock *exact = &run->exact;
-  struct plateau p = between(run, from + (precursor - from) * 0.4, from + (precursor - from) * 0.7);
-  r->precursor.speed = speed(run, offsetof(struct sph_sample, precursor));
-  r->precursor.pressure = p.pressure;
-  r->precursor.distention = p.distention;
-  r->precursor.speed_exact = exact->precursor.speed;
-  r->precursor.pressure_exact = exact->precursor.pressure;
-  r->precursor.distention_exact = exact->precursor.distention;
-}
-
-void sph_plate_report(const struct sph_run *run, struct sph_results *results) {
+/* Shock: the middle half from the piston to the front. Precursor: well ahead of the shock, which is some spacings wide,
+ * and behind the precursor's own rise. */
+struct sph_plate_regions sph_plate_regions(const struct sph_run *run) {
   double shock, precursor, piston = run->inputs.piston.speed * sph_system_time(run->system);
   sph_plate_look(run, run->now, &shock, &precursor);
-  if (run->exact.has_shock)
-    report_shock(run, piston, shock, results);
-  if (run->exact.has_precursor)
-    report_precursor(run, run->exact.has_shock ? shock : piston, precursor, results);
+  const double from = run->exact.has_shock ? shock : piston;
+  return (struct sph_plate_regions){
+      .shock = {piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4},
+      .precursor = {from + (precursor - from) * 0.4, from + (precursor - from) * 0.7},
+  };
+}
+
+double sph_plate_mean(const struct sph_run *run, const double *column, const double region[2]) {
+  const double *x = run->now->x;
+  double sum = 0, n = 0;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++) {
+    if (!(x[i] > region[0] && x[i] < region[1]))
+      continue;
+    sum += column[i];
+    n++;
+  }
+  return sum / n;
+}
+
+void sph_plate_report(const struct sph_run *run, struct sph_results *r) {
+  const struct sph_plane_shock *exact = &run->exact;
+  const struct sph_particles *p = run->now;
+  const struct sph_plate_regions regions = sph_plate_regions(run);
+  if (exact->has_shock) {
+    r->shock.speed = speed(run, offsetof(struct sph_sample, front));
+    r->shock.density = sph_plate_mean(run, p->density, regions.shock);
+    r->shock.pressure = sph_plate_mean(run, p->pressure, regions.shock);
+    r->shock.speed_exact = exact->shock.speed;
+    r->shock.density_exact = exact->shock.density;
+    r->shock.pressure_exact = exact->shock.pressure;
+  }
+  if (exact->has_precursor) {
+    r->precursor.speed = speed(run, offsetof(struct sph_sample, precursor));
+    r->precursor.pressure = sph_plate_mean(run, p->pressure, regions.precursor);
+    r->precursor.speed_exact = exact->precursor.speed;
+    r->precursor.pressure_exact = exact->precursor.pressure;
+  }
 }

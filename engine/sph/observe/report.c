@@ -15,7 +15,7 @@ enum { INITIAL_H = 0, ROD_PARTS = 100 };
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error) {
   const struct sph_inputs *in = &run->inputs;
-  if (!sph_derived_cracks(&in->target)) /* pores that closed are damage, too, but no crack */
+  if (!sph_derived_cracks(&in->target)) /* other damage is no crack */
     static_strength = NAN;
   const struct sph_fragments_body bodies[SPH_RUN_BODIES] = {
       {.static_strength = static_strength},
@@ -108,18 +108,15 @@ static void report_second(const struct sph_run *run, const struct sph_fragments 
 /* Means over the target by mass. */
 static void report_damage(const struct sph_run *run, struct sph_results *results) {
   const struct sph_particles *p = run->now;
-  double mass = 0, damage = 0, undamaged = 0, distention = 0;
+  double mass = 0, damage = 0, undamaged = 0;
   for (size_t i = 0; i < run->targets; i++) {
     double d = sph_particles_damage(p, i);
     mass += p->mass[i];
     damage += p->mass[i] * d;
-    distention += p->rest_distention ? p->mass[i] * p->rest_distention[i] : 0;
     undamaged += d < run->inputs.fragments.damage ? p->mass[i] : 0;
   }
   results->mean_damage = sph_results_share(damage, mass);
   results->undamaged_fraction = sph_results_share(undamaged, mass);
-  if (p->rest_distention && mass > 0)
-    results->mean_distention = sph_results_finite(distention / mass);
 }
 
 /* The time of the first damage, and whether and when fracture ceased. */
@@ -166,13 +163,11 @@ static double rebound(const struct sph_run *run) {
 /* The impact moves down along z at x = y = 0. The axis of an oblique impact is not followed. */
 struct sph_crater_options sph_report_crater_options(const struct sph_run *run) {
   const struct sph_inputs *in = &run->inputs;
-  bool porous = sph_derived_porous(&in->target.material);
   return (struct sph_crater_options){.first = run->range[0].first,
                                      .count = run->range[0].n,
                                      .mass = run->range[0].mass,
                                      .spacing = sph_derived_fine_spacing(in),
-                                     .ejection_speed = in->crater.ejection_speed,
-                                     .distention = porous ? in->target.material.porosity.distention : 1};
+                                     .ejection_speed = in->crater.ejection_speed};
 }
 
 /* The results that only one protocol has. */
@@ -232,12 +227,9 @@ static void report_ledger(const struct sph_run *run, const struct sph_ledger *le
 static void report_steps(const struct sph_run *run, const struct sph_ledger *ledger, struct sph_results *results) {
   double steps = (double)sph_system_steps(run->system);
   const uint64_t *by = run->state.limited;
-  results->limited.courant = sph_results_share((double)by[SPH_LIMIT_COURANT], steps);
-  results->limited.force = sph_results_share((double)by[SPH_LIMIT_FORCE], steps);
-  results->limited.damage = sph_results_share((double)by[SPH_LIMIT_DAMAGE], steps);
-  results->limited.distention = sph_results_share((double)by[SPH_LIMIT_DISTENTION], steps);
-  results->limited.energy = sph_results_share((double)by[SPH_LIMIT_ENERGY], steps);
-  results->limited.density = sph_results_share((double)by[SPH_LIMIT_DENSITY], steps);
+#define TIME_STEP_LIMIT(NAME, member, doc)                                                                             \
+  results->limited.member = sph_results_share((double)by[SPH_LIMIT_##NAME], steps);
+#include "engine/sph/modules/declarations.h"
   results->density_held_share = sph_results_share((double)ledger->density_held, steps * (double)run->start->n);
   results->neighbours = sph_results_finite(sph_system_neighbours(run->system));
 }
@@ -261,7 +253,12 @@ static status fill_results(const struct sph_run *run, const struct sph_ledger *l
   report_ledger(run, ledger, input, results);
   report_steps(run, ledger, results);
   status code = report_largest(run, found, results, error);
-  return code ? code : report_protocol(run, results, error);
+  if (code)
+    return code;
+  code = report_protocol(run, results, error);
+  if (!code)
+    sph_modules_report(run, results);
+  return code;
 }
 
 static void fill_outcome(const struct sph_run *run, const struct sph_ledger *ledger, double input,

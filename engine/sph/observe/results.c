@@ -41,10 +41,6 @@ static const struct field rows[] = {
           .doc =
               "Mass share of the target's particles with damage below fragments.damage. Particles that only the static "
               "strength breaks count as undamaged."),
-    REAL(mean_distention, "1", 1,
-         .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without "
-                "pores.",
-         .source = "Jutzi, Benz & Michel 2008"),
     SHARE(largest.bare_fraction,
           .doc = "M_1/M of the core: mass of the largest fragment without its damaged layer over "
                  "the target's mass, with the static strength.",
@@ -82,18 +78,6 @@ static const struct field rows[] = {
               "Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a "
               "crater made by compaction alone. Off when both volumes are 0.",
           .source = "Jutzi & Benz, section 3.1"),
-    SHARE(compaction.mass_fraction,
-          .doc =
-              "Impact: mass share of the target that was compacted: its distention at zero pressure fell from 1.01 or "
-              "more to below 1.01. Off without pores.",
-          .source = "Jutzi & Benz, figure 2"),
-    REAL(compaction.volume, "m^3", 0,
-         .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores."),
-    REAL(compaction.depth, "m", 0,
-         .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores."),
-    REAL(compaction.reach, "m", 0,
-         .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; off "
-                "without pores."),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
     REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy that damped sides removed."),
@@ -107,13 +91,8 @@ static const struct field rows[] = {
          .doc = "Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the "
                 "angular momentum at the start and the sum of momenta (the larger of start and end) times the target's "
                 "extent. Only axes count across which nothing is periodic."),
-    SHARE(limited.courant,
-          .doc = "Share of the steps limited by the speed of sound and viscosity, or by a damped side."),
-    SHARE(limited.force, .doc = "Share of the steps limited by the acceleration."),
-    SHARE(limited.damage, .doc = "Share of the steps limited by the growth of damage."),
-    SHARE(limited.distention, .doc = "Share of the steps limited by the closing of pores."),
-    SHARE(limited.energy, .doc = "Share of the steps limited by the change of internal energy."),
-    SHARE(limited.density, .doc = "Share of the steps limited by the change of density."),
+#define TIME_STEP_LIMIT(NAME, member, doc_) SHARE(limited.member, .doc = "Share of the steps limited by " doc_ "."),
+#include "engine/sph/modules/declarations.h"
     REAL(neighbours, "1", 0, .doc = "Mean number of neighbours within 2h at the end."),
     REAL(peak.stress, "Pa", -HUGE_VAL, .doc = "Stretch: largest mean axial stress between the grips."),
     REAL(peak.strain, "1", 0, .doc = "Stretch: strain (strain rate times time) at the largest stress."),
@@ -127,7 +106,8 @@ static const struct field rows[] = {
     REAL(rebound, "1", -HUGE_VAL, .doc = "Collision: speed of separation of the bodies over their speed of approach."),
     REAL(shock.speed, "m/s", 0,
          .doc =
-             "Piston: speed of the shock (with pores: of the crushing front) over the second half of the run. The "
+             "Piston: speed of the shock (behind a precursor: of the crushing front) over the second half of the run. "
+             "The "
              "front is where density passes the mean of the values ahead and behind. Off when the piston is too slow "
              "for a shock.",
          .source = "Jutzi, Benz & Michel 2008"),
@@ -138,19 +118,16 @@ static const struct field rows[] = {
     REAL(shock.density_exact, "kg/m^3", 0, .doc = "Piston: density behind the shock by the jump conditions."),
     REAL(shock.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure behind the shock, in the same region."),
     REAL(shock.pressure_exact, "Pa", 0, .doc = "Piston: pressure behind the shock by the jump conditions."),
-    REAL(shock.distention, "1", 1,
-         .doc = "Piston: mean distention behind the shock, in the same region; off without pores."),
-    REAL(shock.distention_exact, "1", 1,
-         .doc = "Piston: distention behind the shock by the jump conditions and the crush curve."),
     REAL(precursor.speed, "m/s", 0,
-         .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off without pores and "
-                "when the shock is faster."),
+         .doc = "Piston: speed of the elastic precursor, which runs ahead of the crushing front; off where there "
+                "is none, and when the shock is faster."),
     REAL(precursor.speed_exact, "m/s", 0, .doc = "Piston: speed of the precursor by the jump conditions."),
     REAL(precursor.pressure, "Pa", -HUGE_VAL, .doc = "Piston: mean pressure between precursor and shock."),
     REAL(precursor.pressure_exact, "Pa", 0,
          .doc = "Piston: exact pressure behind the precursor: P_e, or less when the piston is slow."),
-    REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention between precursor and shock."),
-    REAL(precursor.distention_exact, "1", 1, .doc = "Piston: distention behind the precursor on the elastic branch."),
+#define RESULT_REAL(path_, unit_, low, ...) REAL(path_, unit_, low, __VA_ARGS__),
+#define RESULT_SHARE(path_, ...)            SHARE(path_, __VA_ARGS__),
+#include "engine/sph/modules/declarations.h"
 };
 
 const struct field_table sph_results = FIELD_TABLE(rows, struct sph_results, "sph results",

@@ -1,5 +1,5 @@
 /* What engine `sph` reports beyond struct outcome: table result_sph. A quantity that does not apply is off (NaN).
- * Whoever measures a result fills it here: report.c, crater.c, plate.c. */
+ * Whoever measures a result fills it here: report.c, crater.c, plate.c, and modules with what they declare. */
 #ifndef CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 #define CLAST_ENGINE_SPH_OBSERVE_RESULTS_H
 
@@ -13,7 +13,7 @@ struct sph_results {
   double target_mass, projectile_mass, specific_energy;
   bool fracture_ceased;
   double first_damage, cease_time;
-  double mean_damage, undamaged_fraction, mean_distention;
+  double mean_damage, undamaged_fraction;
   struct {
     double bare_fraction, veneer_fraction, dynamic_fraction;
     double axis_middle, axis_short;
@@ -29,14 +29,12 @@ struct sph_results {
     double depth, radius, volume, compaction_share;
   } crater;
   struct {
-    double mass_fraction, volume, depth, reach;
-  } compaction;
-  struct {
     double kinetic, internal, damped, work_of_held, clamped;
   } energy;
   double energy_input, clamped_share, density_held_share, angular_momentum_error;
   struct {
-    double courant, force, damage, distention, energy, density;
+#define TIME_STEP_LIMIT(NAME, member, doc) double member;
+#include "engine/sph/modules/declarations.h"
   } limited;
   double neighbours;
   struct {
@@ -46,11 +44,17 @@ struct sph_results {
   double frequency;
   double rebound;
   struct {
-    double speed, speed_exact, density, density_exact, pressure, pressure_exact, distention, distention_exact;
+    double speed, speed_exact, density, density_exact, pressure, pressure_exact;
+#define FRONT_RESULT_MEMBERS(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
   } shock;
   struct {
-    double speed, speed_exact, pressure, pressure_exact, distention, distention_exact;
+    double speed, speed_exact, pressure, pressure_exact;
+#define FRONT_RESULT_MEMBERS(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
   } precursor;
+#define RESULT_MEMBERS(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 
 extern const struct field_table sph_results;

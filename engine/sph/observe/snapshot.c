@@ -38,18 +38,19 @@ static const struct snapshot_file_column curve_columns[] = {
 };
 #undef COLUMN
 
-/* Along the axis of an impact, from the surface down, or along a plate: how pores and damage change with depth. */
+/* Along the axis of an impact, from the surface down, or along a plate: how matter and damage change with depth. */
 #define COLUMN(member, ...) SNAPSHOT_FILE_COLUMN(sph_crater_layer, member, 0, __VA_ARGS__)
 static const struct snapshot_file_column axis_columns[] = {
     COLUMN(depth, "m", "depth of the layer below the surface at the start"),
-    COLUMN(distention, "1",
-           "impact: mean at rest (P = 0) over retained particles within 1.5 spacings of the axis; plate: mean of the "
-           "layer as it is"),
-    COLUMN(damage, "1", "mean damage D of these particles"),
+    COLUMN(damage, "1",
+           "mean damage D of the retained particles within 1.5 spacings of the axis; of a plate, of the layer"),
     COLUMN(pressure, "Pa", "mean pressure of these particles"),
     COLUMN(velocity, "m/s", "mean velocity of these particles: outwards; in a plate along x"),
-};
 #undef COLUMN
+#define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
+  SNAPSHOT_FILE_COLUMN(sph_crater_layer, member, 0, __VA_ARGS__),
+#include "engine/sph/modules/declarations.h"
+};
 
 static void three(struct snapshot_file *file, const char *name, size_t n, const double *x, const double *y,
                   const double *z, double *values, const char *units, const char *long_name) {
@@ -110,14 +111,13 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   grid(file, n, integers);
   three(file, AT("velocity"), n, p->vx, p->vy, p->vz, values, "m s-1", "velocity");
   scalar(file, AT("mass"), n, p->mass, "kg", "mass");
-  scalar(file, AT("density"), n, p->density, "kg m-3", "density, pores included");
+  scalar(file, AT("density"), n, p->density, "kg m-3", "density of the body");
   scalar(file, AT("energy"), n, p->energy, "J kg-1", "specific internal energy");
   scalar(file, AT("pressure"), n, p->pressure, "Pa",
          "pressure, undamaged: where it is negative, (1 - damage) of it acts");
   scalar(file, AT("smoothing_length"), n, p->h, "m", "smoothing length h; a particle's reach is 2h");
-  scalar(file, AT("distention"), n, p->distention, "1", "distention: density of the matrix over density");
-  scalar(file, AT("rest_distention"), n, p->rest_distention, "1",
-         "distention at zero pressure; below the distention at the start, pores are closed for good");
+#define PARTICLE_COLUMN(FLAG, member, absent, ...) scalar(file, AT(#member), n, p->member, __VA_ARGS__);
+#include "engine/sph/modules/declarations.h"
   if (p->damage_cbrt) {
     for (size_t i = 0; i < n; i++)
       values[i] = sph_particles_damage(p, i);

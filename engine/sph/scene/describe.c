@@ -193,19 +193,11 @@ static void numbers(const struct sph_inputs *in, FILE *out) {
             sqrt(sph_derived_young_modulus(&target->material) / target->material.density) / (2 * target->length));
 }
 
-static void front(const char *name, const struct sph_front *f, FILE *out) {
-  fprintf(out, "  exact %s: %.6g m/s; behind it %.4g Pa, %.6g kg/m^3, distention %.6g, matter at %.4g m/s\n", name,
-          f->speed, f->pressure, f->density, f->distention, f->velocity);
-}
-
 static void plate(const struct sph_inputs *in, FILE *out) {
   struct sph_plane_shock exact;
   if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL))
     return;
-  if (exact.has_precursor)
-    front("elastic precursor", &exact.precursor, out);
-  if (exact.has_shock)
-    front("shock", &exact.shock, out);
+  sph_plane_shock_describe(&exact, out);
 }
 
 char *sph_describe_scene(const struct sph_inputs *in) {

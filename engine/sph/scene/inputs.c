@@ -1,5 +1,5 @@
-/* "BA95" in the sources below: Benz & Asphaug 1995, Simulations of brittle solids using smooth particle hydrodynamics.
- */
+/* The rows of a scene. Inputs that belong to a module have theirs in its header (modules/declarations.h). "BA95" in the
+ * sources: Benz & Asphaug 1995, Simulations of brittle solids using smooth particle hydrodynamics. */
 #include "engine/sph/scene/inputs.h"
 
 #include <math.h>
@@ -16,14 +16,8 @@ static const char *const lattices[] = {"hexagonal", "cubic", "irregular", NULL};
 static const char *const fractures[] = {"auto", "on", "off", NULL};
 static const char *const far_sides[] = {"free", "damped", NULL};
 static const char *const projectile_by[] = {"size", "mass", "specific-energy", NULL};
-static const char *const draws[] = {"ranked", "poisson", NULL};
-static const char *const growths[] = {"cube-root", "linear", NULL};
-static const char *const caps[] = {"ba95", "count", "none", NULL};
-static const char *const crack_radii[] = {"volume", "support", NULL};
-static const char *const fronts[] = {"none", "plane", NULL};
 static const char *const link_h[] = {"initial", "current", NULL};
 static const char *const precisions[] = {"double", "float", NULL};
-static const char *const flaw_lists[] = {"exact", "compact", NULL};
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
   { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct sph_inputs, path_), __VA_ARGS__ }
@@ -37,7 +31,7 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
 /* ---- rows of a body, written once: B is `target` or `projectile`, `exists` the condition under which it is there ----
  */
 
-#define MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                          \
+#define OF_MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                       \
   {.path = #B ".material." #member_,                                                                                   \
    .kind = FIELD_REAL,                                                                                                 \
    .unit = unit_,                                                                                                      \
@@ -49,11 +43,11 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
    .when = when_,                                                                                                      \
    .doc = doc_ " The named material's value unless given.",                                                            \
    .source = source_},
-#define MATERIAL_VALUE(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                    \
-  MATERIAL_REAL(B, member_, unit_, NAN, low_, high_, flags_, WHEN_##need_(B, exists_ALWAYS), doc_, source_)
-#define MATERIAL_CHOICE_VALUE(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)                  \
-  MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, #B ".material." when_, doc_, source_)
-#define MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)        \
+#define OF_MATERIAL_VALUE(B, exists_ALWAYS, member_, unit_, low_, high_, flags_, need_, doc_, source_)                 \
+  OF_MATERIAL_REAL(B, member_, unit_, NAN, low_, high_, flags_, WHEN_##need_(B, exists_ALWAYS), doc_, source_)
+#define OF_MATERIAL_CHOICE_VALUE(B, member_, unit_, default_, low_, high_, flags_, when_, doc_, source_)               \
+  OF_MATERIAL_REAL(B, member_, unit_, default_, low_, high_, flags_, #B ".material." when_, doc_, source_)
+#define OF_MATERIAL_CHOICE(B, exists_ALWAYS, member_, choices_, flags_, need_, name_, choice_docs_, doc_, source_)     \
   {.path = #B ".material." #member_,                                                                                   \
    .kind = FIELD_CHOICE,                                                                                               \
    .offset = offsetof(struct sph_inputs, B.material.member_),                                                          \
@@ -67,12 +61,12 @@ static const char *const flaw_lists[] = {"exact", "compact", NULL};
 #define WHEN_STRENGTH(B, exists) #B ".strength=true"
 #define WHEN_FRACTURE(B, exists) #B ".fracture=auto|on"
 
-#define TARGET_VALUE(...)            MATERIAL_VALUE(target, NULL, __VA_ARGS__)
-#define TARGET_CHOICE(...)           MATERIAL_CHOICE(target, NULL, __VA_ARGS__)
-#define TARGET_CHOICE_VALUE(...)     MATERIAL_CHOICE_VALUE(target, __VA_ARGS__)
-#define PROJECTILE_VALUE(...)        MATERIAL_VALUE(projectile, "kind=impact", __VA_ARGS__)
-#define PROJECTILE_CHOICE(...)       MATERIAL_CHOICE(projectile, "kind=impact", __VA_ARGS__)
-#define PROJECTILE_CHOICE_VALUE(...) MATERIAL_CHOICE_VALUE(projectile, __VA_ARGS__)
+#define TARGET_VALUE(...)            OF_MATERIAL_VALUE(target, NULL, __VA_ARGS__)
+#define TARGET_CHOICE(...)           OF_MATERIAL_CHOICE(target, NULL, __VA_ARGS__)
+#define TARGET_CHOICE_VALUE(...)     OF_MATERIAL_CHOICE_VALUE(target, __VA_ARGS__)
+#define PROJECTILE_VALUE(...)        OF_MATERIAL_VALUE(projectile, "kind=impact", __VA_ARGS__)
+#define PROJECTILE_CHOICE(...)       OF_MATERIAL_CHOICE(projectile, "kind=impact", __VA_ARGS__)
+#define PROJECTILE_CHOICE_VALUE(...) OF_MATERIAL_CHOICE_VALUE(projectile, __VA_ARGS__)
 
 #define BODY_SIZES(B, shape_)                                                                                          \
   REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                          \
@@ -142,7 +136,11 @@ static const struct field rows[] = {
                 "it and "
                 "back keeps about 3 %."),
     BODY_MATTER(target, NULL, "basalt"),
-    SPH_MATERIAL_ROWS(TARGET_VALUE, TARGET_CHOICE, TARGET_CHOICE_VALUE)
+    SPH_MATERIAL_COMMON(TARGET_VALUE)
+#define MATERIAL_VALUE        TARGET_VALUE
+#define MATERIAL_CHOICE       TARGET_CHOICE
+#define MATERIAL_CHOICE_VALUE TARGET_CHOICE_VALUE
+#include "engine/sph/modules/declarations.h"
 
         CHOICE(impact.projectile, projectile_by, .when = "kind=impact",
                .choice_docs =
@@ -169,7 +167,11 @@ static const struct field rows[] = {
     CHOICE(projectile.shape, shapes, .when = "impact.projectile=size", .doc = "The projectile's outline."),
     BODY_SIZES(projectile, 0.0035),
     BODY_MATTER(projectile, "kind=impact", "nylon"),
-    SPH_MATERIAL_ROWS(PROJECTILE_VALUE, PROJECTILE_CHOICE, PROJECTILE_CHOICE_VALUE)
+    SPH_MATERIAL_COMMON(PROJECTILE_VALUE)
+#define MATERIAL_VALUE        PROJECTILE_VALUE
+#define MATERIAL_CHOICE       PROJECTILE_CHOICE
+#define MATERIAL_CHOICE_VALUE PROJECTILE_CHOICE_VALUE
+#include "engine/sph/modules/declarations.h"
 
         REAL(stretch.rate, "1/s", 60, 0, 1e9, .flags = FIELD_ABOVE_MINIMUM, .when = "kind=stretch",
              .doc = "Strain rate: the rod starts in uniform stretching, and its grips keep their speeds.",
@@ -192,52 +194,11 @@ static const struct field rows[] = {
          .doc = "Speed of the piston into the plate, along x: four layers of the same matter that keep their velocity.",
          .source = "Jutzi, Benz & Michel 2008 for 458 m/s"),
 
-    CHOICE(fracture.draw, draws, .number = SPH_FLAWS_POISSON, .when = "target.fracture=auto|on",
-           .choice_docs = "eps_j = (j/kV)^(1/m), as printed: a seed only moves the flaws about, and the scatter is too "
-                          "small\n"
-                          "the body's flaw strengths are a draw themselves: each seed is a specimen of its own",
-           .doc = "The strengths of the flaws.", .source = "BA95 eq. 20 for `ranked`"),
-    CHOICE(fracture.growth, growths, .when = "target.fracture=auto|on",
-           .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
-           .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`"),
-    CHOICE(fracture.cap, caps, .when = "target.fracture=auto|on",
-           .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
-           .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`"),
-    CHOICE(fracture.crack_radius, crack_radii, .when = "target.fracture=auto|on",
-           .choice_docs = "radius of the sphere of the particle's volume\n"
-                          "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
-           .doc = "R_s: length that a crack has to grow until its particle is broken.",
-           .source = "BA95 eq. 15; the paper gives no value"),
-    CHOICE(fracture.front, fronts, .flags = FIELD_SILENT_DEFAULT, .when = "target.fracture=auto|on",
-           .choice_docs = "it ends at its particle, and each particle breaks by flaws of its own, as printed: strength "
-                          "grows with the number of particles\n"
-                          "it runs on in its plane at c_g",
-           .doc = "How far a crack runs that has started at a flaw.", .source = "BA95 for `none`; `plane` is ours"),
-    REAL(fracture.front_arrest, "1", 0.5, 0, 1, .when = "fracture.front=plane",
-         .doc = "A crack runs on where the tension across its plane is at least this share of the one that opens its "
-                "flaw. 0: any tension will do.",
-         .source = "our choice"),
-    REAL(fracture.cell, "m", 0, 0, 1e9, .flags = FIELD_SILENT_DEFAULT, .when = "target.fracture=auto|on",
-         .doc =
-             "Width of the cells that crack as one: their particles share flaws, mean stress and damage. Strength then "
-             "depends on this width and not on the number of particles, where a cell holds several particles. 0: each "
-             "particle cracks by itself, as printed.",
-         .source = "our choice; BA95 for 0"),
-
-    REAL(viscosity.alpha, "1", 1.5, 0, 100, .doc = "Monaghan's linear artificial viscosity.",
-         .source = "Monaghan 1992"),
-    REAL(viscosity.beta, "1", 3, 0, 100, .doc = "Monaghan's quadratic artificial viscosity.",
-         .source = "Monaghan 1992"),
-    REAL(method.artificial_stress, "1", 0, 0, 1,
-         .doc = "Monaghan's epsilon against clumping in tension, for bodies that do not crack. 0: it is absent.",
-         .source = "Monaghan 2000; Gray, Monaghan & Swift 2001"),
-    SWITCH(method.gradient_correction, 0,
-           .doc = "Velocity gradients exact for linear fields, and forces conjugate to them: a body turns without "
-                  "strain and keeps its "
-                  "angular momentum, and its free sides are as stiff as its inside. For ringing and spinning bodies; "
-                  "costs a quarter "
-                  "more time.",
-           .source = "Randles & Libersky 1996; Bonet & Lok 1999; off in BA95"),
+#define SPH_INPUT_ROWS
+#define IN_fracture(...)  __VA_ARGS__
+#define IN_viscosity(...) __VA_ARGS__
+#define IN_method(...)    __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
     SWITCH(
         method.volume_weights, 0,
         .doc =
@@ -316,11 +277,6 @@ static const struct field rows[] = {
                 "lattices, and a "
                 "kernel sum within 1 % of what it stands for; others err by some per cent at any resolution."),
     REAL(fidelity.cfl, "1", 0.3, 1e-3, 1, .doc = "Courant number: the time step over h/(c + viscous term)."),
-    REAL(fidelity.damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
-         .doc = "Largest change of D^(1/3) in a time step."),
-    REAL(fidelity.distention_step, "1", 0.01, 1e-6, 1, .when = "target.material." SPH_POROSITY_ON,
-         .doc = "Largest change of a porous particle's distention in a time step.",
-         .source = "Jutzi, Benz & Michel 2008"),
     REAL(fidelity.skin, "1", 0.05, 0, 1,
          .doc = "Least slack of the neighbour lists over h (fast particles have more): longer lists last for more "
                 "steps. It "
@@ -328,15 +284,15 @@ static const struct field rows[] = {
     CHOICE(fidelity.precision, precisions,
            .choice_docs = "double throughout\nstored relative positions and pair sums are float",
            .doc = "Arithmetic of the pair loop."),
-    CHOICE(fidelity.flaws, flaw_lists, .when = "target.fracture=auto|on",
-           .choice_docs = "every flaw is kept\nlowest, highest and number of each particle, a power law between",
-           .doc = "How a particle's flaws are stored."),
     COUNT(fidelity.threads, 1, 1, 1024,
           .doc = "Threads of one run, for a big one on an idle machine. The bits do not depend on it."),
     REAL(fidelity.energy_bound, "1", 0.05, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
                 "off: it "
                 "only reports the drift."),
+#define SPH_INPUT_ROWS
+#define IN_fidelity(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 
 const struct field_table sph_inputs = FIELD_TABLE(

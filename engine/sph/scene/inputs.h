@@ -1,4 +1,5 @@
-/* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c. SI throughout. */
+/* The typed scene of engine `sph`: every input of every protocol, one row each in inputs.c or, where
+ * it belongs to a module, in the module's header. SI throughout. */
 #ifndef CLAST_ENGINE_SPH_SCENE_INPUTS_H
 #define CLAST_ENGINE_SPH_SCENE_INPUTS_H
 
@@ -49,20 +50,22 @@ struct sph_stretch {
 struct sph_collision {
   double speed, gap; /* m/s, m */
 };
+/* Sections of which modules declare the members (modules/declarations.h). */
 struct sph_fracture {
-  int draw;            /* enum sph_flaw_draw */
-  int growth, cap;     /* enum sph_fracture_growth, enum sph_fracture_cap */
-  int crack_radius;    /* enum sph_crack_radius */
-  int front;           /* enum sph_crack_front */
-  double front_arrest; /* 1 */
-  double cell;         /* m, width of the cells that crack as one; 0: each particle cracks by itself */
+#define SPH_INPUT_MEMBERS
+#define IN_fracture(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 struct sph_viscosity {
-  double alpha, beta; /* 1 */
+#define SPH_INPUT_MEMBERS
+#define IN_viscosity(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 struct sph_method {
-  double artificial_stress; /* epsilon; 0: absent */
-  bool gradient_correction, volume_weights;
+  bool volume_weights;
+#define SPH_INPUT_MEMBERS
+#define IN_method(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 struct sph_fragment_rules {
   double static_strength, damage, link_length; /* Pa, 1, 1 */
@@ -78,16 +81,18 @@ struct sph_fidelity {
   int64_t particles, points;
   double projectile_spacing; /* 1, over the target's */
   bool graded;
-  double fine_spacing, fine_radius;                    /* m */
-  double smoothing, cfl, damage_step, distention_step; /* 1 */
-  double skin;                                         /* 1, over h */
-  int precision;                                       /* enum sph_precision */
-  int flaws;                                           /* enum sph_flaw_lists */
+  double fine_spacing, fine_radius; /* m */
+  double smoothing, cfl;            /* 1 */
+  double skin;                      /* 1, over h */
+  int precision;                    /* enum sph_precision */
   int64_t threads;
   double energy_bound; /* 1; NaN = off */
+#define SPH_INPUT_MEMBERS
+#define IN_fidelity(...) __VA_ARGS__
+#include "engine/sph/modules/declarations.h"
 };
 
-/* Bodies and physics read these sections themselves: their names, defaults and ranges stand in inputs.c alone. */
+/* Bodies and physics read these sections themselves: their names, defaults and ranges stand in rows alone. */
 struct sph_inputs {
   int kind; /* enum sph_kind: the protocol */
   struct sph_body_inputs target, projectile;

@@ -21,10 +21,12 @@ static const struct {
   enum need need;
   const char *choice_name; /* of a choice: what messages call it */
 } needs[] = {
-#define VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
-#define CHOICE(member_, choices_, flags_, need_, name_, ...)             {need_, name_},
-#define CHOICE_VALUE(...)                                                {BY_CHOICE, NULL},
-    SPH_MATERIAL_ROWS(VALUE, CHOICE, CHOICE_VALUE)};
+#define MATERIAL_VALUE(member_, unit_, low_, high_, flags_, need_, doc_, source_) {need_, NULL},
+#define MATERIAL_CHOICE(member_, choices_, flags_, need_, name_, ...)             {need_, name_},
+#define MATERIAL_CHOICE_VALUE(...)                                                {BY_CHOICE, NULL},
+    SPH_MATERIAL_COMMON(MATERIAL_VALUE)
+#include "engine/sph/modules/declarations.h"
+};
 
 static bool has(const struct sph_body_inputs *body, enum need need) {
   switch (need) {

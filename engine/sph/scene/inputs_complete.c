@@ -5,6 +5,7 @@
 #include "engine/builtin.h"
 #include "engine/sph/material/materials.h"
 #include "engine/sph/material/plane_shock.h"
+#include "engine/sph/modules/modules.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 
@@ -29,20 +30,17 @@ static void complete_material(struct sph_inputs *in, struct sph_body_inputs *bod
   if ((size_t)body->material_name >= sph_materials_count() ||
       sph_materials_load(builtin_material_names[body->material_name], &material, NULL))
     field_defaults(&sph_materials_table, &material); /* custom: none */
+  bool own[sizeof material / sizeof(int)] = {false}; /* by row of a material: the scene gives it */
   for (size_t i = 0; i < sph_inputs.count; i++) {
     size_t offset = sph_inputs.rows[i].offset;
-    if (!given[i] && offset >= first && offset < first + sizeof material)
+    if (offset < first || offset >= first + sizeof material)
+      continue;
+    own[sph_materials_row(offset - first)] = given[i];
+    if (!given[i])
       memcpy((char *)in + offset, (char *)&material + (offset - first),
              sph_inputs.rows[i].kind == FIELD_CHOICE ? sizeof(int) : sizeof(double));
   }
-  /* porosity by whichever of its two names was given; the material's own distention otherwise */
-  struct sph_palpha *pores = &body->material.porosity;
-  size_t distention = (size_t)((char *)&pores->distention - (char *)in),
-         fraction = (size_t)((char *)&pores->fraction - (char *)in);
-  if (given[row_at(fraction)] && !given[row_at(distention)])
-    pores->distention = 1 / (1 - pores->fraction);
-  else if (!given[row_at(fraction)])
-    pores->fraction = 1 - 1 / pores->distention;
+  sph_modules_complete_material(&body->material, own);
 }
 
 /* Young's modulus times the mean strength of the weakest of kV flaws: Gamma(1 + 1/m) (kV)^(-1/m). */

@@ -173,6 +173,7 @@ static status make_flaws(struct sph_run *run, struct error *error) {
     if (!sph_derived_cracks(body))
       continue;
     struct sph_flaw_law law = {.weibull = body->material.weibull,
+                               .solid_ratio = sph_derived_solid_ratio(&body->material),
                                .draw = in->fracture.draw,
                                .cell_width = in->fracture.cell,
                                .seed = run->seed,

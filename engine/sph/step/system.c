@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/weibull_lists.h"
 #include "engine/sph/step/system_layout.h"
 
 void sph_system_free(struct sph_system *s) {

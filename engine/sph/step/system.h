@@ -37,12 +37,8 @@ struct sph_domain {
 #define SPH_HIGHEST_H 2.0
 
 enum sph_limiter { /* what set the time step */
-                   SPH_LIMIT_COURANT,
-                   SPH_LIMIT_FORCE,
-                   SPH_LIMIT_DAMAGE,
-                   SPH_LIMIT_DISTENTION,
-                   SPH_LIMIT_ENERGY,
-                   SPH_LIMIT_DENSITY,
+#define TIME_STEP_LIMIT(NAME, ...) SPH_LIMIT_##NAME,
+#include "engine/sph/modules/declarations.h"
                    SPH_LIMIT_GIVEN,
                    SPH_LIMIT_END,
                    SPH_LIMITS

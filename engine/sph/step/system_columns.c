@@ -30,8 +30,8 @@ static const struct {
     CARRIED(pressure, pressure, false, true, NAN),
     CARRIED(damping, damping, true, true, NAN),
     CARRIED(damage, damage_cbrt, false, true, NAN),
-    CARRIED(distention, distention, false, true, 1),
-    CARRIED(rest_distention, rest_distention, false, true, 1),
+#define PARTICLE_COLUMN(FLAG, member, absent, ...) CARRIED(member, member, false, true, absent),
+#include "engine/sph/modules/declarations.h"
 };
 
 static double **slot_of(struct sph_columns *columns, size_t column) {
@@ -55,8 +55,8 @@ int sph_system_columns_arrays(uint64_t columns) {
     arrays |= SPH_WITH_STRESS;
   if (columns >> SPH_COLUMN(damage) & 1)
     arrays |= SPH_WITH_DAMAGE;
-  if (columns >> SPH_COLUMN(distention) & 1)
-    arrays |= SPH_WITH_DISTENTION;
+#define PARTICLE_ARRAYS(FLAG, column) arrays |= columns >> SPH_COLUMN(column) & 1 ? SPH_WITH_##FLAG : 0;
+#include "engine/sph/modules/declarations.h"
   return arrays;
 }
 

@@ -12,8 +12,9 @@
 
 enum { SPH_BLOCK = SPH_PIECE, SPH_HOOKS = 4 + SPH_MODULES * SPH_STAGES };
 
-/* Columns, all of n. NULL where no body needs them: the modules (and system_columns.c, for what every body has) say
- * which a body needs. The deviator is kept by five components, xx xy xz yy yz: its trace is zero by construction. */
+/* Columns, all of n. Every body has those named here (but damping); modules declare the others and say which bodies
+ * need them: elsewhere they are NULL. The deviator is kept by five components, xx xy xz yy yz: its trace is zero by
+ * construction. */
 struct sph_columns {
   double *x, *y, *z;
   double *vx, *vy, *vz;
@@ -25,31 +26,8 @@ struct sph_columns {
   double *pressure, *sound_speed; /* undamaged, bulk */
   double *pressure_term;          /* -P/rho^2, damaged: the pair loop reads it */
   double *damping;
-  /* elastic */
-  double *stress[5], *stress_rate[5];
-  double *stress_factor; /* (1-D)/rho^2, D that scales the deviator: the pair loop multiplies the stress by it */
-  double *two_mu;        /* Pa, effective 2 mu in bodies whose modules publish it; others have the material's */
-  double *shear_damage;  /* D^(1/3) that scales the deviator, where modules publish it; elsewhere `damage` does */
-  /* fracture */
-  double *damage;                   /* D^(1/3), of all causes */
-  double *flaw_damage;              /* D^(1/3) by flaws, where `damage` has other causes, too */
-  double *damage_rate, *damage_cap; /* by flaws; the rate holds until the cap */
-  double *weakest;                  /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
-  double *open_from, *open_below,
-      *open_rate;     /* while E eps, Pa, lies between these, D^(1/3) grows at that rate (or is capped) */
-  double *crack_rate; /* c_g / R_s, 1/s */
-  /* crack_cell */
-  double *crack_stress[5], *crack_pressure; /* Pa, what opens the flaws: means over the cell of the particle */
-  /* crack_front */
-  double *front_time;                  /* s, when a crack's front reached the particle; infinite: not yet */
-  double *front_offset, *front_stress; /* m, Pa: struct sph_crack_front_tip */
-  double *front_normal[3];             /* 1 */
-  /* palpha */
-  double *distention, *rest_distention; /* alpha, now and at P = 0 (palpha.h) */
-  double *shear_factor;                 /* f of the last evaluation */
-  double *compaction;                   /* D^(1/3) by closed pores */
-  /* gradient correction */
-  double *correction[6]; /* B, at the last pair loop */
+#define COLUMN(member) double *member;
+#include "engine/sph/modules/declarations.h"
 };
 
 /* The place of a column among all, and a run of them: their first and how many. */

@@ -210,8 +210,10 @@ bool sph_system_step(struct sph_system *s, double until) {
   if (chosen && s->now.first_step == 0)
     s->now.first_step = dt;
   if (chosen && (dt < collapse * s->now.first_step || s->now.time + dt == s->now.time)) {
-    static const char *const names[SPH_LIMITS] = {"Courant", "force",   "damage", "distention",
-                                                  "energy",  "density", "given",  "end"};
+    static const char *const names[SPH_LIMITS] = {
+#define TIME_STEP_LIMIT(NAME, member, ...) #member,
+#include "engine/sph/modules/declarations.h"
+        "given", "end"};
     s->fault = SPH_FAULT_TIME_STEP;
     snprintf(s->failure, sizeof s->failure,
              "the time step fell to %.3g s (%s limit) at %.6g s, step %llu; it began with %.3g s", dt, names[limiter],

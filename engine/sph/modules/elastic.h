@@ -2,8 +2,21 @@
  *
  * dS/dt = 2 mu dev(eps) + R S - S R with R_ab = (dv_a/dx_b - dv_b/dx_a)/2: a rigidly turning body keeps its stress in
  * its own frame [BA95 eqs. 5-7, whose sign of the rotation terms is the other one]. S is stored undamaged. */
-#ifndef CLAST_ENGINE_SPH_MODULES_ELASTIC_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_ELASTIC_LOOP_H
+
+MATERIAL_MEMBERS(double bulk_modulus, shear_modulus;) /* Pa; K for Young's modulus and the speed of cracks */
+
+MATERIAL_VALUE(bulk_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH,
+               "K where Young's modulus and the speed of cracks are made from it. off: tillotson.A.",
+               "Benz & Asphaug 1995, eq. 21")
+MATERIAL_VALUE(shear_modulus, "Pa", 1, 1e15, SPH_MATERIAL_OFF, STRENGTH, "mu: shear modulus.",
+               "Benz & Asphaug 1995, eq. 6")
+
+COLUMN(stress[5])      /* Pa, deviator, undamaged: xx xy xz yy yz */
+COLUMN(stress_rate[5]) /* Pa/s */
+COLUMN(stress_factor)  /* (1-D)/rho^2, D that scales the deviator: the pair loop multiplies the stress by it */
+COLUMN(two_mu)         /* Pa, effective 2 mu in bodies whose modules publish it; others have the material's */
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/range_tools.h"
 

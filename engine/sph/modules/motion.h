@@ -4,8 +4,13 @@
  * positions x* = x + dt v + dt^2/2 a are not corrected. That is velocity Verlet for forces of positions alone and
  * second order for all. h keeps h^3 rho: h <- h (rho_old/rho_new)^(1/3), the integral of dh/dt = -(h/3) (drho/dt)/rho,
  * within bounds. */
-#ifndef CLAST_ENGINE_SPH_MODULES_MOTION_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_MOTION_LOOP_H
+
+TIME_STEP_LIMIT(COURANT, courant, "the speed of sound and viscosity, or by a damped side")
+TIME_STEP_LIMIT(FORCE, force, "the acceleration")
+TIME_STEP_LIMIT(ENERGY, energy, "the change of internal energy")
+TIME_STEP_LIMIT(DENSITY, density, "the change of density")
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/range_tools.h"
 

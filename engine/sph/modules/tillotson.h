@@ -1,8 +1,35 @@
 /* Tillotson pressure and sound speed over a range. Nearly all matter is cold or compressed. That branch, which has no
  * transcendental function, is computed for all particles; the few hot, expanded ones are computed again by the general
  * form. */
-#ifndef CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_TILLOTSON_LOOP_H
+
+/* Tillotson 1962; Melosh 1989, appendix II. */
+MATERIAL_MEMBERS(struct sph_tillotson {
+  double A, B;           /* Pa: bulk modulus and its non-linear companion */
+  double a, b;           /* 1 */
+  double alpha, beta;    /* 1: decay in hot expansion (not the exponent of a spectrum) */
+  double E0, E_iv, E_cv; /* J/kg: reference, incipient and complete vaporisation */
+} tillotson;)
+
+MATERIAL_VALUE(tillotson.A, "Pa", 1, 1e15, 0, ALWAYS, "Tillotson's A: bulk modulus at rest.",
+               "Tillotson 1962; Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.B, "Pa", 0, 1e15, 0, ALWAYS, "Tillotson's B: quadratic term in compression.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.a, "1", 0, 100, 0, ALWAYS,
+               "Tillotson's a: Grueneisen coefficient of hot matter. 0, with b 0: pressure does not depend on energy.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.b, "1", 0, 100, 0, ALWAYS, "Tillotson's b: a + b is the Grueneisen coefficient at rest.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.alpha, "1", 0, 1e3, 0, ALWAYS, "Tillotson's alpha: decay in hot expansion.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.beta, "1", 0, 1e3, 0, ALWAYS, "Tillotson's beta: decay in hot expansion.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.E0, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Tillotson's reference energy.", "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.E_iv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of incipient vaporisation.",
+               "Melosh 1989, appendix II")
+MATERIAL_VALUE(tillotson.E_cv, "J/kg", 1e-3, 1e15, 0, ALWAYS, "Energy of complete vaporisation, above E_iv.",
+               "Melosh 1989, appendix II")
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/material/tillotson.h"
 #include "engine/sph/modules/range_tools.h"

@@ -14,13 +14,39 @@
  * others lambda = 2 sqrt(J2/3) cos(theta/3), cos(theta) = (27/4)^(1/2) det S / J2^(3/2) (Smith 1961), with cos(theta/3)
  * = cos(2/3 acos(s)), s = sqrt((1 + cos(theta))/2), a smooth function of s: a polynomial of degree 16 is within 2e-15
  * of it. (Where the two larger values are equal, rounding of det S makes the error 1e-8 of |S|, as with acos.) */
-#ifndef CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_FRACTURE_LOOP_H
+
+INPUT_CHOICE(fracture, growth, SPH_CHOICES("cube-root", "linear"), .when = "target.fracture=auto|on",
+             .choice_docs = "n^(1/3) c_g/R_s, which gives Grady and Kipp's rate law\nn c_g/R_s, as printed",
+             .doc = "Rate of D^(1/3) of a particle with n open flaws.", .source = "BA95 section 4.3 for `linear`")
+INPUT_CHOICE(fracture, cap, SPH_CHOICES("ba95", "count", "none"), .when = "target.fracture=auto|on",
+             .choice_docs = "(n/n_tot)^(1/3), as printed\nn/n_tot\n1",
+             .doc = "Largest damage of a particle with n of its n_tot flaws open.", .source = "BA95 eq. 22 for `ba95`")
+INPUT_CHOICE(fracture, crack_radius, SPH_CHOICES("volume", "support"), .when = "target.fracture=auto|on",
+             .choice_docs = "radius of the sphere of the particle's volume\n"
+                            "2h: strength falls with R_s, and most of a body is destroyed where `volume` leaves a core",
+             .doc = "R_s: length that a crack has to grow until its particle is broken.",
+             .source = "BA95 eq. 15; the paper gives no value")
+INPUT_REAL(fidelity, damage_step, "1", 0.2, 1e-6, 1, .when = "target.fracture=auto|on",
+           .doc = "Largest change of D^(1/3) in a time step.")
+
+COLUMN(damage)      /* D^(1/3), of all causes */
+COLUMN(flaw_damage) /* D^(1/3) by flaws, where `damage` has other causes, too */
+COLUMN(damage_rate) /* 1/s, by flaws; the rate holds until the cap */
+COLUMN(damage_cap)
+COLUMN(weakest)    /* Young's modulus times the lowest threshold, Pa; infinite once D = 1 */
+COLUMN(open_from)  /* while E eps, Pa, lies between this */
+COLUMN(open_below) /* and this, */
+COLUMN(open_rate)  /* D^(1/3) grows at this rate, 1/s (or is capped) */
+COLUMN(crack_rate) /* c_g / R_s, 1/s */
+
+TIME_STEP_LIMIT(DAMAGE, damage, "the growth of damage")
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/material/derived.h"
 #include "engine/sph/material/fracture.h"
 #include "engine/sph/modules/range_tools.h"
-#include "engine/sph/modules/weibull.h"
+#include "engine/sph/modules/weibull_lists.h"
 
 /* cos(2/3 acos(s)) on [0, 1]: Chebyshev interpolation, in powers of 2 s - 1. */
 RANGE_INLINE double fracture_third_cosine(double s) {

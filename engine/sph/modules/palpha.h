@@ -4,8 +4,106 @@
  * Newton steps from the last alpha are made for all particles, without branches, so that they vectorise. The other
  * particles (crushing, hot, far off) are computed again by sph_palpha_update. An elastic particle is accepted when the
  * error before the second step is below 1e-9, as there. */
-#ifndef CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_PALPHA_LOOP_H
+
+MATERIAL_MEMBERS(struct sph_palpha {
+  enum { SPH_CRUSH_NONE, SPH_CRUSH_QUADRATIC, SPH_CRUSH_TWO_POWER } curve; /* none: nothing else here counts */
+  double distention;                                                       /* alpha_0; 1: no pores, the solid itself */
+  double fraction; /* porosity 1 - 1/alpha_0: another way to give it in a document, made to agree; not used elsewhere */
+  double elastic_pressure; /* Pa, P_e: plastic crushing begins */
+  double solid_pressure;   /* Pa, P_s: all pores are closed */
+  double sound_speed;      /* m/s, c_e of the porous matter at alpha_0; NaN: no elastic change of alpha */
+  /* two-power curve */
+  double elastic_distention, transition_distention; /* alpha_e, alpha_t */
+  double transition_pressure;                       /* Pa, P_t */
+  double exponent_low, exponent_high;               /* n1, n2 */
+} porosity;)
+
+#define POROSITY_ON        "porosity.curve=quadratic|two-power"
+#define POROSITY_TWO_POWER "porosity.curve=two-power"
+MATERIAL_CHOICE(
+    porosity.curve, SPH_CHOICES("none", "quadratic", "two-power"), 0, ALWAYS, "crush curve",
+    "no pores\nalpha = 1 + (alpha_e - 1)((P_s - P)/(P_s - P_e))^2\n"
+    "a steep law up to P_t and a second one up to P_s, for very porous matter such as pumice",
+    "Crush curve: how pores far below the resolution close under pressure (P-alpha). The material's density "
+    "and yield_stress are then those of the solid between the pores, and the porous body yields at "
+    "Y_0/alpha. tension_limit is that of the porous body, as strengths are measured (our choice); of the "
+    "solid's value give that over alpha_0.",
+    "Herrmann 1969; Jutzi, Benz & Michel 2008")
+MATERIAL_CHOICE_VALUE(
+    porosity.distention, "1", NAN, 1, 100, 0, POROSITY_ON,
+    "alpha_0: density of the solid over that of the porous body. 1: no pores, the solid itself to the "
+    "bit. In a scene porosity.fraction may be given instead.",
+    "Herrmann 1969")
+MATERIAL_CHOICE_VALUE(porosity.fraction, "1", NAN, 0, 0.99, SPH_MATERIAL_OFF, POROSITY_ON,
+                      "Porosity, 1 - 1/alpha_0: give it or porosity.distention, not both; the other follows.", NULL)
+MATERIAL_CHOICE_VALUE(porosity.elastic_pressure, "Pa", NAN, 0, 1e15, 0, POROSITY_ON,
+                      "P_e: from here on pores are crushed for good.", "Jutzi, Benz & Michel 2008")
+MATERIAL_CHOICE_VALUE(porosity.solid_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_ON,
+                      "P_s: from here on all pores are closed.", "Jutzi, Benz & Michel 2008")
+MATERIAL_CHOICE_VALUE(porosity.sound_speed, "m/s", NAN, 0, 1e6, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, POROSITY_ON,
+                      "c_e: bulk sound speed of the porous body, not above the solid's. off: pores do not give way "
+                      "elastically, and the solid's speed is taken.",
+                      "Herrmann 1969; Jutzi, Benz & Michel 2008")
+MATERIAL_CHOICE_VALUE(
+    porosity.elastic_distention, "1", NAN, 1, 100, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
+    "alpha_e: where the crush curve begins, at P_e. A body of lower alpha_0 keeps it until it meets the "
+    "curve.",
+    "Jutzi et al. 2009")
+MATERIAL_CHOICE_VALUE(porosity.transition_distention, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
+                      "alpha_t: below it, and above P_t, the first power law has ended.", "Jutzi et al. 2009")
+MATERIAL_CHOICE_VALUE(porosity.transition_pressure, "Pa", NAN, 0, 1e15, SPH_MATERIAL_ABOVE, POROSITY_TWO_POWER,
+                      "P_t: where the first power law ends.", "Jutzi et al. 2009")
+MATERIAL_CHOICE_VALUE(porosity.exponent_low, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
+                      "n1: exponent of the law between P_e and P_t.", "Jutzi et al. 2009")
+MATERIAL_CHOICE_VALUE(porosity.exponent_high, "1", NAN, 1, 100, 0, POROSITY_TWO_POWER,
+                      "n2: exponent of the law up to P_s.", "Jutzi et al. 2009")
+
+INPUT_REAL(fidelity, distention_step, "1", 0.01, 1e-6, 1, .when = "target.material." POROSITY_ON,
+           .doc = "Largest change of a porous particle's distention in a time step.",
+           .source = "Jutzi, Benz & Michel 2008")
+#undef POROSITY_ON
+#undef POROSITY_TWO_POWER
+
+COLUMN(distention)      /* alpha now */
+COLUMN(rest_distention) /* alpha after unloading to P = 0 (material/palpha.h) */
+COLUMN(shear_factor)    /* f of the last evaluation */
+COLUMN(compaction)      /* D^(1/3) by closed pores */
+
+PARTICLE_ARRAYS(DISTENTION, distention)
+PARTICLE_COLUMN(DISTENTION, distention, 1, "1", "distention: density of the matrix over density")
+PARTICLE_COLUMN(DISTENTION, rest_distention, 1, "1",
+                "distention at zero pressure; below the distention at the start, pores are closed for good")
+PROFILE_COLUMN(distention, rest_distention, distention, 1, "1",
+               "impact: mean at rest (P = 0) over retained particles within 1.5 spacings of the axis; plate: mean of "
+               "the layer as it is")
+
+TIME_STEP_LIMIT(DISTENTION, distention, "the closing of pores")
+
+RESULT_MEMBERS(double mean_distention; struct { double mass_fraction, volume, depth, reach; } compaction;)
+FRONT_RESULT_MEMBERS(double distention, distention_exact;)
+RESULT_REAL(mean_distention, "1", 1,
+            .doc = "Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off "
+                   "without pores.",
+            .source = "Jutzi, Benz & Michel 2008")
+RESULT_SHARE(compaction.mass_fraction,
+             .doc = "Impact: mass share of the target that was compacted: its distention at zero pressure fell from "
+                    "1.01 or more to below 1.01. Off without pores.",
+             .source = "Jutzi & Benz, figure 2")
+RESULT_REAL(compaction.volume, "m^3", 0,
+            .doc = "Impact: volume that the retained matter lost as its pores closed; off without pores.")
+RESULT_REAL(compaction.depth, "m", 0,
+            .doc = "Impact: depth at the start of the deepest compacted particle near the axis; off without pores.")
+RESULT_REAL(compaction.reach, "m", 0,
+            .doc = "Impact: largest distance from the point of impact at which matter lost a hundredth of its pores; "
+                   "off without pores.")
+RESULT_REAL(shock.distention, "1", 1,
+            .doc = "Piston: mean distention behind the shock, in the same region; off without pores.")
+RESULT_REAL(shock.distention_exact, "1", 1,
+            .doc = "Piston: distention behind the shock by the jump conditions and the crush curve.")
+RESULT_REAL(precursor.distention, "1", 1, .doc = "Piston: mean distention between precursor and shock.")
+RESULT_REAL(precursor.distention_exact, "1", 1, .doc = "Piston: distention behind the precursor on the elastic branch.")
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/material/palpha.h"
 #include "engine/sph/modules/range_tools.h"

@@ -1,7 +1,13 @@
 /* Von Mises: Y = Y0 (1 - u/u_melt), zero beyond, as the yield limit of each particle [BA95 eqs. 8-10]. A yield law only
  * writes the limit; `elastic` brings the stress back to it. */
-#ifndef CLAST_ENGINE_SPH_MODULES_YIELD_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_YIELD_LOOP_H
+
+MATERIAL_MEMBERS(double yield_stress;) /* Pa at u = 0; INFINITY: never yields */
+
+MATERIAL_VALUE(yield_stress, "Pa", 0, 1e15, SPH_MATERIAL_OFF | SPH_MATERIAL_ABOVE, STRENGTH,
+               "Y_0: von Mises yield stress of cold solid matter. off: elastic at any stress.",
+               "Benz & Asphaug 1995, eq. 9")
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/range_tools.h"
 

@@ -1,7 +1,15 @@
 /* The bound of tension in bodies without flaws. It falls with the expansion of the solid matter, and the yield limit
  * with it. */
-#ifndef CLAST_ENGINE_SPH_MODULES_TENSION_LIMIT_LOOP_H
-#define CLAST_ENGINE_SPH_MODULES_TENSION_LIMIT_LOOP_H
+
+MATERIAL_MEMBERS(double tension_limit;) /* Pa; NaN: off */
+
+MATERIAL_VALUE(tension_limit, "Pa", 0, 1e15, SPH_MATERIAL_OFF, ALWAYS,
+               "Largest tension of a body without flaws (its lowest pressure is minus this). It falls with expansion, "
+               "to none at 0.9 of the density, so that cold matter reaches 1/(1 + 10 tension_limit/A) of it. off: no "
+               "limit, down to -A and beyond.",
+               NULL)
+
+#ifdef SPH_MODULE_LOOPS
 
 #include "engine/sph/modules/range_tools.h"
 
