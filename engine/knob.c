@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *const knob_group_names[] = {"resolution", "part", "model"};
+const char *const knob_group_names[] = {"resolution", "part", "model", "settings"};
 
 /* Factors of particles and grains: a third of the number each, so that the spacing of an SPH body changes by 1.44. Time
  * steps: halves. */
@@ -52,6 +52,8 @@ static const struct knob knobs[] = {
     SPH("flaw_draw", MODEL, .inputs = {{"fracture.draw"}}, .choices = {"ranked", "poisson"},
         .meaning = "flaw strengths by rank, or drawn"),
 
+    SPH("settings", SETTINGS, .meaning = "named settings of the scene (`settings` in its document): draft, reference"),
+
     DEM("grains", RESOLUTION, .inputs = {{"grain.spacing", 1}}, .factors = {2, 1.41, 1, 0.71}, .step_power = 1,
         .meaning = "mean size of a grain of a disc: half as many grains each"),
     DEM("time_step", RESOLUTION, .inputs = {{"fidelity.time_step", 1}}, HALVES, .step_power = 1, .pairs = true,
@@ -67,6 +69,7 @@ static const struct knob knobs[] = {
     DEM("contact_bonded", MODEL, .inputs = {{"contact.bonded"}}, ON_OFF, .pairs = true,
         .meaning = "grains that a beam joins repel each other, too"),
     DEM("breaking", MODEL, .inputs = {{"threshold.breaking"}}, ON_OFF, .pairs = true, .meaning = "beams may break"),
+    DEM("settings", SETTINGS, .meaning = "named settings of the scene (`settings` in its document): draft, reference"),
 };
 _Static_assert(sizeof knobs / sizeof knobs[0] <= KNOB_MOST, "raise KNOB_MOST");
 

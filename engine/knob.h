@@ -14,8 +14,10 @@ enum knob_group {
   KNOB_RESOLUTION, /* has a best end, which is the reference: its bias is part of the error of resolution */
   KNOB_PART,       /* the same, but a part of another knob, whose error has it already */
   KNOB_MODEL,      /* what is modelled: compared with the scene's own choice */
+  KNOB_SETTINGS,   /* named settings of the scene, which turn several knobs at once; has no inputs of its own */
+  KNOB_GROUPS
 };
-extern const char *const knob_group_names[]; /* "resolution", "part", "model" */
+extern const char *const knob_group_names[]; /* "resolution", "part", "model", "settings" */
 
 struct knob_input {
   const char *path;

@@ -6,6 +6,7 @@
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
+#include "engine/scene_settings.h"
 #include "schemas/document.h"
 #include "schemas/json_schema.h"
 #include "schemas/text.h"
@@ -47,7 +48,7 @@ static status unknown_builtin(const char *name, struct error *error) {
 
 /* ---- reading ---- */
 
-static const char *const own_keys[] = {"engine", "name", "source", NULL};
+static const char *const own_keys[] = {"engine", "name", "source", "settings", NULL};
 
 static const struct field head_rows[] = {
     {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"},
@@ -98,6 +99,7 @@ static status read_document(struct document *document, const char *fallback, str
     }
     document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
     snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
+    scene_settings_read(document_key(root, "settings"), scene);
   }
   code = document_finish(document, &report);
   if (code)
@@ -117,7 +119,7 @@ static bool is_path(const char *reference) {
   return strchr(reference, '/') || (dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml") || !strcmp(dot, ".json")));
 }
 
-status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error) {
+static status load_standard(const char *reference, const char *folder, struct scene **out, struct error *error) {
   *out = NULL;
   struct document *document = NULL;
   char *path = NULL, *stem = NULL;
@@ -150,6 +152,24 @@ cleanup:
   return code;
 }
 
+status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error) {
+  const char *at = strrchr(reference, '@');
+  if (!at || strchr(at, '/'))
+    return load_standard(reference, folder, out, error);
+
+  char *standard = strndup(reference, (size_t)(at - reference));
+  status code = standard ? load_standard(standard, folder, out, error)
+                         : status_fail(error, STATUS_MEMORY, "no memory for a path");
+  free(standard);
+  if (code == STATUS_OK)
+    code = scene_settings_use(*out, at + 1, error);
+  if (code != STATUS_OK) {
+    scene_free(*out);
+    *out = NULL;
+  }
+  return code;
+}
+
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error) {
   *out = NULL;
   struct document *document = NULL;
@@ -175,6 +195,16 @@ struct scene *scene_copy(const struct scene *scene) {
   memcpy(copy->given, scene->given, scene->kind->inputs->count * sizeof *scene->given);
   memcpy(copy->overridden, scene->overridden, scene->kind->inputs->count * sizeof *scene->overridden);
   memcpy(copy->name, scene->name, sizeof copy->name);
+  if (scene->settings_count == 0)
+    return copy;
+  const size_t size = scene->settings_count * sizeof *scene->settings;
+  copy->settings = malloc(size);
+  if (!copy->settings) {
+    scene_free(copy);
+    return NULL;
+  }
+  copy->settings_count = scene->settings_count;
+  memcpy(copy->settings, scene->settings, size);
   return copy;
 }
 
@@ -184,6 +214,7 @@ void scene_free(struct scene *scene) {
   free(scene->inputs);
   free(scene->given);
   free(scene->overridden);
+  free(scene->settings);
   free(scene);
 }
 
@@ -269,7 +300,7 @@ char *scene_json(const struct scene *scene) {
 }
 
 void scene_schema(const struct engine_kind *kind, FILE *out) {
-  char title[128], extra[512];
+  char title[128], extra[1024];
   snprintf(title, sizeof title, "A scene of clast's engine %s", kind->name);
   snprintf(extra, sizeof extra,
            "\"engine\": {\"const\": \"%s\", \"description\": \"Which engine runs the scene.\"},\n"
@@ -277,7 +308,10 @@ void scene_schema(const struct engine_kind *kind, FILE *out) {
            "scene's name.\"},\n"
            "    \"source\": {\"type\": [\"string\", \"number\", \"boolean\"], \"maxLength\": %d, \"description\": "
            "\"Where it comes from: "
-           "paper, section, figure.\"}",
+           "paper, section, figure.\"},\n"
+           "    \"settings\": {\"type\": \"object\", \"description\": \"Named settings: inputs and their values for "
+           "each name, such as draft: {fidelity.particles: 3000}. SCENE@draft runs the scene with them.\", "
+           "\"additionalProperties\": {\"type\": \"object\"}}",
            kind->name, FIELD_TEXT_SIZE - 1, FIELD_TEXT_SIZE - 1);
   json_schema_write(kind->inputs, title, extra, "engine", out);
 }

@@ -6,12 +6,16 @@
 
 #include "engine/engine.h"
 
+struct scene_settings;
+
 struct scene {
   const struct engine_kind *kind;
-  void *inputs;               /* kind->inputs->size bytes, SI, defaults filled */
-  bool *given;                /* per input row: set by the document or an override */
-  bool *overridden;           /* per input row: set by an override */
-  char name[FIELD_TEXT_SIZE]; /* built-in name, or the document's own `name:` */
+  void *inputs;                    /* kind->inputs->size bytes, SI, defaults filled */
+  bool *given;                     /* per input row: set by the document or an override */
+  bool *overridden;                /* per input row: set by an override */
+  char name[FIELD_TEXT_SIZE];      /* built-in name, or the document's own `name:` */
+  struct scene_settings *settings; /* named settings (engine/scene_settings.h), owned; NULL: none */
+  size_t settings_count;
 };
 
 size_t scene_builtin_count(void);
@@ -19,7 +23,8 @@ const char *scene_builtin_name(size_t index);
 const char *scene_builtin_text(const char *name); /* the document, or NULL */
 
 /* `reference` is a built-in name or a path (a path when it holds '/' or ends in .yaml/.yml/.json), relative to `folder`
- * (NULL: the current one). *error gets all errors of the document at once.
+ * (NULL: the current one). `@NAME` behind it chooses named settings (engine/scene_settings.h): basalt-sphere@draft.
+ * *error gets all errors of the document at once.
  * STATUS_MISSING (with nearest built-in name), STATUS_CONTENT, STATUS_IO. */
 status scene_load(const char *reference, const char *folder, struct scene **out, struct error *error);
 status scene_parse(const char *name, const char *text, struct scene **out, struct error *error);

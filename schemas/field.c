@@ -139,6 +139,14 @@ void field_get(const struct field *row, const void *object, struct field_value *
   }
 }
 
+bool field_same_value(const struct field *row, const struct field_value *a, const struct field_value *b) {
+  if (row->kind == FIELD_TEXT || row->kind == FIELD_CHOICE)
+    return strcmp(a->text, b->text) == 0;
+  if (row->kind == FIELD_INTEGER)
+    return a->integer == b->integer;
+  return a->number == b->number || (isnan(a->number) && isnan(b->number));
+}
+
 void field_default(const struct field *row, struct field_value *value) {
   *value = (struct field_value){.kind = row->kind};
   if (row->flags & FIELD_REQUIRED) {

@@ -111,6 +111,8 @@ void field_describe_inactive(const struct field_table *table, const struct field
 /* The row's default; a required row has zero or NaN. */
 void field_default(const struct field *row, struct field_value *value);
 void field_get(const struct field *row, const void *object, struct field_value *value);
+/* Two values of one row; NaN (off) equals NaN. */
+bool field_same_value(const struct field *row, const struct field_value *a, const struct field_value *b);
 /* Checks kind and range, then stores (-0 becomes 0). A REAL row accepts INTEGER values, an INTEGER row whole REAL
  * values. A choice comes by name in `text` (kind TEXT, too) or, with empty text, by index. STATUS_CONTENT with a
  * message that names the path, the range and the value. */

@@ -207,7 +207,7 @@ static status add_knob(struct subject *subject, const struct options *options, c
 }
 
 static int group_of(const char *name) {
-  for (int group = 0; group <= KNOB_MODEL; group++)
+  for (int group = 0; group < KNOB_GROUPS; group++)
     if (strcmp(name, knob_group_names[group]) == 0)
       return group;
   return -1;
@@ -249,7 +249,7 @@ static status add_knobs(struct subject *subject, const struct options *options, 
   for (size_t s = 0; code == STATUS_OK && s < subject->scene_count; s++) {
     const struct scene *scene = subject->scenes[s];
     if (options->knobs.count == 0)
-      code = add_named(subject, options, scene, knob_group_names[KNOB_RESOLUTION], NULL, error);
+      code = add_item(subject, options, scene, "resolution,settings", error);
     for (size_t i = 0; code == STATUS_OK && i < options->knobs.count; i++)
       code = add_item(subject, options, scene, options->knobs.items[i], error);
   }
@@ -334,7 +334,7 @@ static status run(const struct command_line *line, struct error *error) {
 static const struct option_row rows[] = {
     OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, knobs,
                     "What is made coarser and finer: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with "
-                    "levels of your own. May be given several times. Default: the group resolution."),
+                    "levels of your own. May be given several times. Default: the groups resolution and settings."),
     OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, quantity, NULL,
                     "Results to study, comma-separated. Default: the campaign's main quantity, or " OUTCOME_DEFAULT
                     "."),

@@ -16,7 +16,7 @@ status converge_print_knobs(enum table_format format, struct error *error) {
     table_text(table, knob->engine);
     table_text(table, knob->name);
     table_text(table, knob_group_names[knob->group]);
-    table_text(table, knob->inputs[0].path);
+    table_text(table, knob->inputs[0].path ? knob->inputs[0].path : "");
     table_text(table, knob->meaning);
   }
   return table_end(table, error);

@@ -9,8 +9,9 @@
 #include "campaign/converge/ladder.h"
 #include "campaign/design/design.h"
 #include "db/ask/convergence.h"
+#include "engine/scene_settings.h"
 
-enum { FEWEST_SEEDS = 3, MOST_SEEDS = 1000000, LOOKED_AT = 1000 };
+enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
 
 int64_t accuracy_seeds(double deviation, double margin) {
   if (!(margin > 0) || !(deviation >= 0))
@@ -44,11 +45,23 @@ static const struct knob *knob_of(const struct campaign *campaign, const char *n
   return knob_find(campaign->scene->kind->name, name, &ignored);
 }
 
-static bool is_varied(const struct campaign *campaign, const struct knob *knob) {
+static bool is_axis(const struct campaign *campaign, const char *path) {
+  for (size_t a = 0; a < campaign->axis_count; a++)
+    if (strcmp(campaign->axes[a].row->path, path) == 0)
+      return true;
+  return false;
+}
+
+/* Does the campaign vary an input that this level of the knob sets? */
+static bool is_varied(const struct campaign *campaign, const struct knob *knob, const char *setting) {
   for (size_t i = 0; i < KNOB_INPUTS && knob->inputs[i].path; i++)
-    for (size_t a = 0; a < campaign->axis_count; a++)
-      if (strcmp(campaign->axes[a].row->path, knob->inputs[i].path) == 0)
-        return true;
+    if (is_axis(campaign, knob->inputs[i].path))
+      return true;
+  const struct scene_settings *settings = knob->group == KNOB_SETTINGS ? scene_settings_find(campaign->scene, setting)
+                                                                       : NULL;
+  for (size_t i = 0; settings && i < settings->count; i++)
+    if (is_axis(campaign, campaign->scene->kind->inputs->rows[settings->item[i].row].path))
+      return true;
   return false;
 }
 
@@ -65,7 +78,8 @@ static status take_open(void *context, const struct convergence_row *row, struct
 
 static bool others_open(const struct finding *finding, const struct knob *knob) {
   for (size_t i = 0; i < knob_count(); i++)
-    if (finding->base_open[i] && knob_at(i) != knob)
+    if (finding->base_open[i] && knob_at(i) != knob && knob_at(i)->group == KNOB_RESOLUTION &&
+        knob->group != KNOB_SETTINGS)
       return true;
   return false;
 }
@@ -75,9 +89,10 @@ static status take_option(void *context, const struct convergence_row *row, stru
   struct finding *finding = context;
   struct accuracy *accuracy = finding->accuracy;
   const struct knob *knob = knob_of(finding->campaign, row->knob);
-  if (!knob || isnan(row->resolution) || !isfinite(row->error) || !isfinite(row->deviation))
+  if (!knob || knob->group == KNOB_MODEL || knob->group == KNOB_PART || !isfinite(row->error) ||
+      !isfinite(row->deviation))
     return STATUS_OK; /* a model is not chosen for its price; a level without runs tells nothing */
-  if (!row->base && is_varied(finding->campaign, knob))
+  if (!row->base && is_varied(finding->campaign, knob, row->setting))
     return STATUS_OK;
   for (size_t i = 0; row->base && i < accuracy->count; i++)
     if (accuracy->options[i].own)

@@ -40,7 +40,7 @@ status accuracy_apply(const struct accuracy *accuracy, struct campaign *campaign
 status accuracy_settle(struct campaign *campaign, const char *path, const char *store, struct error *error);
 
 /* Number of seeds whose interval's half width is at most `margin`, by Student's t; at least 3. 0: margin is not above
- * 0, the scatter is not known, or more than a million would be needed. */
+ * 0, the scatter is not known, or more than 10 000 would be needed: finer settings are the better way then. */
 int64_t accuracy_seeds(double deviation, double margin);
 
 #endif

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/scene_settings.h"
+
 struct making {
   const struct knob *knob;
   const struct scene *base;
@@ -41,14 +43,6 @@ static status find_inputs(struct making *making, struct error *error) {
     field_get(row, making->base->inputs, &making->own[i]);
   }
   return STATUS_OK;
-}
-
-static bool same_value(const struct field *row, const struct field_value *a, const struct field_value *b) {
-  if (row->kind == FIELD_TEXT || row->kind == FIELD_CHOICE)
-    return strcmp(a->text, b->text) == 0;
-  if (row->kind == FIELD_INTEGER)
-    return a->integer == b->integer;
-  return a->number == b->number || (isnan(a->number) && isnan(b->number));
 }
 
 static void print_setting(const struct field *row, const struct field_value *value, char *text, size_t size) {
@@ -92,7 +86,7 @@ static status add_level(struct making *making, const struct field_value *value, 
   if (ladder->count == KNOB_LEVELS)
     return status_fail(error, STATUS_USAGE, "more than %d levels of %s", KNOB_LEVELS, making->knob->name);
 
-  level.base = same_value(making->rows[0], value, &making->own[0]);
+  level.base = field_same_value(making->rows[0], value, &making->own[0]);
   if (making->knob->step_power != 0)
     level.step = pow(as_number(value), making->knob->step_power);
   level.scene = scene_copy(making->base);
@@ -150,6 +144,70 @@ static status add_choices(struct making *making, struct error *error) {
   return code == STATUS_OK ? add_level(making, &making->own[0], error) : code;
 }
 
+/* ---- named settings ---- */
+
+static double work_of(const struct ladder_level *level) {
+  return level->scene->kind->work ? level->scene->kind->work(level->scene->inputs) : 0;
+}
+
+static int by_work(const void *a, const void *b) {
+  const double x = work_of(a), y = work_of(b);
+  return (x > y) - (x < y);
+}
+
+/* "draft,reference" among the user's settings, or all. */
+static bool is_wanted(const char *settings, const char *name) {
+  const size_t length = strlen(name);
+  for (const char *from = settings; from; from = strchr(from, ',') ? strchr(from, ',') + 1 : NULL)
+    if (strncmp(from, name, length) == 0 && (from[length] == ',' || from[length] == '\0'))
+      return true;
+  return !settings;
+}
+
+static status add_named(struct making *making, const char *name, struct error *error) {
+  struct ladder_level level = {.step = NAN, .base = strcmp(name, SCENE_SETTINGS_STANDARD) == 0};
+  struct error why = {0};
+  snprintf(level.setting, sizeof level.setting, "%s", name);
+  level.scene = scene_copy(making->base);
+  if (!level.scene)
+    return status_fail(error, STATUS_MEMORY, "no memory for a level");
+  if (scene_settings_use(level.scene, name, &why) != STATUS_OK || scene_check(level.scene, &why) != STATUS_OK) {
+    fprintf(making->notes, "settings %s are left out: %s\n", name, why.message);
+    scene_free(level.scene);
+    return STATUS_OK;
+  }
+  making->ladder->level[making->ladder->count++] = level;
+  return STATUS_OK;
+}
+
+static status add_all_named(struct making *making, const char *settings, struct error *error) {
+  const struct scene *base = making->base;
+  struct ladder *ladder = making->ladder;
+  status code = is_wanted(settings, SCENE_SETTINGS_STANDARD) ? add_named(making, SCENE_SETTINGS_STANDARD, error)
+                                                             : STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < base->settings_count; i++)
+    if (is_wanted(settings, base->settings[i].name))
+      code = add_named(making, base->settings[i].name, error);
+  if (code != STATUS_OK || ladder->count < 2)
+    return code == STATUS_OK
+               ? status_fail(error, STATUS_CONTENT, "%s has fewer than two named settings (`settings` in its document)",
+                             base->name)
+               : code;
+  qsort(ladder->level, ladder->count, sizeof *ladder->level, by_work);
+  size_t reference = ladder->count - 1;
+  for (size_t i = 0; i < ladder->count; i++)
+    if (strcmp(ladder->level[i].setting, "reference") == 0)
+      reference = i;
+  const struct ladder_level last = ladder->level[reference]; /* it goes to the end, as the finest does */
+  memmove(ladder->level + reference, ladder->level + reference + 1,
+          (ladder->count - 1 - reference) * sizeof *ladder->level);
+  ladder->level[ladder->count - 1] = last;
+  ladder->level[ladder->count - 1].reference = true;
+  return STATUS_OK;
+}
+
+/* ---- the ladder ---- */
+
 static int by_step(const void *a, const void *b) {
   const double x = ((const struct ladder_level *)a)->step, y = ((const struct ladder_level *)b)->step;
   return (x < y) - (x > y);
@@ -187,6 +245,13 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
   struct making making = {.knob = knob, .base = base, .ladder = ladder, .notes = open_memstream(notes, &size)};
   if (!making.notes)
     return status_fail(error, STATUS_MEMORY, "no memory for a ladder");
+  if (knob->group == KNOB_SETTINGS) {
+    const status code = add_all_named(&making, settings, error);
+    fclose(making.notes);
+    if (code != STATUS_OK)
+      ladder_clear(ladder);
+    return code;
+  }
   status code = find_inputs(&making, error);
   if (code == STATUS_OK && settings)
     code = add_settings(&making, settings, error);
@@ -207,6 +272,10 @@ status ladder_make(const struct knob *knob, const struct scene *base, const char
 }
 
 status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error) {
+  if (knob->group == KNOB_SETTINGS) {
+    const status used = scene_settings_use(scene, setting, error);
+    return used == STATUS_OK ? scene_check(scene, error) : used;
+  }
   struct making making = {.knob = knob, .base = scene};
   struct field_value value = {0};
   status code = find_inputs(&making, error);
@@ -214,7 +283,19 @@ status ladder_turn(const struct knob *knob, struct scene *scene, const char *set
     return code;
   if (field_parse_si(making.rows[0], setting, &value, error) != STATUS_OK)
     return STATUS_USAGE;
-  return same_value(making.rows[0], &value, &making.own[0]) ? STATUS_OK : set_inputs(&making, &value, scene, error);
+  return field_same_value(making.rows[0], &value, &making.own[0]) ? STATUS_OK
+                                                                  : set_inputs(&making, &value, scene, error);
+}
+
+void ladder_setting(const struct knob *knob, const struct scene *scene, char *text, size_t size) {
+  struct error ignored;
+  struct field_value value;
+  const struct field *row = field_find(scene->kind->inputs, knob->inputs[0].path, &ignored);
+  text[0] = '\0';
+  if (!row)
+    return;
+  field_get(row, scene->inputs, &value);
+  print_setting(row, &value, text, size);
 }
 
 void ladder_clear(struct ladder *ladder) {

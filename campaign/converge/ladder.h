@@ -17,15 +17,20 @@ struct ladder {
   size_t count;
 };
 
-/* The levels of a knob in a scene. settings: NULL, or a comma-separated list of values of the knob's first input, which
- * replaces the ladder; the scene's own setting is then a level only if it is among them. Levels that the scene refuses
- * are left out and said in *notes (malloc'd lines, may become NULL). STATUS_CONTENT: the knob does not apply to this
- * scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no value of the input. */
+/* The levels of a knob in a scene. Of the group settings: the scene as written and its named settings, by their work;
+ * the reference is the one of this name, or the last. settings: NULL, or a comma-separated list of values of the knob's
+ * first input, which replaces the ladder; the scene's own setting is then a level only if it is among them. Levels that
+ * the scene refuses are left out and said in *notes (malloc'd lines, may become NULL). STATUS_CONTENT: the knob does
+ * not apply to this scene, or fewer than two levels are left; *ladder is empty then. STATUS_USAGE: a setting is no
+ * value of the input. */
 status ladder_make(const struct knob *knob, const struct scene *base, const char *settings, struct ladder *ladder,
                    char **notes, struct error *error);
 /* Sets all inputs of a knob in a scene, as the level `setting` of its ladder has them. STATUS_CONTENT when the knob
  * does not apply or the scene refuses the value, STATUS_USAGE when it is no value of the input. */
 status ladder_turn(const struct knob *knob, struct scene *scene, const char *setting, struct error *error);
+
+/* The value of the knob's first input in a scene, as a level's setting. */
+void ladder_setting(const struct knob *knob, const struct scene *scene, char *text, size_t size);
 
 void ladder_clear(struct ladder *ladder);
 

@@ -146,8 +146,9 @@ void study_find(const struct study *study, const struct study_ladder *ladder, si
   convergence_resolve(found->count, found->rows, &found->limit);
   for (size_t l = 0; l < found->count; l++) {
     struct convergence_row *row = &found->rows[l];
-    const bool model = ladder->levels.knob->group == KNOB_MODEL;
-    row->error = model ? fabs(row->bias) + row->bias_half_width : row->resolution;
+    const enum knob_group group = ladder->levels.knob->group;
+    const bool own = group == KNOB_MODEL || group == KNOB_SETTINGS;
+    row->error = own ? fabs(row->bias) + row->bias_half_width : row->resolution;
     if (!found->adds) {
       row->resolution = NOTHING;
       row->open = false;
@@ -180,13 +181,49 @@ static void mark_frontier(size_t count, struct study_found *found) {
       found[i].rows[l].frontier = on[n++];
 }
 
-static void combine(size_t count, struct study_found *found) {
+/* What the knob leaves unknown at its value in this scene; without such a level, at the scene's own. */
+static double error_at(const struct study_ladder *ladder, const struct study_found *found, const struct scene *scene) {
+  char setting[64];
+  ladder_setting(ladder->levels.knob, scene, setting, sizeof setting);
+  for (size_t l = 0; l < found->count; l++)
+    if (strcmp(found->rows[l].setting, setting) == 0 && isfinite(found->rows[l].error))
+      return found->rows[l].error;
+  return error_at_base(found);
+}
+
+/* Named settings turn all knobs: what the reference of them leaves unknown adds to the bias against it. Without a study
+ * of the knobs of resolution that is not known. */
+static void add_reference_error(const struct study_ladder *ladders, size_t count, size_t of,
+                                struct study_found *found) {
+  const struct study_ladder *ladder = &ladders[of];
+  const struct scene *reference = ladder->levels.level[study_reference(ladder)].scene;
+  double error = 0;
+  bool studied = false, open = false;
+  for (size_t i = 0; i < count; i++) {
+    if (!found[i].adds)
+      continue;
+    studied = true;
+    error += error_at(&ladders[i], &found[i], reference);
+    for (size_t l = 0; l < found[i].count; l++)
+      open |= found[i].rows[l].open;
+  }
+  for (size_t l = 0; l < found[of].count; l++) {
+    found[of].rows[l].error = studied ? found[of].rows[l].error + error : NOTHING;
+    found[of].rows[l].open = open;
+  }
+}
+
+/* Each level has the errors of all knobs: of the others, what they leave unknown at the scene's own setting. */
+static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
   double own[STUDY_KNOBS] = {0};
+  for (size_t i = 0; i < count; i++)
+    if (ladders[i].levels.knob->group == KNOB_SETTINGS)
+      add_reference_error(ladders, count, i, found);
   for (size_t i = 0; i < count; i++)
     own[i] = found[i].adds ? error_at_base(&found[i]) : 0;
   for (size_t i = 0; i < count; i++)
     for (size_t other = 0; other < count; other++)
-      for (size_t l = 0; other != i && l < found[i].count; l++)
+      for (size_t l = 0; other != i && ladders[i].levels.knob->group != KNOB_SETTINGS && l < found[i].count; l++)
         found[i].rows[l].error += own[other];
   mark_frontier(count, found);
 }
@@ -196,7 +233,7 @@ size_t study_of_scene(const struct study *study, size_t from, size_t quantity, s
   for (size_t i = from; i < study->ladder_count && study->ladder[i].base == study->ladder[from].base; i++)
     if (count < STUDY_KNOBS)
       study_find(study, &study->ladder[i], quantity, &found[count++]);
-  combine(count, found);
+  combine(&study->ladder[from], count, found);
   return count;
 }
 

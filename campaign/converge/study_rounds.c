@@ -150,19 +150,34 @@ static size_t cheapest_level(const struct study_ladder *ladder) {
   return best;
 }
 
-/* The inputs of the knob as axes, whose i-th values are the i-th level. Inputs that are inactive are none. */
+/* Does some level give the input another value than the base scene has? An input without effect is none. */
+static bool is_turned(const struct study_ladder *ladder, size_t input) {
+  const struct scene *base = ladder->base;
+  const struct field *row = &base->kind->inputs->rows[input];
+  struct field_value own, other;
+  if (!field_is_active(base->kind->inputs, row, base->inputs))
+    return false;
+  field_get(row, base->inputs, &own);
+  for (size_t l = 0; l < ladder->levels.count; l++) {
+    const struct scene *scene = ladder->levels.level[l].scene;
+    field_get(row, scene->inputs, &other);
+    if (scene->given[input] && !field_same_value(row, &own, &other))
+      return true;
+  }
+  return false;
+}
+
+/* The inputs that the knob turns as axes, whose i-th values are the i-th level. */
 static status make_axes(const struct rounds *rounds, struct campaign *campaign, struct error *error) {
   const struct ladder *levels = &rounds->ladder->levels;
-  const struct engine_kind *kind = rounds->ladder->base->kind;
+  const struct field_table *inputs = rounds->ladder->base->kind->inputs;
   const size_t cheapest = cheapest_level(rounds->ladder);
-  campaign->axes = calloc(KNOB_INPUTS, sizeof *campaign->axes);
+  campaign->axes = calloc(inputs->count, sizeof *campaign->axes);
   if (!campaign->axes)
     return status_fail(error, STATUS_MEMORY, "no memory for a round");
-  for (size_t i = 0; i < KNOB_INPUTS && levels->knob->inputs[i].path; i++) {
-    const struct field *row = field_find(kind->inputs, levels->knob->inputs[i].path, error);
-    if (!row)
-      return STATUS_INTERNAL;
-    if (!field_is_active(kind->inputs, row, rounds->ladder->base->inputs))
+  for (size_t i = 0; i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    if (!is_turned(rounds->ladder, i))
       continue;
     struct design_axis *axis = &campaign->axes[campaign->axis_count++];
     *axis = (struct design_axis){.row = row, .kind = DESIGN_AXIS_LEVELS, .lower = -HUGE_VAL, .upper = HUGE_VAL};

@@ -174,7 +174,12 @@ static status write_resolution(sqlite3 *db, FILE *out, struct error *error) {
         "  FROM studied s JOIN of_knob k USING (base_point_id, results_version, quantity)\n"
         "    LEFT JOIN level l ON l.base_point_id = s.base_point_id AND l.results_version = s.results_version\n"
         "    AND l.quantity = s.quantity AND l.knob = k.knob AND l.point_id = s.point_id\n"
-        "  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity)\n"
+        "  GROUP BY s.base_point_id, s.point_id, s.results_version, s.quantity\n"
+        "  UNION ALL SELECT s.point_id, s.results_version, s.quantity, s.error, (SELECT max(k.diverges) FROM of_knob "
+        "k\n"
+        "    WHERE k.base_point_id = s.base_point_id AND k.results_version = s.results_version AND\n"
+        "    k.quantity = s.quantity), s.open\n"
+        "  FROM convergence s WHERE s.knob = 'settings' AND NOT s.base AND s.error IS NOT NULL)\n"
         "SELECT point_id, results_version, quantity, max(half_width) AS half_width,\n"
         "  CASE WHEN max(diverges) THEN 'diverges' WHEN max(open) THEN 'at-least' ELSE 'known' END AS verdict\n"
         "FROM of_study GROUP BY point_id, results_version, quantity;\n");

@@ -58,6 +58,26 @@ prints "precision"; prints "one round"
 same "$(number ball.db "select count(*) from run")" 12 "runs: 3 + 1 levels, 3 seeds"
 same "$(number ball.db "select count(*) from point_input where path = 'target.turned' and value = 0")" 0 "points with a lattice that is not turned"
 
+# Named settings of a scene: a level each, and SCENE@NAME for every command.
+"$clast" scenes disc-explosion >named.yaml
+cat >>named.yaml <<'YAML'
+settings:
+  draft: {grain.spacing: 15 mm, fidelity.time_step: 2 us}
+  reference: {grain.spacing: 9 mm}
+YAML
+expect 0 "$clast" converge named.yaml --set body.diameter='8 cm' --knob settings --knob grains=0.01069,0.009 --seeds 3 \
+  --within off --store named.db -j 2
+prints "standard *"; prints "reference ref"
+same "$(number named.db "select count(*) from convergence where knob = 'settings' and error > 0")" 3 "errors of named settings"
+same "$(number named.db "select count(*) from resolution")" 3 "points with a known error"
+expect 0 "$clast" simulate named.yaml@draft --set body.diameter='8 cm'
+prints "2e-06"
+expect 66 "$clast" simulate named.yaml@drat
+says "standard, draft, reference"
+printf 'name: named\nscene: ./named.yaml@draft\nset: {body.diameter: 8 cm}\nseeds: {per_point: 1}\n' >draft.yaml
+expect 0 "$clast" run draft.yaml --store named.db
+says "1 found in the store"
+
 # A campaign: every point is studied.
 tiny tiny
 expect 0 "$clast" converge tiny.yaml --knob integrator --seeds 2 --within off -j 2
@@ -106,4 +126,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 30
+done_after 36

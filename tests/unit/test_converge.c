@@ -46,7 +46,7 @@ static void every_knob_names_inputs_of_its_engine(void **state) {
         if (field_parse(row, knob->choices[c], &value, &error) != STATUS_OK)
           fail_msg("knob %s of %s: %s", knob->name, knob->engine, error.message);
     }
-    assert_true((knob->factors[0] > 0) != (knob->choices[0] != NULL));
+    assert_int_equal((knob->factors[0] > 0) + (knob->choices[0] != NULL), knob->group != KNOB_SETTINGS);
     for (size_t j = 0; j < i; j++) /* a name is one knob of an engine */
       assert_true(strcmp(knob->name, knob_at(j)->name) != 0 || strcmp(knob->engine, knob_at(j)->engine) != 0);
   }
@@ -131,6 +131,43 @@ static void levels_of_ones_own(void **state) {
   }
   assert_null(knob_find("dem", "particles", &error));
   assert_non_null(strstr(error.message, "grains"));
+  scene_free(scene);
+}
+
+/* Named settings are levels by their work; the one called reference is what the others are compared with. */
+static void named_settings_are_levels(void **state) {
+  (void)state;
+  char text[8192];
+  struct scene *scene = NULL;
+  snprintf(text, sizeof text,
+           "%s\nsettings:\n  reference: {grain.spacing: 8 mm}\n  finest: {grain.spacing: 6 mm}\n"
+           "  draft: {grain.spacing: 15 mm, fidelity.time_step: 2 us}\n",
+           scene_builtin_text("disc-explosion"));
+  assert_int_equal(scene_parse("disc", text, &scene, &error), STATUS_OK);
+  const struct knob *knob = knob_of("dem", "settings");
+  struct ladder ladder;
+  char *notes = NULL;
+  assert_int_equal(ladder_make(knob, scene, NULL, &ladder, &notes, &error), STATUS_OK);
+  static const char *const order[] = {"draft", "standard", "finest", "reference"};
+  assert_int_equal(ladder.count, 4);
+  for (size_t l = 0; l < 4; l++) {
+    assert_string_equal(ladder.level[l].setting, order[l]);
+    assert_int_equal(ladder.level[l].base, l == 1);
+    assert_int_equal(ladder.level[l].reference, l == 3);
+  }
+  char spacing[64];
+  ladder_setting(knob_of("dem", "grains"), ladder.level[3].scene, spacing, sizeof spacing);
+  assert_string_equal(spacing, "0.008");
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_make(knob, scene, "draft,standard", &ladder, &notes, &error), STATUS_OK);
+  assert_int_equal(ladder.count, 2);
+  ladder_clear(&ladder);
+  free(notes);
+  assert_int_equal(ladder_turn(knob, scene, "draft", &error), STATUS_OK);
+  ladder_setting(knob_of("dem", "time_step"), scene, spacing, sizeof spacing);
+  assert_string_equal(spacing, "2e-6");
+  assert_int_equal(ladder_turn(knob, scene, "coarse", &error), STATUS_MISSING);
   scene_free(scene);
 }
 
@@ -272,6 +309,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_knob_names_inputs_of_its_engine),
                                      cmocka_unit_test(ladders_of_all_scenes),
                                      cmocka_unit_test(levels_of_ones_own),
+                                     cmocka_unit_test(named_settings_are_levels),
                                      cmocka_unit_test(findings_replace_earlier_ones),
                                      cmocka_unit_test(a_point_has_the_errors_of_its_knobs),
                                      cmocka_unit_test(a_level_has_the_errors_of_the_other_knobs)};

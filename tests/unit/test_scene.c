@@ -13,6 +13,8 @@
 #include <unistd.h>
 
 #define engine_find tiny_find
+#include "engine/scene_settings.h"
+
 #include "engine/scene.c" /* with engine_find replaced */
 #undef engine_find
 
@@ -97,6 +99,37 @@ static void reads_and_fills_defaults(void **state) {
   scene_free(again);
   scene_free(scene);
   scene_free(NULL);
+}
+
+static void named_settings_give_inputs(void **state) {
+  (void)state;
+  struct error error = {0};
+  struct scene *scene = parsed("engine: tiny\nkind: ball\nball: {size: 3 cm}\nsettings:\n  draft: {ball.size: 5 cm}\n");
+  const struct tiny *values = scene->inputs;
+  assert_int_equal(scene_settings_use(scene, "standard", &error), STATUS_OK);
+  assert_true(values->size == 0.03);
+  struct scene *copy = scene_copy(scene);
+  assert_int_equal(scene_settings_use(copy, "draft", &error), STATUS_OK);
+  assert_true(values->size == 0.03 && ((const struct tiny *)copy->inputs)->size == 0.05);
+  assert_false(copy->overridden[2]); /* as if the document had it */
+  assert_int_equal(scene_settings_use(copy, "drat", &error), STATUS_MISSING);
+  assert_non_null(strstr(error.message, "standard, draft"));
+  scene_free(copy);
+  scene_free(scene);
+
+  static const char *const wrong[] = {"5",
+                                      "{standard: {ball.size: 5 cm}}",
+                                      "{Draft: {ball.size: 5 cm}}",
+                                      "{a: 5}",
+                                      "{a: {ball.sise: 5 cm}}",
+                                      "{a: {ball.size: 5 kg}}",
+                                      "{a: {ball.size: [1]}}"};
+  for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+    char text[256];
+    snprintf(text, sizeof text, "engine: tiny\nkind: ball\nball: {size: 3 cm}\nsettings: %s\n", wrong[i]);
+    if (scene_parse("t", text, &scene, &error) != STATUS_CONTENT || !strstr(error.message, "settings"))
+      fail_msg("%s: %s", wrong[i], error.message);
+  }
 }
 
 static void errors_come_together(void **state) {
@@ -258,9 +291,10 @@ static void files_and_names(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(reads_and_fills_defaults), cmocka_unit_test(errors_come_together),
-      cmocka_unit_test(overrides_are_checked),    cmocka_unit_test(identity_is_pinned),
-      cmocka_unit_test(hash_has_known_answers),   cmocka_unit_test(files_and_names),
+      cmocka_unit_test(reads_and_fills_defaults), cmocka_unit_test(named_settings_give_inputs),
+      cmocka_unit_test(errors_come_together),     cmocka_unit_test(overrides_are_checked),
+      cmocka_unit_test(identity_is_pinned),       cmocka_unit_test(hash_has_known_answers),
+      cmocka_unit_test(files_and_names),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
