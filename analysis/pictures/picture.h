@@ -14,6 +14,7 @@
 
 #include "analysis/pictures/picture_cloud.h"
 #include "analysis/statistics/pooled.h"
+#include "analysis/statistics/scatter.h"
 
 /* Where a chart goes. */
 struct picture_page {
@@ -143,6 +144,19 @@ struct picture_curve {
  * span a factor of 20 or more. */
 status picture_curves(const struct picture_page *page, const struct picture_words *words, size_t count,
                       const struct picture_curve *curve, struct error *error);
+
+/* Values of the runs of a point. */
+struct picture_sample {
+  const char *label;
+  size_t count;
+  const double *value; /* ascending */
+  struct scatter_histogram histogram;
+};
+/* Histograms and, below them, distribution functions. One to eight samples. words->x is the name of both x axes. */
+status picture_scatter(const struct picture_page *page, const struct picture_words *words, size_t count,
+                       const struct picture_sample *sample, struct error *error);
+/* A histogram as text: edge, count, a bar. columns: width of the terminal. */
+void text_histogram_print(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram);
 
 /* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. The tile of
  * a NaN, or of a place without a point, is crossed. Of two points at one place the later one counts. At most 10 000

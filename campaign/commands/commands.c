@@ -17,6 +17,7 @@ static const struct command *const all[] = {
     /* results */ &status_command,
     &estimates_command,
     &stats_command,
+    &scatter_command,
     &spectrum_command,
     &compare_command,
     &query_command,

@@ -112,6 +112,7 @@ static size_t end_of_pool(const struct members *members, size_t from, int64_t *v
 struct values {
   struct point_data *point;
   double *value;
+  int64_t *seed;
   size_t room;
 };
 
@@ -127,25 +128,29 @@ static status take_value(void *context, size_t count, const struct query_value *
     double *value = realloc(values->value, room * sizeof *value);
     if (value)
       values->value = value;
-    if (!run_id || !value)
+    int64_t *seed = realloc(values->seed, room * sizeof *seed);
+    if (seed)
+      values->seed = seed;
+    if (!run_id || !value || !seed)
       return no_memory(error);
     values->room = room;
   }
   point->run_id[point->runs.count] = row[0].integer;
-  values->value[point->runs.count++] = row[1].real;
+  values->seed[point->runs.count] = row[1].integer;
+  values->value[point->runs.count++] = row[2].real;
   return STATUS_OK;
 }
 
 static status read_values(struct store *store, const struct ask_pool_choice *choice, const char *column,
-                          struct point_data *point, double **value, struct error *error) {
-  struct values values = {.point = point};
-  const struct query_sink sink = {&values, NULL, take_value};
+                          struct point_data *point, struct values *values, struct error *error) {
+  *values = (struct values){.point = point};
+  const struct query_sink sink = {values, NULL, take_value};
   char *text = NULL;
   size_t size = 0;
   FILE *sql = open_memstream(&text, &size);
   if (!sql)
     return no_memory(error);
-  fputs("SELECT run_id, ", sql);
+  fputs("SELECT run_id, seed, ", sql);
   sql_write_name(column, sql);
   fprintf(sql, " FROM runs WHERE point_id = %lld AND results_version = %lld AND counts = 1", (long long)point->point_id,
           (long long)point->results_version);
@@ -156,7 +161,6 @@ static status read_values(struct store *store, const struct ask_pool_choice *cho
     return no_memory(error);
   const status code = query_run(store, text, 0, NULL, 0, &sink, error);
   free(text);
-  *value = values.value;
   return code;
 }
 
@@ -166,6 +170,7 @@ struct growing {
   int64_t *point;
   size_t *first_run;
   double *value;
+  int64_t *seed;
 };
 
 static void release(struct growing *growing) {
@@ -173,6 +178,7 @@ static void release(struct growing *growing) {
   free(growing->point);
   free(growing->first_run);
   free(growing->value);
+  free(growing->seed);
 }
 
 /* Behind each other; false: no memory. */
@@ -188,12 +194,13 @@ static bool append(void **array, size_t have, const void *more, size_t count, si
 }
 
 /* Adds the runs of a point to the pool. What is there of the point stays the caller's. */
-static status add_point(struct growing *growing, const struct point_data *point, const double *value,
+static status add_point(struct growing *growing, const struct point_data *point, const struct values *values,
                         struct error *error) {
   struct point_data *all = &growing->pool.data;
   const size_t have = all->runs.count, more = point->runs.count;
   if (!append((void **)&all->run_id, have, point->run_id, more, sizeof *all->run_id) ||
-      (value && !append((void **)&growing->value, have, value, more, sizeof *value)))
+      (values->value && (!append((void **)&growing->value, have, values->value, more, sizeof *values->value) ||
+                         !append((void **)&growing->seed, have, values->seed, more, sizeof *values->seed))))
     return no_memory(error);
   if (point->first) {
     const size_t masses = all->first ? all->first[have] : 0;
@@ -225,15 +232,16 @@ static status read_pool(struct store *store, const struct members *members, size
   status code = STATUS_OK;
   for (size_t i = from; i < end && code == STATUS_OK; i++) {
     struct point_data point = {.point_id = members->list[i].point, .results_version = version};
-    double *value = NULL;
+    struct values values = {0};
     if (members->list[i].version != version)
       continue;
-    code = column ? read_values(store, members->choice, column, &point, &value, error)
+    code = column ? read_values(store, members->choice, column, &point, &values, error)
                   : point_read_where(store, point.point_id, version, members->choice->where, &point, error);
     if (code == STATUS_OK && point.runs.count > 0)
-      code = add_point(growing, &point, value, error);
+      code = add_point(growing, &point, &values, error);
     point_release(&point);
-    free(value);
+    free(values.value);
+    free(values.seed);
   }
   growing->pool.data.point_id = growing->pool.points == 1 ? growing->point[0] : 0;
   return code;
@@ -273,6 +281,7 @@ static status give_pools(struct store *store, const struct members *members, con
     growing.pool.point = growing.point;
     growing.pool.first_run = growing.first_run;
     growing.pool.value = growing.value;
+    growing.pool.seed = growing.seed;
     memcpy(growing.pool.column, members->column, sizeof growing.pool.column);
     memcpy(growing.pool.input, members->list[from].input, sizeof growing.pool.input);
     if (code == STATUS_OK && growing.pool.points > 0)

@@ -27,6 +27,7 @@ struct ask_pool {
    * they are largest; point_id is 0 if there are several. ask_pool_values: only the runs' numbers, no fragments. */
   struct point_data data;
   const double *value; /* ask_pool_values: of each run, NaN: off; NULL with ask_pools */
+  const int64_t *seed; /* ask_pool_values: of each run */
 };
 /* The pool is borrowed for the call. Anything but STATUS_OK ends the question with that status. */
 typedef status (*ask_pool_each)(void *context, const struct ask_pool *pool, struct error *error);

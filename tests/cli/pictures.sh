@@ -168,4 +168,33 @@ expect 64 "$clast" compare small.db:1 small.db
 expect 64 "$clast" compare small.db:none small.db
 says "no campaign 'none'"
 expect 66 "$clast" compare none.db small.db
-done_after 69
+
+# Scatter over seeds, and the split of a variance.
+expect 0 "$clast" scatter small.db --point 2 --half-width 0.02 --csv
+python - <<'PY'
+import csv, sqlite3, statistics
+rows = {r["statistic"]: r for r in csv.DictReader(open("out"))}
+values = [v for (v,) in sqlite3.connect("small.db").execute("select largest_fraction from run where counts and point_id = 2")]
+for name, truth in (("mean", statistics.mean(values)), ("standard deviation", statistics.stdev(values)), ("median", statistics.median(values))):
+    assert abs(float(rows[name]["value"]) / truth - 1) < 1e-12, name
+assert float(rows["runs needed"]["value"]) >= 2 and rows["runs"]["value"] == "3"
+PY
+ok "statistics of the scatter"
+expect 0 "$clast" scatter small.db --split --csv
+python - <<'PY'
+import csv
+rows = {r["part"]: r for r in csv.DictReader(open("out"))}
+assert set(rows) == {"threshold_angle", "threshold_strain", "all inputs together", "seeds", "seeds, in all points alike", "whole"}, rows
+share = lambda name: float(rows[name]["share"])
+assert abs(share("all inputs together") + share("seeds") - 1) < 1e-12
+PY
+ok "the shares of inputs and seeds sum to one"
+expect 0 "$clast" scatter small.db --plot --ascii --by strain
+prints "from     runs"
+expect 0 "$clast" scatter small.db --picture scatter.svg -q fragment_count
+is_svg scatter.svg
+expect 64 "$clast" scatter small.db --half-width none
+expect 64 "$clast" scatter small.db --split --point 1
+says "two points at least"
+expect 64 "$clast" scatter small.db -q nothing
+done_after 79

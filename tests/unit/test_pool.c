@@ -32,6 +32,7 @@ static status look(void *context, const struct ask_pool *pool, struct error *unu
     assert_true(pool->data.run_id[r] > 0);
     if (pool->value) {
       seen->sum += pool->value[r];
+      assert_true(pool->seed[r] >= 1000 && pool->seed[r] < 1000 + RUNS);
       continue;
     }
     seen->fragments += pool->data.runs.first[r + 1] - pool->data.runs.first[r];

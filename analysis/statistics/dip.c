@@ -1,0 +1,123 @@
+/* The dip of a sample, and how large chance makes it. */
+#include "analysis/statistics/dip.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "engine/random.h"
+
+/* The distribution function of n values, times n, jumps at value j from j to j + 1. Its greatest convex minorant runs
+ * through points (value j, j), its least concave majorant through points (value j, j + 1). */
+struct hull {
+  const double *x;
+  size_t *knot;          /* work space of n */
+  double *low;           /* by value: the convex minorant on the interval under way */
+  double *high;          /* the concave majorant */
+  size_t *below, *above; /* by value: the knot of the minorant at or left of it, of the majorant at or right of it */
+};
+
+/* The knots of the minorant (sign 1) or the majorant (sign -1) between the values `from` and `to`; returns how many. Of
+ * equal values the first is a knot of the minorant, the last of the majorant; both ends are knots always. */
+static size_t find_knots(struct hull *h, size_t from, size_t to, int sign) {
+  const double *x = h->x;
+  size_t count = 0;
+  for (size_t j = from; j <= to; j++) {
+    while (count > 1) {
+      const size_t a = h->knot[count - 2], b = h->knot[count - 1];
+      const double turn = (x[b] - x[a]) * (double)(j - b) - (double)(b - a) * (x[j] - x[b]);
+      if (sign * turn > 0)
+        break;
+      count--;
+    }
+    h->knot[count++] = j;
+  }
+  return count;
+}
+
+/* Values of the minorant or the majorant, and the knot next to each value. A step between equal values at an end is
+ * free: the mode may hold it. */
+static void fill(struct hull *h, size_t from, size_t to, int sign) {
+  const size_t knots = find_knots(h, from, to, sign);
+  const double *x = h->x, up = sign < 0;
+  double *line = sign > 0 ? h->low : h->high;
+  for (size_t k = 0; k + 1 < knots; k++) {
+    const size_t a = h->knot[k], b = h->knot[k + 1];
+    const bool step = !(x[b] > x[a]);
+    for (size_t j = a; j <= b; j++) {
+      line[j] = up + (step ? (double)j : (double)a + (double)(b - a) * (x[j] - x[a]) / (x[b] - x[a]));
+      if (sign > 0)
+        h->below[j] = j == b ? b : a;
+      else if (j > a || k == 0)
+        h->above[j] = j == a ? a : b;
+    }
+  }
+}
+
+/* Twice n times the dip: narrows the interval of the mode until both hulls are nearer to each other than what the parts
+ * outside of it already cost. */
+static double search(struct hull *h, size_t n) {
+  size_t low = 0, high = n - 1;
+  double dip = 1;
+  while (low < high) {
+    fill(h, low, high, 1);
+    fill(h, low, high, -1);
+    double most = 0;
+    size_t at = low;
+    for (size_t j = low; j <= high; j++)
+      if (h->high[j] - h->low[j] > most) {
+        most = h->high[j] - h->low[j];
+        at = j;
+      }
+    if (most < dip)
+      break;
+    const size_t left = h->below[at], right = h->above[at];
+    for (size_t j = low; j <= left; j++)
+      dip = fmax(dip, (double)j + 1 - h->low[j]);
+    for (size_t j = right; j <= high; j++)
+      dip = fmax(dip, h->high[j] - (double)j);
+    if (left == low && right == high)
+      break;
+    low = left;
+    high = right;
+  }
+  return dip;
+}
+
+double dip_of(size_t n, const double *values) {
+  if (n == 0)
+    return NAN;
+  struct hull h = {values,
+                   malloc(n * sizeof *h.knot),
+                   malloc(n * sizeof *h.low),
+                   malloc(n * sizeof *h.high),
+                   calloc(n, sizeof *h.below),
+                   calloc(n, sizeof *h.above)};
+  const double dip = h.knot && h.low && h.high && h.below && h.above ? search(&h, n) / (2 * (double)n) : (double)NAN;
+  free(h.knot);
+  free(h.low);
+  free(h.high);
+  free(h.below);
+  free(h.above);
+  return dip;
+}
+
+double dip_share(size_t n, double dip) {
+  enum { ENOUGH = 200 }; /* samples with a larger dip: the share is then known to a tenth */
+  if (n < 4 || !isfinite(dip))
+    return NAN;
+  const size_t size = n < DIP_MOST ? n : DIP_MOST;
+  const double limit = dip * sqrt((double)n / (double)size);
+  double *sample = malloc(size * sizeof *sample);
+  size_t larger = 0, drawn = 0;
+  if (!sample)
+    return NAN;
+  for (; drawn < DIP_DRAWS && larger < ENOUGH; drawn++) {
+    double sum = 0; /* sums of exponential steps are an ordered uniform sample, but for a scale */
+    for (size_t i = 0; i < size; i++)
+      sample[i] = sum -= log1p(-random_draw(size, RANDOM_RESAMPLE, drawn, i));
+    larger += dip_of(size, sample) >= limit;
+  }
+  free(sample);
+  return ((double)larger + 1) / ((double)drawn + 1);
+}

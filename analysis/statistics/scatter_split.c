@@ -1,0 +1,134 @@
+/* The variance over points and runs, split into inputs and seeds. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/statistics/scatter.h"
+
+/* Variance between the means of levels, each with the weight of its points, over a choice of runs, without the error
+ * that the seeds leave in the means: sum over runs r != s of w_l m_l(r) m_l(s), less the same of the whole mean.
+ * m: work space of levels. level NULL: every point is one. */
+struct split {
+  const struct scatter_table *table;
+  size_t axis; /* axes: all inputs together */
+  size_t levels;
+  double *sum, *product, *weight; /* by level */
+  int part;                       /* beyond the axes: enum of scatter.h */
+};
+
+static size_t level_of(const struct split *s, size_t p) {
+  return s->axis < s->table->axes ? s->table->level[p * s->table->axes + s->axis] : p;
+}
+
+static double between(struct split *s, size_t n, const uint32_t *runs) {
+  const struct scatter_table *t = s->table;
+  double whole = 0, whole_squares = 0, variance = 0;
+  for (size_t l = 0; l < s->levels; l++)
+    s->product[l] = s->weight[l] = 0;
+  double *total = s->sum + s->levels; /* sums over runs, by level */
+  for (size_t l = 0; l < s->levels; l++)
+    total[l] = 0;
+  for (size_t k = 0; k < n; k++) {
+    double mean = 0;
+    for (size_t l = 0; l < s->levels; l++)
+      s->sum[l] = s->weight[l] = 0;
+    for (size_t p = 0; p < t->points; p++) {
+      const double y = t->value[p * t->runs + runs[k]];
+      s->sum[level_of(s, p)] += y;
+      s->weight[level_of(s, p)]++;
+      mean += y / (double)t->points;
+    }
+    for (size_t l = 0; l < s->levels; l++) {
+      const double m = s->weight[l] > 0 ? s->sum[l] / s->weight[l] : 0;
+      total[l] += m;
+      s->product[l] += m * m;
+    }
+    whole += mean;
+    whole_squares += mean * mean;
+  }
+  const double pairs = (double)n * (double)(n - 1);
+  for (size_t l = 0; l < s->levels; l++)
+    variance += s->weight[l] / (double)t->points * (total[l] * total[l] - s->product[l]) / pairs;
+  return variance - (whole * whole - whole_squares) / pairs;
+}
+
+/* Mean variance over the runs of a point; alike: covariance of the same runs in two points, which is that of the mean
+ * of all points without the points' own part. */
+static double seeds(const struct scatter_table *t, size_t n, const uint32_t *runs, bool alike) {
+  double own = 0;
+  struct sample_moments together = {0};
+  for (size_t p = 0; p < t->points; p++) {
+    struct sample_moments moments = {0};
+    for (size_t k = 0; k < n; k++)
+      sample_add(&moments, t->value[p * t->runs + runs[k]]);
+    own += moments.squares / (double)(n - 1) / (double)t->points;
+  }
+  if (!alike)
+    return own;
+  for (size_t k = 0; k < n; k++) {
+    double mean = 0;
+    for (size_t p = 0; p < t->points; p++)
+      mean += t->value[p * t->runs + runs[k]] / (double)t->points;
+    sample_add(&together, mean);
+  }
+  const double points = (double)t->points;
+  return (points * together.squares / (double)(n - 1) - own) / (points - 1);
+}
+
+static double variance_of(struct split *s, size_t n, const uint32_t *runs) {
+  if (s->part == SCATTER_SEEDS || s->part == SCATTER_SEEDS_ALIKE)
+    return seeds(s->table, n, runs, s->part == SCATTER_SEEDS_ALIKE);
+  return between(s, n, runs);
+}
+
+static double share_of(size_t n, const uint32_t *runs, void *context) {
+  struct split *s = context, whole = *s;
+  if (n < 2)
+    return NAN;
+  whole.axis = s->table->axes;
+  whole.levels = s->table->points;
+  whole.part = SCATTER_INPUTS;
+  const double all = between(&whole, n, runs) + seeds(s->table, n, runs, false);
+  return variance_of(s, n, runs) / all;
+}
+
+static size_t count_levels(const struct scatter_table *t, size_t axis) {
+  size_t levels = 0;
+  for (size_t p = 0; p < t->points; p++)
+    if (t->level[p * t->axes + axis] >= levels)
+      levels = t->level[p * t->axes + axis] + 1;
+  return levels;
+}
+
+status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
+  if (t->points < 2 || t->runs < 2)
+    return status_fail(error, STATUS_USAGE,
+                       "a variance is split over two points and two runs of each at least, not %zu points with %zu",
+                       t->points, t->runs);
+  double *room = malloc(4 * t->points * sizeof *room);
+  uint32_t *all = malloc(t->runs * sizeof *all);
+  if (!room || !all) {
+    free(room);
+    free(all);
+    return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
+  }
+  for (size_t r = 0; r < t->runs; r++)
+    all[r] = (uint32_t)r;
+  struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
+  for (size_t i = 0; i < t->axes + SCATTER_PARTS; i++) {
+    parts[i] = (struct scatter_part){NAN, NAN, NAN};
+    s.axis = i < t->axes ? i : t->axes;
+    s.part = i < t->axes ? SCATTER_INPUTS : (int)(i - t->axes);
+    s.levels = i < t->axes ? count_levels(t, i) : t->points;
+    if (i < t->axes && s.levels == t->points)
+      continue;
+    if (s.part == SCATTER_WHOLE) {
+      parts[i] = (struct scatter_part){parts[t->axes].variance + parts[t->axes + SCATTER_SEEDS].variance, 1, NAN};
+      continue;
+    }
+    const struct sample_interval share = sample_jackknife(t->runs, 0.95, share_of, &s);
+    parts[i] = (struct scatter_part){variance_of(&s, t->runs, all), share.estimate, share.half_width};
+  }
+  free(room);
+  free(all);
+  return STATUS_OK;
+}

@@ -1,0 +1,93 @@
+/* `clast scatter STORE`: how runs scatter over seeds, and what share of a variance seeds and inputs have. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/scatter_print.h"
+#include "campaign/terminal/chart_option.h"
+#include "db/ask/points.h"
+#include "engine/outcome.h"
+
+struct options {
+  int64_t point;
+  const char *where, *by, *quantity, *half_width, *picture;
+  bool split, plot, ascii;
+  struct table_options table;
+  struct chart_options chart;
+};
+
+static status ask(struct store *store, const struct options *options, const struct scatter_choice *choice,
+                  enum table_format format, struct error *error) {
+  const struct picture_page page = chart_option_page(options->picture, &options->chart);
+  status code = ask_points_known(store, options->point, error);
+  if (code)
+    return code;
+  if (options->split)
+    return scatter_print_split(store, choice, format, error);
+  code = options->plot ? scatter_print_plots(store, choice, options->ascii, error)
+                       : scatter_print_rows(store, choice, format, error);
+  if (code == STATUS_OK && options->picture)
+    code = scatter_print_picture(store, choice, &page, error);
+  return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
+  enum table_format format = TABLE_TEXT;
+  struct store *store = NULL;
+  status code = table_choose(&options->table, &format, error);
+  if (code == STATUS_OK && options->half_width) {
+    char *end;
+    choice.half_width = strtod(options->half_width, &end);
+    if (*end || !(choice.half_width > 0) || isinf(choice.half_width))
+      code = status_fail(error, STATUS_USAGE, "--half-width is a number above 0 in SI units, not '%s'",
+                         options->half_width);
+  }
+  if (code == STATUS_OK)
+    code = store_open_reader(line->arguments[0], &store, error);
+  if (code == STATUS_OK)
+    code = ask(store, options, &choice, format, error);
+  store_close(store, NULL);
+  return code;
+}
+
+static const struct option_row option_rows[] = {
+    OPTION_ROW_INTEGER("point", 'p', "N", struct options, point, 0, INT64_MAX, "0",
+                       "Only this point (point_id in the view points); 0: all."),
+    OPTION_ROW_TEXT("where", 'w', "SQL", struct options, where, NULL,
+                    "Only runs that meet this SQL condition on the view runs: \"threshold_strain > 0.02\"."),
+    OPTION_ROW_TEXT(
+        "by", 'b', "AXES", struct options, by, NULL,
+        "Pool all points that share these varied inputs (strain,angle); \"\" pools all. Default: by point."),
+    OPTION_ROW_TEXT("quantity", 'q', "NAME", struct options, quantity, OUTCOME_DEFAULT,
+                    "Result: a column of the view runs."),
+    OPTION_ROW_TEXT("half-width", 0, "NUMBER", struct options, half_width, NULL,
+                    "Also tell how many runs a mean needs whose 95 % interval is at most this wide to each side."),
+    OPTION_ROW_FLAG("split", 0, struct options, split,
+                    "Split the variance over all points and seeds: every input, all inputs, seeds."),
+    OPTION_ROW_TEXT("picture", 0, "FILE.png", struct options, picture, NULL,
+                    "Also draw histograms and distribution functions of the first eight. PNG, SVG or PDF."),
+    OPTION_ROW_FLAG("plot", 0, struct options, plot, "Print histograms as text instead of the table."),
+    OPTION_ROW_FLAG("ascii", 0, struct options, ascii, "Use ASCII characters only in the plot."),
+    CHART_OPTIONS(struct options, chart),
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command scatter_command = {
+    .name = "scatter",
+    .group = "results",
+    .arguments = "STORE",
+    .summary = "how a result scatters over seeds: quantiles, skewness, two modes, runs needed",
+    .doc =
+        "Prints for every point mean, standard deviation, skewness and quantiles of a result over its runs, each with\n"
+        "its 95 % interval, and Hartigan's dip with its p: below 0.05 the runs have two modes (a bridge holds, or it\n"
+        "does not), and it prints these and their shares. --split tells what share of the variance of the whole\n"
+        "store comes from each input, from all inputs, and from seeds.",
+    .examples = "clast scatter out.db --point 1 --plot\nclast scatter out.db --half-width 0.01 --picture seeds.png\n"
+                "clast scatter out.db --split --quantity fragment_count",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    COMMAND_OPTIONS(struct options, option_rows),
+    .run = run,
+};

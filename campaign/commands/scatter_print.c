@@ -1,0 +1,185 @@
+/* Prints and draws how runs scatter. */
+#include "campaign/commands/scatter_print.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "campaign/terminal/chart_option.h"
+#include "campaign/terminal/rows.h"
+
+enum { COLUMNS = 100 };
+
+struct printing {
+  const struct scatter_choice *choice;
+  enum table_format format;
+  struct table *table;
+  bool several; /* a pool is of more than one point */
+};
+
+static void start(struct printing *printing, const struct ask_pool *pool) {
+  printing->table = table_new(printing->format, stdout);
+  for (size_t a = 0; pool && a < pool->axes; a++)
+    table_column(printing->table, pool->column[a], NULL);
+  table_column(printing->table, printing->choice->pool.by ? "points" : "point_id", NULL);
+  table_columns(printing->table, (const char *const[]){"statistic", "value", "low", "high", NULL});
+}
+
+static void row(const struct printing *printing, const struct ask_pool *pool, const char *name, double value,
+                double low, double high) {
+  for (size_t a = 0; a < pool->axes; a++)
+    rows_cell(printing->table, &pool->input[a]);
+  table_integer(printing->table, printing->choice->pool.by ? (int64_t)pool->points : pool->data.point_id);
+  table_text(printing->table, name);
+  table_real(printing->table, value);
+  table_real(printing->table, low);
+  table_real(printing->table, high);
+}
+
+static void about(const struct printing *printing, const struct ask_pool *pool, const char *name, double value,
+                  double half_width) {
+  row(printing, pool, name, value, value - half_width, value + half_width);
+}
+
+/* Runs for the interval that is wanted, from the deviation and from both ends of its interval. 0: cannot be told. */
+static double needed(double deviation, double half_width) {
+  const size_t runs = scatter_runs_needed(deviation, half_width);
+  return runs ? (double)runs : (double)NAN;
+}
+
+static void print_scatter(const struct printing *printing, const struct ask_pool *pool, const struct scatter *s) {
+  static const char *const names[SCATTER_QUANTILES] = {"q05", "q25", "median", "q75", "q95"};
+  const double wanted = printing->choice->half_width, deviation = s->deviation.estimate;
+  const double room = s->deviation.half_width;
+  row(printing, pool, "runs", (double)s->n, NAN, NAN);
+  about(printing, pool, "mean", s->mean.mean, s->mean.half_width);
+  row(printing, pool, "standard deviation", deviation, fmax(deviation - room, 0), deviation + room);
+  about(printing, pool, "skewness", s->skewness.estimate, s->skewness.half_width);
+  for (int q = 0; q < SCATTER_QUANTILES; q++)
+    row(printing, pool, names[q], s->quantile[q].value, s->quantile[q].low, s->quantile[q].high);
+  row(printing, pool, "dip", s->dip, NAN, NAN);
+  row(printing, pool, "dip p", s->dip_share, NAN, NAN);
+  if (isfinite(s->between)) {
+    row(printing, pool, "lower mode", s->lower_mode, s->sorted[0], s->between);
+    row(printing, pool, "upper mode", s->upper_mode, s->between, s->sorted[s->n - 1]);
+    row(printing, pool, "share of upper mode", s->upper_share, s->upper_low, s->upper_high);
+  }
+  if (isfinite(wanted))
+    row(printing, pool, "runs needed", needed(deviation, wanted), needed(fmax(deviation - room, 0), wanted),
+        needed(deviation + room, wanted));
+}
+
+static status print_pool(void *context, const struct ask_pool *pool, struct error *error) {
+  struct printing *printing = context;
+  struct scatter scatter;
+  const status code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
+  if (code)
+    return code;
+  if (!printing->table)
+    start(printing, pool);
+  printing->several |= pool->points > 1;
+  print_scatter(printing, pool, &scatter);
+  scatter_release(&scatter);
+  return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
+}
+
+status scatter_print_rows(struct store *store, const struct scatter_choice *choice, enum table_format format,
+                          struct error *error) {
+  struct printing printing = {.choice = choice, .format = format};
+  const status code = ask_pool_values(store, &choice->pool, choice->quantity, print_pool, &printing, error);
+  if (code && !printing.table)
+    return code;
+  if (!printing.table)
+    start(&printing, NULL);
+  if (code && !table_broken(printing.table)) {
+    (void)table_end(printing.table, NULL);
+    return code;
+  }
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    fputs(
+        "clast: low and high: 95 % intervals over runs; of modes the values that belong to them. dip p below 0.05: the "
+        "runs have two modes\n",
+        stderr);
+  if (printing.several)
+    fputs("clast: pooled over points: the scatter holds that of the inputs; the intervals take the runs as "
+          "independent\n",
+          stderr);
+  return table_end(printing.table, error);
+}
+
+static status plot_pool(void *context, const struct ask_pool *pool, struct error *error) {
+  const bool *ascii = context;
+  struct scatter scatter;
+  const status code = scatter_make(pool->data.runs.count, pool->value, &scatter, error);
+  if (code)
+    return code;
+  const struct scatter_histogram histogram = scatter_histogram_of(&scatter);
+  printf("%s, %zu runs\n", pool->label, scatter.n);
+  text_histogram_print(stdout, COLUMNS, !*ascii, &histogram);
+  if (isfinite(scatter.between))
+    printf("two modes: %.4g and %.4g, apart at %.4g; %.0f %% of the runs are in the upper one (%.0f to %.0f %%)\n",
+           scatter.lower_mode, scatter.upper_mode, scatter.between, 100 * scatter.upper_share, 100 * scatter.upper_low,
+           100 * scatter.upper_high);
+  scatter_release(&scatter);
+  return STATUS_OK;
+}
+
+status scatter_print_plots(struct store *store, const struct scatter_choice *choice, bool ascii, struct error *error) {
+  return ask_pool_values(store, &choice->pool, choice->quantity, plot_pool, &ascii, error);
+}
+
+struct samples {
+  size_t count;
+  bool more;
+  struct scatter scatter[PICTURE_SERIES];
+  char label[PICTURE_SERIES][ASK_POOL_LABEL + 64];
+};
+
+static status take_sample(void *context, const struct ask_pool *pool, struct error *error) {
+  struct samples *samples = context;
+  if (samples->count == PICTURE_SERIES) {
+    samples->more = true;
+    return STATUS_STOPPED; /* enough */
+  }
+  struct scatter *scatter = &samples->scatter[samples->count];
+  const status code = scatter_make(pool->data.runs.count, pool->value, scatter, error);
+  if (code)
+    return code;
+  if (scatter->n == 0) {
+    scatter_release(scatter);
+    return STATUS_OK;
+  }
+  snprintf(samples->label[samples->count++], sizeof samples->label[0], "%s, %zu runs%s", pool->label, scatter->n,
+           isfinite(scatter->between) ? ", two modes" : "");
+  return STATUS_OK;
+}
+
+status scatter_print_picture(struct store *store, const struct scatter_choice *choice, const struct picture_page *page,
+                             struct error *error) {
+  struct samples *samples = calloc(1, sizeof *samples);
+  struct picture_sample sample[PICTURE_SERIES];
+  char column[ASK_GROUP_NAME], axis[CHART_OPTION_LABEL] = "";
+  if (!samples)
+    return status_fail(error, STATUS_MEMORY, "no memory for a picture");
+  status code = ask_group_quantity(store, choice->quantity, column, error);
+  if (code == STATUS_OK)
+    code = chart_option_axis(store, column, axis, error);
+  if (code == STATUS_OK)
+    code = ask_pool_values(store, &choice->pool, choice->quantity, take_sample, samples, error);
+  if (code == STATUS_STOPPED && samples->more)
+    code = STATUS_OK;
+  for (size_t i = 0; i < samples->count; i++)
+    sample[i] = (struct picture_sample){samples->label[i], samples->scatter[i].n, samples->scatter[i].sorted,
+                                        scatter_histogram_of(&samples->scatter[i])};
+  if (code == STATUS_OK && samples->count == 0)
+    code = status_fail(error, STATUS_USAGE, "no finished run has a value of %s", choice->quantity);
+  if (code == STATUS_OK)
+    code = picture_scatter(page, &(struct picture_words){"Scatter of the runs", NULL, axis, NULL}, samples->count,
+                           sample, error);
+  if (code == STATUS_OK && samples->more)
+    fprintf(stderr, "clast: only the first %d are drawn; --point, --where and --by choose others\n", PICTURE_SERIES);
+  for (size_t i = 0; i < samples->count; i++)
+    scatter_release(&samples->scatter[i]);
+  free(samples);
+  return code;
+}

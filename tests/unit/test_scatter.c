@@ -1,0 +1,156 @@
+/* Scatter of a sample: known quantiles, modes, numbers of runs; coverage of the intervals; the split of a variance. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "analysis/analysis.h"
+#include "analysis/statistics/scatter.h"
+#include "engine/random.h"
+
+static double normal(uint64_t a, uint64_t b, uint64_t c) {
+  return sqrt(-2 * log1p(-random_draw(21, a, b, 2 * c))) * cos(2 * M_PI * random_draw(21, a, b, 2 * c + 1));
+}
+
+static void known_samples(void **state) {
+  (void)state;
+  double x[101];
+  struct scatter s;
+  for (int i = 0; i <= 100; i++)
+    x[i] = i * 37 % 101; /* 0..100 in another order */
+  assert_int_equal(scatter_make(101, x, &s, NULL), STATUS_OK);
+  assert_true(s.n == 101 && s.mean.mean == 50 && fabs(s.skewness.estimate) < 1e-12);
+  assert_true(fabs(s.deviation.estimate - sqrt(101 * 102 / 12.0)) < 1e-12);
+  for (int q = 0; q < SCATTER_QUANTILES; q++)
+    assert_true(fabs(s.quantile[q].value - 100 * scatter_shares[q]) < 1e-12);
+  /* Median of 101: P(B <= 40) = 0.023, P(B <= 41) = 0.037 for B(101, 1/2): from the 41st to the 61st value. */
+  assert_true(s.quantile[2].low == 40 && s.quantile[2].high == 60);
+  assert_true(isnan(s.between) && s.dip_share > 0.5);
+  const struct scatter_histogram h = scatter_histogram_of(&s);
+  size_t sum = 0;
+  for (size_t b = 0; b < h.bins; b++)
+    sum += h.count[b];
+  assert_true(sum == 101 && h.width == 50 && h.from == 0); /* 2 x 50 / 101^(1/3) = 21.5 -> 50 */
+  scatter_release(&s);
+
+  const double few[4] = {3, NAN, 1, 2};
+  assert_int_equal(scatter_make(4, few, &s, NULL), STATUS_OK);
+  assert_true(s.n == 3 && s.quantile[2].value == 2 && isnan(s.quantile[2].low) && isnan(s.dip_share));
+  scatter_release(&s);
+  assert_int_equal(scatter_make(0, few, &s, NULL), STATUS_OK);
+  assert_true(s.n == 0 && isnan(s.mean.mean) && isnan(s.quantile[0].value) && scatter_histogram_of(&s).bins == 0);
+  scatter_release(&s);
+  const double same[5] = {7, 7, 7, 7, 7};
+  assert_int_equal(scatter_make(5, same, &s, NULL), STATUS_OK);
+  assert_true(s.deviation.estimate == 0 && isnan(s.skewness.estimate) && scatter_histogram_of(&s).bins == 1);
+  scatter_release(&s);
+}
+
+static void two_modes(void **state) {
+  (void)state;
+  double x[60];
+  struct scatter s;
+  for (uint64_t i = 0; i < 60; i++) /* a bridge that holds in a quarter of the runs */
+    x[i] = (i % 4 ? 0.3 : 0.8) + 0.02 * normal(1, 1, i);
+  assert_int_equal(scatter_make(60, x, &s, NULL), STATUS_OK);
+  assert_true(s.dip_share < 0.05);
+  assert_true(fabs(s.lower_mode - 0.3) < 0.01 && fabs(s.upper_mode - 0.8) < 0.02);
+  assert_true(s.between > 0.4 && s.between < 0.75 && s.upper_share == 0.25);
+  assert_true(fabs(s.upper_low - 0.1578) < 1e-4 && fabs(s.upper_high - 0.3723) < 1e-4); /* Wilson, 15 of 60 */
+  scatter_release(&s);
+}
+
+static void runs_for_an_interval(void **state) {
+  (void)state;
+  /* t(n - 1) s / sqrt(n) <= h: n = 18 for s = 1, h = 0.5: t(17) = 2.1098, 2.1098/sqrt(18) = 0.4973; n = 17: 0.5142 */
+  assert_int_equal(scatter_runs_needed(1, 0.5), 18);
+  assert_int_equal(scatter_runs_needed(2, 1), 18);
+  assert_int_equal(scatter_runs_needed(0, 1), 2);
+  assert_int_equal(scatter_runs_needed(NAN, 1), 0);
+  assert_int_equal(scatter_runs_needed(1, 1e-9), 0);
+  const double n = (double)scatter_runs_needed(1, 0.001);
+  assert_true(fabs(n - pow(1.959963985 / 0.001, 2)) < 5);
+}
+
+/* 95 % intervals hold the true value in 95 % of the samples, of a normal and of a skewed law. */
+static void coverage(void **state) {
+  (void)state;
+  enum { CASES = 400, N = 40 };
+  const double median[2] = {0, 1};
+  for (int law = 0; law < 2; law++) {
+    int held[3] = {0};
+    for (uint64_t c = 0; c < CASES; c++) {
+      double x[N];
+      struct scatter s;
+      for (uint64_t i = 0; i < N; i++)
+        x[i] = law ? exp(0.5 * normal(3, c, i)) : normal(2, c, i);
+      assert_int_equal(scatter_make(N, x, &s, NULL), STATUS_OK);
+      const double true_deviation = law ? sqrt((exp(0.25) - 1) * exp(0.25)) : 1;
+      held[0] += s.quantile[2].low <= median[law] && s.quantile[2].high >= median[law];
+      held[1] += fabs(s.deviation.estimate - true_deviation) <= s.deviation.half_width;
+      held[2] += law || fabs(s.skewness.estimate) <= s.skewness.half_width;
+      scatter_release(&s);
+    }
+    assert_true(held[0] >= 0.95 * CASES - 4 * 4.4); /* exact: 0.95 and more */
+    assert_true(held[1] >= 0.82 * CASES);           /* the jackknife of a deviation is short for skewed laws */
+    assert_true(held[2] >= 0.90 * CASES);
+  }
+}
+
+/* y = 2 a + 3 b + a b + seed, a and b = -1, 0, 1 with variance 2/3 each: 8/3, 6, 4/9, and seeds of variance 4. Shared:
+ * three quarters of the seeds' variance is the same in all points. */
+static void split_of_a_variance(void **state) {
+  (void)state;
+  enum { A = 3, B = 3, RUNS = 400, POINTS = A * B };
+  uint32_t level[POINTS * 2];
+  double *value = malloc(POINTS * RUNS * sizeof *value);
+  struct scatter_part parts[2 + SCATTER_PARTS];
+  assert_non_null(value);
+  for (int shared = 0; shared < 2; shared++) {
+    for (uint32_t p = 0; p < POINTS; p++) {
+      const double a = p / B - 1.0, b = p % B - 1.0;
+      level[2 * p] = p / B;
+      level[2 * p + 1] = p % B;
+      for (uint64_t r = 0; r < RUNS; r++)
+        value[p * RUNS + r] = 2 * a + 3 * b + a * b + sqrt(shared ? 3 : 0) * normal(4, 0, r) +
+                              sqrt(shared ? 1 : 4) * normal(5, p, r);
+    }
+    const struct scatter_table table = {POINTS, RUNS, 2, level, value};
+    assert_int_equal(scatter_split(&table, parts, NULL), STATUS_OK);
+    const double truth[] = {8 / 3.0, 6, 8 / 3.0 + 6 + 4 / 9.0, 4, shared ? 3 : 0}, whole = truth[2] + 4;
+    for (int i = 0; i < 5; i++) {
+      assert_true(fabs(parts[i].share - truth[i] / whole) < 2.5 * parts[i].half_width);
+      assert_true(parts[i].half_width > 0 && parts[i].half_width < 0.08);
+    }
+    assert_true(fabs(parts[5].variance - parts[2].variance - parts[3].variance) < 1e-12 && parts[5].share == 1);
+  }
+  /* No input matters: without bias the parts scatter about 0, also with two runs. */
+  double mean = 0;
+  for (uint64_t c = 0; c < 300; c++) {
+    for (size_t i = 0; i < POINTS * 2; i++)
+      value[i] = normal(6, c, i);
+    assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 2, 2, level, value}, parts, NULL), STATUS_OK);
+    assert_true(isnan(parts[0].half_width));
+    mean += parts[2].variance / 300;
+  }
+  assert_true(fabs(mean) < 0.08);
+  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 1, 2, level, value}, parts, NULL), STATUS_USAGE);
+  /* Every point has a value of its own: the axis tells nothing. */
+  for (uint32_t p = 0; p < POINTS; p++)
+    level[2 * p] = p;
+  assert_int_equal(scatter_split(&(struct scatter_table){POINTS, 4, 2, level, value}, parts, NULL), STATUS_OK);
+  assert_true(isnan(parts[0].share) && isfinite(parts[1].share));
+  free(value);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples), cmocka_unit_test(two_modes),
+                                     cmocka_unit_test(runs_for_an_interval), cmocka_unit_test(coverage),
+                                     cmocka_unit_test(split_of_a_variance)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
