@@ -13,22 +13,20 @@
 
 enum { FEWEST_SEEDS = 3, MOST_SEEDS = 10000, LOOKED_AT = 1000 };
 
+static bool are_enough(int64_t seeds, double deviation, double margin) {
+  return sample_student((size_t)seeds, 0.95) * deviation / sqrt((double)seeds) <= margin;
+}
+
 int64_t accuracy_seeds(double deviation, double margin) {
-  if (!(margin > 0) || !(deviation >= 0))
+  if (!(margin > 0) || !(deviation >= 0) || !are_enough(MOST_SEEDS, deviation, margin))
     return 0;
-  int64_t low = FEWEST_SEEDS - 1, high = FEWEST_SEEDS; /* low is too few */
-  while (high <= MOST_SEEDS && sample_student((size_t)high, 0.95) * deviation / sqrt((double)high) > margin) {
-    low = high;
-    high *= 2;
-  }
-  if (high > MOST_SEEDS)
-    return 0;
+  int64_t low = FEWEST_SEEDS - 1, high = MOST_SEEDS; /* low is too few, high is enough */
   while (high - low > 1) {
     const int64_t middle = low + (high - low) / 2;
-    if (sample_student((size_t)middle, 0.95) * deviation / sqrt((double)middle) > margin)
-      low = middle;
-    else
+    if (are_enough(middle, deviation, margin))
       high = middle;
+    else
+      low = middle;
   }
   return high;
 }
