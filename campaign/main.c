@@ -10,7 +10,6 @@
 
 #include "analysis/analysis.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/help.h"
 #include "campaign/terminal/table.h"
 #include "engine/cpu_class.h"
 
@@ -34,11 +33,11 @@ static status run_command_line(int argc, char **argv, struct error *error) {
   alignas(max_align_t) static char options[OPTION_STRUCT_MAXIMUM];
   static char version[] = "version";
   if (argc < 2) {
-    help_overview(stderr);
+    commands_help(stderr);
     return status_fail(error, STATUS_USAGE, "which command? The list is above");
   }
   if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
-    help_overview(stdout);
+    commands_help(stdout);
     return STATUS_OK;
   }
   argc--, argv++;

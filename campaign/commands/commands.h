@@ -19,12 +19,10 @@ const struct command *commands_find(const char *name, struct error *error);
 
 /* ---- what a command lends to another ---- */
 
+void commands_help(FILE *out); /* what `clast help` prints */
+
 /* `clast plan` for `clast run --dry-run`: loads a campaign, plans it and prints the plan. store NULL: the campaign's.
  * slots 0: one per core. */
 status commands_plan(const char *path, const char *store, int64_t slots, bool no_trial, bool json, struct error *error);
-
-/* `clast picture` for `clast simulate --picture`: draws the body of a fields file, fragments in colours, as PNG or SVG.
- * caption may be NULL. */
-status commands_picture(const char *fields, const char *picture, const char *caption, struct error *error);
 
 #endif

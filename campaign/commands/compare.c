@@ -2,15 +2,15 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/compare_pairs.h"
 #include "campaign/terminal/table.h"
+#include "db/ask/pairs.h"
 
 struct options {
   const char *quantity;
   struct table_options table;
 };
 
-static status print(void *context, const struct compare_pairs_row *row, struct error *error) {
+static status print(void *context, const struct ask_pairs_row *row, struct error *error) {
   struct table *table = context;
   (void)error;
   table_integer(table, row->point[0]);
@@ -29,17 +29,17 @@ static status print(void *context, const struct compare_pairs_row *row, struct e
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
-  struct compare_pairs *pairs = NULL;
+  struct ask_pairs *pairs = NULL;
   status code = table_choose(&options->table, &format, error);
   if (code)
     return code;
-  code = compare_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error);
+  code = ask_pairs_read(line->arguments[0], line->arguments[1], options->quantity, &pairs, error);
   if (code)
     return code;
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"point_a", "point_b", "inputs", "n_a", "n_b", "pairs", "mean_a", "mean_b",
                                              "difference", "hw95", NULL});
-  code = compare_pairs_each(pairs, print, table, error);
+  code = ask_pairs_each(pairs, print, table, error);
   if (code)
     table_drop(table);
   else
@@ -49,7 +49,7 @@ static status run(const struct command_line *line, struct error *error) {
             "clast: %s: b less a, 95 %% interval over seeds; of pairs with one seed, or (pairs 0) of independent "
             "runs. It does not hold the error of the resolution\n",
             options->quantity);
-  compare_pairs_free(pairs);
+  ask_pairs_free(pairs);
   return code;
 }
 

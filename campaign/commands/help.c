@@ -1,23 +1,24 @@
 /* `clast help [COMMAND]`: the list of commands, one command's help, or the manual page. */
-#include "campaign/commands/help.h"
-
 #include <string.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/manual.h"
 
-const char help_purpose[] = "Runs ensembles of fragmentation simulations and keeps every result in one SQLite file.";
-const char help_first_steps[] = "clast scenes                                   # what can be broken\n"
-                                "clast simulate disc-explosion --picture a.png  # one run, drawn\n"
-                                "clast run campaign.yaml                        # many runs; the same command resumes";
-const char help_streams[] = "Data goes to stdout, remarks and errors to stderr.";
+static const struct manual_texts texts = {
+    .purpose = "Runs ensembles of fragmentation simulations and keeps every result in one SQLite file.",
+    .first_steps = "clast scenes                                   # what can be broken\n"
+                   "clast simulate disc-explosion --picture a.png  # one run, drawn\n"
+                   "clast run campaign.yaml                        # many runs; the same command resumes",
+    .streams = "Data goes to stdout, remarks and errors to stderr.",
+};
 
 struct options {
   bool man;
 };
 
-void help_overview(FILE *out) {
-  fprintf(out, "usage: clast COMMAND [OPTIONS] ...\n\n%s\n\nfirst steps:\n", help_purpose);
-  option_lines(help_first_steps, out);
+void commands_help(FILE *out) {
+  fprintf(out, "usage: clast COMMAND [OPTIONS] ...\n\n%s\n\nfirst steps:\n", texts.purpose);
+  option_lines(texts.first_steps, out);
   const char *group = "";
   for (size_t i = 0; i < commands_count(); i++) {
     const struct command *command = commands_all()[i];
@@ -26,7 +27,7 @@ void help_overview(FILE *out) {
     group = command->group;
     fprintf(out, "  %-11s %s\n", command->name, command->summary);
   }
-  fprintf(out, "\n`clast COMMAND --help` tells more, with examples. %s\n", help_streams);
+  fprintf(out, "\n`clast COMMAND --help` tells more, with examples. %s\n", texts.streams);
 }
 
 static status run(const struct command_line *line, struct error *error) {
@@ -35,11 +36,11 @@ static status run(const struct command_line *line, struct error *error) {
     return status_fail(error, STATUS_USAGE, "--man prints the manual page of all commands; leave out \"%.64s\"",
                        line->arguments[0]);
   if (options->man) {
-    manual_write(stdout);
+    manual_write(&texts, commands_count(), commands_all(), stdout);
     return STATUS_OK;
   }
   if (line->count == 0) {
-    help_overview(stdout);
+    commands_help(stdout);
     return STATUS_OK;
   }
   const struct command *command = commands_find(line->arguments[0], error);

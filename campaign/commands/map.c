@@ -1,6 +1,6 @@
 /* `clast map STORE PICTURE`: a quantity over two varied inputs, as a picture. */
+#include "campaign/charts/map_tiles.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/map_tiles.h"
 
 struct options {
   const char *x, *y, *quantity;

@@ -1,10 +1,6 @@
 /* `clast picture FIELDS PICTURE`: draws the body of a fields file, whichever engine wrote it. */
+#include "campaign/charts/picture_draw.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/picture_draw.h"
-
-status commands_picture(const char *fields, const char *picture, const char *caption, struct error *error) {
-  return picture_draw(fields, picture, &(struct picture_choice){.caption = caption}, error);
-}
 
 static status run(const struct command_line *line, struct error *error) {
   return picture_draw(line->arguments[0], line->arguments[1], line->options, error);

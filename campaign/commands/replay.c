@@ -4,41 +4,13 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/replay_compare.h"
+#include "campaign/one_run/replay.h"
 #include "db/ask/run.h"
-#include "engine/atomic_file.h"
-#include "engine/cpu_class.h"
 
 struct options {
   const char *fields;
   struct table_options table;
 };
-
-/* Computes the run `from` again. Its scene is parsed into *scene; result and scene are the caller's, also on errors. */
-static status compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
-                      struct run_result *result, struct error *error) {
-  status code = scene_parse_json("scene of the run", from->scene, scene, error);
-  if (code)
-    return code;
-
-  const struct engine_kind *kind = (*scene)->kind;
-  if (kind->results_version != from->results_version)
-    return status_fail(error, STATUS_CONTENT,
-                       "run %" PRId64 " was made by results version %" PRId64
-                       " of engine %s, this program makes version %d: its bits differ on purpose; replay it with the "
-                       "program of that version (table session has its commit)",
-                       run_id, from->results_version, kind->name, kind->results_version);
-  if (fields) {
-    code = atomic_file_try(fields, "fields file", error);
-    if (code)
-      return code;
-  }
-  const struct run_request request = {.kind = kind,
-                                      .inputs = (*scene)->inputs,
-                                      .seed = from->seed,
-                                      .fields_path = fields};
-  return run_simulate(&request, NULL, NULL, 0, result, error);
-}
 
 /* The table of differences. For people there is none when nothing differs. */
 static status print_differences(struct store *store, int64_t run_id, const struct engine_kind *kind,
@@ -55,39 +27,14 @@ static status print_differences(struct store *store, int64_t run_id, const struc
   return code ? code : ended;
 }
 
-/* After the table of differences, which shows the values that the run had. */
-static status refuse_damaged(struct store *store, int64_t run_id, const struct replay_compare *comparison,
-                             struct error *error) {
-  bool whole = true;
-  status code = store_check_run(store, run_id, &whole, error);
-  if (code != STATUS_OK || whole)
-    return code;
-  return status_fail(error, STATUS_CONTENT,
-                     "run %" PRId64
-                     " is damaged in the store: a bit has changed since it was stored; %zu of %zu results "
-                     "differ. `clast check` lists all such runs; restore a copy, or compute them in a new store",
-                     run_id, comparison->different, comparison->compared);
-}
-
-static status verdict(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
-                      size_t fragments, struct error *error) {
+/* For people: what was compared. */
+static void tell(int64_t run_id, const struct replay_compare *comparison, size_t fragments) {
   if (comparison->absent)
     fprintf(stderr, "clast: %zu result%s not compared: the program that stored the run did not store %s\n",
             comparison->absent, comparison->absent == 1 ? "" : "s", comparison->absent_names);
-  if (comparison->different == 0) {
+  if (comparison->different == 0)
     fprintf(stderr, "run %" PRId64 ": %zu results and %zu fragment masses agree to the last bit\n", run_id,
             comparison->compared - 1, fragments);
-    return STATUS_OK;
-  }
-  char class[200] = "";
-  const char *here = cpu_class_name(cpu_class_choose());
-  if (*stored->cpu_class && strcmp(stored->cpu_class, here) != 0)
-    snprintf(class, sizeof class,
-             "; the stored ones are of CPU class %s and these of %s, and only runs of one class have the same bits: "
-             "replay with CLAST_CPU=%s",
-             stored->cpu_class, here, stored->cpu_class);
-  return status_fail(error, STATUS_CONTENT, "run %" PRId64 ": %zu of %zu results differ%s", run_id,
-                     comparison->different, comparison->compared, class);
 }
 
 static status replay(struct store *store, int64_t run_id, const struct options *options, enum table_format format,
@@ -97,27 +44,16 @@ static status replay(struct store *store, int64_t run_id, const struct options *
   struct run_result result = {0};
   struct replay_compare comparison = {0};
   status code = ask_run_read(store, run_id, &stored, error);
-  if (code)
-    goto cleanup;
-  if (!stored.scene) {
-    code = status_fail(error, STATUS_USAGE,
-                       "there is no run %" PRId64 "; `clast query STORE --named runs --with point=1` "
-                       "lists those of point 1",
-                       run_id);
-    goto cleanup;
+  if (code == STATUS_OK)
+    code = replay_compute(&stored, run_id, options->fields, &scene, &result, error);
+  if (code == STATUS_OK)
+    code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
+  if (code == STATUS_OK) {
+    tell(run_id, &comparison, result.fragment_count);
+    code = replay_verdict(store, run_id, &stored, &comparison, error);
   }
-
-  code = compute(&stored, run_id, options->fields, &scene, &result, error);
-  if (code)
-    goto cleanup;
-  code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
-  if (code == STATUS_OK)
-    code = refuse_damaged(store, run_id, &comparison, error);
-  if (code == STATUS_OK)
-    code = verdict(run_id, &stored, &comparison, result.fragment_count, error);
   if (code == STATUS_OK && options->fields && result.outcome.state == OUTCOME_INVALID)
     fprintf(stderr, "clast: the run is invalid and has no fields: %s is not written\n", options->fields);
-cleanup:
   ask_run_release(&stored);
   run_result_clear(&result);
   scene_free(scene);

@@ -9,7 +9,7 @@
 
 #include "analysis/report/page.h"
 #include "campaign/build_facts.h"
-#include "campaign/commands/picture_draw.h"
+#include "campaign/charts/picture_draw.h"
 #include "db/ask/page.h"
 #include "db/store/lock.h"
 #include "engine/atomic_file.h"

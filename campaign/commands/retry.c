@@ -5,6 +5,7 @@
 #include "campaign/commands/commands.h"
 #include "campaign/commands/launch.h"
 #include "campaign/converge/accuracy.h"
+#include "campaign/document/campaign_raise.h"
 #include "db/ask/campaign.h"
 
 struct options {
@@ -12,23 +13,6 @@ struct options {
   const char *status, *time, *memory, *folder;
   int64_t campaign;
 };
-
-/* A limit given on the command line, or twice the campaign's. */
-static status raise_limit(const char *path, const char *text, double *limit, struct error *error) {
-  if (!text) {
-    *limit *= 2;
-    return STATUS_OK;
-  }
-  const struct field *row = field_find(&campaign_table, path, error);
-  struct field_value value;
-  if (!row)
-    return STATUS_INTERNAL;
-  status code = field_parse(row, text, &value, error);
-  if (code)
-    return STATUS_USAGE;
-  *limit = value.number;
-  return STATUS_OK;
-}
 
 /* Name and document of the campaign, and how often its run that failed most has been tried. */
 static status read_store(const char *path, int64_t campaign, char **name, char **document, int64_t *attempts,
@@ -46,24 +30,6 @@ static status read_store(const char *path, int64_t campaign, char **name, char *
   return code;
 }
 
-/* The campaign of the document, with raised limits and more attempts. *out is the caller's, also on errors. */
-static status raise_limits(const struct options *options, const char *name, const char *document, int64_t attempts,
-                           struct campaign **out, struct error *error) {
-  status code = campaign_parse_stored(name, document, options->folder, out, error);
-  if (code)
-    return code;
-  struct campaign *campaign = *out;
-  code = raise_limit("limits.time", options->time, &campaign->time_limit, error);
-  if (code)
-    return code;
-  code = raise_limit("limits.memory", options->memory, &campaign->memory_limit, error);
-  if (code)
-    return code;
-  campaign->attempts += attempts;
-  campaign->failures = 0; /* the user knows of these failures already */
-  return STATUS_OK;
-}
-
 static status retry(const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
   const char *path = line->arguments[0];
@@ -77,7 +43,9 @@ static status retry(const struct command_line *line, enum table_format format, s
     fprintf(stderr, "%s: no run was given up; nothing to try again\n", path);
     goto cleanup;
   }
-  code = raise_limits(options, name, document, attempts, &campaign, error);
+  code = campaign_parse_stored(name, document, options->folder, &campaign, error);
+  if (code == STATUS_OK)
+    code = campaign_raise(campaign, options->time, options->memory, attempts, error);
   if (code == STATUS_OK && !launch_other_rank())
     code = accuracy_settle(campaign, "CAMPAIGN.yaml", path, error);
   if (code == STATUS_OK)

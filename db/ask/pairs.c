@@ -1,5 +1,5 @@
 /* Reads both sides of a comparison and walks along them. */
-#include "campaign/commands/compare_pairs.h"
+#include "db/ask/pairs.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ struct side {
   struct difference_value *values;
   size_t group_count, group_room, value_count, value_room;
 };
-struct compare_pairs {
+struct ask_pairs {
   struct side side[2];
 };
 
@@ -84,9 +84,9 @@ static status read_side(const char *operand, const char *quantity, struct side *
   return code;
 }
 
-status compare_pairs_read(const char *first, const char *second, const char *quantity, struct compare_pairs **out,
-                          struct error *error) {
-  struct compare_pairs *pairs = calloc(1, sizeof *pairs);
+status ask_pairs_read(const char *first, const char *second, const char *quantity, struct ask_pairs **out,
+                      struct error *error) {
+  struct ask_pairs *pairs = calloc(1, sizeof *pairs);
   *out = NULL;
   if (!pairs)
     return status_fail(error, STATUS_MEMORY, "no memory for a comparison");
@@ -96,14 +96,14 @@ status compare_pairs_read(const char *first, const char *second, const char *qua
   if (code == STATUS_OK && pairs->side[0].one_point != pairs->side[1].one_point)
     code = status_fail(error, STATUS_USAGE, "compare a point with a point (STORE:1), or all points with all points");
   if (code) {
-    compare_pairs_free(pairs);
+    ask_pairs_free(pairs);
     return code;
   }
   *out = pairs;
   return STATUS_OK;
 }
 
-void compare_pairs_free(struct compare_pairs *pairs) {
+void ask_pairs_free(struct ask_pairs *pairs) {
   for (int k = 0; pairs && k < 2; k++) {
     for (size_t i = 0; i < pairs->side[k].group_count; i++)
       free(pairs->side[k].groups[i].inputs);
@@ -114,9 +114,9 @@ void compare_pairs_free(struct compare_pairs *pairs) {
 }
 
 /* Both sides are in the order of their inputs. */
-status compare_pairs_each(const struct compare_pairs *pairs,
-                          status (*each)(void *context, const struct compare_pairs_row *row, struct error *error),
-                          void *context, struct error *error) {
+status ask_pairs_each(const struct ask_pairs *pairs,
+                      status (*each)(void *context, const struct ask_pairs_row *row, struct error *error),
+                      void *context, struct error *error) {
   const struct side *a = &pairs->side[0], *b = &pairs->side[1];
   size_t found = 0;
   for (size_t i = 0, j = 0; i < a->group_count && j < b->group_count;) {
@@ -126,10 +126,10 @@ status compare_pairs_each(const struct compare_pairs *pairs,
     j += order >= 0;
     if (order)
       continue;
-    const struct compare_pairs_row row = {{first->point, second->point},
-                                          first->inputs,
-                                          difference_between(first->count, a->values + first->first, second->count,
-                                                             b->values + second->first, 0.95)};
+    const struct ask_pairs_row row = {{first->point, second->point},
+                                      first->inputs,
+                                      difference_between(first->count, a->values + first->first, second->count,
+                                                         b->values + second->first, 0.95)};
     const status code = each(context, &row, error);
     if (code)
       return code;

@@ -1,6 +1,6 @@
 /* The tiles of `clast map`: a quantity over two inputs. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_MAP_TILES_H
-#define CLAST_CAMPAIGN_COMMANDS_MAP_TILES_H
+#ifndef CLAST_CAMPAIGN_CHARTS_MAP_TILES_H
+#define CLAST_CAMPAIGN_CHARTS_MAP_TILES_H
 
 #include "campaign/commands/quantity.h"
 #include "campaign/terminal/chart_option.h"

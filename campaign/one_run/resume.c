@@ -1,5 +1,5 @@
 /* Signals and the restart file. */
-#include "campaign/commands/resume.h"
+#include "campaign/one_run/resume.h"
 
 #include <signal.h>
 #include <time.h>

@@ -1,6 +1,6 @@
 /* Fields files during a run, and the list of them with their times that ParaView reads (NAME.hdf.series). */
-#ifndef CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
-#define CLAST_CAMPAIGN_COMMANDS_SNAPSHOTS_H
+#ifndef CLAST_CAMPAIGN_ONE_RUN_SNAPSHOTS_H
+#define CLAST_CAMPAIGN_ONE_RUN_SNAPSHOTS_H
 
 #include <stdint.h>
 

@@ -1,6 +1,6 @@
 /* What `clast picture` draws: the body of a fields file, or a profile. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_PICTURE_DRAW_H
-#define CLAST_CAMPAIGN_COMMANDS_PICTURE_DRAW_H
+#ifndef CLAST_CAMPAIGN_CHARTS_PICTURE_DRAW_H
+#define CLAST_CAMPAIGN_CHARTS_PICTURE_DRAW_H
 
 #include "campaign/terminal/chart_option.h"
 

@@ -1,12 +1,43 @@
-/* Compares values by their bits, column by column. */
-#include "campaign/commands/replay_compare.h"
+/* Computes a stored run again and compares values by their bits, column by column. */
+#include "campaign/one_run/replay.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "db/ask/run.h"
+#include "engine/atomic_file.h"
+#include "engine/cpu_class.h"
+
+status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
+                      struct run_result *result, struct error *error) {
+  if (!from->scene)
+    return status_fail(error, STATUS_USAGE,
+                       "there is no run %" PRId64 "; `clast query STORE --named runs --with point=1` "
+                       "lists those of point 1",
+                       run_id);
+  status code = scene_parse_json("scene of the run", from->scene, scene, error);
+  if (code)
+    return code;
+
+  const struct engine_kind *kind = (*scene)->kind;
+  if (kind->results_version != from->results_version)
+    return status_fail(error, STATUS_CONTENT,
+                       "run %" PRId64 " was made by results version %" PRId64
+                       " of engine %s, this program makes version %d: its bits differ on purpose; replay it with the "
+                       "program of that version (table session has its commit)",
+                       run_id, from->results_version, kind->name, kind->results_version);
+  if (fields) {
+    code = atomic_file_try(fields, "fields file", error);
+    if (code)
+      return code;
+  }
+  const struct run_request request = {.kind = kind,
+                                      .inputs = (*scene)->inputs,
+                                      .seed = from->seed,
+                                      .fields_path = fields};
+  return run_simulate(&request, NULL, NULL, 0, result, error);
+}
 
 struct comparison {
   const struct run_result *result;
@@ -149,4 +180,30 @@ status replay_compare(struct store *store, int64_t run_id, const struct engine_k
   if (code == STATUS_OK && out->compared < 3)
     return status_fail(error, STATUS_CONTENT, "the store keeps no results of run %" PRId64, run_id);
   return code;
+}
+
+status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
+                      const struct replay_compare *comparison, struct error *error) {
+  bool whole = true;
+  status code = store_check_run(store, run_id, &whole, error);
+  if (code != STATUS_OK)
+    return code;
+  if (!whole)
+    return status_fail(error, STATUS_CONTENT,
+                       "run %" PRId64
+                       " is damaged in the store: a bit has changed since it was stored; %zu of %zu results "
+                       "differ. `clast check` lists all such runs; restore a copy, or compute them in a new store",
+                       run_id, comparison->different, comparison->compared);
+  if (comparison->different == 0)
+    return STATUS_OK;
+
+  char class[200] = "";
+  const char *here = cpu_class_name(cpu_class_choose());
+  if (*stored->cpu_class && strcmp(stored->cpu_class, here) != 0)
+    snprintf(class, sizeof class,
+             "; the stored ones are of CPU class %s and these of %s, and only runs of one class have the same bits: "
+             "replay with CLAST_CPU=%s",
+             stored->cpu_class, here, stored->cpu_class);
+  return status_fail(error, STATUS_CONTENT, "run %" PRId64 ": %zu of %zu results differ%s", run_id,
+                     comparison->different, comparison->compared, class);
 }

@@ -1,12 +1,11 @@
 /* The manual page, made from the command tables: every command, option, example and exit code as in --help. Only NAME,
  * ENVIRONMENT and FILES have texts of their own. */
-#include "campaign/commands/help.h"
+#include "campaign/terminal/manual.h"
 
 #include <ctype.h>
 #include <string.h>
 
 #include "campaign/build_facts.h"
-#include "campaign/commands/commands.h"
 
 struct entry {
   const char *name, *meaning;
@@ -108,7 +107,7 @@ static void print_command(const struct command *command, FILE *out) {
   print_examples(command->examples, out);
 }
 
-void manual_write(FILE *out) {
+void manual_write(const struct manual_texts *texts, size_t count, const struct command *const *commands, FILE *out) {
   fputs(".\\\" Made by `clast help --man` from the tables of the commands: change those.\n"
         ".TH CLAST 1 " BUILD_DATE " \"clast " BUILD_VERSION "\" \"User Commands\"\n"
         ".nr HY 0\n.ad l\n" /* a name is never broken at a line's end, so that it can be searched for */
@@ -117,18 +116,18 @@ void manual_write(FILE *out) {
         ".br\n\\fBclast\\fR \\fICOMMAND\\fR \\fB\\-\\-help\\fR\n.br\n\\fBclast \\-\\-version\\fR\n"
         ".SH DESCRIPTION\n",
         out);
-  print_text(help_purpose, PROSE, out);
+  print_text(texts->purpose, PROSE, out);
   fputs("\n.PP\nFirst steps:\n", out);
-  print_examples(help_first_steps, out);
+  print_examples(texts->first_steps, out);
   fputs(".PP\n", out);
-  print_text(help_streams, PROSE, out);
+  print_text(texts->streams, PROSE, out);
   fputs("\n.SH COMMANDS\n.PD 0\n", out);
-  for (size_t i = 0; i < commands_count(); i++)
-    print_entry(commands_all()[i]->name, commands_all()[i]->summary, out);
+  for (size_t i = 0; i < count; i++)
+    print_entry(commands[i]->name, commands[i]->summary, out);
   fputs(".PD\n", out);
   const char *group = "";
-  for (size_t i = 0; i < commands_count(); i++) {
-    const struct command *command = commands_all()[i];
+  for (size_t i = 0; i < count; i++) {
+    const struct command *command = commands[i];
     if (strcmp(command->group, group) != 0) {
       fputs(".SH ", out);
       for (const char *c = command->group; *c; c++)

@@ -1,5 +1,5 @@
 /* Writes the snapshot that is due, and the list of all. */
-#include "campaign/commands/snapshots.h"
+#include "campaign/one_run/snapshots.h"
 
 #include <math.h>
 #include <stdio.h>

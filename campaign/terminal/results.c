@@ -1,5 +1,5 @@
 /* Prints a run's results: long for people, wide for programs. */
-#include "campaign/commands/results.h"
+#include "campaign/terminal/results.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* A run that can be stopped and resumed. SIGINT, SIGTERM and SIGHUP write its restart file and end the command with
  * exit code 75. The file is also written every few minutes, for ends without a signal. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_RESUME_H
-#define CLAST_CAMPAIGN_COMMANDS_RESUME_H
+#ifndef CLAST_CAMPAIGN_ONE_RUN_RESUME_H
+#define CLAST_CAMPAIGN_ONE_RUN_RESUME_H
 
 #include "engine/engine.h"
 

@@ -1,5 +1,5 @@
 /* Draws the body of a fields file by what the file holds: grains in the plane, or particles in space. */
-#include "campaign/commands/picture_draw.h"
+#include "campaign/charts/picture_draw.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Collects the tiles of a map and draws them. */
-#include "campaign/commands/map_tiles.h"
+#include "campaign/charts/map_tiles.h"
 
 #include <ctype.h>
 #include <math.h>

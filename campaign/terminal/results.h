@@ -1,6 +1,6 @@
 /* Results of one run on stdout: for people one quantity per line with unit and meaning, for programs one row. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_RESULTS_H
-#define CLAST_CAMPAIGN_COMMANDS_RESULTS_H
+#ifndef CLAST_CAMPAIGN_TERMINAL_RESULTS_H
+#define CLAST_CAMPAIGN_TERMINAL_RESULTS_H
 
 #include "campaign/driver/run.h"
 #include "campaign/terminal/table.h"

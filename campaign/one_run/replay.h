@@ -1,0 +1,33 @@
+/* A stored run beside the same run computed again: every result and every fragment mass, bit by bit. */
+#ifndef CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
+#define CLAST_CAMPAIGN_ONE_RUN_REPLAY_H
+
+#include "campaign/driver/run.h"
+#include "campaign/terminal/table.h"
+#include "db/ask/run.h"
+#include "engine/scene.h"
+
+struct replay_compare {
+  size_t compared, different; /* results; the fragment masses together are one of them */
+  size_t absent;              /* results that the program that stored the run did not know, as it seems: not compared */
+  char absent_names[256];     /* the first of them */
+};
+
+/* Computes the run again. Its scene is parsed into *scene; result and scene are the caller's, also on errors. `fields`:
+ * NULL, or where its fields go. STATUS_USAGE: there is no such run; STATUS_CONTENT: another results_version than this
+ * program's. */
+status replay_compute(const struct ask_run *from, int64_t run_id, const char *fields, struct scene **scene,
+                      struct run_result *result, struct error *error);
+
+/* Each difference is a row of `table`: name, stored, recomputed. STATUS_CONTENT: the store has no results of this run.
+ */
+status replay_compare(struct store *store, int64_t run_id, const struct engine_kind *kind,
+                      const struct run_result *result, struct table *table, struct replay_compare *out,
+                      struct error *error);
+
+/* STATUS_CONTENT: a bit of the run has changed since it was stored, or results differ. For after the table of
+ * differences, which shows the values that it had. */
+status replay_verdict(struct store *store, int64_t run_id, const struct ask_run *stored,
+                      const struct replay_compare *comparison, struct error *error);
+
+#endif
