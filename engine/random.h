@@ -14,6 +14,7 @@ enum random_purpose { /* never changed: they are part of what a seed means */
                       RANDOM_SEED = 6,
                       RANDOM_RESAMPLE = 7,
                       RANDOM_CELL = 8,
+                      RANDOM_INFERENCE = 9,
 };
 
 void random_bits(uint64_t seed, uint64_t purpose, uint64_t item, uint64_t draw, uint64_t bits[4]);

@@ -1,0 +1,172 @@
+/* Ensemble Kalman inversion. */
+#include "analysis/inference/ensemble_kalman.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/inference/covariance.h"
+#include "engine/random.h"
+
+/* Normal coordinates stay within the prior: beyond 3.5 lies 0.05 % of it. */
+static const double FARTHEST = 3.5;
+
+struct work {
+  size_t good;                   /* members with results */
+  size_t *member;                /* their numbers */
+  double *mean_z, *mean_g;       /* of the good members */
+  double *cross, *spread;        /* covariances: inputs x outputs, outputs x outputs */
+  double *root;                  /* Cholesky factor of gamma */
+  double *innovation, *weighted; /* outputs */
+  double *misfit;                /* of each good member */
+};
+
+static void clear(struct work *w) {
+  free(w->member);
+  free(w->mean_z);
+  free(w->mean_g);
+  free(w->cross);
+  free(w->spread);
+  free(w->root);
+  free(w->innovation);
+  free(w->weighted);
+  free(w->misfit);
+}
+
+static bool allocate(const struct ensemble_kalman *e, struct work *w) {
+  w->member = calloc(e->members, sizeof *w->member);
+  w->mean_z = calloc(e->inputs, sizeof(double));
+  w->mean_g = calloc(e->outputs, sizeof(double));
+  w->cross = calloc(e->inputs * e->outputs, sizeof(double));
+  w->spread = calloc(e->outputs * e->outputs, sizeof(double));
+  w->root = calloc(e->outputs * e->outputs, sizeof(double));
+  w->innovation = calloc(e->outputs, sizeof(double));
+  w->weighted = calloc(e->outputs, sizeof(double));
+  w->misfit = calloc(e->members, sizeof(double));
+  return w->member && w->mean_z && w->mean_g && w->cross && w->spread && w->root && w->innovation && w->weighted &&
+         w->misfit;
+}
+
+static double normal(const struct ensemble_kalman *e, uint64_t member, uint64_t draw) {
+  const double u = random_draw(e->seed, RANDOM_INFERENCE, e->round << 32 | member, draw);
+  return gsl_cdf_ugaussian_Pinv(fmin(fmax(u, 0x1p-54), 1 - 0x1p-53));
+}
+
+static void find_good(const struct ensemble_kalman *e, struct work *w) {
+  for (size_t j = 0; j < e->members; j++) {
+    bool good = true;
+    for (size_t k = 0; k < e->outputs; k++)
+      good = good && isfinite(e->g[j * e->outputs + k]);
+    if (good)
+      w->member[w->good++] = j;
+  }
+}
+
+static void find_covariances(const struct ensemble_kalman *e, struct work *w) {
+  const size_t p = e->inputs, d = e->outputs;
+  const double n = (double)w->good;
+  for (size_t i = 0; i < w->good; i++) {
+    for (size_t a = 0; a < p; a++)
+      w->mean_z[a] += e->z[w->member[i] * p + a] / n;
+    for (size_t k = 0; k < d; k++)
+      w->mean_g[k] += e->g[w->member[i] * d + k] / n;
+  }
+  for (size_t i = 0; i < w->good; i++) {
+    const double *z = e->z + w->member[i] * p, *g = e->g + w->member[i] * d;
+    for (size_t k = 0; k < d; k++) {
+      const double dg = (g[k] - w->mean_g[k]) / (n - 1);
+      for (size_t a = 0; a < p; a++)
+        w->cross[a * d + k] += (z[a] - w->mean_z[a]) * dg;
+      for (size_t l = 0; l < d; l++)
+        w->spread[k * d + l] += (g[l] - w->mean_g[l]) * dg;
+    }
+  }
+}
+
+/* Half the squared distance of a member's results from the data, in units of the errors. */
+static double misfit_of(const struct ensemble_kalman *e, struct work *w, size_t member) {
+  for (size_t k = 0; k < e->outputs; k++)
+    w->innovation[k] = e->y[k] - e->g[member * e->outputs + k];
+  return covariance_distance(e->outputs, w->root, w->innovation, w->weighted) / 2;
+}
+
+/* The part of the data that a step takes: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, at most what is left.
+ */
+static double part_of(const struct ensemble_kalman *e, struct work *w) {
+  double mean = 0, variance = 0;
+  for (size_t i = 0; i < w->good; i++) {
+    w->misfit[i] = misfit_of(e, w, w->member[i]);
+    mean += w->misfit[i] / (double)w->good;
+  }
+  for (size_t i = 0; i < w->good; i++)
+    variance += (w->misfit[i] - mean) * (w->misfit[i] - mean) / (double)(w->good - 1);
+  const double half = (double)e->outputs / 2;
+  const double part = fmax(half / mean, sqrt(half / variance));
+  const double left = 1 - e->tempered;
+  return part < left ? part : left;
+}
+
+static void move(const struct ensemble_kalman *e, struct work *w, size_t member, double part) {
+  const size_t p = e->inputs, d = e->outputs;
+  const double stretch = 1 / sqrt(part);
+  for (size_t k = 0; k < d; k++) {
+    double noise = 0;
+    for (size_t l = 0; l <= k; l++)
+      noise += w->root[k * d + l] * normal(e, member, l);
+    w->innovation[k] = e->y[k] + stretch * noise - e->g[member * d + k];
+  }
+  covariance_solve(d, w->spread, w->innovation, w->weighted);
+  for (size_t a = 0; a < p; a++) {
+    double *z = &e->z[member * p + a];
+    for (size_t k = 0; k < d; k++)
+      *z += w->cross[a * d + k] * w->weighted[k];
+    *z = fmin(fmax(*z, -FARTHEST), FARTHEST);
+  }
+}
+
+/* A member without results takes the place of a good one, moved by a tenth of the prior. */
+static void replace(const struct ensemble_kalman *e, const struct work *w, size_t member) {
+  const double u = random_draw(e->seed, RANDOM_INFERENCE, e->round << 32 | member, 1000000);
+  const size_t other = w->member[(size_t)(u * (double)w->good)];
+  for (size_t a = 0; a < e->inputs; a++)
+    e->z[member * e->inputs + a] = e->z[other * e->inputs + a] + 0.1 * normal(e, member, 1000001 + a);
+}
+
+static status step(struct ensemble_kalman *e, struct work *w, struct error *error) {
+  const size_t d = e->outputs;
+  find_good(e, w);
+  if (w->good < 3)
+    return status_fail(error, STATUS_CONTENT, "only %zu of %zu members of the ensemble have results; three are needed",
+                       w->good, e->members);
+  find_covariances(e, w);
+  memcpy(w->root, e->gamma, d * d * sizeof(double));
+  if (!covariance_factor(d, w->root))
+    return status_fail(error, STATUS_CONTENT,
+                       "the covariance of the measurement is not positive: give every value an "
+                       "error above 0");
+  const double part = part_of(e, w);
+  for (size_t k = 0; k < d * d; k++)
+    w->spread[k] += e->gamma[k] / part;
+  if (!covariance_factor(d, w->spread))
+    return status_fail(error, STATUS_INTERNAL, "the covariance of the ensemble is not positive");
+  for (size_t i = 0; i < w->good; i++)
+    move(e, w, w->member[i], part);
+  for (size_t j = 0, i = 0; j < e->members; j++)
+    if (i < w->good && w->member[i] == j)
+      i++;
+    else
+      replace(e, w, j);
+  e->tempered += part;
+  return STATUS_OK;
+}
+
+status ensemble_kalman_step(struct ensemble_kalman *ensemble, struct error *error) {
+  struct work w = {0};
+  const status code = allocate(ensemble, &w) ? step(ensemble, &w, error)
+                                             : status_fail(error, STATUS_MEMORY, "no memory for the ensemble");
+  clear(&w);
+  return code;
+}

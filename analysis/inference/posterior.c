@@ -1,0 +1,274 @@
+/* Likelihood, grid, and what weighted nodes tell. The sampler is posterior_sample.c. */
+#include "analysis/inference/posterior.h"
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/inference/covariance.h"
+#include "analysis/inference/posterior_sample.h"
+
+/* Nodes per input of a grid of 1 to 4 inputs. */
+static const size_t nodes_of[POSTERIOR_GRID_INPUTS + 1] = {0, 400, 60, 22, 12};
+enum { ZOOMS = 4, PREDICTED_NODES = 400 };
+static const double NEGLIGIBLE = 12;   /* below the largest logarithm: 6e-6 of it */
+static const double FEWEST_NODES = 40; /* effective ones, below which a grid is too coarse */
+
+void posterior_place(const struct posterior_model *model, const double *z, double *x) {
+  for (size_t i = 0; i < model->inputs; i++)
+    x[i] = model->bounded[i] ? sqrt(12) * (gsl_cdf_ugaussian_P(z[i]) - 0.5) : z[i];
+}
+
+void posterior_expect(const struct posterior_model *model, const double *z, double *mean, double *covariance) {
+  const size_t d = model->outputs;
+  double x[POSTERIOR_INPUTS], surface[POSTERIOR_OUTPUTS], scatter[POSTERIOR_OUTPUTS];
+  posterior_place(model, z, x);
+  for (size_t k = 0; k < d; k++) {
+    const struct posterior_datum *datum = &model->data[k];
+    mean[k] = kriging_predict(datum->surface, x, &surface[k]);
+    scatter[k] = sqrt(seed_scatter_variance(datum->scatter, x) / (double)datum->specimens);
+  }
+  for (size_t k = 0; k < d; k++)
+    for (size_t l = 0; l < d; l++) {
+      const struct posterior_datum *datum = &model->data[k];
+      const bool together = model->data[l].shot == datum->shot;
+      double *c = &covariance[k * d + l];
+      *c = together ? scatter[k] * scatter[l] * (k == l ? 1 : model->correlation[k * d + l]) : 0;
+      if (k == l)
+        *c += datum->error * datum->error + datum->resolution * datum->resolution + surface[k];
+    }
+}
+
+double posterior_likelihood(const struct posterior_model *model, const double *z) {
+  const size_t d = model->outputs;
+  double mean[POSTERIOR_OUTPUTS], half[POSTERIOR_OUTPUTS], c[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  posterior_expect(model, z, mean, c);
+  for (size_t k = 0; k < d; k++)
+    mean[k] = model->data[k].value - mean[k];
+  if (!covariance_factor(d, c))
+    return -HUGE_VAL;
+  return -(covariance_distance(d, c, mean, half) + covariance_log_determinant(d, c)) / 2;
+}
+
+/* ---- the grid ---- */
+
+struct box { /* of quantiles of the priors */
+  double low[POSTERIOR_INPUTS], high[POSTERIOR_INPUTS];
+};
+
+/* Nodes are the middles of cells of equal prior probability. Returns the largest logarithm. */
+static double fill_grid(const struct posterior_model *model, const struct box *box, size_t side,
+                        struct posterior *out) {
+  double most = -HUGE_VAL;
+  for (size_t n = 0; n < out->count; n++) {
+    size_t rest = n;
+    for (size_t i = 0; i < model->inputs; i++, rest /= side) {
+      const double share = ((double)(rest % side) + 0.5) / (double)side;
+      out->z[n * model->inputs + i] = gsl_cdf_ugaussian_Pinv(box->low[i] + share * (box->high[i] - box->low[i]));
+    }
+    out->weight[n] = posterior_likelihood(model, out->z + n * model->inputs);
+    most = fmax(most, out->weight[n]);
+  }
+  return most;
+}
+
+/* Shrinks the box to the nodes that count, and a cell beyond. Returns how much smaller it became. */
+static double shrink(const struct posterior_model *model, const struct posterior *grid, double most, size_t side,
+                     struct box *box) {
+  double factor = 1;
+  for (size_t i = 0; i < model->inputs; i++) {
+    const double cell = (box->high[i] - box->low[i]) / (double)side;
+    double low = 1, high = 0;
+    for (size_t n = 0; n < grid->count; n++)
+      if (grid->weight[n] > most - NEGLIGIBLE) {
+        const double u = gsl_cdf_ugaussian_P(grid->z[n * model->inputs + i]);
+        low = fmin(low, u);
+        high = fmax(high, u);
+      }
+    low = fmax(low - 1.5 * cell, box->low[i]);
+    high = fmin(high + 1.5 * cell, box->high[i]);
+    factor *= (high - low) / (box->high[i] - box->low[i]);
+    box->low[i] = low;
+    box->high[i] = high;
+  }
+  return factor;
+}
+
+static void normalise(struct posterior *p, double most) {
+  double sum = 0;
+  for (size_t n = 0; n < p->count; n++)
+    sum += p->weight[n] = exp(p->weight[n] - most);
+  for (size_t n = 0; n < p->count; n++)
+    p->weight[n] /= sum;
+}
+
+static double effective_nodes(const struct posterior *p) {
+  double squares = 0;
+  for (size_t n = 0; n < p->count; n++)
+    squares += p->weight[n] * p->weight[n];
+  return 1 / squares;
+}
+
+static status allocate(struct posterior *out, size_t count, size_t inputs, struct error *error) {
+  *out = (struct posterior){.count = count, .inputs = inputs};
+  out->z = calloc(count * inputs, sizeof(double));
+  out->weight = calloc(count, sizeof(double));
+  return out->z && out->weight ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
+}
+
+static status make_grid(const struct posterior_model *model, struct posterior *out, struct error *error) {
+  const size_t side = nodes_of[model->inputs];
+  size_t count = 1;
+  struct box box;
+  for (size_t i = 0; i < model->inputs; i++) {
+    count *= side;
+    box.low[i] = 0;
+    box.high[i] = 1;
+  }
+  const status code = allocate(out, count, model->inputs, error);
+  if (code != STATUS_OK)
+    return code;
+  double most = fill_grid(model, &box, side, out);
+  for (int zoom = 0; zoom < ZOOMS && shrink(model, out, most, side, &box) < 0.5; zoom++)
+    most = fill_grid(model, &box, side, out);
+  if (most == -HUGE_VAL)
+    return status_fail(error, STATUS_CONTENT, "no inputs of the priors give what was measured any likelihood");
+  normalise(out, most);
+  return STATUS_OK;
+}
+
+static status make_sample(const struct posterior_model *model, uint64_t seed, struct posterior *out,
+                          struct error *error) {
+  const status code = allocate(out, POSTERIOR_SAMPLE_NODES, model->inputs, error);
+  out->sampled = true;
+  if (code != STATUS_OK || !posterior_sample_fill(model, seed, out->z))
+    return code ? code : status_fail(error, STATUS_MEMORY, "no memory for the posterior");
+  for (size_t n = 0; n < out->count; n++)
+    out->weight[n] = 1 / (double)out->count;
+  return STATUS_OK;
+}
+
+status posterior_make(const struct posterior_model *model, uint64_t seed, struct posterior *out, struct error *error) {
+  *out = (struct posterior){0};
+  if (model->inputs == 0 || model->inputs > POSTERIOR_INPUTS || model->outputs == 0 ||
+      model->outputs > POSTERIOR_OUTPUTS)
+    return status_fail(error, STATUS_CONTENT, "a fit has 1 to %d inputs and 1 to %d measured numbers, not %zu and %zu",
+                       POSTERIOR_INPUTS, POSTERIOR_OUTPUTS, model->inputs, model->outputs);
+  if (model->inputs <= POSTERIOR_GRID_INPUTS) {
+    const status code = make_grid(model, out, error);
+    if (code != STATUS_OK || effective_nodes(out) >= FEWEST_NODES)
+      return code;
+    posterior_clear(out);
+  }
+  return make_sample(model, seed, out, error);
+}
+
+void posterior_clear(struct posterior *posterior) {
+  free(posterior->z);
+  free(posterior->weight);
+  *posterior = (struct posterior){0};
+}
+
+/* ---- what the nodes tell ---- */
+
+struct weighted {
+  double z, weight;
+};
+
+static int by_z(const void *a, const void *b) {
+  const double x = ((const struct weighted *)a)->z, y = ((const struct weighted *)b)->z;
+  return (x > y) - (x < y);
+}
+
+double posterior_quantile(const struct posterior *posterior, size_t input, double p) {
+  struct weighted *nodes = malloc(posterior->count * sizeof *nodes);
+  if (!nodes)
+    return NAN;
+  for (size_t n = 0; n < posterior->count; n++)
+    nodes[n] = (struct weighted){posterior->z[n * posterior->inputs + input], posterior->weight[n]};
+  qsort(nodes, posterior->count, sizeof *nodes, by_z);
+
+  /* Nodes of the same z (a column of the grid) are one; its weight lies half below it, half above. */
+  double before = -1, z_before = nodes[0].z, below = 0, found = NAN;
+  for (size_t n = 0; n < posterior->count && isnan(found);) {
+    const double z = nodes[n].z;
+    double here = 0;
+    for (; n < posterior->count && nodes[n].z - z <= 1e-9; n++)
+      here += nodes[n].weight;
+    const double middle = below + here / 2;
+    if (middle >= p)
+      found = before < 0 ? z : z_before + (z - z_before) * (p - before) / (middle - before);
+    before = middle;
+    z_before = z;
+    below += here;
+  }
+  free(nodes);
+  return isnan(found) ? z_before : found;
+}
+
+void posterior_moments(const struct posterior *posterior, double *mean, double *covariance) {
+  const size_t p = posterior->inputs;
+  memset(mean, 0, p * sizeof *mean);
+  memset(covariance, 0, p * p * sizeof *covariance);
+  for (size_t n = 0; n < posterior->count; n++)
+    for (size_t i = 0; i < p; i++)
+      mean[i] += posterior->weight[n] * posterior->z[n * p + i];
+  for (size_t n = 0; n < posterior->count; n++)
+    for (size_t i = 0; i < p; i++)
+      for (size_t j = 0; j < p; j++)
+        covariance[i * p + j] += posterior->weight[n] * (posterior->z[n * p + i] - mean[i]) *
+                                 (posterior->z[n * p + j] - mean[j]);
+}
+
+size_t posterior_node(const struct posterior *posterior, double p) {
+  double below = 0;
+  for (size_t n = 0; n < posterior->count; n++) {
+    below += posterior->weight[n];
+    if (below > p)
+      return n;
+  }
+  return posterior->count - 1;
+}
+
+/* Mean and standard deviation of output k at evenly drawn nodes. */
+static void expect_at_nodes(const struct posterior_model *model, const struct posterior *posterior, size_t k,
+                            double mean[PREDICTED_NODES], double deviation[PREDICTED_NODES]) {
+  double m[POSTERIOR_OUTPUTS], c[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  for (size_t n = 0; n < PREDICTED_NODES; n++) {
+    const size_t node = posterior_node(posterior, ((double)n + 0.5) / PREDICTED_NODES);
+    posterior_expect(model, posterior->z + node * posterior->inputs, m, c);
+    mean[n] = m[k];
+    deviation[n] = sqrt(c[k * model->outputs + k]);
+  }
+}
+
+static double share_below(const double *mean, const double *deviation, double value) {
+  double share = 0;
+  for (size_t n = 0; n < PREDICTED_NODES; n++)
+    share += gsl_cdf_ugaussian_P((value - mean[n]) / deviation[n]) / PREDICTED_NODES;
+  return share;
+}
+
+double posterior_predicted(const struct posterior_model *model, const struct posterior *posterior, size_t k, double p) {
+  double mean[PREDICTED_NODES], deviation[PREDICTED_NODES], low = HUGE_VAL, high = -HUGE_VAL;
+  expect_at_nodes(model, posterior, k, mean, deviation);
+  for (size_t n = 0; n < PREDICTED_NODES; n++) {
+    low = fmin(low, mean[n] - 8 * deviation[n]);
+    high = fmax(high, mean[n] + 8 * deviation[n]);
+  }
+  for (int i = 0; i < 60; i++) {
+    const double middle = (low + high) / 2;
+    if (share_below(mean, deviation, middle) < p)
+      low = middle;
+    else
+      high = middle;
+  }
+  return (low + high) / 2;
+}
+
+double posterior_below(const struct posterior_model *model, const struct posterior *posterior, size_t k) {
+  double mean[PREDICTED_NODES], deviation[PREDICTED_NODES];
+  expect_at_nodes(model, posterior, k, mean, deviation);
+  return share_below(mean, deviation, model->data[k].value);
+}

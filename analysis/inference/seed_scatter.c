@@ -1,0 +1,178 @@
+/* Variance over seeds, and what shared seeds do to means. */
+#include "analysis/inference/seed_scatter.h"
+
+#include <gsl/gsl_sf_psi.h>
+#include <math.h>
+#include <string.h>
+
+#include "analysis/inference/covariance.h"
+
+/* Number, mean and sum of squares of a point's runs. */
+struct moments {
+  size_t n;
+  double mean, squares;
+};
+
+static struct moments moments_of(const struct seed_scatter_runs *runs, size_t point) {
+  const double *v = runs->values + point * runs->replicates;
+  struct moments m = {0};
+  for (size_t r = 0; r < runs->replicates; r++) {
+    if (!isfinite(v[r]))
+      continue;
+    const double step = v[r] - m.mean;
+    m.n++;
+    m.mean += step / (double)m.n;
+    m.squares += step * (v[r] - m.mean);
+  }
+  return m;
+}
+
+/* Mean variance over all points, and the degrees of freedom behind it. */
+static double pooled_variance(const struct seed_scatter_runs *runs, size_t *freedom) {
+  double squares = 0;
+  *freedom = 0;
+  for (size_t i = 0; i < runs->points; i++) {
+    const struct moments m = moments_of(runs, i);
+    if (m.n < 2)
+      continue;
+    squares += m.squares;
+    *freedom += m.n - 1;
+  }
+  return *freedom ? squares / (double)*freedom : 0;
+}
+
+/* Weighted least squares of ln(s^2) - its bias on 1 and x, with a prior on the slopes. */
+static void fit_line(const struct seed_scatter_runs *runs, double pooled, struct seed_scatter *out) {
+  enum { MOST = SEED_SCATTER_INPUTS + 1 };
+  const size_t n = runs->inputs + 1;
+  double normal[MOST * MOST] = {0}, right[MOST] = {0}, row[MOST];
+  for (size_t i = 0; i < runs->points; i++) {
+    const struct moments m = moments_of(runs, i);
+    if (m.n < 2)
+      continue;
+    const double half = (double)(m.n - 1) / 2;
+    /* A chance run of equal values says that the variance is small, not that it is 0. */
+    const double variance = fmax(m.squares / (2 * half), 1e-4 * pooled);
+    const double y = log(variance / pooled) - gsl_sf_psi(half) + log(half), weight = 1 / gsl_sf_psi_1(half);
+    row[0] = 1;
+    memcpy(row + 1, runs->x + i * runs->inputs, runs->inputs * sizeof *row);
+    for (size_t a = 0; a < n; a++) {
+      right[a] += weight * row[a] * y;
+      for (size_t b = 0; b < n; b++)
+        normal[a * n + b] += weight * row[a] * row[b];
+    }
+  }
+  for (size_t a = 1; a < n; a++)
+    normal[a * n + a] += 1;
+  if (!covariance_factor(n, normal))
+    return; /* the pooled variance stays */
+  covariance_solve(n, normal, right, right);
+  out->constant += right[0];
+  memcpy(out->slope, right + 1, runs->inputs * sizeof *right);
+}
+
+/* The variance over points of sums over points, seed by seed, tells how far the seeds move together. */
+static double shared_correlation(const struct seed_scatter_runs *runs, const struct seed_scatter *fit) {
+  double together = 0, alone = 0, pairs = 0;
+  for (size_t r = 0; r < runs->replicates; r++) {
+    double sum = 0, squares = 0, n = 0;
+    for (size_t i = 0; i < runs->points; i++) {
+      const double value = runs->values[i * runs->replicates + r];
+      if (!isfinite(value))
+        continue;
+      const double e = (value - moments_of(runs, i).mean) /
+                       sqrt(seed_scatter_variance(fit, runs->x + i * runs->inputs));
+      sum += e;
+      squares += e * e;
+      n++;
+    }
+    together += sum * sum - squares;
+    alone += squares;
+    pairs += n * (n - 1);
+  }
+  const double points = pairs > 0 ? pairs / (double)runs->replicates : 0; /* n (n - 1) of one seed */
+  const double n = (1 + sqrt(1 + 4 * points)) / 2;
+  return points > 0 && alone > 0 ? fmin(fmax(together / (n - 1) / alone, 0), 0.99) : 0;
+}
+
+static void find_shape(const struct seed_scatter_runs *runs, struct seed_scatter *out) {
+  double second = 0, third = 0, fourth = 0, count = 0;
+  for (size_t i = 0; i < runs->points; i++) {
+    const struct moments m = moments_of(runs, i);
+    const double *v = runs->values + i * runs->replicates;
+    for (size_t r = 0; m.n > 1 && r < runs->replicates; r++) {
+      const double e = isfinite(v[r]) ? (v[r] - m.mean) / sqrt(seed_scatter_variance(out, runs->x + i * runs->inputs))
+                                      : 0;
+      second += e * e;
+      third += e * e * e;
+      fourth += e * e * e * e;
+      count += isfinite(v[r]);
+    }
+  }
+  out->skewness = second > 0 ? third / count / pow(second / count, 1.5) : 0;
+  out->excess = second > 0 ? fourth / count / (second / count * second / count) - 3 : 0;
+}
+
+status seed_scatter_fit(const struct seed_scatter_runs *runs, int shared_seeds, struct seed_scatter *out,
+                        struct error *error) {
+  *out = (struct seed_scatter){.inputs = runs->inputs};
+  if (runs->inputs > SEED_SCATTER_INPUTS)
+    return status_fail(error, STATUS_CONTENT, "%zu inputs are too many for a fit: at most %d", runs->inputs,
+                       SEED_SCATTER_INPUTS);
+  const double pooled = pooled_variance(runs, &out->freedom);
+  if (out->freedom == 0)
+    return status_fail(error, STATUS_CONTENT,
+                       "no point has two runs, so that the scatter over seeds is not known: give seeds.per_point at "
+                       "least 2");
+  out->constant = pooled > 0 ? log(pooled) : -700; /* an output that no seed moves */
+  if (pooled > 0)
+    fit_line(runs, pooled, out);
+  if (pooled > 0 && shared_seeds)
+    out->shared = shared_correlation(runs, out);
+  if (pooled > 0)
+    find_shape(runs, out);
+  return STATUS_OK;
+}
+
+double seed_scatter_variance(const struct seed_scatter *scatter, const double *x) {
+  double sum = scatter->constant;
+  for (size_t a = 0; a < scatter->inputs; a++)
+    sum += scatter->slope[a] * x[a];
+  return exp(sum);
+}
+
+void seed_scatter_of_means(const struct seed_scatter_runs *runs, const struct seed_scatter *scatter, double *noise) {
+  const size_t n = runs->points;
+  for (size_t i = 0; i < n; i++) {
+    const double *a = runs->values + i * runs->replicates;
+    const double sigma_i = sqrt(seed_scatter_variance(scatter, runs->x + i * runs->inputs));
+    for (size_t j = 0; j <= i; j++) {
+      const double *b = runs->values + j * runs->replicates;
+      const double sigma_j = sqrt(seed_scatter_variance(scatter, runs->x + j * runs->inputs));
+      double n_i = 0, n_j = 0, both = 0;
+      for (size_t r = 0; r < runs->replicates; r++) {
+        n_i += isfinite(a[r]);
+        n_j += isfinite(b[r]);
+        both += isfinite(a[r]) && isfinite(b[r]);
+      }
+      const double together = i == j ? 1 : scatter->shared;
+      noise[i * n + j] = noise[j * n + i] = n_i > 0 && n_j > 0 ? together * sigma_i * sigma_j * both / (n_i * n_j) : 0;
+    }
+  }
+}
+
+double seed_scatter_correlation(const struct seed_scatter_runs *a, const struct seed_scatter_runs *b) {
+  double cross = 0, first = 0, second = 0;
+  for (size_t i = 0; i < a->points; i++) {
+    const struct moments m = moments_of(a, i), n = moments_of(b, i);
+    for (size_t r = 0; r < a->replicates && m.n > 1 && n.n > 1; r++) {
+      const double u = a->values[i * a->replicates + r] - m.mean, v = b->values[i * b->replicates + r] - n.mean;
+      if (!isfinite(u) || !isfinite(v))
+        continue;
+      cross += u * v;
+      first += u * u;
+      second += v * v;
+    }
+  }
+  return first > 0 && second > 0 ? cross / sqrt(first * second) : 0;
+}

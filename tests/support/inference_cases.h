@@ -1,0 +1,108 @@
+/* Synthetic models for the tests of inference: cheap functions of the inputs with a scatter over seeds, in the place of
+ * an engine, and the rounds of a fit around them. */
+#ifndef CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
+#define CLAST_TESTS_SUPPORT_INFERENCE_CASES_H
+
+#include <gsl/gsl_cdf.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/inference/ensemble_kalman.h"
+#include "analysis/inference/identify.h"
+#include "analysis/inference/surfaces.h"
+#include "engine/random.h"
+
+/* Standard normal numbers of a test: purpose 100 is no purpose of the program. */
+static inline double case_normal(uint64_t seed, uint64_t item, uint64_t draw) {
+  return gsl_cdf_ugaussian_Pinv(fmax(random_draw(seed, 100, item, draw), 0x1p-54));
+}
+
+enum { CASE_MEMBERS = 24, CASE_ROUNDS = 8, CASE_REPLICATES = 4, CASE_POINTS = CASE_MEMBERS * CASE_ROUNDS };
+
+/* Output k of a run at quantiles u of the priors with one seed. */
+typedef double (*case_model)(const double *u, size_t k, uint64_t seed);
+
+struct case_fit {
+  size_t inputs, outputs, points;
+  double z[CASE_POINTS * POSTERIOR_INPUTS];
+  double values[POSTERIOR_OUTPUTS * CASE_POINTS * CASE_REPLICATES]; /* packed: outputs x points x replicates */
+  struct surfaces surfaces;
+  struct posterior posterior;
+  size_t rounds;
+};
+
+static inline void case_quantiles(size_t inputs, const double *z, double *u) {
+  for (size_t i = 0; i < inputs; i++)
+    u[i] = gsl_cdf_ugaussian_P(z[i]);
+}
+
+static inline struct surfaces_runs case_runs(const struct case_fit *fit, double *packed) {
+  /* `values` has room for all points; surfaces_runs wants those that there are. */
+  for (size_t k = 0; k < fit->outputs; k++)
+    memcpy(packed + k * fit->points * CASE_REPLICATES, fit->values + k * CASE_POINTS * CASE_REPLICATES,
+           fit->points * CASE_REPLICATES * sizeof *packed);
+  return (struct surfaces_runs){.points = fit->points,
+                                .inputs = fit->inputs,
+                                .outputs = fit->outputs,
+                                .replicates = CASE_REPLICATES,
+                                .z = fit->z,
+                                .values = packed,
+                                .shared_seeds = true};
+}
+
+/* A round of the ensemble: runs of its members with seeds first_seed + r. */
+static inline void case_run(struct case_fit *fit, case_model model, const double *members, uint64_t first_seed) {
+  double u[POSTERIOR_INPUTS];
+  for (size_t j = 0; j < CASE_MEMBERS; j++, fit->points++) {
+    memcpy(fit->z + fit->points * fit->inputs, members + j * fit->inputs, fit->inputs * sizeof(double));
+    case_quantiles(fit->inputs, members + j * fit->inputs, u);
+    for (size_t k = 0; k < fit->outputs; k++)
+      for (size_t r = 0; r < CASE_REPLICATES; r++)
+        fit->values[(k * CASE_POINTS + fit->points) * CASE_REPLICATES + r] = model(u, k, first_seed + r);
+  }
+}
+
+/* A whole fit: rounds of the ensemble until the data are taken in, one more round there, surfaces, posterior. */
+static inline status case_solve(struct case_fit *fit, case_model model, const struct posterior_datum *data,
+                                const bool *bounded, uint64_t seed, struct error *error) {
+  const size_t p = fit->inputs, d = fit->outputs;
+  static double packed[POSTERIOR_OUTPUTS * CASE_POINTS * CASE_REPLICATES];
+  double members[CASE_MEMBERS * POSTERIOR_INPUTS], g[CASE_MEMBERS * POSTERIOR_OUTPUTS], y[POSTERIOR_OUTPUTS];
+  double gamma[POSTERIOR_OUTPUTS * POSTERIOR_OUTPUTS];
+  struct ensemble_kalman e =
+      {.members = CASE_MEMBERS, .inputs = p, .outputs = d, .z = members, .g = g, .y = y, .gamma = gamma, .seed = seed};
+  for (size_t i = 0; i < p; i++) /* a Latin hypercube: stratum j of input i goes to one member */
+    for (size_t j = 0; j < CASE_MEMBERS; j++) {
+      const size_t place = (j * (2 * i + 1) * 5 + i) % CASE_MEMBERS;
+      members[place * p + i] = gsl_cdf_ugaussian_Pinv(((double)j + 0.5) / CASE_MEMBERS);
+    }
+  for (size_t k = 0; k < d; k++)
+    y[k] = data[k].value;
+  status code = STATUS_OK;
+  while (code == STATUS_OK && e.tempered < 1 && e.round + 1 < CASE_ROUNDS) {
+    case_run(fit, model, members, 1000 * seed);
+    const struct surfaces_runs runs = case_runs(fit, packed);
+    for (size_t j = 0; j < CASE_MEMBERS; j++)
+      for (size_t k = 0; k < d; k++)
+        g[j * d + k] = surfaces_mean(&runs, k, fit->points - CASE_MEMBERS + j);
+    code = surfaces_errors(&runs, data, bounded, CASE_MEMBERS, gamma, error);
+    if (code == STATUS_OK)
+      code = ensemble_kalman_step(&e, error);
+    e.round++;
+  }
+  if (code == STATUS_OK)
+    case_run(fit, model, members, 1000 * seed);
+  fit->rounds = e.round + 1;
+  const struct surfaces_runs runs = case_runs(fit, packed);
+  if (code == STATUS_OK)
+    code = surfaces_fit(&runs, data, bounded, &fit->surfaces, error);
+  return code == STATUS_OK ? posterior_make(&fit->surfaces.model, seed, &fit->posterior, error) : code;
+}
+
+static inline void case_clear(struct case_fit *fit) {
+  surfaces_clear(&fit->surfaces);
+  posterior_clear(&fit->posterior);
+}
+
+#endif

@@ -1,0 +1,340 @@
+/* The algebra of fits against closed forms: linear models with normal errors, whose posteriors are known. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "analysis/analysis.h"
+#include "analysis/inference/approximate.h"
+#include "tests/support/inference_cases.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+/* y = 2 z0 - z1, error 0.5: precision I + [4 -2; -2 1] / 0.25, mean = covariance . (2, -1) y / 0.25. */
+static void kalman_gives_the_posterior_of_a_linear_model(void **state) {
+  (void)state;
+  enum { MEMBERS = 4000 };
+  static double z[MEMBERS * 2], g[MEMBERS];
+  const double y = 1.5, gamma = 0.25;
+  struct ensemble_kalman e = {.members = MEMBERS, .inputs = 2, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
+  struct error error;
+  for (size_t i = 0; i < 2 * MEMBERS; i++)
+    z[i] = case_normal(1, i, 0);
+  for (e.seed = 1; e.tempered < 1; e.round++) {
+    for (size_t j = 0; j < MEMBERS; j++)
+      g[j] = 2 * z[2 * j] - z[2 * j + 1];
+    assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+    assert_true(e.round < 10);
+  }
+  double mean[2] = {0}, square[2] = {0};
+  for (size_t j = 0; j < MEMBERS; j++)
+    for (size_t i = 0; i < 2; i++) {
+      mean[i] += z[2 * j + i] / MEMBERS;
+      square[i] += z[2 * j + i] * z[2 * j + i] / MEMBERS;
+    }
+  /* covariance = I - A^T A / (A A^T + 0.25) = I - [4 -2; -2 1] / 5.25; five standard errors of 4000 members. */
+  assert_near(mean[0], 2 * y / 5.25, 5 * sqrt((1 - 4 / 5.25) / MEMBERS) + 0.02);
+  assert_near(mean[1], -y / 5.25, 5 * sqrt((1 - 1 / 5.25) / MEMBERS) + 0.02);
+  assert_near(square[0] - mean[0] * mean[0], 1 - 4 / 5.25, 0.03);
+  assert_near(square[1] - mean[1] * mean[1], 1 - 1 / 5.25, 0.1);
+}
+
+static void kalman_replaces_failed_members(void **state) {
+  (void)state;
+  double z[6] = {-1, 0, 1, 9, 9, 9}, g[6] = {-1, 0, 1, NAN, NAN, NAN}, y = 0, gamma = 1;
+  struct ensemble_kalman e = {.members = 6, .inputs = 1, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
+  struct error error;
+  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  for (size_t j = 3; j < 6; j++)
+    assert_true(fabs(z[j]) < 4);
+  g[1] = NAN;
+  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_CONTENT);
+  g[1] = 0;
+  gamma = 0;
+  e.tempered = 0;
+  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_CONTENT);
+}
+
+/* Values at `points` places with a given scatter, `shared` of its variance from the replicate's own seed. */
+enum { POINTS = 60, REPLICATES = 6 };
+struct sampled {
+  double x[POINTS], values[POINTS * REPLICATES];
+};
+static struct seed_scatter_runs sample(struct sampled *s, uint64_t seed, double slope, double shared) {
+  for (size_t i = 0; i < POINTS; i++) {
+    s->x[i] = -1.5 + 3 * (double)i / (POINTS - 1);
+    for (size_t r = 0; r < REPLICATES; r++)
+      s->values[i * REPLICATES + r] = 7 + exp(slope * s->x[i] / 2) * (sqrt(shared) * case_normal(seed, r, 1000000) +
+                                                                      sqrt(1 - shared) * case_normal(seed, i, r));
+  }
+  return (struct seed_scatter_runs){.points = POINTS,
+                                    .inputs = 1,
+                                    .replicates = REPLICATES,
+                                    .x = s->x,
+                                    .values = s->values};
+}
+
+static void scatter_of_seeds_is_recovered(void **state) {
+  (void)state;
+  static struct sampled s;
+  struct seed_scatter fit;
+  struct error error;
+  double constant = 0, slope = 0, shared = 0, apart = 0;
+  enum { TIMES = 40 };
+  for (uint64_t t = 0; t < TIMES; t++) {
+    struct seed_scatter_runs runs = sample(&s, t, 1.2, 0.6);
+    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    shared += fit.shared / TIMES;
+    runs = sample(&s, 500 + t, 1.2, 0);
+    assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+    apart += fit.shared / TIMES;
+    constant += fit.constant / TIMES;
+    slope += fit.slope[0] / TIMES;
+    assert_int_equal(fit.freedom, POINTS * (REPLICATES - 1));
+  }
+  /* ln(s^2) of five degrees of freedom scatters by 0.7; 60 points, 40 times: 0.015 in the constant, 0.016 in the slope,
+   * which its prior of width 1 makes 1 % smaller. */
+  assert_near(constant, 0, 0.06);
+  assert_near(slope, 1.2, 0.06);
+  assert_near(shared, 0.6, 0.1);
+  assert_true(apart < 0.03);
+}
+
+static void scatter_knows_two_heaps_and_too_few_runs(void **state) {
+  (void)state;
+  static struct sampled s;
+  struct seed_scatter fit;
+  struct error error;
+  struct seed_scatter_runs runs = sample(&s, 3, 0, 0);
+  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  assert_near(fit.excess, 0, 0.7); /* of a normal law, with 360 values +- 0.26 */
+  for (size_t i = 0; i < POINTS * REPLICATES; i++)
+    s.values[i] = i % 2 ? 0.3 : 0.5;
+  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  assert_near(fit.excess, -2, 0.01);
+  for (size_t i = 0; i < POINTS * REPLICATES; i++)
+    s.values[i] = i % REPLICATES ? (double)NAN : 1;
+  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_CONTENT);
+  for (size_t i = 0; i < POINTS * REPLICATES; i++)
+    s.values[i] = 1;
+  assert_int_equal(seed_scatter_fit(&runs, true, &fit, &error), STATUS_OK);
+  assert_true(seed_scatter_variance(&fit, s.x) < 1e-200); /* no seed moves it */
+}
+
+static struct kriging *surface_of(size_t n, const double *x, const double *y, double own, double shared) {
+  struct kriging *k = NULL;
+  struct error error;
+  double *noise = calloc(n * n, sizeof *noise);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++)
+      noise[i * n + j] = shared + (i == j ? own : 0);
+  const struct kriging_data data = {.points = n, .inputs = 1, .x = x, .mean = y, .noise = noise};
+  assert_int_equal(kriging_fit(&data, &k, &error), STATUS_OK);
+  free(noise);
+  return k;
+}
+
+static void kriging_passes_through_a_smooth_function(void **state) {
+  (void)state;
+  enum { N = 15 };
+  double x[N], y[N], variance;
+  for (size_t i = 0; i < N; i++) {
+    x[i] = -2 + 4 * (double)i / (N - 1);
+    y[i] = 3 + sin(2 * x[i]);
+  }
+  struct kriging *k = surface_of(N, x, y, 0, 0);
+  double worst = 0, ratio = 0;
+  for (double at = -1.9; at < 2; at += 0.137) {
+    const double off = kriging_predict(k, &at, &variance) - 3 - sin(2 * at);
+    worst = fmax(worst, fabs(off));
+    ratio = fmax(ratio, fabs(off) / sqrt(variance));
+  }
+  assert_true(worst < 0.01);
+  assert_true(ratio < 3);
+  kriging_predict(k, &(double){6}, &variance);
+  assert_true(variance > 1); /* far from all points it knows nothing */
+  kriging_free(k);
+}
+
+/* The mean of N noisy values of a constant: its variance is own/N + shared. */
+static void kriging_knows_what_seeds_leave(void **state) {
+  (void)state;
+  enum { N = 40 };
+  double x[N], y[N], alone, together, errors[N], squares = 0;
+  for (size_t i = 0; i < N; i++) {
+    x[i] = -1.7 + 3.4 * (double)i / (N - 1);
+    y[i] = 5 + 0.3 * case_normal(8, i, 0);
+  }
+  struct kriging *k = surface_of(N, x, y, 0.09, 0);
+  assert_near(kriging_predict(k, &(double){0}, &alone), 5, 0.2);
+  kriging_left_out(k, errors);
+  for (size_t i = 0; i < N; i++)
+    squares += errors[i] * errors[i] / N;
+  assert_near(sqrt(squares), 1, 0.3);
+  kriging_free(k);
+  assert_true(alone > 0.09 / N && alone < 0.09 / 4);
+  k = surface_of(N, x, y, 0.09, 0.04); /* a seed that moves all points is not seen in them */
+  kriging_predict(k, &(double){0}, &together);
+  assert_near(together - alone, 0.04, 0.01);
+  kriging_free(k);
+}
+
+/* Surfaces of y = a0 z0 + a1 z1, exact, and a scatter of 0.3. */
+static double linear(const double *u, size_t k, uint64_t seed) {
+  const double a[2][2] = {{2, -1}, {1, 1}};
+  return a[k][0] * gsl_cdf_ugaussian_Pinv(u[0]) + a[k][1] * gsl_cdf_ugaussian_Pinv(u[1]) +
+         0.3 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), 2 * (uint64_t)(u[1] * 0x1p52) + k);
+}
+
+static void posterior_is_that_of_a_linear_model(void **state) {
+  (void)state;
+  static struct case_fit fit;
+  struct error error;
+  const bool bounded[2] = {false, false};
+  fit = (struct case_fit){.inputs = 2, .outputs = 2};
+  const struct posterior_datum data[2] = {{.value = 1.5, .error = 0.4, .specimens = 1, .shot = 0},
+                                          {.value = 0.5, .resolution = 0.4, .specimens = 1, .shot = 1}};
+  assert_int_equal(case_solve(&fit, linear, data, bounded, 1, &error), STATUS_OK);
+  assert_false(fit.posterior.sampled);
+  /* Both errors are 0.5 with the scatter. Precision I + 4 [2 -1; 1 1]^T [2 -1; 1 1] = [21 -4; -4 9]. */
+  const double det = 21 * 9 - 16, right[2] = {4 * (2 * 1.5 + 0.5), 4 * (-1.5 + 0.5)};
+  const double exact[2] = {(9 * right[0] + 4 * right[1]) / det, (4 * right[0] + 21 * right[1]) / det};
+  double mean[2], c[4];
+  posterior_moments(&fit.posterior, mean, c);
+  assert_near(mean[0], exact[0], 0.1); /* the scatter is estimated, the surface has an error of its own */
+  assert_near(mean[1], exact[1], 0.1);
+  assert_near(sqrt(c[0]), sqrt(9 / det), 0.04);
+  assert_near(sqrt(c[3]), sqrt(21 / det), 0.05);
+  assert_near(posterior_quantile(&fit.posterior, 0, 0.95), mean[0] + 1.645 * sqrt(c[0]), 0.03);
+  assert_near(posterior_quantile(&fit.posterior, 0, 0.05), mean[0] - 1.645 * sqrt(c[0]), 0.03);
+
+  struct identify found;
+  identify_find(&fit.surfaces.model, &fit.posterior, &found);
+  assert_int_equal(found.determined, 2);
+  assert_near(found.direction[0].information, 4 * (3.5 + sqrt(1.5 * 1.5 + 1)), 6); /* eigenvalues of [20 -4; -4 8] */
+
+  /* One more experiment: scatter and errors, and what is not known of the inputs. */
+  const double spread = 2 * 2 * c[0] - 2 * 2 * c[1] + c[3] + 0.25;
+  assert_near(posterior_predicted(&fit.surfaces.model, &fit.posterior, 0, 0.95) -
+                  posterior_predicted(&fit.surfaces.model, &fit.posterior, 0, 0.5),
+              1.645 * sqrt(spread), 0.15);
+  case_clear(&fit);
+}
+
+/* A product and a sum: only u0 + u1 matters, or only a ring. */
+static double sum_only(const double *u, size_t k, uint64_t seed) {
+  (void)k;
+  return u[0] + u[1] + 0.02 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
+}
+static double ring(const double *u, size_t k, uint64_t seed) {
+  (void)k;
+  return (u[0] - 0.5) * (u[0] - 0.5) + (u[1] - 0.5) * (u[1] - 0.5) +
+         0.004 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
+}
+
+static void ridges_are_seen(void **state) {
+  (void)state;
+  static struct case_fit fit;
+  struct identify found;
+  struct error error;
+  const bool bounded[2] = {true, true};
+  const struct posterior_datum sum = {.value = 1.1, .error = 0.02, .specimens = 1};
+  fit = (struct case_fit){.inputs = 2, .outputs = 1};
+  assert_int_equal(case_solve(&fit, sum_only, &sum, bounded, 2, &error), STATUS_OK);
+  identify_find(&fit.surfaces.model, &fit.posterior, &found);
+  assert_int_equal(found.determined, 1);
+  assert_true(found.direction[0].information > 20 && found.direction[1].information < 0.5);
+  assert_true(identify_mixed(&found, 1, 0) && identify_mixed(&found, 1, 1));
+  assert_true(found.direction[1].along[0] * found.direction[1].along[1] < 0); /* one rises, the other falls */
+  assert_true(found.kept[0] > 0.6 && found.kept[1] > 0.6);
+  assert_true(found.direction[0].deviation < 0.3);
+  case_clear(&fit);
+
+  const struct posterior_datum radius = {.value = 0.1, .error = 0.004, .specimens = 1};
+  fit = (struct case_fit){.inputs = 2, .outputs = 1};
+  assert_int_equal(case_solve(&fit, ring, &radius, bounded, 3, &error), STATUS_OK);
+  identify_find(&fit.surfaces.model, &fit.posterior, &found);
+  assert_int_equal(found.determined, 1); /* everywhere on the ring one direction is known, another one each time */
+  case_clear(&fit);
+}
+
+static double five(const double *u, size_t k, uint64_t seed) {
+  double sum = 0;
+  for (size_t i = 0; i < 5; i++)
+    sum += (i == k ? 2 : 0.2) * gsl_cdf_ugaussian_Pinv(u[i]);
+  return sum + 0.2 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), 8 * (uint64_t)(u[1] * 0x1p52) + k);
+}
+
+static void five_inputs_are_sampled(void **state) {
+  (void)state;
+  static struct case_fit fit;
+  struct posterior_datum data[5];
+  struct error error;
+  const bool bounded[5] = {false};
+  for (size_t k = 0; k < 5; k++)
+    data[k] = (struct posterior_datum){.value = 1, .error = 0.3, .specimens = 1, .shot = k};
+  fit = (struct case_fit){.inputs = 5, .outputs = 5};
+  assert_int_equal(case_solve(&fit, five, data, bounded, 4, &error), STATUS_OK);
+  assert_true(fit.posterior.sampled);
+  double mean[5], c[25];
+  posterior_moments(&fit.posterior, mean, c);
+  for (size_t i = 0; i < 5; i++) {
+    /* By symmetry all are equal: (1 + s) z = A^T y / 0.13 with s the eigenvalue 2.8^2 / 0.13 of the sum. */
+    assert_near(mean[i], 2.8 / 0.13 / (1 + 2.8 * 2.8 / 0.13), 0.1);
+    assert_near(sqrt(c[i * 6]), 0.195, 0.05); /* 1 + 1.8^2 / 0.13 four times, 1 + 2.8^2 / 0.13 once */
+  }
+  case_clear(&fit);
+}
+
+/* y = z + two heaps at -1 and +1, y = 0 measured: the posterior has two modes, which no normal law has. */
+static void approximation_finds_two_modes(void **state) {
+  (void)state;
+  enum { PARTICLES = 1000 };
+  static double distance[PARTICLES];
+  struct approximate a;
+  struct error error;
+  assert_int_equal(approximate_begin(&a, PARTICLES, 1, 5, &error), STATUS_OK);
+  for (uint64_t round = 0; round < 12 && a.accepted > 0.05; round++) {
+    const size_t n = approximate_propose(&a);
+    for (size_t i = 0; i < n; i++) {
+      const double heap = random_draw(round, 100, i, 1) < 0.5 ? -1 : 1;
+      distance[i] = fabs(a.z[a.kept + i] + heap + 0.2 * case_normal(round, i, 0));
+    }
+    approximate_take(&a, distance);
+  }
+  assert_true(a.tolerance < 0.25); /* of the order of the scatter in a heap */
+  double inside = 0, sum = 0, upper = 0;
+  for (size_t n = 0; n < a.kept; n++) {
+    sum += a.weight[n];
+    inside += fabs(a.z[n]) < 0.4 ? a.weight[n] : 0;
+    upper += a.z[n] > 0 ? a.weight[n] : 0;
+  }
+  assert_true(inside / sum < 0.05);
+  assert_near(upper / sum, 0.5, 0.12);
+  /* Each mode: prior 1 about 0, data 0.2 about +-1. */
+  assert_near(approximate_quantile(&a, 0, 0.75), 1 / 1.04, 0.1);
+  approximate_clear(&a);
+}
+
+static int start(void **state) {
+  (void)state;
+  analysis_init();
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(kalman_gives_the_posterior_of_a_linear_model),
+      cmocka_unit_test(kalman_replaces_failed_members),
+      cmocka_unit_test(scatter_of_seeds_is_recovered),
+      cmocka_unit_test(scatter_knows_two_heaps_and_too_few_runs),
+      cmocka_unit_test(kriging_passes_through_a_smooth_function),
+      cmocka_unit_test(kriging_knows_what_seeds_leave),
+      cmocka_unit_test(posterior_is_that_of_a_linear_model),
+      cmocka_unit_test(ridges_are_seen),
+      cmocka_unit_test(five_inputs_are_sampled),
+      cmocka_unit_test(approximation_finds_two_modes),
+  };
+  return cmocka_run_group_tests(tests, start, NULL);
+}
