@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "campaign/converge/study.h"
+#include "campaign/document/campaign_write.h"
 #include "campaign/driver/pooling.h"
 #include "schemas/clock.h"
-#include "schemas/text.h"
 
 struct rounds { /* of one farm_run */
   struct study *study;
@@ -191,57 +191,6 @@ static status make_axes(const struct rounds *rounds, struct campaign *campaign, 
   return STATUS_OK;
 }
 
-static void write_value(const struct field *row, const struct field_value *value, FILE *out) {
-  fputc(' ', out);
-  if (!field_needs_unit(row)) {
-    field_json_value(row, value, out);
-    return;
-  }
-  char text[FIELD_TEXT_SIZE];
-  field_print(row, value, text, sizeof text);
-  text_json_string(text, out);
-}
-
-/* The round as a campaign's document: what `clast run` would do, for the store. JSON values are YAML. */
-static char *document(const struct rounds *rounds, const struct campaign *campaign) {
-  const struct scene *base = rounds->ladder->base;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
-  if (!out)
-    return NULL;
-  fprintf(out, "# Written by clast converge: levels of %s.\nname: ", rounds->ladder->levels.knob->name);
-  text_json_string(campaign->name, out);
-  fputs("\nscene: ", out);
-  text_json_string(rounds->study->scene_reference, out);
-  const char *before = "\nset:";
-  for (size_t i = 0; i < base->kind->inputs->count; i++) {
-    const struct field *row = &base->kind->inputs->rows[i];
-    struct field_value value;
-    if (!base->overridden[i])
-      continue;
-    field_get(row, base->inputs, &value);
-    fprintf(out, "%s\n  %s:", before, row->path);
-    write_value(row, &value, out);
-    before = "";
-  }
-  fputs("\ndesign: list\nvary:", out);
-  for (size_t i = 0; i < campaign->axis_count; i++) {
-    const struct design_axis *axis = &campaign->axes[i];
-    fprintf(out, "\n  %s: [", axis->row->path);
-    for (size_t l = 0; l < axis->level_count; l++) {
-      fputs(l ? "," : "", out);
-      write_value(axis->row, &axis->levels[l], out);
-    }
-    fputs("]", out);
-  }
-  fprintf(out, "\nquantity: %s\nseeds: {first: %lld, per_point: %lld}\nstore: ", campaign->quantity,
-          (long long)campaign->first_seed, (long long)campaign->per_point);
-  text_json_string(campaign->store, out);
-  fputs("\n", out);
-  return text_close(out, &text);
-}
-
 static status make_campaign(struct rounds *rounds, struct error *error) {
   const struct study *study = rounds->study;
   struct campaign *campaign = rounds->campaign = calloc(1, sizeof *campaign);
@@ -258,7 +207,9 @@ static status make_campaign(struct rounds *rounds, struct error *error) {
   status code = make_axes(rounds, campaign, error);
   if (code != STATUS_OK)
     return code;
-  campaign->text = document(rounds, campaign);
+  char comment[128];
+  snprintf(comment, sizeof comment, "Written by clast converge: levels of %s.", rounds->ladder->levels.knob->name);
+  campaign->text = campaign_write_list(campaign, study->scene_reference, comment);
   return campaign->text ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a round");
 }
 
