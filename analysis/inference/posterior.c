@@ -15,6 +15,14 @@ enum { ZOOMS = 4, PREDICTED_NODES = 400 };
 static const double NEGLIGIBLE = 12;   /* below the largest logarithm: 6e-6 of it */
 static const double FEWEST_NODES = 40; /* effective ones, below which a grid is too coarse */
 
+double posterior_share(double z) {
+  return gsl_cdf_ugaussian_P(z);
+}
+
+double posterior_coordinate(double share) {
+  return gsl_cdf_ugaussian_Pinv(fmin(fmax(share, 1e-12), 1 - 1e-12));
+}
+
 void posterior_place(const struct posterior_model *model, const double *z, double *x) {
   for (size_t i = 0; i < model->inputs; i++)
     x[i] = model->bounded[i] ? sqrt(12) * (gsl_cdf_ugaussian_P(z[i]) - 0.5) : z[i];

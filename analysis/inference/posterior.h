@@ -40,6 +40,9 @@ struct posterior {
   bool sampled;       /* not a grid */
 };
 
+/* The share of a prior below a normal coordinate, and back; shares of 0 and 1 become 1e-12 and 1 - 1e-12. */
+double posterior_share(double z);
+double posterior_coordinate(double share);
 /* The place of normal coordinates on the surfaces. */
 void posterior_place(const struct posterior_model *model, const double *z, double *x);
 /* Means of the outputs and their covariance about the data: scatter of the specimens, error of the measurement, error

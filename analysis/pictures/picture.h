@@ -164,4 +164,15 @@ void text_histogram_print(FILE *out, int columns, bool unicode, const struct sca
 status picture_map(const struct picture_page *page, const struct picture_words *words, const char *quantity,
                    size_t count, const double (*points)[3], struct error *error);
 
+/* One measured number and what a fit predicts for one more experiment like it. */
+enum { PICTURE_QUANTILES = 5, PICTURE_PREDICTIONS = 32 };
+struct picture_prediction {
+  const char *label;
+  double measured, error;             /* standard deviation */
+  double quantile[PICTURE_QUANTILES]; /* 5, 25, 50, 75, 95 % */
+};
+/* All numbers over their measured values, a row for each; one measured as 0 is left out. */
+status picture_predicted(const struct picture_page *page, const struct picture_words *words, size_t count,
+                         const struct picture_prediction *row, struct error *error);
+
 #endif

@@ -8,6 +8,7 @@ static const struct command *const all[] = {
     &plan_command,
     &simulate_command,
     &converge_command,
+    &fit_command,
     &retry_command,
     /* scenes and inputs */ &scenes_command,
     &materials_command,

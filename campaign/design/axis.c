@@ -3,6 +3,7 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 void design_axis_free_all(struct design_axis *axes, size_t count) {
@@ -83,6 +84,37 @@ void design_axis_quantile(const struct design_axis *axis, double u, struct field
     if ((double)value->integer > axis->upper)
       value->integer = (int64_t)floor(axis->upper);
   }
+}
+
+/* Share of the standard normal law cut to (lower, upper) below x. */
+static double truncated_share(double lower, double upper, double x) {
+  if (lower > 0) /* the survival function keeps its digits there */
+    return (gsl_cdf_ugaussian_Q(lower) - gsl_cdf_ugaussian_Q(x)) /
+           (gsl_cdf_ugaussian_Q(lower) - gsl_cdf_ugaussian_Q(upper));
+  return (gsl_cdf_ugaussian_P(x) - gsl_cdf_ugaussian_P(lower)) /
+         (gsl_cdf_ugaussian_P(upper) - gsl_cdf_ugaussian_P(lower));
+}
+
+double design_axis_share(const struct design_axis *axis, const struct field_value *value) {
+  const bool whole = axis->row->kind == FIELD_INTEGER;
+  const double x = whole ? (double)value->integer : value->number;
+  double share = NAN;
+  switch (axis->kind) {
+  case DESIGN_AXIS_UNIFORM:
+    share = whole ? (x + 0.5 - axis->a) / (axis->b - axis->a + 1) : (x - axis->a) / (axis->b - axis->a);
+    break;
+  case DESIGN_AXIS_LOG_UNIFORM: share = log(x / axis->a) / log(axis->b / axis->a); break;
+  case DESIGN_AXIS_NORMAL:
+    share = truncated_share((axis->lower - axis->a) / axis->b, (axis->upper - axis->a) / axis->b,
+                            (x - axis->a) / axis->b);
+    break;
+  case DESIGN_AXIS_LOGNORMAL:
+    share = truncated_share(axis->lower > 0 ? log(axis->lower / axis->a) / axis->b : -HUGE_VAL,
+                            log(axis->upper / axis->a) / axis->b, log(x / axis->a) / axis->b);
+    break;
+  default: break;
+  }
+  return isnan(share) ? share : fmin(fmax(share, 0), 1);
 }
 
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,

@@ -30,6 +30,8 @@ void design_axis_free_all(struct design_axis *axes, size_t count); /* frees the 
 /* Value at quantile u in [0, 1), of every kind but linked. Integers are rounded to the nearest, and no bound is
  * crossed. */
 void design_axis_quantile(const struct design_axis *axis, double u, struct field_value *value);
+/* The inverse: the share of the law below a value, in [0, 1]; of an integer the middle of its step. NaN: no law. */
+double design_axis_share(const struct design_axis *axis, const struct field_value *value);
 /* Value of a linked axis when the axis it follows has `value` at `level` (its level for LEVELS, else 0). */
 void design_axis_follow(const struct design_axis *axis, const struct field_value *followed, size_t level,
                         struct field_value *value);

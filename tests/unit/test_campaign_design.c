@@ -221,6 +221,26 @@ static void quantiles_are_the_laws(void **state) {
   assert_true(isfinite(value.number));
 }
 
+static void shares_are_the_inverse_of_quantiles(void **state) {
+  (void)state;
+  const struct design_axis axes[] = {law(DESIGN_AXIS_UNIFORM, -2, 5, -HUGE_VAL, HUGE_VAL),
+                                     law(DESIGN_AXIS_LOG_UNIFORM, 1e33, 1e37, -HUGE_VAL, HUGE_VAL),
+                                     law(DESIGN_AXIS_NORMAL, 3, 2, 2, 4), law(DESIGN_AXIS_NORMAL, 0, 1, 5, 6),
+                                     law(DESIGN_AXIS_LOGNORMAL, 10, 0.5, -HUGE_VAL, HUGE_VAL)};
+  struct design_axis whole = law(DESIGN_AXIS_UNIFORM, 2, 5, -HUGE_VAL, HUGE_VAL);
+  struct field_value value;
+  for (size_t i = 0; i < sizeof axes / sizeof axes[0]; i++)
+    for (double u = 0.01; u < 1; u += 0.07) {
+      design_axis_quantile(&axes[i], u, &value);
+      assert_true(fabs(design_axis_share(&axes[i], &value) - u) < 1e-9);
+    }
+  whole.row = &integer_row;
+  value = (struct field_value){.kind = FIELD_INTEGER, .integer = 4}; /* the third of four steps */
+  assert_true(fabs(design_axis_share(&whole, &value) - 0.625) < 1e-12);
+  whole.kind = DESIGN_AXIS_LEVELS;
+  assert_true(isnan(design_axis_share(&whole, &value)));
+}
+
 /* Mean and variance of a truncated law against its closed form, by 4096 midpoints of u (error of the midpoint rule on a
  * smooth bounded quantile function: below 1e-5 of the width); never a value outside. */
 static void truncated_laws_stay_inside(void **state) {
@@ -311,6 +331,7 @@ int main(void) {
       cmocka_unit_test(latin_projections_are_stratified),
       cmocka_unit_test(sobol_is_gsl_with_origin_and_shift),
       cmocka_unit_test(quantiles_are_the_laws),
+      cmocka_unit_test(shares_are_the_inverse_of_quantiles),
       cmocka_unit_test(truncated_laws_stay_inside),
       cmocka_unit_test(random_points_are_uniform),
       cmocka_unit_test(a_million_points_are_a_counter),

@@ -1,0 +1,345 @@
+/* Reads what was measured. */
+#include "campaign/document/observed.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/document.h"
+
+#define COUNT_ABOVE "count_above"
+
+static const struct field root_rows[] = {
+    {.path = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(struct observed, name),
+     .flags = FIELD_REQUIRED,
+     .doc = "Name of the measurements."},
+    {.path = "source",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(struct observed, source),
+     .flags = FIELD_REQUIRED,
+     .doc = "Who measured it, and where it is printed."},
+};
+static const struct field_table root_table = FIELD_TABLE(root_rows, struct observed, "measurements",
+                                                         "What was measured, for clast fit.");
+
+static const struct field shot_rows[] = {
+    {.path = "name",
+     .kind = FIELD_TEXT,
+     .offset = offsetof(struct observed_shot, name),
+     .text = "",
+     .doc = "Name of the shot."},
+    {.path = "specimens",
+     .kind = FIELD_INTEGER,
+     .unit = "1",
+     .offset = offsetof(struct observed_shot, specimens),
+     .number = 1,
+     .minimum = 1,
+     .maximum = 1000000,
+     .doc = "How many specimens each value is the mean of."},
+};
+static const struct field_table shot_table = FIELD_TABLE(shot_rows, struct observed_shot, "shot",
+                                                         "One experiment, or the mean of several equal ones.");
+
+/* The units of value, error and resolution are those of the quantity: read_datum() puts them in. */
+static const struct field datum_rows[] = {
+    {.path = "value",
+     .kind = FIELD_REAL,
+     .unit = "1",
+     .minimum = -HUGE_VAL,
+     .maximum = HUGE_VAL,
+     .flags = FIELD_REQUIRED},
+    {.path = "error", .kind = FIELD_REAL, .unit = "1", .minimum = 0, .maximum = HUGE_VAL},
+    {.path = "resolution", .kind = FIELD_REAL, .unit = "1", .minimum = 0, .maximum = HUGE_VAL},
+    {.path = "share",
+     .kind = FIELD_REAL,
+     .unit = "1",
+     .minimum = 0,
+     .maximum = 1,
+     .flags = FIELD_ABOVE_MINIMUM | FIELD_BELOW_MAXIMUM},
+};
+enum { VALUE, ERROR, RESOLUTION, SHARE };
+
+struct reading {
+  const struct campaign *campaign;
+  struct observed *observed;
+};
+
+static struct observed_datum *add_datum(struct reading *r, document_node *node) {
+  struct observed *m = r->observed;
+  if (m->datum_count == OBSERVED_DATA) {
+    document_report(node, "measured", "more than %d numbers in all: keep those that tell most", OBSERVED_DATA);
+    return NULL;
+  }
+  struct observed_datum *datum = &m->data[m->datum_count++];
+  *datum = (struct observed_datum){.resolution = NAN, .shot = m->shot_count - 1};
+  return datum;
+}
+
+/* What a quantity's name means. */
+static bool find_quantity(struct reading *r, document_node *node, struct observed_datum *datum) {
+  struct error error = {0};
+  bool exponent = false;
+  struct ask_specimens_quantity *ask = &datum->ask;
+  if (strcmp(datum->quantity, COUNT_ABOVE) == 0) {
+    ask->kind = ASK_SPECIMENS_COUNT;
+    return true;
+  }
+  status code = estimates_named(datum->quantity, &exponent, &ask->method, &ask->window, &error);
+  if (code == STATUS_OK && exponent) {
+    ask->kind = ASK_SPECIMENS_EXPONENT;
+    return true;
+  }
+  if (code == STATUS_OK)
+    ask->row = campaign_quantity(r->campaign->scene->kind, datum->quantity, &ask->of_outcome, &error);
+  if (ask->row)
+    return true;
+  document_report(node, "quantity", "%s; or beta, beta_METHOD_WINDOW, " COUNT_ABOVE, error.message);
+  return false;
+}
+
+/* One number of the mapping, in the quantity's unit. False: it is missing or was reported. */
+static bool read_number(document_node *mapping, int which, const struct observed_datum *datum, double *number) {
+  struct field row = datum_rows[which];
+  struct field_value value;
+  document_node *node = document_key(mapping, row.path);
+  if (which != SHARE && datum->ask.row && datum->ask.row->unit)
+    row.unit = datum->ask.row->unit;
+  if (!node || !document_value(node, &row, &value))
+    return false;
+  *number = value.number;
+  return true;
+}
+
+static void read_datum(struct reading *r, document_node *node) {
+  static const char *const known[] = {"quantity", "value", "error", "resolution", "share", NULL};
+  if (document_kind(node) != DOCUMENT_MAPPING) {
+    document_report(node, "measured", "expected {quantity: NAME, value: NUMBER, error: NUMBER}");
+    return;
+  }
+  struct observed_datum *datum = add_datum(r, node);
+  document_node *quantity = document_key(node, "quantity"), *share = document_key(node, "share");
+  const char *name = quantity ? document_scalar(quantity) : NULL;
+  document_unknown_keys(node, "measured", known);
+  if (!name)
+    document_report(node, "measured", "'quantity' is missing: which number of a run was measured?");
+  if (!datum || !name)
+    return;
+  snprintf(datum->quantity, sizeof datum->quantity, "%.200s", name);
+  if (!find_quantity(r, quantity, datum))
+    return;
+  if (!read_number(node, VALUE, datum, &datum->value) && !document_key(node, "value"))
+    document_report(node, "measured", "'value' is missing: what was measured?");
+  read_number(node, ERROR, datum, &datum->error);
+  read_number(node, RESOLUTION, datum, &datum->resolution);
+  const bool count = datum->ask.kind == ASK_SPECIMENS_COUNT;
+  if (count && !read_number(node, SHARE, datum, &datum->share) && !share)
+    document_report(node, "measured", COUNT_ABOVE " needs 'share': fragments heavier than this share of the body");
+  if (!count && share)
+    document_report(share, "share", "only " COUNT_ABOVE " has a share");
+  datum->ask.share = datum->share;
+}
+
+static void read_data(struct reading *r, document_node *list) {
+  if (!list)
+    return;
+  if (document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
+    document_report(list, "measured", "expected a list of {quantity: NAME, value: NUMBER, error: NUMBER}");
+    return;
+  }
+  for (size_t i = 0; i < document_count(list); i++)
+    read_datum(r, document_item(list, i, NULL));
+}
+
+/* ---- a list of masses ---- */
+
+static int descending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x < y) - (x > y);
+}
+
+/* The largest fragment, and the numbers above up to four masses from the second largest down to where the list is
+ * complete, evenly in the logarithm. */
+static void take_masses(struct reading *r, document_node *node, size_t count, double *masses, double total,
+                        double complete) {
+  enum { STEPS = 4 };
+  qsort(masses, count, sizeof *masses, descending);
+  struct observed_datum *largest = add_datum(r, node);
+  if (!largest)
+    return;
+  snprintf(largest->quantity, sizeof largest->quantity, "%s", OUTCOME_NAME(largest_fraction));
+  find_quantity(r, node, largest);
+  largest->value = masses[0] / total;
+  const double from = count > 1 ? masses[1] / total : 0, to = complete / total;
+  for (int step = 1; step <= STEPS && from > to * 1.2; step++) {
+    struct observed_datum *datum = add_datum(r, node);
+    if (!datum)
+      return;
+    snprintf(datum->quantity, sizeof datum->quantity, COUNT_ABOVE);
+    datum->ask.kind = ASK_SPECIMENS_COUNT;
+    datum->share = datum->ask.share = from * pow(to / from, (double)step / STEPS);
+    for (size_t i = 0; i < count; i++)
+      datum->value += masses[i] > datum->share * total;
+  }
+}
+
+static void read_fragments(struct reading *r, document_node *node) {
+  static const char *const known[] = {"total", "complete", "masses", NULL};
+  struct field row = {.path = "masses",
+                      .kind = FIELD_REAL,
+                      .unit = "kg",
+                      .maximum = HUGE_VAL,
+                      .flags = FIELD_ABOVE_MINIMUM};
+  if (!node)
+    return;
+  document_node *list = document_kind(node) == DOCUMENT_MAPPING ? document_key(node, "masses") : NULL;
+  document_node *total_node = list ? document_key(node, "total") : NULL;
+  document_node *complete_node = list ? document_key(node, "complete") : NULL;
+  struct field_value total, complete, mass;
+  if (!list || !total_node || !complete_node || document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
+    document_report(node, "fragments",
+                    "expected {total: mass of the body, complete: mass from which on every fragment is in the list, "
+                    "masses: [...]}");
+    return;
+  }
+  document_unknown_keys(node, "fragments", known);
+  const size_t count = document_count(list);
+  double *masses = calloc(count, sizeof *masses), sum = 0;
+  bool good = masses && document_value(total_node, &row, &total) && document_value(complete_node, &row, &complete);
+  for (size_t i = 0; good && i < count; i++) {
+    good = document_value(document_item(list, i, NULL), &row, &mass);
+    sum += masses[i] = mass.number;
+  }
+  if (good && sum > 1.02 * total.number) {
+    document_report(list, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum, total.number);
+    good = false;
+  }
+  if (good)
+    take_masses(r, list, count, masses, total.number, complete.number);
+  free(masses);
+}
+
+/* ---- shots ---- */
+
+static bool is_varied(const struct campaign *campaign, const struct field *row) {
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (campaign->axes[i].row == row)
+      return true;
+  return false;
+}
+
+static void read_set(struct reading *r, document_node *set, struct scene *scene) {
+  if (!set)
+    return;
+  if (document_kind(set) != DOCUMENT_MAPPING) {
+    document_report(set, "set", "expected a mapping of paths to values, e.g. impact.speed: 3.2 km/s");
+    return;
+  }
+  for (size_t i = 0; i < document_count(set); i++) {
+    const char *key = NULL;
+    struct error error = {0};
+    document_node *node = document_item(set, i, &key);
+    const char *text = document_scalar(node);
+    char path[320];
+    snprintf(path, sizeof path, "set.%.300s", key ? key : "");
+    const struct field *row = key ? field_find(scene->kind->inputs, key, &error) : NULL;
+    if (!key || !text)
+      document_report(node, path, "expected one value");
+    else if (row && is_varied(r->campaign, row))
+      document_report(node, path, "known here and unknown in the campaign (`vary`); leave one of them out");
+    else if (!row || scene_set_text(scene, key, text, &error) != STATUS_OK)
+      document_report(node, path, "%s", error.message);
+  }
+}
+
+static void read_shot(struct reading *r, document_node *node) {
+  static const char *const also[] = {"set", "measured", "fragments", NULL};
+  struct observed *m = r->observed;
+  if (m->shot_count == OBSERVED_SHOTS) {
+    document_report(node, "shots", "more than %d shots", OBSERVED_SHOTS);
+    return;
+  }
+  struct observed_shot *shot = &m->shots[m->shot_count++];
+  field_defaults(&shot_table, shot);
+  shot->scene = scene_copy(r->campaign->scene);
+  if (!shot->scene || document_kind(node) != DOCUMENT_MAPPING) {
+    document_report(node, "shots", "expected a mapping with `measured` or `fragments`, and what this shot sets");
+    return;
+  }
+  document_read(node, &shot_table, also, shot);
+  if (!shot->name[0])
+    snprintf(shot->name, sizeof shot->name, "shot %zu", m->shot_count);
+  document_node *data = document_key(node, "measured"), *fragments = document_key(node, "fragments");
+  read_set(r, document_key(node, "set"), shot->scene);
+  read_data(r, data);
+  read_fragments(r, fragments);
+  if (!data && !fragments)
+    document_report(node, "shots", "nothing was measured: give `measured` or `fragments`");
+}
+
+static void read_all(struct reading *r, document_node *root) {
+  static const char *const also[] = {"shots", NULL};
+  field_defaults(&root_table, r->observed);
+  document_read(root, &root_table, also, r->observed);
+  document_node *shots = document_key(root, "shots");
+  if (!shots || document_kind(shots) != DOCUMENT_SEQUENCE || document_count(shots) == 0) {
+    document_report(shots ? shots : root, "shots", "expected a list of shots, each with what was measured");
+    return;
+  }
+  for (size_t i = 0; i < document_count(shots); i++)
+    read_shot(r, document_item(shots, i, NULL));
+}
+
+static status from_document(struct document *document, const struct campaign *campaign, struct observed **out,
+                            struct error *error) {
+  struct reading r = {.campaign = campaign, .observed = calloc(1, sizeof *r.observed)};
+  const char *report = NULL;
+  if (!r.observed)
+    return status_fail(error, STATUS_MEMORY, "no memory for the measurements");
+  read_all(&r, document_root(document));
+  const status code = document_finish(document, &report);
+  if (code != STATUS_OK) {
+    status_fail(error, code, "%s", report);
+    observed_free(r.observed);
+    return code;
+  }
+  *out = r.observed;
+  return STATUS_OK;
+}
+
+status observed_parse(const char *name, const char *text, size_t size, const struct campaign *campaign,
+                      struct observed **out, struct error *error) {
+  struct document *document = NULL;
+  *out = NULL;
+  status code = document_parse(name, text, size, &document, error);
+  if (code == STATUS_OK)
+    code = from_document(document, campaign, out, error);
+  document_free(document);
+  return code;
+}
+
+status observed_load(const char *path, const struct campaign *campaign, struct observed **out, struct error *error) {
+  struct document *document = NULL;
+  *out = NULL;
+  status code = document_open(path, &document, error);
+  if (code == STATUS_OK)
+    code = from_document(document, campaign, out, error);
+  document_free(document);
+  return code;
+}
+
+void observed_free(struct observed *observed) {
+  for (size_t i = 0; observed && i < observed->shot_count; i++)
+    scene_free(observed->shots[i].scene);
+  free(observed);
+}
+
+void observed_label(const struct observed *observed, size_t datum, char *label, size_t size) {
+  const struct observed_datum *d = &observed->data[datum];
+  const char *shot = observed->shot_count > 1 ? observed->shots[d->shot].name : "";
+  if (d->ask.kind == ASK_SPECIMENS_COUNT)
+    snprintf(label, size, "%s%sfragments above %.3g M", shot, shot[0] ? ": " : "", d->share);
+  else
+    snprintf(label, size, "%s%s%s", shot, shot[0] ? ": " : "", d->ask.row ? d->ask.row->path : d->quantity);
+}

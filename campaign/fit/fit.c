@@ -1,0 +1,201 @@
+/* The fit's state: priors and data as the algebra takes them, and the solution from all runs. */
+#include "campaign/fit/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/design/design.h"
+#include "campaign/fit/fit_values.h"
+
+double fit_transform(const struct observed_datum *datum, double value) {
+  return datum->ask.kind == ASK_SPECIMENS_COUNT ? log1p(value) : value;
+}
+
+double fit_back(const struct observed_datum *datum, double transformed) {
+  return datum->ask.kind == ASK_SPECIMENS_COUNT ? expm1(transformed) : transformed;
+}
+
+static double number_of(const struct field_value *value) {
+  return value->kind == FIELD_INTEGER ? (double)value->integer : value->number;
+}
+
+/* Six digits: the document of a round stays readable, and its values read back as the same bits. */
+void fit_value(const struct fit *fit, size_t input, double z, struct field_value *value) {
+  const struct design_axis *axis = &fit->campaign->axes[fit->axis[input]];
+  struct field_value low, high, rounded;
+  char text[32];
+  design_axis_quantile(axis, posterior_share(z), value);
+  if (value->kind != FIELD_REAL)
+    return;
+  design_axis_quantile(axis, 0, &low);
+  design_axis_quantile(axis, 1, &high);
+  snprintf(text, sizeof text, "%.6g", value->number);
+  rounded = *value;
+  rounded.number = strtod(text, NULL);
+  if (rounded.number >= low.number && rounded.number <= high.number)
+    *value = rounded;
+}
+
+double fit_number(const struct fit *fit, size_t input, double z) {
+  struct field_value value;
+  design_axis_quantile(&fit->campaign->axes[fit->axis[input]], posterior_share(z), &value);
+  return number_of(&value);
+}
+
+/* ---- from the documents ---- */
+
+static status check_campaign(const struct campaign *campaign, struct error *error) {
+  const int kind = campaign->design.kind;
+  if (kind == CAMPAIGN_GRID || kind == CAMPAIGN_LIST)
+    return status_fail(error, STATUS_CONTENT,
+                       "a fit begins with points drawn from the priors: give the campaign `design: {kind: "
+                       "latin_hypercube, points: 40}` and laws such as {log_uniform: [a, b]} in `vary`");
+  if (campaign->design.points < FIT_FEWEST_MEMBERS)
+    return status_fail(error, STATUS_CONTENT,
+                       "design.points is %lld; an ensemble has at least %d members, better 20 to "
+                       "100",
+                       (long long)campaign->design.points, FIT_FEWEST_MEMBERS);
+  if (campaign->per_point < 2)
+    return status_fail(error, STATUS_CONTENT,
+                       "a fit needs the scatter over seeds: give `seeds: {per_point: N}` with N of at least 2, better "
+                       "3 to 10");
+  return STATUS_OK;
+}
+
+static status find_inputs(struct fit *fit, struct error *error) {
+  const struct campaign *campaign = fit->campaign;
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    const struct design_axis *axis = &campaign->axes[i];
+    if (axis->kind == DESIGN_AXIS_LINKED)
+      continue;
+    if (axis->kind == DESIGN_AXIS_LEVELS)
+      return status_fail(error, STATUS_CONTENT,
+                         "vary.%s is a list of values; a fit needs a prior law: {uniform: [a, b]}, {log_uniform: [a, "
+                         "b]}, {normal: ...} or {lognormal: ...}",
+                         axis->row->path);
+    if (fit->inputs == POSTERIOR_INPUTS)
+      return status_fail(error, STATUS_CONTENT, "more than %d unknown inputs", POSTERIOR_INPUTS);
+    fit->bounded[fit->inputs] = axis->kind == DESIGN_AXIS_UNIFORM || axis->kind == DESIGN_AXIS_LOG_UNIFORM;
+    fit->axis[fit->inputs++] = i;
+  }
+  return fit->inputs ? STATUS_OK
+                     : status_fail(error, STATUS_CONTENT,
+                                   "the campaign varies nothing: what is unknown stands in "
+                                   "`vary`, with its prior");
+}
+
+static void find_data(struct fit *fit) {
+  for (size_t k = 0; k < fit->observed->datum_count; k++) {
+    const struct observed_datum *from = &fit->observed->data[k];
+    /* Of a count, ln(1 + N) has the error dN / (1 + N). */
+    const double slope = from->ask.kind == ASK_SPECIMENS_COUNT ? 1 / (1 + from->value) : 1;
+    fit->data[k] = (struct posterior_datum){.value = fit_transform(from, from->value),
+                                            .error = from->error * slope,
+                                            .resolution = isnan(from->resolution) ? 0 : from->resolution * slope,
+                                            .specimens = (size_t)fit->observed->shots[from->shot].specimens,
+                                            .shot = from->shot};
+    fit->resolution[k] = (struct ask_resolution){.verdict = ASK_RESOLUTION_NOT_STUDIED, .half_width = NAN};
+  }
+}
+
+static status allocate(struct fit *fit, struct error *error) {
+  fit->members = (size_t)fit->campaign->design.points;
+  fit->replicates = (size_t)fit->campaign->per_point;
+  fit->capacity = fit->members * (size_t)fit->rule.rounds;
+  const size_t d = fit->observed->datum_count, particles = (size_t)fit->rule.check;
+  fit->z = calloc(fit->capacity * fit->inputs, sizeof(double));
+  fit->values = calloc(fit->capacity * d * fit->replicates, sizeof(double));
+  fit->place = calloc(fit->members * fit->inputs, sizeof(double));
+  fit->specimens = calloc((particles + 1) * d, sizeof(double));
+  if (!fit->z || !fit->values || !fit->place || !fit->specimens)
+    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  return particles ? approximate_begin(&fit->check, particles, fit->inputs, fit->rule.seed, error) : STATUS_OK;
+}
+
+/* The first ensemble: the points that `clast run` makes of the campaign. */
+static status draw_members(struct fit *fit, struct error *error) {
+  const struct campaign *campaign = fit->campaign;
+  struct design *design = NULL;
+  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
+  if (!values)
+    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  const status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
+                                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
+  for (size_t j = 0; code == STATUS_OK && j < fit->members && design_next(design, values); j++)
+    for (size_t i = 0; i < fit->inputs; i++) {
+      const double share = design_axis_share(&campaign->axes[fit->axis[i]], &values[fit->axis[i]]);
+      fit->place[j * fit->inputs + i] = posterior_coordinate(share);
+    }
+  design_free(design);
+  free(values);
+  return code;
+}
+
+status fit_create(const struct campaign *campaign, const struct observed *observed, const struct fit_rule *rule,
+                  const char *scene_reference, struct fit **out, struct error *error) {
+  *out = NULL;
+  struct fit *fit = calloc(1, sizeof *fit);
+  if (!fit)
+    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  fit->campaign = campaign;
+  fit->observed = observed;
+  fit->scene_reference = scene_reference;
+  fit->rule = *rule;
+  status code = check_campaign(campaign, error);
+  if (code == STATUS_OK)
+    code = find_inputs(fit, error);
+  if (code == STATUS_OK)
+    code = allocate(fit, error);
+  if (code == STATUS_OK)
+    code = draw_members(fit, error);
+  if (code != STATUS_OK) {
+    fit_free(fit);
+    return code;
+  }
+  find_data(fit);
+  fit->ensemble = (struct ensemble_kalman){.members = fit->members,
+                                           .inputs = fit->inputs,
+                                           .outputs = observed->datum_count,
+                                           .z = fit->place,
+                                           .gamma = fit->gamma,
+                                           .seed = rule->seed};
+  *out = fit;
+  return STATUS_OK;
+}
+
+void fit_free(struct fit *fit) {
+  if (!fit)
+    return;
+  free(fit->z);
+  free(fit->values);
+  free(fit->place);
+  free(fit->specimens);
+  approximate_clear(&fit->check);
+  surfaces_clear(&fit->surfaces);
+  posterior_clear(&fit->posterior);
+  free(fit);
+}
+
+/* ---- the solution ---- */
+
+status fit_solve(struct fit *fit, struct error *error) {
+  double *packed = calloc(fit->points * fit->observed->datum_count * fit->replicates, sizeof *packed);
+  if (!packed)
+    return status_fail(error, STATUS_MEMORY, "no memory for a fit");
+  const struct surfaces_runs runs = fit_values_runs(fit, packed);
+  surfaces_clear(&fit->surfaces);
+  posterior_clear(&fit->posterior);
+  status code = surfaces_fit(&runs, fit->data, fit->bounded, &fit->surfaces, error);
+  free(packed);
+  if (code == STATUS_OK)
+    code = posterior_make(&fit->surfaces.model, fit->rule.seed, &fit->posterior, error);
+  return code;
+}
+
+status fit_find(struct fit *fit, struct error *error) {
+  const status code = fit_solve(fit, error);
+  if (code == STATUS_OK)
+    identify_find(&fit->surfaces.model, &fit->posterior, &fit->found);
+  return code;
+}

@@ -1,0 +1,97 @@
+/* A fit: which inputs of a campaign give what was measured? The campaign's laws are the priors, its sampled points the
+ * first ensemble. Rounds of runs move the ensemble towards the data (analysis/inference), surfaces go through all their
+ * means, and a posterior follows.
+ *
+ *     campaign_load(...), observed_load(...);
+ *     fit_create(campaign, observed, &rule, reference, &fit, &error);  // every rank
+ *     series_run(&(struct series){fit, fit_rounds_next, fit_rounds_done}, farm, ...);
+ *     fit_solve(fit, &error);                                           // rank 0
+ *
+ * The rounds depend on the documents and the rule alone, so that the same command finds all runs of an earlier one in
+ * the store. */
+#ifndef CLAST_CAMPAIGN_FIT_FIT_H
+#define CLAST_CAMPAIGN_FIT_FIT_H
+
+#include "analysis/inference/approximate.h"
+#include "analysis/inference/ensemble_kalman.h"
+#include "analysis/inference/identify.h"
+#include "analysis/inference/surfaces.h"
+#include "campaign/document/observed.h"
+#include "campaign/driver/series.h"
+#include "db/ask/resolution.h"
+
+enum { FIT_FEWEST_MEMBERS = 8, FIT_MOST_ROUNDS = 10, FIT_CHECK_ROUNDS = 12 };
+
+struct fit_rule {
+  int64_t rounds; /* of the ensemble at most, the last at its end and one from the posterior included */
+  int64_t check;  /* particles of the approximate Bayesian computation; 0: none */
+  uint64_t seed;  /* of what the algebra draws; the runs' seeds are the campaign's */
+  void (*note)(void *context, const char *text); /* a line after each round; may be NULL */
+  void *note_context;
+};
+
+enum fit_phase {
+  FIT_ENSEMBLE, /* members move towards the data */
+  FIT_ARRIVED,  /* one round at their last places */
+  FIT_REFINED,  /* one round at places drawn from the posterior */
+  FIT_CHECKED,  /* rounds of the approximate Bayesian computation */
+  FIT_DONE,
+};
+
+struct fit {
+  const struct campaign *campaign; /* borrowed */
+  const struct observed *observed; /* borrowed */
+  const char *scene_reference;     /* from the current folder; borrowed */
+  struct fit_rule rule;
+
+  size_t inputs, axis[POSTERIOR_INPUTS]; /* the unknown ones: which axis of the campaign each is */
+  bool bounded[POSTERIOR_INPUTS];
+  struct posterior_datum data[OBSERVED_DATA];      /* counts as ln(1 + N) */
+  struct ask_resolution resolution[OBSERVED_DATA]; /* what a study in the store says, where the document says nothing */
+
+  /* All points so far, and the values of their runs: point x datum x replicate. Owned. */
+  size_t points, capacity, members, replicates;
+  double *z, *values;
+
+  enum fit_phase phase;
+  size_t shot; /* that runs next in this round */
+  struct ensemble_kalman ensemble;
+  double *place; /* owned: members x inputs, of the round under way */
+  double gamma[OBSERVED_DATA * OBSERVED_DATA];
+  size_t rounds; /* of the ensemble that were run, all phases */
+  struct approximate check;
+  double *specimens; /* owned: particles x data, of the round of the check under way */
+  size_t proposed, check_rounds;
+
+  /* What was found. */
+  struct surfaces surfaces;
+  struct posterior posterior;
+  struct identify found;
+};
+
+/* STATUS_CONTENT: the campaign's design is not sampled, an input has no law, too few points or seeds. *out owns what it
+ * allocates and borrows the rest. */
+status fit_create(const struct campaign *campaign, const struct observed *observed, const struct fit_rule *rule,
+                  const char *scene_reference, struct fit **out, struct error *error);
+void fit_free(struct fit *fit); /* NULL is fine */
+
+/* Value of an unknown input at a normal coordinate, six digits of it. */
+void fit_value(const struct fit *fit, size_t input, double z, struct field_value *value);
+/* The same as a number for tables. */
+double fit_number(const struct fit *fit, size_t input, double z);
+/* A run's number as the fit compares it, and back. */
+double fit_transform(const struct observed_datum *datum, double value);
+double fit_back(const struct observed_datum *datum, double transformed);
+
+/* The callbacks of struct series; context is the fit. */
+struct campaign *fit_rounds_next(void *context, struct store *store, struct error *error);
+status fit_rounds_done(void *context, struct store *store, struct error *error);
+/* Runs at most: all shots of all rounds, with and without the check. */
+int64_t fit_rounds_most(const struct fit *fit, bool check);
+
+/* Surfaces and posterior from all points so far. */
+status fit_solve(struct fit *fit, struct error *error);
+/* The same, and what the data tell of the inputs. */
+status fit_find(struct fit *fit, struct error *error);
+
+#endif

@@ -1,0 +1,104 @@
+#!/usr/bin/env bash
+# clast fit: a fit of discs whose inputs are known, its runs in the store, going on after a kill, the ridge that one number
+# leaves, what the documents' errors say.
+. "$(dirname "$0")/lib.bash"
+
+cat >disc.yaml <<'YAML'
+name: disc
+scene: disc-explosion
+set: {body.diameter: 6 cm, charge.energy: 2 kJ/m, stop.end_time: 0.5 ms}
+vary:
+  threshold.strain: {log_uniform: [1 %, 8 %]}
+  threshold.angle: {uniform: [1 deg, 8 deg]}
+design: {kind: latin_hypercube, points: 10, seed: 3}
+seeds: {per_point: 3}
+store: disc.db
+YAML
+# A specimen of strain 4 %, angle 4 deg: seed 77, which the fit does not use.
+"$clast" simulate disc-explosion --seed 77 --set body.diameter='6 cm' --set charge.energy='2 kJ/m' \
+  --set stop.end_time='0.5 ms' --set threshold.strain='4 %' --set threshold.angle='4 deg' --json >specimen.json 2>err ||
+  fail "no specimen"
+value=$(python -c "
+import re; text = open('specimen.json').read()
+print(re.search(r'largest_fraction\W+?([0-9.e-]+)', text).group(1))")
+cat >one.yaml <<YAML
+name: one disc
+source: a run of the program
+shots:
+  - measured:
+      - {quantity: largest_fraction, value: $value, error: 0.01}
+YAML
+
+# Killed in the middle: the same command goes on, and its report is that of a fit that was not.
+"$clast" fit one.yaml disc.yaml --rounds 4 -j 1 --store killed.db >out 2>err &
+for _ in $(seq 200); do
+  [ "$(sqlite3 killed.db 'select count(*) from run' 2>/dev/null || echo 0)" -gt 5 ] && break
+  sleep 0.05
+done
+kill -9 $! 2>/dev/null || true
+wait $! 2>/dev/null || true
+expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --store killed.db --json
+found=$(sed -nE 's/.* ([0-9]+) found in the store.*/\1/p' err)
+[ "$found" -gt 0 ] || fail "nothing was found in the store"
+mv out killed.json
+expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --json
+says "0 found in the store"
+cmp -s out killed.json || fail "a fit that was killed reports something else"
+ok "killed and not killed: the same report"
+expect 0 "$clast" fit one.yaml disc.yaml --rounds 4 -j 2 --picture predicted.svg
+says "0 runs computed"
+prints "RIDGE: these data cannot tell threshold.strain and threshold.angle apart"
+prints "One experiment is one specimen"
+prints "RESOLUTION: what a finer resolution would change is not known"
+grep -q 'M₁/M' predicted.svg || fail "the picture has no readable label"
+python - <<'PY'
+import json
+rows = json.load(open('killed.json'))
+inputs = {r['name']: r for r in rows if r['kind'] == 'input'}
+assert set(inputs) == {'threshold.strain', 'threshold.angle'}, inputs
+for r in inputs.values():
+    assert r['prior_05'] <= r['q05'] * 1.2 and r['q05'] < r['median'] < r['q95'] <= r['prior_95'] * 1.2, r
+assert inputs['threshold.strain']['q05'] < 0.04 < inputs['threshold.strain']['q95'], inputs
+datum, = [r for r in rows if r['kind'] == 'measured']
+assert datum['q05'] < datum['value'] < datum['q95'] and 0.05 < datum['below'] < 0.95, datum
+PY
+ok "the interval holds the input that was taken, the prediction what was measured"
+# The rounds are campaigns that clast run can repeat; the first is the campaign itself.
+expect 0 "$clast" check disc.db
+number disc.db "select document from campaign limit 1" >/dev/null
+sqlite3 disc.db "select document from campaign order by campaign_id limit 1" >round.yaml
+expect 0 "$clast" run round.yaml --store disc.db -j 2 --quiet --csv
+same "$(number disc.db "select count(distinct name) from campaign")" "$(number disc.db "select count(*) / 30 from run")" "rounds of 30 runs"
+
+# Several numbers of two shots, one a mean; the check by specimens.
+cat >two.yaml <<YAML
+name: two discs
+source: made up
+shots:
+  - name: weak
+    set: {charge.energy: 1 kJ/m}
+    measured:
+      - {quantity: largest_fraction, value: 0.5, error: 0.02, resolution: 0.02}
+      - {quantity: count_above, share: 0.05, value: 5}
+  - name: strong
+    specimens: 2
+    measured: [{quantity: dust_fraction, value: 0.3, error: 0.02, resolution: 0}]
+YAML
+expect 0 "$clast" fit two.yaml disc.yaml --rounds 3 --check 10 --store two.db -j 2
+prints "weak: fragments above 0.05 M"
+prints "Check without a formula"
+same "$(number two.db "select count(distinct value) from point_input where path = 'charge.energy'")" 2 "energies of two shots"
+
+# What is wrong, and where.
+sed 's/largest_fraction/largest_fractoin/' one.yaml >wrong.yaml
+expect 65 "$clast" fit wrong.yaml disc.yaml
+says "wrong.yaml:5"
+says "largest_fraction"
+expect 66 "$clast" fit none.yaml disc.yaml
+expect 65 "$clast" fit disc.yaml disc.yaml
+sed 's/^design:.*/design: grid/; s/{log_uniform: \(.*\)}/\1/; s/{uniform: \(.*\)}/\1/' disc.yaml >grid.yaml
+expect 65 "$clast" fit one.yaml grid.yaml
+says "latin_hypercube"
+expect 64 "$clast" fit one.yaml
+expect 64 "$clast" fit one.yaml disc.yaml --rounds 2
+done_after 16

@@ -1,0 +1,166 @@
+/* Documents of what was measured: what good ones mean, what bad ones are told. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "campaign/document/observed.h"
+#include "campaign/fit/fit.h"
+
+#define HEAD "name: t\nsource: a test\n"
+#define SHOT HEAD "shots:\n  - "
+
+static struct campaign *campaign;
+
+static status parse(const char *text, struct observed **observed, struct error *error) {
+  return observed_parse("m.yaml", text, strlen(text), campaign, observed, error);
+}
+
+static struct observed *good(const char *text) {
+  struct observed *observed = NULL;
+  struct error error = {0};
+  if (parse(text, &observed, &error) != STATUS_OK)
+    fail_msg("refused:\n%s\n%s", text, error.message);
+  return observed;
+}
+
+/* Parts of the report, separated by '|'. */
+static void bad(const char *text, const char *expected) {
+  struct observed *observed = NULL;
+  struct error error = {0};
+  char copy[512], *rest = NULL;
+  assert_int_equal(parse(text, &observed, &error), STATUS_CONTENT);
+  assert_null(observed);
+  snprintf(copy, sizeof copy, "%s", expected);
+  for (char *part = strtok_r(copy, "|", &rest); part; part = strtok_r(NULL, "|", &rest))
+    if (!strstr(error.message, part))
+      fail_msg("not said: '%s'\nin the report on\n%s\n%s", part, text, error.message);
+}
+
+static void numbers_and_units(void **state) {
+  (void)state;
+  struct observed *m = good(
+      SHOT "name: first\n    specimens: 3\n    set: {energy: 3 kJ/m}\n    measured:\n"
+           "      - {quantity: largest_fraction, value: 31 %, error: 1 %, resolution: 0.05}\n"
+           "      - {quantity: count_above, share: 0.01, value: 12, error: 2}\n"
+           "  - measured: [{quantity: beta_masses_from_2, value: 2}, {quantity: time, value: 3 ms}]\n");
+  assert_int_equal(m->shot_count, 2);
+  assert_int_equal(m->datum_count, 4);
+  assert_int_equal(m->shots[0].specimens, 3);
+  assert_int_equal(m->shots[1].specimens, 1);
+  assert_string_equal(m->shots[1].name, "shot 2");
+  assert_true(fabs(m->data[0].value - 0.31) < 1e-15 && m->data[0].error == 0.01 && m->data[0].resolution == 0.05);
+  assert_true(m->data[1].ask.kind == ASK_SPECIMENS_COUNT && m->data[1].ask.share == 0.01);
+  assert_true(isnan(m->data[1].resolution));
+  assert_true(m->data[2].ask.kind == ASK_SPECIMENS_EXPONENT && m->data[2].shot == 1);
+  assert_true(m->data[3].value == 0.003);
+  struct field_value energy;
+  struct error error;
+  const struct field *row = field_find(campaign->scene->kind->inputs, "charge.energy", &error);
+  field_get(row, m->shots[0].scene->inputs, &energy);
+  assert_true(energy.number == 3000);
+  field_get(row, m->shots[1].scene->inputs, &energy);
+  assert_true(energy.number != 3000);
+  /* A count is compared as ln(1 + N). */
+  assert_true(fabs(fit_transform(&m->data[1], 12) - log(13)) < 1e-15);
+  assert_true(fabs(fit_back(&m->data[1], fit_transform(&m->data[1], 12)) - 12) < 1e-12);
+  observed_free(m);
+}
+
+/* 60, 20, 10, 5, 2.5 and 1.25 of 100: M_1/M, and numbers above 20 to 1 in four even steps of the logarithm. */
+static void masses_become_numbers(void **state) {
+  (void)state;
+  struct observed *m = good(SHOT "fragments: {total: 100 g, complete: 1 g, masses: [5 g, 60 g, 1.25 g, 20 g, 10 g, 2.5 "
+                                 "g]}\n");
+  assert_int_equal(m->datum_count, 5);
+  assert_true(fabs(m->data[0].value - 0.6) < 1e-12);
+  const double counts[4] = {3, 4, 5, 6}; /* above 9.46, 4.47, 2.11 and 1 g */
+  for (size_t k = 0; k < 4; k++) {
+    assert_true(fabs(m->data[k + 1].share - 0.2 * pow(0.05, (double)(k + 1) / 4)) < 1e-12);
+    assert_true(m->data[k + 1].value == counts[k]);
+  }
+  observed_free(m);
+}
+
+static void errors_have_a_place(void **state) {
+  (void)state;
+  bad("name: t\nshots: []\n", "source|m.yaml:2|expected a list of shots");
+  bad(HEAD, "expected a list of shots");
+  bad(SHOT "name: s\n", "m.yaml:4|nothing was measured");
+  bad(SHOT "measured: [{quantity: largest_fractoin, value: 1}]\n", "m.yaml:4|largest_fraction");
+  bad(SHOT "measured: [{quantity: beta_best, value: 2}]\n", "beta");
+  bad(SHOT "measured: [{quantity: largest_fraction}]\n", "'value' is missing");
+  bad(SHOT "measured: [{value: 2}]\n", "'quantity' is missing");
+  bad(SHOT "measured: [{quantity: time, value: 3 kg}]\n", "m.yaml:4|kg");
+  bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, error: -1}]\n", "error|at least 0");
+  bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, sigma: 1}]\n", "sigma");
+  bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, share: 0.1}]\n", "only count_above has a share");
+  bad(SHOT "measured: [{quantity: count_above, value: 3}]\n", "needs 'share'");
+  bad(SHOT "measured: [{quantity: count_above, value: 3, share: 2}]\n", "share|below 1");
+  bad(SHOT "measured: {quantity: time}\n", "expected a list");
+  bad(SHOT "set: {strain: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "unknown in the campaign");
+  bad(SHOT "set: {strian: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "threshold.strain");
+  bad(SHOT "specimens: 0\n    measured: [{quantity: time, value: 1}]\n", "specimens|at least 1");
+  bad(SHOT "fragments: {total: 10 g, complete: 1 g, masses: [9 g, 8 g]}\n", "weigh");
+  bad(SHOT "fragments: {total: 10 g, masses: [9 g]}\n", "complete");
+}
+
+/* Which campaigns can be fitted. */
+static status create(const char *text, struct error *error) {
+  struct campaign *other = NULL;
+  struct observed *m = good(SHOT "measured: [{quantity: time, value: 1 ms}]\n");
+  struct fit *fit = NULL;
+  const struct fit_rule rule = {.rounds = 4};
+  if (campaign_parse("c.yaml", text, strlen(text), NULL, &other, error) != STATUS_OK)
+    fail_msg("refused: %s", error->message);
+  const status code = fit_create(other, m, &rule, "disc-explosion", &fit, error);
+  fit_free(fit);
+  observed_free(m);
+  campaign_free(other);
+  return code;
+}
+
+static void campaigns_need_priors_and_seeds(void **state) {
+  (void)state;
+  struct error error = {0};
+  assert_int_equal(create("name: t\nscene: disc-explosion\nvary: {strain: [1 %, 2 %]}\n", &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "latin_hypercube"));
+  const char sampled[] = "name: t\nscene: disc-explosion\ndesign: {kind: sobol, points: 20}\n";
+  char text[512];
+  snprintf(text, sizeof text, "%svary: {strain: [1 %%, 2 %%]}\n", sampled);
+  assert_int_equal(create(text, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "prior law"));
+  snprintf(text, sizeof text, "%svary: {strain: {uniform: [1 %%, 2 %%]}}\nseeds: {per_point: 1}\n", sampled);
+  assert_int_equal(create(text, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "at least 2"));
+  snprintf(text, sizeof text, "%svary: {strain: {uniform: [1 %%, 2 %%]}}\n", sampled);
+  assert_int_equal(create(text, &error), STATUS_OK);
+}
+
+static int start(void **state) {
+  (void)state;
+  static const char text[] = "name: t\nscene: disc-explosion\nvary: {strain: {uniform: [1 %, 8 %]}}\n"
+                             "design: {kind: random, points: 20}\n";
+  struct error error = {0};
+  return campaign_parse("c.yaml", text, strlen(text), NULL, &campaign, &error);
+}
+
+static int end(void **state) {
+  (void)state;
+  campaign_free(campaign);
+  return 0;
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(numbers_and_units),
+      cmocka_unit_test(masses_become_numbers),
+      cmocka_unit_test(errors_have_a_place),
+      cmocka_unit_test(campaigns_need_priors_and_seeds),
+  };
+  return cmocka_run_group_tests(tests, start, end);
+}
