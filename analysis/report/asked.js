@@ -30,7 +30,7 @@ function computed(store) {
 
 function programs(store) {
   const sessions = ask(store, questions.sessions);
-  const names = new Set(sessions.map((s) => `clast ${s.version ?? '?'}, commit ${s.commit_id ?? '?'}, ${s.compiler ?? ''} on ${s.host}`));
+  const names = new Set(sessions.map((s) => `clast ${s.version ?? '?'}, commit ${(s.commit_id ?? '?').slice(0, 10)}, ${s.compiler ?? ''} on ${s.host}`));
   const last = sessions[sessions.length - 1];
   return [...names].join('; ') + (last ? `. Last session: ${last.started_at} to ${last.ended_at ?? '(running or killed)'}` : '');
 }
@@ -78,5 +78,5 @@ export function showTitle(stores) {
   document.title = `${title} - clast`;
   document.getElementById('title').textContent = title;
   const {facts} = stores[0];
-  document.getElementById('made').textContent = `Made ${facts.made_at} by ${facts.program}.`;
+  document.getElementById('made').textContent = `Made ${facts.made_at} by ${facts.program.replace(/(commit .{10})\w*/, '$1')}.`;
 }

@@ -2,12 +2,21 @@
 import {body, command, element, fill, table} from './elements.js';
 import {cells} from './plane.js';
 import {inputsOf} from './spectrum.js';
+import * as questions from './questions.js';
 import {state} from './state.js';
+import {ask, has} from './stores.js';
 import {label, number, shellFile, withError} from './words.js';
 
 const SHOWN = 500;
 
 const keyOf = (from, point) => JSON.stringify(from.axes.map((axis) => [axis.column_name, point[axis.column_name]]).sort());
+
+// The differences that clast computed, by the points of both stores.
+function differencesOf(first, other) {
+  if (!has(other, 'difference') || first.whole) return new Map();
+  return new Map(ask(other, questions.differences, {quantity: state.quantity}).map((row) =>
+    [`${row.first_point} ${row.point_id}`, `${withError(row.difference, row.hw95)}${row.pairs ? `, ${row.pairs} pairs` : ''}`]));
+}
 
 export function showCompare() {
   const section = document.getElementById('compare');
@@ -17,13 +26,14 @@ export function showCompare() {
   const known = others.map((other) => new Map(cells(other, state.quantity).map((cell) => [keyOf(other, cell), cell])));
   const rows = cells(first, state.quantity).map((cell) => [cell, ...known.map((map) => map.get(keyOf(first, cell)))]).filter((row) => row.slice(1).some(Boolean));
   const shown = (cell) => (cell ? `${withError(cell.mean, cell.hw95)}, n=${cell.n ?? 0}` : '-');
-  const less = (a, b) => (a && b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
+  const differences = others.map((other) => differencesOf(first, other));
+  const less = (a, b, i) => differences[i].get(`${a.point_id} ${b?.point_id}`) ?? (b && a.mean !== null && b.mean !== null ? number(b.mean - a.mean, 3) : '-');
   const title = label(state.stores, state.quantity);
   fill(body('compare'),
     rows.length ? table(`${title} of the points with the same varied inputs; ± is the 95 % interval over seeds`,
       ['inputs', first.name, ...others.flatMap((other) => [other.name, 'difference'])],
-      rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputsOf(first, cell) || 'the only point', shown(cell), ...rest.flatMap((other) => [shown(other), less(cell, other)])]))
+      rows.slice(0, SHOWN).map(([cell, ...rest]) => [inputsOf(first, cell) || 'the only point', shown(cell), ...rest.flatMap((other, i) => [shown(other), less(cell, other, i)])]))
       : element('p', {}, 'These stores have no point in common: their varied inputs differ.'),
-    element('p', {}, 'Where both stores have the same seeds, the difference is known better than each mean. This command pairs the seeds and gives its interval: '),
+    element('p', {}, 'Runs with one seed on both sides count as pairs: then the difference is known better than each mean. The same from a shell:'),
     ...(state.quantity === 'beta' ? [] : others.map((other) => element('p', {}, command(`clast compare ${shellFile(first.name)} ${shellFile(other.name)} --quantity ${state.quantity}`)))));
 }

@@ -6,7 +6,7 @@ import {showQuery} from './query.js';
 import {showRuns} from './runs.js';
 import {showSeeds} from './seeds.js';
 import {showSpectrum} from './spectrum.js';
-import {complete, onChange, readAddress, state} from './state.js';
+import {complete, onChange, readAddress, state, writeAddress} from './state.js';
 import {openEmbedded, openFile} from './stores.js';
 
 const tell = (text) => (document.getElementById('status').textContent = text);
@@ -85,6 +85,7 @@ async function start() {
     state.stores = await openEmbedded();
     readAddress();
     complete();
+    writeAddress();
     showTitle(state.stores);
     onChange(show);
     takeDrops();

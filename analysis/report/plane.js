@@ -25,8 +25,8 @@ export function cells(from, quantity) {
     ? new Map(ask(from, questions.resolution, {quantity}).map((row) => [row.point_id, row])) : new Map();
   return from.points.map((point) => {
     const {mean = null, hw95 = null} = known.get(point.point_id) ?? {};
-    const resolution = studied.get(point.point_id)?.half_width ?? null;
-    return {...point, mean, hw95, resolution};
+    const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
+    return {...point, mean, hw95, resolution, verdict};
   });
 }
 
@@ -37,12 +37,19 @@ function axisOf(column, rows, title) {
   const numeric = values.every((value) => typeof value === 'number');
   if (numeric && values.length > MOST_CELLS) return {discrete: false, encoding: {field: column, type: 'quantitative', scale: scale(values), title}};
   const order = values.slice().sort((a, b) => (typeof a === 'number' && typeof b === 'number' ? a - b : String(a).localeCompare(String(b))));
-  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0}}};
+  return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: "isNumber(datum.value) ? format(datum.value, '.4~g') : datum.value"}}};
 }
 
 function tooltip(columns, title) {
   return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
     {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}];
+}
+
+// What finer settings may change, as far as clast converge knows.
+function resolutionText({resolution, verdict}) {
+  if (verdict === 'diverges') return 'does not converge';
+  if (resolution === null) return 'not studied';
+  return `${verdict === 'at-least' ? 'at least ' : ''}± ${number(resolution, 2)}`;
 }
 
 function data(quantity) {
@@ -54,7 +61,7 @@ function data(quantity) {
     text: number(cell.mean, 3),
     low: cell.mean - cell.hw95,
     high: cell.mean + cell.hw95,
-    resolutionText: cell.resolution === null ? 'not studied' : `± ${number(cell.resolution, 2)}`,
+    resolutionText: resolutionText(cell),
   }));
 }
 

@@ -35,7 +35,8 @@ export const statisticsOfRuns = (quantity) => `SELECT point_id, results_version,
 export const ranges = (names) => `SELECT ${names.map((n, i) => `min(${name(n)}) AS l${i}, max(${name(n)}) AS h${i}`).join(', ')} FROM runs WHERE counts`;
 export const exponents = `SELECT point_id, results_version, n, beta AS mean, hw95, lower, upper FROM estimates
   WHERE run_id IS NULL AND headline ORDER BY results_version`;
-export const resolution = 'SELECT point_id, half_width, open, diverges FROM resolution WHERE quantity = :quantity';
+export const resolution = `SELECT point_id, half_width, verdict FROM resolution
+  WHERE quantity = :quantity ORDER BY results_version`;
 
 export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra
   WHERE point_id = :point ORDER BY results_version, lower`;
@@ -49,7 +50,7 @@ export const runs = (columns) => `SELECT run_id, point_id, replicate, CAST(seed 
 export const run = 'SELECT * FROM runs WHERE run_id = :run';
 export const pictures = 'SELECT run_id, quantile, png FROM picture WHERE point_id = :point ORDER BY quantile';
 export const pictureOfRun = 'SELECT run_id, quantile, png FROM picture WHERE run_id = :run';
-export const differences = 'SELECT * FROM difference WHERE quantity = :quantity';
+export const differences = 'SELECT first_point, point_id, pairs, difference, hw95 FROM difference WHERE quantity = :quantity';
 export const keptRuns = 'SELECT count(*) AS n FROM runs';
 
 // For readers: what the box for SQL begins with, the first run of a point, and the values of a histogram.

@@ -1,6 +1,7 @@
 // How much the seed matters: histogram and quantiles of the quantity over the runs of the chosen points.
 import {body, fill, table} from './elements.js';
-import {COLOURS, draw, nothing} from './chart.js';
+import {COLOURS, DASHES, draw, nothing} from './chart.js';
+import {cells} from './plane.js';
 import * as questions from './questions.js';
 import {nameOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
@@ -14,13 +15,22 @@ function valuesOf(from, point, quantity) {
   return rows.filter((row) => row.results_version === version && typeof row.value === 'number').map((row) => row.value);
 }
 
-// Of one step for all samples: Freedman and Diaconis' (2 quartile ranges over the cube root of n), 5 to 60 bins.
-function stepOf(values) {
-  const {n, least, largest, quarter, threeQuarters} = summary(values);
-  const step = (2 * (threeQuarters - quarter)) / Math.cbrt(n) || (largest - least) / 10;
-  const wanted = Math.min(Math.max(step, (largest - least) / 60), (largest - least) / 5) || 1;
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  return power * [1, 2, 5, 10].reduce((best, factor) => (Math.abs(factor * power - wanted) < Math.abs(best * power - wanted) ? factor : best), 1);
+// Bins of one width for all samples, 1, 2 or 5 times a power of ten: at most Freedman and Diaconis' width (two quartile
+// ranges over the cube root of n, of the smallest sample), 8 to 80 bins.
+function stepOf(samples) {
+  const all = summary(samples.flatMap((sample) => sample.values)), range = all.largest - all.least;
+  const widths = samples.map(({values}) => summary(values)).map((of) => (2 * (of.threeQuarters - of.quarter)) / Math.cbrt(of.n)).filter((width) => width > 0);
+  const wanted = Math.min(Math.max(Math.min(range / 8, ...widths), range / 80), range / 8) || 1;
+  const power = 10 ** Math.floor(Math.log10(wanted) + 1e-9);
+  return power * [5, 2, 1].find((factor) => factor * power <= wanted * (1 + 1e-9));
+}
+
+// Runs in each bin from the first to the last that a sample has, and empty ones at both ends.
+function histogram({name, values}, step) {
+  const bins = values.map((value) => Math.floor(value / step + 1e-9)), counts = new Map();
+  for (const bin of bins) counts.set(bin, (counts.get(bin) ?? 0) + 1);
+  const low = Math.min(...bins), high = Math.max(...bins);
+  return Array.from({length: high - low + 3}, (_, i) => low - 1 + i).map((bin) => ({name, low: bin * step, high: (bin + 1) * step, runs: counts.get(bin) ?? 0}));
 }
 
 export async function showSeeds() {
@@ -31,24 +41,29 @@ export async function showSeeds() {
   const samples = chosenPoints().map((point) => ({point, name: nameOf(from, point), values: valuesOf(from, point, quantity)})).filter((sample) => sample.values.length);
   if (samples.length === 0) return nothing(figure, 'No run of the chosen points is on this page.');
   const apart = samples.length <= COLOURS.length;
-  const rows = samples.flatMap((sample) => sample.values.map((value) => ({name: apart ? sample.name : 'all chosen points', value})));
-  const all = rows.map((row) => row.value), title = label(state.stores, quantity);
-  const names = [...new Set(rows.map((row) => row.name))];
-  const x = {field: 'value', type: 'quantitative', bin: {step: stepOf(all)}, title, scale: {zero: false}};
-  const means = apart ? samples.map((sample) => ({name: sample.name, ...summary(sample.values)})) : [{name: names[0], ...summary(all)}];
+  const drawn = apart ? samples : [{name: 'all chosen points', values: samples.flatMap((sample) => sample.values)}];
+  const all = drawn.flatMap((sample) => sample.values), title = label(state.stores, quantity), step = stepOf(drawn);
+  const names = drawn.map((sample) => sample.name);
+  const x = {field: 'low', type: 'quantitative', title, scale: {zero: false, nice: false}, axis: {tickCount: 6, labelOverlap: true, format: '.3~g'}};
+  const y = {field: 'runs', type: 'quantitative', title: 'runs', axis: {tickMinStep: 1, format: 'd'}};
+  const whole = new Map(cells(from, quantity).map((cell) => [cell.point_id, cell]));
+  const means = drawn.map((sample) => ({name: sample.name, ...summary(sample.values), all: apart ? whole.get(sample.point.point_id) : null}));
   const colour = {field: 'name', type: 'nominal', scale: {domain: names, range: COLOURS}, legend: names.length > 1 ? {orient: 'bottom', direction: 'vertical', title: null} : null};
-  await draw(figure, {data: {values: rows}, height: 340, layer: [
-    {mark: {type: 'bar', opacity: names.length > 1 ? 0.55 : 0.8, stroke: 'white'}, encoding: {x, y: {aggregate: 'count', stack: null, title: 'runs'}, color: colour}},
-    {data: {values: means}, mark: {type: 'rule', strokeWidth: 3}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: colour}},
+  const dash = {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend: colour.legend};
+  const shape = names.length > 1
+    ? {mark: {type: 'line', interpolate: 'step-after', strokeWidth: 2}, encoding: {x, y, color: colour, strokeDash: dash}}
+    : {mark: {type: 'bar', stroke: 'white'}, encoding: {x: {...x, bin: 'binned'}, x2: {field: 'high'}, y, color: colour}};
+  await draw(figure, {data: {values: drawn.flatMap((sample) => histogram(sample, step))}, height: 340, layer: [shape,
+    {data: {values: means}, mark: {type: 'rule', strokeWidth: 1.5, strokeDash: [5, 3]}, encoding: {x: {field: 'mean', type: 'quantitative'}, color: colour}},
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
-    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Line: mean.`,
+    caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Upright dashes: means.`,
     command: `clast query ${shellFile(from.name)} "${questions.valuesForShell(quantity, samples.map((sample) => sample.point.point_id))}" --csv`,
-    columns: ['point', quantity], rows: rows.map((row) => [row.name, row.value]),
+    columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
-  fill(below, table(`${title}: mean with its 95 % interval over seeds, and quantiles of the runs`,
-    ['', ...means.map((row) => row.name)],
-    [['mean', (row) => withError(row.mean, row.hw95)], ['standard deviation', (row) => number(row.sd)], ['least', (row) => number(row.least)],
-      ['quarter', (row) => number(row.quarter)], ['median', (row) => number(row.median)], ['three quarters', (row) => number(row.threeQuarters)],
-      ['largest', (row) => number(row.largest)], ['runs here', (row) => row.n]].map(([word, value]) => [word, ...means.map(value)])));
+  const mean = (row) => (row.all ? `${withError(row.all.mean, row.all.hw95)}, n=${row.all.n}` : withError(row.mean, row.hw95));
+  const lines = [['mean', mean], ['runs here', (row) => row.n], ['standard deviation', (row) => number(row.sd)], ['least', (row) => number(row.least)],
+    ['quarter', (row) => number(row.quarter)], ['median', (row) => number(row.median)], ['three quarters', (row) => number(row.threeQuarters)], ['largest', (row) => number(row.largest)]];
+  fill(below, table(`${title}: mean with its 95 % interval over seeds, and quantiles of the runs here`,
+    ['', ...names], lines.map(([word, value]) => [word, ...means.map(value)])));
 }

@@ -62,6 +62,12 @@ function bandOf(curve) {
   });
 }
 
+function commandOf(drawn) {
+  const of = drawn.filter((curve) => curve.from === drawn[0].from).flatMap((curve) => curve.points).map((point) => point.point_id);
+  const where = of.length === store().points.length ? '' : of.length === 1 ? ` --point ${of[0]}` : ` --where "point_id in (${of.join(', ')})"`;
+  return `clast spectrum ${shellFile(drawn[0].from.name)}${where}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
+}
+
 export async function showSpectrum() {
   const figure = document.querySelector('#spectrum figure');
   const drawn = curves();
@@ -83,11 +89,10 @@ export async function showSpectrum() {
       color: colour, strokeDash: {field: 'name', type: 'nominal', scale: {domain: names, range: DASHES}, legend}}},
   ];
   const told = drawn.map((curve, i) => `${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`).join('; ');
-  const point = drawn[0].points.length === 1 ? ` --point ${drawn[0].points[0].point_id}` : '';
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over seeds. Lines: F(m) ~ m^-β by maximum likelihood.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
-    command: `clast spectrum ${shellFile(drawn[0].from.name)}${point} --picture spectrum.png`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
+    command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),
   });

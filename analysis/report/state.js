@@ -20,7 +20,7 @@ export function writeAddress() {
   if (state.active) words.set('store', state.active);
   for (const key of ['quantity', 'x', 'y', 'sql']) if (state[key]) words.set(key, state[key]);
   if (state.chosen.size && state.chosen.size <= 200) words.set('points', [...state.chosen].join('.'));
-  history.replaceState(null, '', `#${words}`);
+  history.replaceState(null, '', String(words) ? `#${words}` : location.pathname); // an address that ends in # confuses Vega's links
 }
 
 export function readAddress() {

@@ -29,18 +29,18 @@ export function summary(values) {
     threeQuarters: quantile(sorted, 0.75), largest: sorted[n - 1]};
 }
 
-// Spectra of several points as one: fragments per kg and run, and the half width of its 95 % interval. The runs of a
-// point are independent, and so are points: variances of means add, weighted by runs.
+// Spectra of several points as one: the points are the units of mean and interval, as of `clast spectrum --by ""`.
 export function pool(spectra) {
-  const runs = spectra.reduce((sum, bins) => sum + (bins[0]?.n ?? 0), 0);
-  const places = new Map();
+  const points = spectra.length, places = new Map();
   for (const bins of spectra)
     for (const bin of bins) {
-      const place = places.get(bin.lower) ?? {lower: bin.lower, upper: bin.upper, count: 0, variance: 0, n: runs};
+      const place = places.get(bin.lower) ?? {lower: bin.lower, upper: bin.upper, count: 0, means: []};
       place.count += bin.count;
-      place.variance += bin.n * (bin.count_sd ?? 0) ** 2;
+      place.means.push(bin.count_mean);
       places.set(bin.lower, place);
     }
-  return [...places.values()].sort((a, b) => a.lower - b.lower).map(({variance, ...bin}) => ({...bin,
-    count_mean: bin.count / runs, count_hw95: runs > spectra.length ? (student(runs - spectra.length) * Math.sqrt(variance)) / runs : null}));
+  return [...places.values()].sort((a, b) => a.lower - b.lower).map(({means, ...bin}) => {
+    const {mean, sd} = summary([...means, ...new Array(points - means.length).fill(0)]);
+    return {...bin, count_mean: mean, count_hw95: halfWidth(sd, points)};
+  });
 }

@@ -11,11 +11,12 @@
 #include "campaign/build_facts.h"
 #include "campaign/charts/picture_draw.h"
 #include "db/ask/page.h"
+#include "db/ask/pairs.h"
 #include "db/store/lock.h"
 #include "engine/atomic_file.h"
 #include "engine/outcome.h"
 
-enum { PICTURES = 24, PICTURE_WIDTH = 480, PICTURE_BYTES = 700000 /* of one page */ };
+enum { PICTURES = 24, PICTURE_WIDTH = 400, PICTURE_BYTES = 330000 /* of one page */ };
 
 struct making {
   const struct report_choice *choice;
@@ -45,6 +46,33 @@ static status add_label(void *context, const char *column, struct error *error) 
   char label[CHART_OPTION_LABEL];
   const status code = chart_option_axis(making->store, column, label, error);
   return code ? code : ask_page_label(making->page, column, label, error);
+}
+
+struct comparing {
+  struct ask_page *page;
+  const char *quantity;
+};
+
+static status add_difference(void *context, const struct ask_pairs_row *row, struct error *error) {
+  const struct comparing *comparing = context;
+  return ask_page_difference(comparing->page, comparing->quantity, row->point[0], row->point[1], &row->difference,
+                             error);
+}
+
+/* The main results less those of the first store, as `clast compare` has them. Stores without a point in common have
+ * none. */
+static status add_differences(struct making *making, const char *name, struct error *error) {
+  status code = STATUS_OK;
+  const char *first = making->choice->stores[0];
+  for (size_t i = 0; code == STATUS_OK && name != first && outcome_main(i); i++) {
+    struct ask_pairs *pairs = NULL;
+    struct comparing comparing = {making->page, outcome_main(i)->path};
+    code = ask_pairs_read(first, name, comparing.quantity, &pairs, error);
+    if (code == STATUS_OK)
+      code = ask_pairs_each(pairs, add_difference, &comparing, error);
+    ask_pairs_free(pairs);
+  }
+  return code == STATUS_USAGE ? STATUS_OK : code;
 }
 
 /* Draws into a file beside the page. A fields file that is gone or damaged has no picture: the page says so. */
@@ -82,6 +110,8 @@ static status add_store(struct making *making, const char *name, struct page_dat
     code = add_facts(making, name, error);
   if (code == STATUS_OK)
     code = ask_page_columns(making->page, add_label, making, error);
+  if (code == STATUS_OK)
+    code = add_differences(making, name, error);
   if (code == STATUS_OK)
     code = ask_page_kept(making->store, PICTURES, add_picture, making, error);
   snprintf(not_drawn, sizeof not_drawn, "%zu", making->not_drawn);

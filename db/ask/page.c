@@ -17,6 +17,7 @@ static const struct {
 } tables[] = {
     {"campaign", "SELECT campaign_id, name, document, added_at FROM campaign ORDER BY campaign_id"},
     {"session", "SELECT * FROM session ORDER BY session_id DESC LIMIT 20"},
+    {"resolution", "SELECT * FROM resolution"},
     {"axis", "SELECT * FROM axis ORDER BY path"},
     {"campaign_point", "SELECT campaign_id, point_id FROM campaign_point"},
     {"column_doc", "SELECT table_name, column_name, unit, meaning FROM column_doc WHERE table_name IN ('runs', "
@@ -115,24 +116,6 @@ static status copy_attempts(struct ask_page *page, struct store *store, struct e
   return ask_page_copy(page, store, "attempt", sql, ASK_PAGE_EXACT, error);
 }
 
-/* What a study of the resolution knows, by point and quantity (db/ask/resolution.h). */
-static status copy_resolution(struct ask_page *page, struct store *store, struct error *error) {
-  static const char known[] =
-      "SELECT point_id, quantity, sum(resolution) AS half_width, max(open) AS open, max(diverges) AS diverges FROM "
-      "(SELECT point_id, quantity, knob, max(resolution) AS resolution, max(open) AS open, max(verdict = 'no-order') "
-      "AS "
-      "diverges FROM convergence JOIN (SELECT point_id, max(results_version) AS results_version FROM point_total GROUP "
-      "BY point_id) USING (point_id, results_version) LEFT JOIN convergence_limit USING (base_point_id, "
-      "results_version, knob, quantity) WHERE resolution IS NOT NULL GROUP BY point_id, quantity, knob) "
-      "GROUP BY point_id, quantity";
-  static const char none[] = "SELECT 0 AS point_id, '' AS quantity, 0.0 AS half_width, 0 AS open, 0 AS diverges WHERE "
-                             "0";
-  double there = 0; /* a store of an earlier program has no studies */
-  const status code = query_number(store, "SELECT count(*) FROM sqlite_schema WHERE name = 'convergence'", 0, NULL,
-                                   &there, error);
-  return code ? code : ask_page_copy(page, store, "resolution", there > 0 ? known : none, ASK_PAGE_EXACT, error);
-}
-
 /* The canned queries that the page's tables can answer. */
 static status add_questions(struct ask_page *page, struct error *error) {
   sqlite3_stmt *insert = NULL;
@@ -161,6 +144,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
                             "CREATE TABLE label (column_name TEXT PRIMARY KEY, label) WITHOUT ROWID;"
                             "CREATE TABLE question (name, doc, sql, parameters);"
                             "CREATE TABLE picture (run_id, point_id, quantile, png);"
+                            "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
                             "BEGIN",
                             doing, error);
   for (size_t i = 0; code == STATUS_OK && i < sizeof tables / sizeof tables[0]; i++)
@@ -171,8 +155,6 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
     code = copy_spectra(page, store, error);
   if (code == STATUS_OK)
     code = copy_attempts(page, store, error);
-  if (code == STATUS_OK)
-    code = copy_resolution(page, store, error);
   if (code == STATUS_OK)
     code = ask_page_runs(page, store, error);
   if (code == STATUS_OK) /* the ready questions know the table by the store's name, too */
@@ -271,6 +253,23 @@ status ask_page_picture(struct ask_page *page, const struct ask_page_kept *run, 
     sqlite3_bind_int64(insert, 2, run->point_id);
     sqlite3_bind_double(insert, 3, run->quantile);
     sqlite3_bind_blob64(insert, 4, png, size, SQLITE_STATIC);
+    code = sql_run(insert, doing, error);
+  }
+  sqlite3_finalize(insert);
+  return code;
+}
+
+status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
+                           const struct difference *difference, struct error *error) {
+  sqlite3_stmt *insert = NULL;
+  status code = sql_prepare(page->db, "INSERT INTO difference VALUES (?1, ?2, ?3, ?4, ?5, ?6)", &insert, doing, error);
+  if (code == STATUS_OK) {
+    sql_bind_text(insert, 1, quantity);
+    sqlite3_bind_int64(insert, 2, first_point);
+    sqlite3_bind_int64(insert, 3, point);
+    sqlite3_bind_int64(insert, 4, (int64_t)difference->pairs);
+    sqlite3_bind_double(insert, 5, difference->difference); /* NaN is NULL */
+    sqlite3_bind_double(insert, 6, difference->half_width);
     code = sql_run(insert, doing, error);
   }
   sqlite3_finalize(insert);

@@ -4,14 +4,15 @@
  *   runs, points, spectra   of the store's views; `runs` and `spectra` thinned, results rounded to 7 digits
  *   estimates               those of points
  *   means                   n, mean, sd and hw95 of the results that are not in `points`, a row for each point
- *   resolution              half width of the error that the resolution leaves, where `clast converge` was used
+ *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables
  *   question                the canned queries that work here
- *   label, fact, picture    filled in by the caller
+ *   label, fact, picture, difference   filled in by the caller
  */
 #ifndef CLAST_DB_ASK_PAGE_H
 #define CLAST_DB_ASK_PAGE_H
 
+#include "analysis/statistics/difference.h"
 #include "db/ask/query.h"
 
 struct ask_page; /* opaque */
@@ -43,6 +44,10 @@ status ask_page_kept(struct store *store, size_t most,
                      struct error *error);
 status ask_page_picture(struct ask_page *page, const struct ask_page_kept *run, const void *png, size_t size,
                         struct error *error);
+
+/* A result of a point of this store less that of a point of the page's first store. */
+status ask_page_difference(struct ask_page *page, const char *quantity, int64_t first_point, int64_t point,
+                           const struct difference *difference, struct error *error);
 
 /* The file; *bytes is malloc'd. */
 status ask_page_file(struct ask_page *page, unsigned char **bytes, size_t *size, struct error *error);

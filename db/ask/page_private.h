@@ -8,9 +8,9 @@
 /* What a page holds at most, so that it stays small: with 10 000 runs it has to stay below 3 MB. */
 enum {
   ASK_PAGE_RUNS = 10000,     /* single runs */
-  ASK_PAGE_VALUES = 150000,  /* results of single runs */
+  ASK_PAGE_VALUES = 120000,  /* results of single runs */
   ASK_PAGE_MEANS = 40000,    /* rows of the table means */
-  ASK_PAGE_SPECTRUM = 20000, /* rows of the table spectra */
+  ASK_PAGE_SPECTRUM = 12000, /* rows of the table spectra */
   ASK_PAGE_ATTEMPTS = 500,   /* failed attempts, and failed runs */
 };
 

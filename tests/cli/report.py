@@ -1,10 +1,13 @@
 """The page of `clast report` in headless Chromium, as a reader uses it. usage: report.py SUPPORT CLAST PAGE STORE OTHER
 
 STORE is what the page was made from, OTHER is a store to drop on it."""
+import base64
 import csv
+import gzip
 import io
 import json
 import os
+import re
 import shlex
 import sqlite3
 import subprocess
@@ -159,6 +162,25 @@ def drop(browser):
     done("a store dropped on the page is read and compared; another file is refused")
 
 
+def loads_again(browser):
+    """As a page of --watch: it loads itself again after a second, with what was chosen."""
+    html = open(page, encoding="utf-8").read()
+    (data,) = re.findall(r'class="store">([^<]*)<', html)
+    with sqlite3.connect(":memory:") as db:
+        db.deserialize(gzip.decompress(base64.b64decode(data)))
+        db.execute("UPDATE fact SET value = '1' WHERE name = 'refresh'")
+        db.commit()
+        changed = base64.b64encode(gzip.compress(db.serialize())).decode()
+    with open("again.html", "w", encoding="utf-8") as file:
+        file.write(html.replace(data, changed))
+    browser.open("again.html", "#points=3")
+    wait_shown(browser, 1)
+    start = browser.js("performance.timeOrigin")
+    browser.until(f"performance.timeOrigin !== {start} && document.body?.dataset.shown >= 1")
+    assert "point 3" in text(browser, "#chosen")
+    done("a page of a running campaign loads itself again, and keeps what was chosen")
+
+
 def widths(browser):
     for width in (1280, 768, 390):
         browser.size(width, 900)
@@ -176,6 +198,9 @@ with Browser() as browser:
     seeds(browser)
     one_run(browser)
     sql(browser)
+    loads_again(browser)
+    browser.open(page)
+    wait_shown(browser, 1)
     drop(browser)
     widths(browser)
     assert browser.complaints == [], browser.complaints

@@ -1,0 +1,156 @@
+/* The data of a page against the store that it is made from: all statistics, some of the single runs, no names. And the
+ * file that holds them. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <sqlite3.h>
+
+#include "analysis/report/page.h"
+#include "analysis/statistics/sample.h"
+#include "db/ask/page.h"
+#include "db/ask/page_private.h"
+#include "tests/support/store_checks.h"
+
+enum { M = 2, K = 2 };
+
+/* A store of M x K points with so many runs each. */
+static struct store *filled(const char *name, int runs, char path[64]) {
+  struct store *store = NULL;
+  fixture_path(path, name);
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  OK(fixture_populate(store, M, K, runs, true, &error));
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &store, &error));
+  return store;
+}
+
+/* The page as SQLite reads its file. */
+static sqlite3 *opened(struct ask_page *page) {
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  sqlite3 *db = NULL;
+  OK(ask_page_file(page, &bytes, &size, &error));
+  assert_int_equal(sqlite3_open(":memory:", &db), SQLITE_OK);
+  unsigned char *copy = sqlite3_malloc64(size);
+  memcpy(copy, bytes, size);
+  free(bytes);
+  assert_int_equal(sqlite3_deserialize(db, "main", copy, (sqlite3_int64)size, (sqlite3_int64)size,
+                                       SQLITE_DESERIALIZE_FREEONCLOSE),
+                   SQLITE_OK);
+  return db;
+}
+
+static double asked(sqlite3 *db, const char *sql) {
+  sqlite3_stmt *statement = NULL;
+  assert_int_equal(sqlite3_prepare_v2(db, sql, -1, &statement, NULL), SQLITE_OK);
+  assert_int_equal(sqlite3_step(statement), SQLITE_ROW);
+  const double value = sqlite3_column_double(statement, 0);
+  sqlite3_finalize(statement);
+  return value;
+}
+
+struct values {
+  double value[20000];
+  size_t count;
+};
+
+static status take_value(void *context, size_t count, const struct query_value *row, struct error *e) {
+  (void)count, (void)e;
+  struct values *values = context;
+  values->value[values->count++] = row[0].real;
+  return STATUS_OK;
+}
+
+/* Mean and interval of a result that the view points does not have are those of all runs of the store. */
+static void check_means(struct store *store, sqlite3 *db) {
+  static struct values values;
+  values.count = 0;
+  const struct query_sink sink = {.context = &values, .row = take_value};
+  OK(query_run(store, "SELECT hardest FROM runs WHERE counts AND point_id = 2 ORDER BY replicate", 0, NULL, 0, &sink,
+               &error));
+  const struct sample_summary all = sample_summarise(values.count, values.value, 0.95);
+  assert_true(all.n > 10);
+  assert_near(asked(db, "SELECT n FROM means WHERE quantity = 'hardest' AND point_id = 2"), (double)all.n, 0);
+  assert_near(asked(db, "SELECT mean FROM means WHERE quantity = 'hardest' AND point_id = 2"), all.mean,
+              1e-6 * fabs(all.mean));
+  assert_near(asked(db, "SELECT hw95 FROM means WHERE quantity = 'hardest' AND point_id = 2"), all.half_width,
+              1e-6 * all.half_width);
+}
+
+static void test_a_small_store_is_whole(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = filled("page-small", 25, path);
+  struct ask_page *page = NULL;
+  OK(ask_page_make(store, &page, &error));
+  sqlite3 *db = opened(page);
+  assert_near(asked(db, "SELECT count(*) FROM runs"), number(store, "SELECT count(*) FROM runs WHERE surplus = 0"), 0);
+  assert_near(asked(db, "SELECT count(*) FROM points"), number(store, "SELECT count(*) FROM points"), 0);
+  assert_near(asked(db, "SELECT count(*) FROM spectra"), number(store, "SELECT count(*) FROM spectra"), 0);
+  const char *const mean = "SELECT sum(largest_fraction_mean * point_id) FROM points";
+  assert_near(asked(db, mean), number(store, mean), 1e-6 * number(store, mean));
+  assert_near(asked(db, "SELECT value FROM fact WHERE name = 'results_left_out'"), 0, 0);
+  check_means(store, db);
+  /* an input is exact: a condition of a reader finds it */
+  assert_near(asked(db, "SELECT count(*) FROM runs JOIN axis WHERE column_name = 'material_k' AND material_k = 1e30"),
+              number(store, "SELECT count(*) FROM runs WHERE material_k = 1e30 AND surplus = 0"), 0);
+  assert_true(asked(db, "SELECT count(*) FROM question") > 5);
+  sqlite3_close(db);
+  ask_page_free(page);
+  store_close(store, NULL);
+}
+
+static void test_a_large_store_is_thinned(void **state) {
+  (void)state;
+  char path[64];
+  enum { RUNS = 3000 };
+  struct store *store = filled("page-large", RUNS, path);
+  struct ask_page *page = NULL;
+  OK(ask_page_make(store, &page, &error));
+  sqlite3 *db = opened(page);
+  const double kept = asked(db, "SELECT count(*) FROM runs");
+  assert_true(kept <= ASK_PAGE_RUNS && kept > ASK_PAGE_RUNS - M * K);
+  /* the first replicates of every point: a sample that no result has chosen */
+  const double replicates = asked(db, "SELECT value FROM fact WHERE name = 'replicates_kept'");
+  assert_near(asked(db, "SELECT min(n) FROM (SELECT count(*) AS n FROM runs GROUP BY point_id)"), replicates, 0);
+  assert_near(asked(db, "SELECT max(replicate) FROM runs"), replicates - 1, 0);
+  check_means(store, db);
+  assert_near(asked(db, "SELECT sum(n) FROM points"), number(store, "SELECT sum(n) FROM points"), 0);
+  sqlite3_close(db);
+  ask_page_free(page);
+  store_close(store, NULL);
+}
+
+static void test_a_page_needs_a_place_for_data(void **state) {
+  (void)state;
+  char path[64];
+  size_t written = 0;
+  fixture_path(path, "page-file");
+  static const unsigned char html[] = "<p>empty</p>", with[] = "<p>a</p><!-- data --><p>b</p>";
+  struct page_data data = {.bytes = (unsigned char *)"abc", .size = 3};
+  assert_int_equal(page_write(path, html, sizeof html - 1, 1, &data, &written, &error), STATUS_CONTENT);
+  assert_int_not_equal(access(path, F_OK), 0);
+  OK(page_write(path, with, sizeof with - 1, 1, &data, &written, &error));
+  char text[400] = "";
+  FILE *in = fopen(path, "r");
+  assert_non_null(in);
+  assert_int_equal(fread(text, 1, sizeof text - 1, in), written);
+  fclose(in);
+  /* gzip -9 of "abc" without a time, in base64 */
+  assert_string_equal(text, "<p>a</p><script type=\"application/octet-stream\" class=\"store\">"
+                            "H4sIAAAAAAACA0tMSgYAwkEkNQMAAAA=</script>\n<p>b</p>");
+  unlink(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_a_small_store_is_whole),
+      cmocka_unit_test(test_a_large_store_is_thinned),
+      cmocka_unit_test(test_a_page_needs_a_place_for_data),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
