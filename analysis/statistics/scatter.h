@@ -55,8 +55,8 @@ struct scatter_part {
   double half_width;      /* of the 95 % interval of the share over seeds (jackknife); NaN below 3 runs */
 };
 /* parts: axes + 4: every axis by itself (variance of its means), inputs together, seeds, of these what a seed does in
- * all points alike, and the whole. An axis whose values are all different tells the same as all inputs: its part is
- * NaN. STATUS_USAGE: fewer than two runs or points. */
+ * all points alike, and the whole. Parts of single axes are NaN unless the points are a full grid: elsewhere
+ * sensitivity.h tells. STATUS_USAGE: fewer than two runs or points. */
 enum { SCATTER_INPUTS, SCATTER_SEEDS, SCATTER_SEEDS_ALIKE, SCATTER_WHOLE, SCATTER_PARTS };
 status scatter_split(const struct scatter_table *table, struct scatter_part *parts, struct error *error);
 

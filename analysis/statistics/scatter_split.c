@@ -99,6 +99,15 @@ static size_t count_levels(const struct scatter_table *t, size_t axis) {
   return levels;
 }
 
+/* Every combination of the values of the axes occurs once: only then the means over the others tell an axis by itself.
+ */
+static bool is_grid(const struct scatter_table *t) {
+  double points = 1;
+  for (size_t a = 0; a < t->axes; a++)
+    points *= (double)count_levels(t, a);
+  return points == (double)t->points;
+}
+
 status scatter_split(const struct scatter_table *t, struct scatter_part *parts, struct error *error) {
   if (t->points < 2 || t->runs < 2)
     return status_fail(error, STATUS_USAGE,
@@ -111,6 +120,7 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     free(all);
     return status_fail(error, STATUS_MEMORY, "no memory to split a variance");
   }
+  const bool grid = is_grid(t);
   for (size_t r = 0; r < t->runs; r++)
     all[r] = (uint32_t)r;
   struct split s = {.table = t, .sum = room, .product = room + 2 * t->points, .weight = room + 3 * t->points};
@@ -119,7 +129,7 @@ status scatter_split(const struct scatter_table *t, struct scatter_part *parts, 
     s.axis = i < t->axes ? i : t->axes;
     s.part = i < t->axes ? SCATTER_INPUTS : (int)(i - t->axes);
     s.levels = i < t->axes ? count_levels(t, i) : t->points;
-    if (i < t->axes && s.levels == t->points)
+    if (i < t->axes && !grid)
       continue;
     if (s.part == SCATTER_WHOLE) {
       parts[i] = (struct scatter_part){parts[t->axes].variance + parts[t->axes + SCATTER_SEEDS].variance, 1, NAN};

@@ -19,6 +19,7 @@ static const struct command *const all[] = {
     &estimates_command,
     &stats_command,
     &scatter_command,
+    &sensitivity_command,
     &spectrum_command,
     &compare_command,
     &query_command,

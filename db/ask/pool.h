@@ -13,7 +13,7 @@ struct ask_pool_choice {
   const char *by;    /* varied inputs, as of ask_group: points that share them are one pool; NULL: each point is one */
 };
 
-enum { ASK_POOL_AXES = 8, ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
+enum { ASK_POOL_AXES = 16, ASK_POOL_TEXT = 64, ASK_POOL_LABEL = 256 };
 /* Always runs that count, of the newest results_version among the points of the pool. */
 struct ask_pool {
   char label[ASK_POOL_LABEL]; /* "strain 0.03, angle 0.0698 rad", or "point 7" */

@@ -1,0 +1,206 @@
+/* Sobol indices and elementary effects with their intervals. */
+#include "analysis/statistics/sensitivity.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* One index over a choice of blocks and seeds. */
+struct asking {
+  const struct sensitivity_table *table;
+  const double *centred; /* values less their mean: smaller errors of the products */
+  size_t input;          /* inputs: the seed */
+  bool total;
+  size_t blocks, seeds; /* of the choice */
+  const uint32_t *block, *seed;
+};
+
+static double at(const struct asking *a, size_t b, size_t point, size_t r) {
+  const struct sensitivity_table *t = a->table;
+  return a->centred[(a->block[b] * (t->inputs + 2) + point) * t->seeds + a->seed[r]];
+}
+
+/* Variance between the points A and B of the choice for one seed, mean over the seeds. */
+static double between_points(const struct asking *a) {
+  double mean = 0;
+  for (size_t r = 0; r < a->seeds; r++) {
+    struct sample_moments moments = {0};
+    for (size_t b = 0; b < a->blocks; b++) {
+      sample_add(&moments, at(a, b, 0, r));
+      sample_add(&moments, at(a, b, 1, r));
+    }
+    mean += moments.squares / (double)(moments.n - 1) / (double)a->seeds;
+  }
+  return mean;
+}
+
+/* Mean variance of the seeds at a point; alike: covariance of the same seeds at two points. */
+static double of_seeds(const struct asking *a, bool alike) {
+  const double points = 2 * (double)a->blocks;
+  double own = 0;
+  struct sample_moments together = {0};
+  for (size_t b = 0; b < a->blocks; b++)
+    for (size_t point = 0; point < 2; point++) {
+      struct sample_moments moments = {0};
+      for (size_t r = 0; r < a->seeds; r++)
+        sample_add(&moments, at(a, b, point, r));
+      own += moments.squares / (double)(a->seeds - 1) / points;
+    }
+  if (!alike)
+    return own;
+  for (size_t r = 0; r < a->seeds; r++) {
+    double mean = 0;
+    for (size_t b = 0; b < a->blocks; b++)
+      mean += (at(a, b, 0, r) + at(a, b, 1, r)) / points;
+    sample_add(&together, mean);
+  }
+  return (points * together.squares / (double)(a->seeds - 1) - own) / (points - 1);
+}
+
+/* Mean over blocks and pairs of different seeds of f(r) g(s), from sums over the seeds; one seed: of f g. */
+struct product {
+  double sum;
+  size_t seeds;
+};
+
+static void add_product(struct product *p, double f, double g, double fg) {
+  const double n = (double)p->seeds;
+  p->sum += p->seeds > 1 ? (f * g - fg) / (n * (n - 1)) : fg;
+}
+
+static double first_order(const struct asking *a) {
+  struct product product = {0, a->seeds};
+  for (size_t b = 0; b < a->blocks; b++) {
+    double f = 0, g = 0, fg = 0;
+    for (size_t r = 0; r < a->seeds; r++) {
+      const double y = at(a, b, 1, r), change = at(a, b, 2 + a->input, r) - at(a, b, 0, r);
+      f += y;
+      g += change;
+      fg += y * change;
+    }
+    add_product(&product, f, g, fg);
+  }
+  return product.sum / (double)a->blocks;
+}
+
+static double total_effect(const struct asking *a) {
+  double same = 0;
+  struct product different = {0, a->seeds};
+  for (size_t b = 0; b < a->blocks; b++) {
+    double f = 0, ff = 0;
+    for (size_t r = 0; r < a->seeds; r++) {
+      const double change = at(a, b, 0, r) - at(a, b, 2 + a->input, r);
+      f += change;
+      ff += change * change;
+    }
+    same += ff / (double)a->seeds;
+    add_product(&different, f, f, ff);
+  }
+  return (a->table->same_seeds ? same : different.sum) / (2 * (double)a->blocks);
+}
+
+static double index_of(const struct asking *a) {
+  const bool seed = a->input == a->table->inputs;
+  if (a->blocks < 2 || a->seeds < 1 || (seed && a->seeds < 2))
+    return NAN;
+  /* The whole variance: between points of one seed, and what a seed does everywhere alike. */
+  const double alike = a->seeds > 1 ? of_seeds(a, true) : 0, whole = between_points(a) + alike;
+  if (seed)
+    return (a->total ? of_seeds(a, false) : alike) / whole;
+  return (a->total ? total_effect(a) : first_order(a)) / whole;
+}
+
+static double over_blocks(size_t n, const uint32_t *chosen, void *context) {
+  struct asking a = *(const struct asking *)context;
+  a.blocks = n;
+  a.block = chosen;
+  return index_of(&a);
+}
+
+static double over_seeds(size_t n, const uint32_t *chosen, void *context) {
+  struct asking a = *(const struct asking *)context;
+  a.seeds = n;
+  a.seed = chosen;
+  return index_of(&a);
+}
+
+static struct sample_interval interval_of(struct asking *a) {
+  struct sample_interval interval = sample_jackknife(a->blocks, 0.95, over_blocks, a);
+  if (a->seeds < 3)
+    return interval;
+  const struct sample_interval seeds = sample_jackknife(a->seeds, 0.95, over_seeds, a);
+  interval.standard_error = hypot(interval.standard_error, seeds.standard_error);
+  interval.half_width = hypot(interval.half_width, seeds.half_width);
+  return interval;
+}
+
+status sensitivity_sobol(const struct sensitivity_table *t, struct sensitivity_index *index, struct error *error) {
+  const size_t n = t->blocks * (t->inputs + 2) * t->seeds, most = t->blocks > t->seeds ? t->blocks : t->seeds;
+  if (t->blocks < 2 || t->seeds < 1 || t->inputs < 1)
+    return status_fail(error, STATUS_USAGE, "Sobol indices need two blocks of points with a result at least, not %zu",
+                       t->blocks);
+  double *centred = malloc(n * sizeof *centred), mean = 0;
+  uint32_t *all = malloc(most * sizeof *all);
+  if (!centred || !all) {
+    free(centred);
+    free(all);
+    return status_fail(error, STATUS_MEMORY, "no memory for the indices of %zu runs", n);
+  }
+  for (size_t i = 0; i < n; i++)
+    mean += t->value[i] / (double)n;
+  for (size_t i = 0; i < n; i++)
+    centred[i] = t->value[i] - mean;
+  for (size_t i = 0; i < most; i++)
+    all[i] = (uint32_t)i;
+  struct asking a = {.table = t, .centred = centred, .blocks = t->blocks, .seeds = t->seeds, .block = all, .seed = all};
+  for (a.input = 0; a.input <= t->inputs; a.input++) {
+    a.total = false;
+    index[a.input].first = interval_of(&a);
+    a.total = true;
+    index[a.input].total = interval_of(&a);
+  }
+  free(centred);
+  free(all);
+  return STATUS_OK;
+}
+
+/* ---- Morris ---- */
+
+static double mean_absolute(size_t n, const uint32_t *chosen, void *context) {
+  const double *effects = context;
+  double sum = 0;
+  for (size_t i = 0; i < n; i++)
+    sum += fabs(effects[chosen[i]]);
+  return sum / (double)n;
+}
+
+status sensitivity_morris(const struct sensitivity_table *t, const size_t *order, const double *step,
+                          struct sensitivity_effect *effect, struct error *error) {
+  if (t->blocks < 2 || t->seeds < 1)
+    return status_fail(error, STATUS_USAGE, "elementary effects need two trajectories with results at least, not %zu",
+                       t->blocks);
+  double *effects = malloc(t->inputs * t->blocks * sizeof *effects);
+  if (!effects)
+    return status_fail(error, STATUS_MEMORY, "no memory for %zu trajectories", t->blocks);
+  for (size_t i = 0; i < t->inputs; i++)
+    effect[i].noise = t->seeds > 1 ? 0 : NAN;
+  for (size_t b = 0; b < t->blocks; b++)
+    for (size_t i = 0; i < t->inputs; i++) {
+      struct sample_moments change = {0};
+      const double *y = t->value + (b * (t->inputs + 1) + i) * t->seeds;
+      const size_t input = order[b * t->inputs + i];
+      for (size_t r = 0; r < t->seeds; r++)
+        sample_add(&change, (y[t->seeds + r] - y[r]) / step[b * t->inputs + i]);
+      effects[input * t->blocks + b] = change.mean;
+      if (t->seeds > 1) /* a normal error of this size has this mean absolute value */
+        effect[input].noise += sample_summarise_moments(&change, 0.95).standard_error * sqrt(2 / M_PI) /
+                               (double)t->blocks;
+    }
+  for (size_t i = 0; i < t->inputs; i++) {
+    const struct sample_summary summary = sample_summarise(t->blocks, effects + i * t->blocks, 0.95);
+    effect[i].mean = summary.mean;
+    effect[i].deviation = summary.standard_deviation;
+    effect[i].mean_absolute = sample_jackknife(t->blocks, 0.95, mean_absolute, effects + i * t->blocks);
+  }
+  free(effects);
+  return STATUS_OK;
+}

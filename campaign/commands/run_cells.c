@@ -1,0 +1,88 @@
+/* Collects the runs of cells and leaves the seeds that all of them have. */
+#include "campaign/commands/run_cells.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int by_seed(const void *a, const void *b) {
+  const int64_t p = ((const struct run_cells_run *)a)->seed, q = ((const struct run_cells_run *)b)->seed;
+  return p < q ? -1 : p > q;
+}
+
+static status no_memory(struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory for the runs of the points");
+}
+
+status run_cells_take(void *context, const struct ask_pool *pool, struct error *error) {
+  struct run_cells *cells = context;
+  if (cells->count == cells->room) {
+    const size_t room = cells->room ? 2 * cells->room : 64;
+    struct run_cell *grown = realloc(cells->cell, room * sizeof *grown);
+    if (!grown)
+      return no_memory(error);
+    cells->cell = grown;
+    cells->room = room;
+  }
+  struct run_cell *cell = &cells->cell[cells->count++];
+  *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
+  cells->axes = pool->axes;
+  memcpy(cells->column, pool->column, sizeof cells->column);
+  for (size_t a = 0; a < pool->axes; a++) {
+    char text[ASK_POOL_TEXT] = "off";
+    if (pool->input[a].kind == QUERY_TEXT)
+      snprintf(text, sizeof text, "%s", pool->input[a].text);
+    else if (pool->input[a].kind != QUERY_NULL)
+      snprintf(text, sizeof text, "%.17g", pool->input[a].real);
+    cell->input[a] = strdup(text);
+    if (!cell->input[a])
+      return no_memory(error);
+  }
+  if (!cell->run)
+    return no_memory(error);
+  for (size_t r = 0; r < pool->data.runs.count; r++)
+    if (isfinite(pool->value[r]))
+      cell->run[cell->runs++] = (struct run_cells_run){pool->seed[r], pool->value[r]};
+  qsort(cell->run, cell->runs, sizeof *cell->run, by_seed);
+  return STATUS_OK;
+}
+
+void run_cells_release(struct run_cells *cells) {
+  for (size_t c = 0; c < cells->count; c++) {
+    free(cells->cell[c].run);
+    for (size_t a = 0; a < cells->axes; a++)
+      free(cells->cell[c].input[a]);
+  }
+  free(cells->cell);
+  *cells = (struct run_cells){0};
+}
+
+size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds) {
+  size_t least = SIZE_MAX, common = 0;
+  *same_seeds = false;
+  for (size_t c = 0; c < count; c++)
+    least = cell[c]->runs < least ? cell[c]->runs : least;
+  if (count == 0 || least == 0)
+    return 0;
+  struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
+  for (size_t r = 0; shared && r < cell[0]->runs; r++) {
+    bool everywhere = true;
+    for (size_t c = 1; everywhere && c < count; c++)
+      everywhere = bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed);
+    if (everywhere)
+      shared[common++] = cell[0]->run[r];
+  }
+  *same_seeds = common >= 2 || (common == 1 && least == 1);
+  for (size_t c = 0; *same_seeds && c < count; c++) {
+    size_t from = 0;
+    for (size_t r = 0; r < common; r++, from++) { /* both ascend */
+      while (cell[c]->run[from].seed != shared[r].seed)
+        from++;
+      cell[c]->run[r] = cell[c]->run[from];
+    }
+    cell[c]->runs = common;
+  }
+  free(shared);
+  return *same_seeds ? common : least;
+}

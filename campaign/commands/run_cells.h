@@ -1,0 +1,33 @@
+/* The values of a result in cells, one for each set of varied inputs, with the seeds that the cells share: what the
+ * split of a variance and sensitivity indices are made from. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_RUN_CELLS_H
+#define CLAST_CAMPAIGN_COMMANDS_RUN_CELLS_H
+
+#include <stdbool.h>
+
+#include "db/ask/pool.h"
+
+struct run_cells_run {
+  int64_t seed;
+  double value;
+};
+struct run_cell {
+  size_t runs;
+  struct run_cells_run *run;  /* by seed */
+  char *input[ASK_POOL_AXES]; /* as text: a number with 17 digits, a choice, "off" */
+};
+struct run_cells {
+  size_t axes, count, room;
+  char column[ASK_POOL_AXES][ASK_GROUP_NAME];
+  struct run_cell *cell;
+};
+
+/* An ask_pool_each of ask_pool_values, with a zeroed struct run_cells as its context. */
+status run_cells_take(void *cells, const struct ask_pool *pool, struct error *error);
+void run_cells_release(struct run_cells *cells);
+
+/* Makes the first runs of these cells a table: the seeds that all of them have, if there are two at least (or one, and
+ * no cell has two); else as many runs as every cell has, whatever their seeds. Returns how many runs these are. */
+size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds);
+
+#endif

@@ -1,0 +1,197 @@
+/* Writes designs for sensitivity indices, and finds them again. */
+#include "campaign/commands/sensitivity_design.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/text.h"
+
+static const double MORRIS_STEP = 0.5; /* of the quantile: two of four levels */
+
+static status check_axes(const char *path, const struct campaign *campaign, struct error *error) {
+  if (campaign->axis_count == 0 || *campaign->design.file)
+    return status_fail(error, STATUS_CONTENT, "%s: expected the key vary, with the ranges of the inputs", path);
+  for (size_t a = 0; a < campaign->axis_count; a++)
+    if (campaign->axes[a].kind == DESIGN_AXIS_LINKED)
+      return status_fail(error, STATUS_CONTENT,
+                         "%s: vary.%s is linked to another input: it has no index of its own; leave it out or give it "
+                         "a range",
+                         path, campaign->axes[a].row->path);
+  return STATUS_OK;
+}
+
+/* The paths of the inputs, and a line for each point. Numbers have their units and read back as the same bits. */
+static void write_points(FILE *out, const struct campaign *campaign, const struct design_sensitivity *design) {
+  double u[64];
+  for (size_t a = 0; a < campaign->axis_count; a++)
+    fprintf(out, "%s%s", a ? "," : "", campaign->axes[a].row->path);
+  fputc('\n', out);
+  for (size_t i = 0; i < design_sensitivity_rows(design); i++) {
+    design_sensitivity_row(design, i, u);
+    for (size_t a = 0; a < campaign->axis_count; a++) {
+      struct field_value value;
+      char text[FIELD_TEXT_SIZE];
+      design_axis_quantile(&campaign->axes[a], u[a], &value);
+      field_print(campaign->axes[a].row, &value, text, sizeof text);
+      fprintf(out, "%s%s", a ? "," : "", text);
+    }
+    fputc('\n', out);
+  }
+}
+
+/* The document without its keys `vary` and `design`, which begin a line; their values are indented, or on that line. */
+static void write_document(FILE *out, const char *text, const char *points) {
+  bool dropped = false;
+  while (*text) {
+    const size_t length = strcspn(text, "\n") + (strchr(text, '\n') != NULL);
+    if (!strchr(" \t\r\n#-}", *text))
+      dropped = strncmp(text, "vary:", 5) == 0 || strncmp(text, "design:", 7) == 0;
+    if (!dropped)
+      fwrite(text, 1, length, out);
+    text += length;
+  }
+  fputs("design: {file: ", out);
+  text_json_string(points, out);
+  fputs("}\n", out);
+}
+
+static status create(const char *path, FILE **out, struct error *error) {
+  *out = fopen(path, "wx");
+  if (*out)
+    return STATUS_OK;
+  return status_fail(error, errno == EEXIST ? STATUS_USAGE : STATUS_IO, "%s: %s", path, strerror(errno));
+}
+
+static status finish(const char *path, FILE *out, struct error *error) {
+  const bool failed = ferror(out) != 0;
+  if (fclose(out) != 0 || failed)
+    return status_fail(error, STATUS_IO, "%s: cannot be written", path);
+  return STATUS_OK;
+}
+
+static status write_files(const struct campaign *campaign, const struct design_sensitivity *design,
+                          const char *document, const char *points, struct error *error) {
+  FILE *out = NULL;
+  const char *folder = strrchr(points, '/');
+  status code = create(document, &out, error);
+  if (code)
+    return code;
+  write_document(out, campaign->text, folder ? folder + 1 : points);
+  code = finish(document, out, error);
+  if (code)
+    return code;
+  code = create(points, &out, error);
+  if (code) {
+    remove(document);
+    return code;
+  }
+  write_points(out, campaign, design);
+  return finish(points, out, error);
+}
+
+status sensitivity_design_write(const char *path, const char *output, enum design_sensitivity_kind kind, size_t blocks,
+                                uint64_t seed, struct error *error) {
+  struct campaign *campaign = NULL, *written = NULL;
+  struct design_sensitivity *design = NULL;
+  char points[4096];
+  const size_t length = strlen(output);
+  if (length < 6 || strcmp(output + length - 5, ".yaml") != 0 || length >= sizeof points)
+    return status_fail(error, STATUS_USAGE, "'%s' is to be written: its name must end in .yaml", output);
+  snprintf(points, sizeof points, "%.*s.csv", (int)(length - 5), output);
+  status code = campaign_load(path, &campaign, error);
+  if (code == STATUS_OK)
+    code = check_axes(path, campaign, error);
+  if (code == STATUS_OK)
+    code = design_sensitivity_create(kind, campaign->axis_count, blocks, seed, &design, error);
+  if (code == STATUS_OK)
+    code = write_files(campaign, design, output, points, error);
+  if (code == STATUS_OK) { /* what was written must be what is run */
+    code = campaign_load(output, &written, error);
+    if (code) {
+      remove(output);
+      remove(points);
+    }
+  }
+  campaign_free(written);
+  design_sensitivity_free(design);
+  campaign_free(campaign);
+  return code;
+}
+
+static bool same(const struct campaign *campaign, size_t a, size_t i, size_t j) {
+  const struct design_axis *axis = &campaign->axes[a];
+  return field_same_value(axis->row, &axis->levels[i], &axis->levels[j]);
+}
+
+static bool is_saltelli(const struct campaign *campaign, size_t rows) {
+  const size_t n = campaign->axis_count;
+  for (size_t i = 0; i < rows; i++) {
+    const size_t first = i - i % (n + 2), point = i % (n + 2);
+    for (size_t a = 0; point >= 2 && a < n; a++)
+      if (!same(campaign, a, i, first + (point == 2 + a)))
+        return false;
+  }
+  return true;
+}
+
+static bool is_morris(const struct campaign *campaign, size_t rows) {
+  const size_t n = campaign->axis_count;
+  for (size_t i = 0; i < rows; i++) {
+    size_t changed = 0;
+    for (size_t a = 0; i % (n + 1) > 0 && a < n; a++)
+      changed += !same(campaign, a, i, i - 1);
+    if (changed > 1)
+      return false;
+  }
+  return true;
+}
+
+status sensitivity_design_find(const struct campaign *campaign, enum design_sensitivity_kind *kind, size_t *blocks,
+                               struct error *error) {
+  const size_t n = campaign->axis_count, rows = *campaign->design.file ? (size_t)campaign->design.points : 0;
+  *kind = DESIGN_SENSITIVITY_SALTELLI;
+  *blocks = rows / (n + 2);
+  if (rows > 0 && rows % (n + 2) == 0 && is_saltelli(campaign, rows))
+    return STATUS_OK;
+  *kind = DESIGN_SENSITIVITY_MORRIS;
+  *blocks = rows / (n + 1);
+  if (rows > 0 && rows % (n + 1) == 0 && is_morris(campaign, rows))
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE,
+                     "the points of this campaign are no design for sensitivity indices: `clast sensitivity "
+                     "CAMPAIGN.yaml NEW.yaml --design saltelli` writes one");
+}
+
+/* A step that changes no value, of an input of few values, is given to an input that changes nowhere else. */
+void sensitivity_design_steps(const struct campaign *campaign, size_t blocks, size_t *order, double *step) {
+  const size_t n = campaign->axis_count;
+  for (size_t b = 0; b < blocks; b++) {
+    bool taken[64] = {false};
+    for (size_t k = 0; k < n; k++) {
+      const size_t i = b * (n + 1) + k;
+      size_t a = 0;
+      while (a < n && same(campaign, a, i, i + 1))
+        a++;
+      order[b * n + k] = a;
+      if (a == n)
+        continue;
+      const struct field_value *v = campaign->axes[a].levels;
+      const bool whole = campaign->axes[a].row->kind == FIELD_INTEGER;
+      const bool up = whole ? v[i + 1].integer > v[i].integer : v[i + 1].number > v[i].number;
+      step[b * n + k] = up ? MORRIS_STEP : -MORRIS_STEP;
+      taken[a] = true;
+    }
+    for (size_t k = 0; k < n; k++) {
+      size_t a = 0;
+      if (order[b * n + k] < n)
+        continue;
+      while (taken[a])
+        a++;
+      taken[a] = true;
+      order[b * n + k] = a;
+      step[b * n + k] = MORRIS_STEP;
+    }
+  }
+}

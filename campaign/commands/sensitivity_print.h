@@ -1,0 +1,14 @@
+/* Sensitivity indices of a result from a store. */
+#ifndef CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_PRINT_H
+#define CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_PRINT_H
+
+#include "campaign/terminal/table.h"
+#include "db/store/store.h"
+
+/* campaign: path of the campaign whose points the store has. Prints a row for each input and one for the seed. Blocks
+ * of the design that lack a point are left out, and told. STATUS_USAGE: the campaign is no such design, or the store
+ * lacks its points. */
+status sensitivity_print(struct store *store, const char *campaign, const char *quantity, enum table_format format,
+                         struct error *error);
+
+#endif

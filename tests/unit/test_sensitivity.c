@@ -1,0 +1,217 @@
+/* Sobol indices of functions with known ones, with and without seeds; elementary effects of a plane; intervals. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/analysis.h"
+#include "analysis/statistics/sensitivity.h"
+#include "campaign/design/design_sensitivity.h"
+#include "engine/random.h"
+
+enum { MOST = 8 };
+
+static double ishigami(size_t n, const double *u) { /* Ishigami & Homma (1990), a = 7, b = 0.1 */
+  (void)n;
+  const double x = M_PI * (2 * u[0] - 1), y = M_PI * (2 * u[1] - 1), z = M_PI * (2 * u[2] - 1);
+  return sin(x) + 7 * sin(y) * sin(y) + 0.1 * z * z * z * z * sin(x);
+}
+
+static const double weight[MOST] = {0, 1, 4.5, 9, 99, 99, 99, 99};
+static double g_function(size_t n, const double *u) { /* Sobol (1993) */
+  double product = 1;
+  for (size_t i = 0; i < n; i++)
+    product *= (fabs(4 * u[i] - 2) + weight[i]) / (1 + weight[i]);
+  return product;
+}
+
+static double normal(uint64_t a, uint64_t b, uint64_t c) {
+  return sqrt(-2 * log1p(-random_draw(31, a, b, 2 * c))) * cos(2 * M_PI * random_draw(31, a, b, 2 * c + 1));
+}
+
+/* Values of a design. shared, own: deviation of what a seed adds everywhere alike, and at each point by itself. */
+static double *evaluate(enum design_sensitivity_kind kind, size_t inputs, size_t base, size_t seeds, uint64_t shift,
+                        double (*f)(size_t, const double *), double shared, double own) {
+  struct design_sensitivity *design;
+  double u[MOST];
+  assert_int_equal(design_sensitivity_create(kind, inputs, base, shift, &design, NULL), STATUS_OK);
+  const size_t rows = design_sensitivity_rows(design);
+  double *value = malloc(rows * seeds * sizeof *value);
+  assert_non_null(value);
+  for (size_t i = 0; i < rows; i++) {
+    design_sensitivity_row(design, i, u);
+    for (size_t d = 0; d < inputs; d++)
+      assert_true(u[d] > 0 && u[d] < 1);
+    for (size_t r = 0; r < seeds; r++)
+      value[i * seeds + r] = f(inputs, u) + shared * normal(1, shift, r) + own * normal(2 + i, shift, r);
+  }
+  design_sensitivity_free(design);
+  return value;
+}
+
+static const double ishigami_first[3] = {0.313905, 0.442411, 0}, ishigami_total[3] = {0.557589, 0.442411, 0.243684};
+static const double ishigami_variance = 13.844588;
+
+static void ishigami_indices(void **state) {
+  (void)state;
+  enum { BASE = 2048 };
+  double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, 1, 1, ishigami, 0, 0);
+  struct sensitivity_index index[4];
+  assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){3, BASE, 1, value, true}, index, NULL), STATUS_OK);
+  for (int i = 0; i < 3; i++) {
+    assert_true(fabs(index[i].first.estimate - ishigami_first[i]) < 0.015);
+    assert_true(fabs(index[i].total.estimate - ishigami_total[i]) < 0.015);
+    assert_true(index[i].total.half_width > 0.005 && index[i].total.half_width < 0.08);
+  }
+  assert_true(isnan(index[3].first.estimate)); /* one seed tells nothing of seeds */
+  free(value);
+}
+
+static void g_function_indices(void **state) {
+  (void)state;
+  enum { BASE = 2048 };
+  double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, MOST, BASE, 1, 1, g_function, 0, 0), whole = 1;
+  struct sensitivity_index index[MOST + 1];
+  assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){MOST, BASE, 1, value, true}, index, NULL), STATUS_OK);
+  for (int i = 0; i < MOST; i++)
+    whole *= 1 + 1 / (3 * (1 + weight[i]) * (1 + weight[i]));
+  for (int i = 0; i < MOST; i++) { /* 0.716, 0.179, 0.024, 0.007, 0...; 0.788, 0.242, 0.034, 0.010, 0... */
+    const double own = 1 / (3 * (1 + weight[i]) * (1 + weight[i]));
+    assert_true(fabs(index[i].first.estimate - own / (whole - 1)) < 0.02);
+    assert_true(fabs(index[i].total.estimate - own * whole / (1 + own) / (whole - 1)) < 0.02);
+  }
+  free(value);
+}
+
+/* Seeds add a normal deviate: all shares shrink, and the seed has its own, whether it does the same at all points or
+ * not. */
+static void the_share_of_the_seed(void **state) {
+  (void)state;
+  enum { BASE = 1024, SEEDS = 8 };
+  const double variance = ishigami_variance; /* the seed has half of the whole */
+  for (int kind = 0; kind < 2; kind++) {
+    const double shared = kind ? sqrt(0.75 * variance) : 0, own = sqrt(kind ? 0.25 * variance : variance);
+    double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, SEEDS, 5, ishigami, shared, own);
+    struct sensitivity_index index[4];
+    const struct sensitivity_table table = {3, BASE, SEEDS, value, kind};
+    assert_int_equal(sensitivity_sobol(&table, index, NULL), STATUS_OK);
+    for (int i = 0; i < 3; i++) {
+      const struct sample_interval first = index[i].first, total = index[i].total;
+      /* own noise differs between points, as if it were interplay with the seed: part of every total of same seeds */
+      const double interplay = kind ? 0.125 : 0;
+      assert_true(fabs(first.estimate - ishigami_first[i] / 2) < fmax(0.03, 1.5 * first.half_width));
+      assert_true(fabs(total.estimate - ishigami_total[i] / 2 - interplay) < fmax(0.03, 1.5 * total.half_width));
+    }
+    assert_true(fabs(index[3].total.estimate - 0.5) < fmax(0.03, 1.5 * index[3].total.half_width));
+    assert_true(fabs(index[3].first.estimate - (kind ? 0.375 : 0)) < fmax(0.03, 1.5 * index[3].first.half_width));
+    free(value);
+  }
+}
+
+/* Intervals of a small design hold the true index. */
+static void coverage(void **state) {
+  (void)state;
+  enum { CASES = 60, BASE = 64 };
+  int held = 0;
+  for (uint64_t c = 0; c < CASES; c++) {
+    double *value = evaluate(DESIGN_SENSITIVITY_SALTELLI, 3, BASE, 1, 100 + c, ishigami, 0, 0);
+    struct sensitivity_index index[4];
+    assert_int_equal(sensitivity_sobol(&(struct sensitivity_table){3, BASE, 1, value, true}, index, NULL), STATUS_OK);
+    for (int i = 0; i < 3; i++) {
+      held += fabs(index[i].first.estimate - ishigami_first[i]) <= index[i].first.half_width;
+      held += fabs(index[i].total.estimate - ishigami_total[i]) <= index[i].total.half_width;
+    }
+    free(value);
+  }
+  assert_true(held >= 0.92 * 6 * CASES); /* even points scatter less than independent ones: not short */
+}
+
+static double plane(size_t n, const double *u) {
+  (void)n;
+  return 3 * u[0] - 0.5 * u[1] + 4 * u[2] * u[3];
+}
+
+static void elementary_effects(void **state) {
+  (void)state;
+  enum { BLOCKS = 40, INPUTS = 4, SEEDS = 4 };
+  struct design_sensitivity *design;
+  struct sensitivity_effect effect[INPUTS];
+  size_t order[BLOCKS * INPUTS];
+  double step[BLOCKS * INPUTS];
+  for (int noisy = 0; noisy < 2; noisy++) {
+    double *value = evaluate(DESIGN_SENSITIVITY_MORRIS, INPUTS, BLOCKS, noisy ? SEEDS : 1, 3, plane, 0,
+                             noisy ? 0.1 : 0);
+    assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_MORRIS, INPUTS, BLOCKS, 3, &design, NULL), STATUS_OK);
+    design_sensitivity_steps(design, order, step);
+    design_sensitivity_free(design);
+    const struct sensitivity_table table = {INPUTS, BLOCKS, noisy ? SEEDS : 1, value, false};
+    assert_int_equal(sensitivity_morris(&table, order, step, effect, NULL), STATUS_OK);
+    const double tolerance = noisy ? 0.1 : 1e-12;
+    assert_true(fabs(effect[0].mean_absolute.estimate - 3) < tolerance && fabs(effect[0].mean - 3) < tolerance);
+    assert_true(fabs(effect[1].mean_absolute.estimate - 0.5) < tolerance && fabs(effect[1].mean + 0.5) < tolerance);
+    assert_true(noisy || effect[1].deviation < 1e-12);
+    /* 4 u: its mean is 2, and it varies with the other one */
+    assert_true(fabs(effect[2].mean_absolute.estimate - 2) < 3 * effect[2].mean_absolute.half_width);
+    assert_true(effect[2].deviation > 0.8);
+    if (noisy) /* own noise of 0.1 in both ends, 4 seeds, steps of a half: 0.1 sqrt(2) / 2 / 0.5 sqrt(2/pi) = 0.113 */
+      assert_true(fabs(effect[0].noise - 0.113) < 0.03);
+    else
+      assert_true(isnan(effect[0].noise));
+    free(value);
+  }
+}
+
+/* A block of Saltelli: A, B, and A with one input of B. A trajectory of Morris changes one input after another, each
+ * once. */
+static void designs(void **state) {
+  (void)state;
+  struct design_sensitivity *design;
+  double u[5][MOST];
+  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 3, 16, 1, &design, NULL), STATUS_OK);
+  assert_int_equal(design_sensitivity_rows(design), 80);
+  for (size_t b = 0; b < 16; b++) {
+    for (size_t k = 0; k < 5; k++)
+      design_sensitivity_row(design, 5 * b + k, u[k]);
+    for (size_t i = 0; i < 3; i++)
+      for (size_t d = 0; d < 3; d++)
+        assert_true(u[2 + i][d] == (i == d ? u[1][d] : u[0][d]) && u[0][d] != u[1][d]);
+  }
+  design_sensitivity_free(design);
+  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_MORRIS, 4, 9, 1, &design, NULL), STATUS_OK);
+  assert_int_equal(design_sensitivity_rows(design), 45);
+  size_t order[36];
+  double step[36];
+  design_sensitivity_steps(design, order, step);
+  for (size_t b = 0; b < 9; b++) {
+    unsigned changed = 0;
+    for (size_t k = 0; k < 5; k++)
+      design_sensitivity_row(design, 5 * b + k, u[k]);
+    for (size_t k = 0; k < 4; k++)
+      for (size_t d = 0; d < 4; d++) {
+        const double change = u[k + 1][d] - u[k][d];
+        assert_true(order[4 * b + k] == d ? change == step[4 * b + k] && fabs(change) == 0.5 : change == 0);
+        changed |= change != 0 ? 1u << d : 0;
+      }
+    assert_int_equal(changed, 15);
+  }
+  design_sensitivity_free(design);
+  struct error error;
+  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 21, 4, 1, &design, &error), STATUS_CONTENT);
+  assert_int_equal(design_sensitivity_create(DESIGN_SENSITIVITY_SALTELLI, 0, 4, 1, &design, &error), STATUS_CONTENT);
+}
+
+int main(void) {
+  analysis_init();
+  const struct CMUnitTest tests[] = {cmocka_unit_test(designs),
+                                     cmocka_unit_test(ishigami_indices),
+                                     cmocka_unit_test(g_function_indices),
+                                     cmocka_unit_test(the_share_of_the_seed),
+                                     cmocka_unit_test(coverage),
+                                     cmocka_unit_test(elementary_effects)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
