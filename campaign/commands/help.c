@@ -25,7 +25,7 @@ void commands_help(FILE *out) {
     if (strcmp(command->group, group) != 0)
       fprintf(out, "\n%s:\n", command->group);
     group = command->group;
-    fprintf(out, "  %-11s %s\n", command->name, command->summary);
+    fprintf(out, "  %-12s %s\n", command->name, command->summary);
   }
   fprintf(out, "\n`clast COMMAND --help` tells more, with examples. %s\n", texts.streams);
 }
