@@ -7,7 +7,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "campaign/converge/ladder.h"
-#include "campaign/design/design.h"
+#include "campaign/document/campaign_walk.h"
 #include "db/ask/convergence.h"
 #include "engine/scene_settings.h"
 
@@ -152,22 +152,16 @@ static status read_study(struct finding *finding, struct store *store, const str
 }
 
 static status read_points(struct finding *finding, struct store *store, struct error *error) {
-  const struct campaign *campaign = finding->campaign;
-  struct design *design = NULL;
-  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
-  if (!values)
-    return status_fail(error, STATUS_MEMORY, "no memory for the points");
-  status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                              (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
-  for (int i = 0; code == STATUS_OK && !finding->studied && i < LOOKED_AT && design_next(design, values); i++) {
+  struct campaign_walk walk;
+  status code = campaign_walk_begin(&walk, finding->campaign, error);
+  for (int i = 0; code == STATUS_OK && !finding->studied && i < LOOKED_AT && campaign_walk_next(&walk); i++) {
     struct error ignored;
-    struct scene *scene = campaign_point_scene(campaign, values, &ignored);
+    struct scene *scene = campaign_walk_scene(&walk, &ignored);
     if (scene)
       code = read_study(finding, store, scene, error);
     scene_free(scene);
   }
-  design_free(design);
-  free(values);
+  campaign_walk_end(&walk);
   return code;
 }
 

@@ -8,6 +8,7 @@
 #include "campaign/design/design.h"
 #include "campaign/document/campaign_points.h"
 #include "campaign/document/campaign_vary.h"
+#include "campaign/document/campaign_walk.h"
 #include "db/store/place.h"
 #include "engine/random.h"
 #include "schemas/document.h"
@@ -291,19 +292,14 @@ static bool read_axes(document_node *root, const char *folder, struct campaign *
 static void check_points(document_node *root, struct campaign *campaign) {
   enum { TRIED = 1000 };
   struct error error = {0};
-  struct design *design = NULL;
   document_node *vary = document_key(root, "vary"), *where = document_key(root, "design");
   document_node *node = vary ? vary : root;
-  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
-  if (!values ||
-      design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                    (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, &error) != STATUS_OK) {
-    document_report(where ? where : node, "design", "%s", values ? error.message : "no memory");
-    free(values);
-    return;
-  }
-  for (int i = 0; i < TRIED && design_next(design, values); i++) {
-    struct scene *scene = campaign_point_scene(campaign, values, &error);
+  struct campaign_walk walk;
+  const bool begun = campaign_walk_begin(&walk, campaign, &error) == STATUS_OK;
+  if (!begun)
+    document_report(where ? where : node, "design", "%s", error.message);
+  for (int i = 0; begun && i < TRIED && campaign_walk_next(&walk); i++) {
+    struct scene *scene = campaign_walk_scene(&walk, &error);
     if (!scene && campaign->point_lines)
       document_report(where, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
                       error.message);
@@ -313,8 +309,7 @@ static void check_points(document_node *root, struct campaign *campaign) {
       break;
     scene_free(scene);
   }
-  design_free(design);
-  free(values);
+  campaign_walk_end(&walk);
 }
 
 static void read_all(document_node *root, const char *folder, struct campaign *campaign) {

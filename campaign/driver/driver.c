@@ -31,7 +31,7 @@ static status announce(struct driver *driver, struct error *error) {
   char plan[256];
   snprintf(plan, sizeof plan,
            "{\"design\": %d, \"points\": %llu, \"replicates_least\": %lld, \"replicates_most\": %lld}",
-           campaign->design.kind, (unsigned long long)design_points(driver->design),
+           campaign->design.kind, (unsigned long long)design_points(driver->walk.design),
            (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
   code = store_add_campaign(driver->store, campaign->name, campaign->text, plan, &driver->summary.campaign_id, error);
   return code == STATUS_OK ? store_flush(driver->store, error) : code;
@@ -39,10 +39,9 @@ static status announce(struct driver *driver, struct error *error) {
 
 static status prepare(struct driver *driver, struct error *error) {
   const struct campaign *campaign = driver->campaign;
-  driver->values = calloc(campaign->axis_count + 1, sizeof *driver->values);
   driver->paths = calloc(campaign->axis_count + 1, sizeof *driver->paths);
   driver->points = calloc(DRIVER_WINDOW, sizeof *driver->points);
-  if (!driver->values || !driver->paths || !driver->points)
+  if (!driver->paths || !driver->points)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign's driver");
   for (size_t i = 0; i < campaign->axis_count; i++)
     driver->paths[i] = campaign->axes[i].row->path;
@@ -51,9 +50,7 @@ static status prepare(struct driver *driver, struct error *error) {
   driver->row = campaign_quantity(campaign->scene->kind, quantity, &driver->row_of_outcome, error);
   if (!driver->row)
     return STATUS_CONTENT;
-  status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                              (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &driver->design,
-                              error);
+  status code = campaign_walk_begin(&driver->walk, campaign, error);
   return code == STATUS_OK ? announce(driver, error) : code;
 }
 
@@ -89,8 +86,7 @@ void driver_free(struct driver *driver) {
     return;
   for (size_t i = 0; driver->points && i < driver->point_count; i++)
     point_free(driver->points[i]);
-  design_free(driver->design);
-  free(driver->values);
+  campaign_walk_end(&driver->walk);
   free(driver->paths);
   free(driver->points);
   driver_window_forget(driver);
@@ -150,7 +146,7 @@ static double time_left(struct driver *driver, double now) {
   const double mean = driver->cost.seconds / (double)driver->cost.runs;
   for (size_t i = 0; i < driver->point_count; i++)
     left.missing_s += (double)point_missing(driver->points[i]) * cost_predict(&driver->cost, &driver->points[i]->cost);
-  const uint64_t unmet = design_points(driver->design) - driver->expanded;
+  const uint64_t unmet = design_points(driver->walk.design) - driver->expanded;
   left.missing_s += (double)unmet * (double)campaign_replicates_least(driver->campaign) * mean;
   look_at_flights(driver, now, &left);
   driver->seconds_left = cost_time_left(&left);
@@ -162,7 +158,7 @@ static void show(struct driver *driver, int running, bool last) {
     return;
   const struct driver_summary *summary = &driver->summary;
   const double now = clock_s(), elapsed = now - driver->begin;
-  const uint64_t unmet = design_points(driver->design) - driver->expanded;
+  const uint64_t unmet = design_points(driver->walk.design) - driver->expanded;
   const struct sample_summary quantity = sample_summarise_moments(&driver->moments, 0.95);
   struct progress_state state = {
       .done = summary->runs_done + summary->runs_reused - summary->runs_surplus,
@@ -174,7 +170,8 @@ static void show(struct driver *driver, int running, bool last) {
       .seconds_left = last ? DRIVER_NOTHING : time_left(driver, now),
       .quantity = driver->row->path,
       .mean = quantity.mean,
-      .half_width = design_points(driver->design) == 1 ? quantity.half_width : (double)NAN, /* of one point's seeds */
+      .half_width = design_points(driver->walk.design) == 1 ? quantity.half_width
+                                                            : (double)NAN, /* of one point's seeds */
   };
   if (elapsed > 0 && driver->started_done > 0)
     state.rate = (double)driver->started_done / elapsed;

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "campaign/design/design.h"
+#include "campaign/document/campaign_walk.h"
 #include "campaign/driver/pilot.h"
 #include "campaign/terminal/progress.h"
 #include "db/ask/run.h"
@@ -48,20 +48,16 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
 
 static status look(const struct campaign *campaign, struct store *store, struct plan *plan, struct looking *looking,
                    struct error *error) {
-  struct design *design = NULL;
-  struct field_value *values = calloc(campaign->axis_count + 1, sizeof *values);
-  if (!values)
-    return status_fail(error, STATUS_MEMORY, "no memory for the plan");
-  status code = design_create((enum design_kind)campaign->design.kind, campaign->axes, campaign->axis_count,
-                              (uint64_t)campaign->design.points, (uint64_t)campaign->design.seed, &design, error);
+  struct campaign_walk walk;
+  status code = campaign_walk_begin(&walk, campaign, error);
   if (code != STATUS_OK)
     goto cleanup;
-  plan->points = design_points(design);
+  plan->points = design_points(walk.design);
   /* Points evenly spread over the design, as far as it can be walked in a moment. */
   uint64_t walked = plan->points < WALKED ? plan->points : WALKED, stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
   struct error first = {0};
-  for (uint64_t i = 0; i < walked && design_next(design, values); i++) {
-    struct scene *scene = i % stride ? NULL : campaign_point_scene(campaign, values, &first);
+  for (uint64_t i = 0; i < walked && campaign_walk_next(&walk); i++) {
+    struct scene *scene = i % stride ? NULL : campaign_walk_scene(&walk, &first);
     if (!scene)
       continue;
     double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
@@ -84,8 +80,7 @@ static status look(const struct campaign *campaign, struct store *store, struct 
   if (!looking->costliest)
     code = status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
 cleanup:
-  design_free(design);
-  free(values);
+  campaign_walk_end(&walk);
   return code;
 }
 

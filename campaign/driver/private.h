@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "analysis/statistics/sample.h"
-#include "campaign/design/design.h"
+#include "campaign/document/campaign_walk.h"
 #include "campaign/driver/driver.h"
 #include "campaign/driver/point.h"
 
@@ -34,10 +34,9 @@ struct driver {
   struct driver_options options;   /* with a store_path */
   double time_limit, memory_limit; /* of an attempt: s and bytes, 0 = none */
   struct driver_summary summary;
-  struct design *design;
-  struct field_value *values; /* of one design point */
-  const char **paths;         /* of the axes, for the store */
-  const struct field *row;    /* main quantity */
+  struct campaign_walk walk;
+  const char **paths;      /* of the axes, for the store */
+  const struct field *row; /* main quantity */
   bool row_of_outcome;
   struct point **points; /* the window */
   size_t point_count;

@@ -144,11 +144,11 @@ static status resume(struct driver *driver, struct point *point, struct error *e
 }
 
 bool driver_window_expand(struct driver *driver, status *code, struct error *error) {
-  if (driver->point_count == DRIVER_WINDOW || !design_next(driver->design, driver->values))
+  if (driver->point_count == DRIVER_WINDOW || !campaign_walk_next(&driver->walk))
     return false;
   driver->expanded++;
   struct error why = {0};
-  struct scene *scene = campaign_point_scene(driver->campaign, driver->values, &why);
+  struct scene *scene = campaign_point_scene(driver->campaign, driver->walk.values, &why);
   if (!scene) {
     skip_invalid(driver, &why);
     return true;

@@ -65,7 +65,7 @@ settings:
   draft: {grain.spacing: 15 mm, fidelity.time_step: 2 us}
   reference: {grain.spacing: 9 mm}
 YAML
-expect 0 "$clast" converge named.yaml --set body.diameter='8 cm' --knob settings --knob grains=0.01069,0.009 --seeds 3 \
+expect 0 "$clast" converge named.yaml --set body.diameter='8 cm' --knob settings --knob grains=1.069cm,0.9cm --seeds 3 \
   --within off --store named.db -j 2
 prints "standard *"; prints "reference ref"
 same "$(number named.db "select count(*) from convergence where knob = 'settings' and error > 0")" 3 "errors of named settings"

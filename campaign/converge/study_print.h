@@ -1,18 +1,18 @@
 /* What `clast converge` prints and draws. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_CONVERGE_PRINT_H
-#define CLAST_CAMPAIGN_COMMANDS_CONVERGE_PRINT_H
+#ifndef CLAST_CAMPAIGN_CONVERGE_STUDY_PRINT_H
+#define CLAST_CAMPAIGN_CONVERGE_STUDY_PRINT_H
 
 #include "campaign/converge/study.h"
 #include "campaign/terminal/table.h"
 
 /* All knobs of all engines. */
-status converge_print_knobs(enum table_format format, struct error *error);
+status study_print_knobs(enum table_format format, struct error *error);
 
 /* For people a table per scene and quantity, with a sentence per knob and, unless `quiet`, a legend on stderr. For
  * programs the rows of convergence_table. */
-status converge_print_study(const struct study *study, enum table_format format, bool quiet, struct error *error);
+status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
 
 /* Mean with its interval over the processor time of a run: a curve per knob of the first scene and quantity. */
-status converge_print_picture(const struct study *study, const char *path, struct error *error);
+status study_picture(const struct study *study, const char *path, struct error *error);
 
 #endif

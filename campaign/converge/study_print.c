@@ -1,14 +1,12 @@
-/* A study of convergence as a table, as rows for programs, and as a picture. */
-#include "campaign/commands/converge_print.h"
+/* A study of convergence as a table and as rows for programs. */
+#include "campaign/converge/study_print.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/terminal/chart_option.h"
-
-status converge_print_knobs(enum table_format format, struct error *error) {
+status study_print_knobs(enum table_format format, struct error *error) {
   struct table *table = table_new(format, stdout);
   table_columns(table, (const char *const[]){"engine", "knob", "group", "input", "meaning", NULL});
   for (size_t i = 0; i < knob_count(); i++) {
@@ -119,7 +117,7 @@ static const char legend[] =
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
     "the next finer level; a control variate would save time from break_even on.\n";
 
-status converge_print_study(const struct study *study, enum table_format format, bool quiet, struct error *error) {
+status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
   if (!found)
     return status_fail(error, STATUS_MEMORY, "out of memory");
@@ -138,42 +136,6 @@ status converge_print_study(const struct study *study, enum table_format format,
     fflush(stdout);
     fputs(legend, stderr);
   }
-  free(found);
-  return code;
-}
-
-status converge_print_picture(const struct study *study, const char *path, struct error *error) {
-  enum { CURVES = 8 };
-  struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);
-  struct picture_mean means[CURVES][KNOB_LEVELS];
-  struct picture_curve curves[CURVES];
-  size_t drawn = 0;
-  if (!found)
-    return status_fail(error, STATUS_MEMORY, "out of memory");
-  const size_t count = study_of_scene(study, 0, 0, found);
-  for (size_t i = 0; i < count && drawn < CURVES; i++) {
-    curves[drawn] = (struct picture_curve){.label = found[i].limit.knob, .mean = means[drawn]};
-    for (size_t l = 0; l < found[i].count; l++) {
-      const struct convergence_row *row = &found[i].rows[l];
-      struct picture_mean mean = {row->cpu, row->mean, row->mean - row->half_width, row->mean + row->half_width, NAN};
-      if (!isfinite(mean.x) || !isfinite(mean.y))
-        continue;
-      size_t place = curves[drawn].count++;
-      for (; place > 0 && means[drawn][place - 1].x > mean.x; place--)
-        means[drawn][place] = means[drawn][place - 1];
-      means[drawn][place] = mean;
-    }
-    drawn += curves[drawn].count > 0;
-  }
-  char title[800];
-  const struct field *row = study->quantity[0].row;
-  char label[CHART_OPTION_LABEL];
-  chart_option_label(row->path, label);
-  snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, label);
-  const struct picture_page page = chart_option_page(path, NULL);
-  const struct picture_words words = {title, "A mark is a level of a knob: mean over seeds with its 95 % interval",
-                                      "processor time of a run (s)", label};
-  status code = picture_curves(&page, &words, drawn, curves, error);
   free(found);
   return code;
 }

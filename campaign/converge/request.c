@@ -1,0 +1,146 @@
+/* Reads what a study is asked for: quantities, when to stop, and knobs with their levels. */
+#include "campaign/converge/request.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "campaign/converge/ladder.h"
+
+static status read_quantities(struct study *study, const char *names, const struct engine_kind *kind,
+                              struct error *error) {
+  for (const char *from = names; *from;) {
+    char name[FIELD_TEXT_SIZE];
+    const size_t length = strcspn(from, ",");
+    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), from);
+    if (study->quantity_count == STUDY_QUANTITIES)
+      return status_fail(error, STATUS_USAGE, "at most %d quantities in one study", STUDY_QUANTITIES);
+    struct study_quantity *quantity = &study->quantity[study->quantity_count++];
+    quantity->row = campaign_quantity(kind, name, &quantity->of_outcome, error);
+    if (!quantity->row)
+      return STATUS_USAGE;
+    from += length + (from[length] == ',');
+  }
+  return study->quantity_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names none");
+}
+
+static status read_rule(struct study *study, const struct request *request, struct error *error) {
+  struct study_rule *rule = &study->rule;
+  char *end = NULL;
+  *rule = (struct study_rule){.within = NAN,
+                              .seconds = HUGE_VAL,
+                              .first_seeds = request->first_seeds,
+                              .most_seeds = request->most_seeds};
+  if (rule->most_seeds < rule->first_seeds)
+    rule->most_seeds = rule->first_seeds;
+  if (request->seconds) {
+    rule->seconds = strtod(request->seconds, &end);
+    if (*end || !(rule->seconds > 0))
+      return status_fail(error, STATUS_USAGE, "--seconds %s: expected a number of seconds above 0", request->seconds);
+  }
+  if (!request->within || strcmp(request->within, "off") == 0)
+    return STATUS_OK;
+  rule->within = strtod(request->within, &end);
+  rule->relative = strcmp(end + strspn(end, " "), "%") == 0;
+  if ((*end && !rule->relative) || !(rule->within > 0))
+    return status_fail(error, STATUS_USAGE,
+                       "--within %s: expected a width above 0 in the quantity's SI unit, a share of its value such as "
+                       "\"5 %%\", or off",
+                       request->within);
+  if (!rule->relative && study->quantity_count > 1)
+    return status_fail(error, STATUS_USAGE, "--within %s: several quantities need a share of their values (\"5 %%\")",
+                       request->within);
+  if (rule->relative)
+    rule->within /= 100;
+  return STATUS_OK;
+}
+
+static void note_lines(const char *text, bool quiet) {
+  for (const char *line = text; line && *line && !quiet; line += strcspn(line, "\n") + 1)
+    fprintf(stderr, "clast: %.*s\n", (int)strcspn(line, "\n"), line);
+}
+
+/* A knob that does not apply is said and left out when a group was asked for, and refused when it was named. */
+static status add_knob(struct subject *subject, const struct request *request, const struct scene *scene,
+                       const struct knob *knob, const char *settings, bool named, struct error *error) {
+  struct ladder levels;
+  char *notes = NULL;
+  status code = ladder_make(knob, scene, settings, &levels, &notes, error);
+  if (code == STATUS_OK)
+    note_lines(notes, request->quiet);
+  free(notes);
+  if (code == STATUS_CONTENT && !named) {
+    *error = (struct error){0};
+    return STATUS_OK;
+  }
+  return code == STATUS_OK ? study_add(&subject->study, scene, &levels, error) : code;
+}
+
+static int group_of(const char *name) {
+  for (int group = 0; group < KNOB_GROUPS; group++)
+    if (strcmp(name, knob_group_names[group]) == 0)
+      return group;
+  return -1;
+}
+
+static status add_named(struct subject *subject, const struct request *request, const struct scene *scene,
+                        const char *name, const char *settings, struct error *error) {
+  const int group = group_of(name);
+  if (group < 0) {
+    const struct knob *knob = knob_find(scene->kind->name, name, error);
+    return knob ? add_knob(subject, request, scene, knob, settings, true, error) : STATUS_USAGE;
+  }
+  status code = STATUS_OK;
+  for (size_t i = 0; code == STATUS_OK && i < knob_count(); i++)
+    if ((int)knob_at(i)->group == group && strcmp(knob_at(i)->engine, scene->kind->name) == 0)
+      code = add_knob(subject, request, scene, knob_at(i), NULL, false, error);
+  return code;
+}
+
+/* "particles,time_step" or "particles=1000,3000". */
+static status add_item(struct subject *subject, const struct request *request, const struct scene *scene,
+                       const char *item, struct error *error) {
+  const char *equals = strchr(item, '=');
+  status code = STATUS_OK;
+  for (const char *from = item; code == STATUS_OK && *from;) {
+    char name[64];
+    const size_t length = equals ? (size_t)(equals - item) : strcspn(from, ",");
+    snprintf(name, sizeof name, "%.*s", (int)(length < sizeof name ? length : sizeof name - 1), from);
+    code = add_named(subject, request, scene, name, equals ? equals + 1 : NULL, error);
+    if (equals)
+      break;
+    from += length + (from[length] == ',');
+  }
+  return code;
+}
+
+static status add_knobs(struct subject *subject, const struct request *request, struct error *error) {
+  status code = STATUS_OK;
+  for (size_t s = 0; code == STATUS_OK && s < subject->scene_count; s++) {
+    const struct scene *scene = subject->scenes[s];
+    if (request->knobs.count == 0)
+      code = add_item(subject, request, scene, "resolution,settings", error);
+    for (size_t i = 0; code == STATUS_OK && i < request->knobs.count; i++)
+      code = add_item(subject, request, scene, request->knobs.items[i], error);
+  }
+  if (code == STATUS_OK && subject->study.ladder_count == 0)
+    code = status_fail(error, STATUS_CONTENT, "no knob applies to this scene (`clast converge --list`)");
+  return code;
+}
+
+status request_read(const struct request *request, const char *path, struct subject *subject, struct error *error) {
+  struct study *study = &subject->study;
+  status code = subject_load(subject, path, &request->set, error);
+  if (code)
+    return code;
+  if (request->first_seed > 0)
+    study->limits.first_seed = request->first_seed;
+  if (request->store)
+    snprintf(study->limits.store, sizeof study->limits.store, "%s", request->store);
+  code = read_quantities(study, request->quantity ? request->quantity : study->limits.quantity,
+                         subject->scenes[0]->kind, error);
+  if (code == STATUS_OK)
+    code = read_rule(study, request, error);
+  return code == STATUS_OK ? add_knobs(subject, request, error) : code;
+}
