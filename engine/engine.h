@@ -23,6 +23,9 @@ struct engine_kind {
   void (*complete)(void *inputs, const bool *given);
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
+  /* Doubts that the inputs raise before the run: the set of enum warnings_bits, and to `out` (NULL: none wanted) a line
+   * for people per doubt, with its remedy. NULL: it has none. */
+  unsigned (*warn)(const void *inputs, FILE *out);
   /* What is modelled and why, memory, expected cost: text for `clast explain scene` and `plan`. malloc'd. */
   char *(*describe)(const void *inputs);
   size_t (*memory)(const void *inputs); /* bytes a run will need, before anything is allocated */

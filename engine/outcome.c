@@ -3,12 +3,16 @@
 
 #include <math.h>
 
+#include "engine/warnings.h"
+
 static const char *const states[] = {"completed", "end-time", "not-finite", "time-step", "energy", "invalid", NULL};
 
 #define ROW(path_, kind_, unit_, ...)                                                                                  \
   { .path = #path_, .kind = kind_, .unit = unit_, .offset = offsetof(struct outcome, path_), __VA_ARGS__ }
 #define REAL(path_, unit_, low, ...) ROW(path_, FIELD_REAL, unit_, .minimum = low, .maximum = HUGE_VAL, __VA_ARGS__)
 #define COUNT(path_, ...)            ROW(path_, FIELD_INTEGER, "1", .minimum = 0, .maximum = HUGE_VAL, __VA_ARGS__)
+
+#define WARNING_DOC(name_, word_, doc_) " " word_ ": " doc_ "."
 
 static const struct field rows[] = {
     ROW(state, FIELD_CHOICE, NULL, .choices = states,
@@ -20,6 +24,8 @@ static const struct field rows[] = {
                        "the inputs cannot be run together",
         .doc = "The run's own verdict: a result, not a lost attempt."),
     ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "Diagnostics for a person; empty when all is well."),
+    ROW(warnings, FIELD_TEXT, NULL, .text = "",
+        .doc = "Words of doubts about a run that is usable, empty when there are none." WARNINGS(WARNING_DOC)),
     COUNT(steps, .label = "time steps", .doc = "Time steps taken."),
     REAL(time, "s", 0, .label = "simulated time", .doc = "Simulated time at the end."),
     REAL(time_step, "s", 0, .doc = "The smallest time step used."),

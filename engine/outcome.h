@@ -16,8 +16,9 @@ enum outcome_state {
 };
 
 struct outcome {
-  int state;                     /* enum outcome_state, a FIELD_CHOICE */
-  char message[FIELD_TEXT_SIZE]; /* diagnostics for a person; empty when all is well */
+  int state;                      /* enum outcome_state, a FIELD_CHOICE */
+  char message[FIELD_TEXT_SIZE];  /* diagnostics for a person; empty when all is well */
+  char warnings[FIELD_TEXT_SIZE]; /* words of doubts (engine/warnings.h); empty when there are none */
   int64_t steps;
   double time;                    /* s simulated */
   double time_step;               /* s, the smallest used */

@@ -1,8 +1,8 @@
--- The store of clast: schema of version 3.
+-- The store of clast: schema of version 2.
 -- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
-PRAGMA user_version = 3;
+PRAGMA user_version = 2;
 
 CREATE TABLE column_doc ( -- Meaning and unit of every column.
   table_name TEXT NOT NULL, -- table or view
@@ -23,7 +23,6 @@ CREATE TABLE campaign ( -- Campaigns, as their files were read.
 
 CREATE TABLE session ( -- Provenance: one row per invocation that wrote to the store.
   session_id INTEGER PRIMARY KEY, -- number of the invocation that computed
-  campaign_id INTEGER, -- the campaign it computed; NULL in sessions of older programs that computed nothing
   started_at TEXT NOT NULL, -- UTC, ISO 8601, to the millisecond
   ended_at TEXT, -- UTC, ISO 8601; NULL while running or when it was killed
   outcome TEXT, -- how it ended: a status name; NULL while running or when it was killed
@@ -58,7 +57,6 @@ CREATE TABLE axis ( -- Inputs that some campaign varied: columns of the views.
   path TEXT NOT NULL PRIMARY KEY, -- path of an input that some campaign varied
   column_name TEXT NOT NULL UNIQUE, -- its column in the views
   unit TEXT, -- SI unit of the input
-  written_unit TEXT, -- unit of its values in the campaign: that of tables for people; NULL: SI
   meaning TEXT NOT NULL -- what the input means
 ) STRICT, WITHOUT ROWID;
 
@@ -83,6 +81,7 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
   state TEXT, -- The run's own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid
   message TEXT, -- Diagnostics for a person; empty when all is well.
+  warnings TEXT, -- Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.1: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).
   steps INTEGER, -- [1] Time steps taken.
   time REAL, -- [s] Simulated time at the end.
   time_step REAL, -- [s] The smallest time step used.
@@ -368,7 +367,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   precursor_distention_exact REAL -- [1] Piston: distention behind the precursor on the elastic branch.
 ) STRICT;
 
-CREATE VIEW runs AS -- every run with its varied inputs and all results of its engine
+CREATE VIEW runs AS -- every run with its varied inputs and all its results
 SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,
   r."session_id",
   r."results_version",
@@ -384,6 +383,7 @@ SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.see
   r."counts",
   r."state",
   r."message",
+  r."warnings",
   r."steps",
   r."time",
   r."time_step",
@@ -639,8 +639,6 @@ INSERT INTO column_doc VALUES ('axis', 'meaning', NULL, 'what the input means', 
 INSERT INTO column_doc VALUES ('axis', 'path', NULL, 'path of an input that some campaign varied', 0);
 
 INSERT INTO column_doc VALUES ('axis', 'unit', NULL, 'SI unit of the input', 0);
-
-INSERT INTO column_doc VALUES ('axis', 'written_unit', NULL, 'unit of its values in the campaign: that of tables for people; NULL: SI', 0);
 
 INSERT INTO column_doc VALUES ('bin', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
 
@@ -1274,6 +1272,8 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
+INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.1: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
+
 INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'attempt', NULL, 'which attempt succeeded, from 1', 0);
@@ -1544,9 +1544,9 @@ INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broke
 
 INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
+INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.1: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
 
-INSERT INTO column_doc VALUES ('session', 'campaign_id', NULL, 'the campaign it computed; NULL in sessions of older programs that computed nothing', 0);
+INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
 
 INSERT INTO column_doc VALUES ('session', 'ended_at', NULL, 'UTC, ISO 8601; NULL while running or when it was killed', 0);
 

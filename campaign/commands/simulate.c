@@ -1,6 +1,6 @@
 /* `clast simulate SCENE`: one run, without a store. */
 #include "campaign/commands/commands.h"
-#include "campaign/document/campaign.h"
+#include "campaign/document/campaign_warn.h"
 #include "campaign/one_run/one_run.h"
 #include "campaign/one_run/resume.h"
 #include "campaign/terminal/results.h"
@@ -15,6 +15,8 @@ struct options {
 static status simulate(const struct scene *scene, const struct one_run_options *options, enum table_format format,
                        struct error *error) {
   struct run_result result = {0};
+  if (!options->quiet)
+    campaign_warn_scene(scene, "clast: warning: ", stderr);
   status code = one_run(scene, options, &result, error);
   /* Results are printed also when a file could not be written: hours of computing must not be lost for that. */
   if (result.result) {
@@ -29,6 +31,8 @@ static status simulate(const struct scene *scene, const struct one_run_options *
     code = status_fail(error, STATUS_FAILED_RUNS, "the run ended without a usable result: %s", result.outcome.message);
   else if (*result.outcome.message && !options->quiet)
     fprintf(stderr, "clast: %s\n", result.outcome.message);
+  if (*result.outcome.warnings && !options->quiet)
+    fprintf(stderr, "clast: warnings of this run: %s (`clast explain warnings`)\n", result.outcome.warnings);
 cleanup:
   run_result_clear(&result);
   return code;

@@ -118,7 +118,11 @@ static bool read_cell(struct reading *r, size_t column, int64_t line, const char
   if (!*cell)
     return wrong(r, line, "%s: the cell is empty", axis->row->path);
   snprintf(text, sizeof text, "%s%s%s", cell, bare && *r->units[column] ? " " : "", bare ? r->units[column] : "");
-  if (field_parse(axis->row, text, &axis->levels[r->campaign->design.points], &error) != STATUS_OK)
+  const bool plain = bare && strcmp(r->units[column], "1") == 0; /* [1]: fractions, where percent are asked for */
+  struct field_value *value = &axis->levels[r->campaign->design.points];
+  const status code = plain ? field_parse_si(axis->row, cell, value, &error)
+                            : field_parse(axis->row, text, value, &error);
+  if (code != STATUS_OK)
     return wrong(r, line, "%s", error.message);
   return true;
 }

@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "campaign/document/campaign_walk.h"
+#include "campaign/document/campaign_warn.h"
 #include "campaign/driver/pilot.h"
 #include "campaign/terminal/progress.h"
 #include "db/ask/run.h"
@@ -272,7 +273,9 @@ void plan_print(const struct campaign *campaign, const struct plan *plan, int sl
     fprintf(out, "\n%-8s  %s: ", i ? "" : "over", campaign->axes[i].row->path);
     design_axis_describe(campaign->axes, i, out);
   }
-  fprintf(out, "\nruns      %llu", (unsigned long long)plan->runs_least);
+  fputc('\n', out);
+  campaign_warn(campaign, "warning   ", out);
+  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
   if (range)
     fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
             campaign->until_half_width);

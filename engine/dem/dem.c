@@ -22,6 +22,10 @@ static size_t memory(const void *inputs) {
   return (size_t)(dem_inputs_grains(inputs) * BYTES_PER_GRAIN) + BYTES_ANYWAY;
 }
 
+static unsigned warn(const void *inputs, FILE *out) {
+  return dem_warn_inputs(inputs, out);
+}
+
 static double work(const void *inputs) {
   const struct dem_inputs *in = inputs;
   return dem_inputs_grains(in) * dem_inputs_end_time(in) / in->fidelity.time_step;
@@ -98,6 +102,7 @@ const struct engine_kind dem_engine = {
     .inputs = &dem_inputs,
     .results = &dem_results,
     .check = check,
+    .warn = warn,
     .describe = describe,
     .memory = memory,
     .work = work,

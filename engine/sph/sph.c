@@ -14,6 +14,10 @@ static status check(const void *inputs, struct error *error) {
   return sph_inputs_check(inputs, error);
 }
 
+static unsigned warn(const void *inputs, FILE *out) {
+  return sph_warn_inputs(inputs, out);
+}
+
 static char *describe(const void *inputs) {
   return sph_describe_scene(inputs);
 }
@@ -99,6 +103,7 @@ const struct engine_kind sph_engine = {
     .results = &sph_results,
     .complete = complete,
     .check = check,
+    .warn = warn,
     .describe = describe,
     .memory = memory,
     .work = work,

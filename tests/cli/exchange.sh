@@ -58,7 +58,7 @@ design: {file: points.csv}
 seeds: {per_point: 3}
 store: design.db
 YAML
-printf '\xef\xbb\xbf"strain","threshold.angle [deg]"\r\n0.02,2\r\n\r\n# a note\n5 %%,2\n0.02,0.10471975511965977 rad\n"5e-2",6 deg' >in/points.csv
+printf '\xef\xbb\xbf"strain [1]","threshold.angle [deg]"\r\n0.02,2\r\n\r\n# a note\n5 %%,2\n0.02,0.10471975511965977 rad\n"5e-2",6 deg' >in/points.csv
 expect 0 "$clast" run in/design.yaml -j 2 --quiet
 "$clast" query rows.db "select identity, largest_fraction from runs order by 1" --csv >grid.csv
 "$clast" query design.db "select identity, largest_fraction from runs order by 1" --csv | cmp -s - grid.csv ||
@@ -84,9 +84,9 @@ points_say() {
 points_say 'strain,angel\n0.02,2\n' "design.yaml:4:16: error: design.file: points.csv:1:" "angle"
 points_say 'strain,threshold.strain\n0.02,2\n' "points.csv:1: two columns for threshold.strain"
 points_say '"",strain\n1,0.02\n' "points.csv:1: column 1 has no name" "index=False"
-points_say 'strain,threshold.angle [deg]\n0.02,2\n0.02,2 s\n0.02\n0.02,\n-1,2\n' "points.csv:3:" "points.csv:4: 1 cells, but the header has 2" \
+points_say 'strain [1],threshold.angle [deg]\n0.02,2\n0.02,2 s\n0.02\n0.02,\n-1,2\n' "points.csv:3:" "points.csv:4: 1 cells, but the header has 2" \
   "points.csv:5: threshold.angle: the cell is empty" "points.csv:6:"
-points_say 'strain,threshold.angle [kg]\n0.02,2\n' "points.csv:2:" "kg"
+points_say 'strain [1],threshold.angle [kg]\n0.02,2\n' "points.csv:2:" "kg"
 points_say 'strain\n"0.02\n' "points.csv:2: a double quote is not closed"
 points_say 'strain\n' "no points"
 points_say '' "no points"

@@ -374,7 +374,7 @@ static void energy_bound_ends_a_run(void **state) {
   struct ran ran = run_case_run(&dem_engine, &inputs, 3);
   assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
   assert_int_equal(ran.results.dem.stop_reason, DEM_STOP_FAULT);
-  assert_non_null(strstr(ran.outcome.message, "time step"));
+  assert_non_null(strstr(ran.outcome.message, "fidelity.time_step"));
   free(ran.fragments);
   inputs.stop.end_time = 5e-5; /* over before the first regular look at the ledger: the last look counts */
   ran = run_case_run(&dem_engine, &inputs, 3);

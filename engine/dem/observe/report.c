@@ -153,10 +153,17 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
     dem_loading_results(run, results);
 }
 
-/* Says so when grains met too fast, unless the run has a fault: that message is worse. */
-static void warn_of_passing(const struct dem_run *run, struct outcome *outcome) {
+/* The words of doubts. A message says so when grains met too fast, unless the run has a fault: that message is worse.
+ */
+static void warn(const struct dem_run *run, struct outcome *outcome) {
   const double fastest = dem_system_fastest_approach(run->system);
-  if (run->passing_speed > 0 && fastest > run->passing_speed && outcome->state <= OUTCOME_END_TIME)
+  unsigned set = dem_warn_known(&run->inputs, run->stable_time_step);
+  if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
+    set |= WARNINGS_DRIFT;
+  if (run->passing_speed > 0 && fastest > run->passing_speed)
+    set |= WARNINGS_PASSING;
+  warnings_words(set, outcome->warnings, sizeof outcome->warnings);
+  if (set & WARNINGS_PASSING && outcome->state <= OUTCOME_END_TIME)
     snprintf(outcome->message, sizeof outcome->message,
              "grains closed in at %.4g m/s: above %.4g m/s they pass through each other, and the model has no answer",
              fastest, run->passing_speed);
@@ -191,7 +198,6 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
                               .time_step = run->inputs.fidelity.time_step};
   snprintf(outcome->message, sizeof outcome->message, "%s",
            run->state.finished ? run->state.message : "not finished: results of a snapshot");
-  warn_of_passing(run, outcome);
   const struct outcome_small small = small_fragments(*count, *fragments);
   outcome_fragments(outcome, *count, *fragments, &small);
   results->energy.vibration = vibration(*count, *fragments);
@@ -215,5 +221,6 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
     translation += 0.5 * (*fragments)[k].mass * (v[0] * v[0] + v[1] * v[1]);
   }
   outcome->kinetic_energy_share = input > 0 ? not_infinite(translation / input) : (double)NAN;
+  warn(run, outcome);
   return STATUS_OK;
 }

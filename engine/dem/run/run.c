@@ -6,8 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CHECK_INTERVAL = 100 }; /* steps between checks of the energy ledger; a check costs about a step */
-
 double dem_run_closed(const struct dem_ledger *l) {
   return l->kinetic + l->beam + l->contact + l->broken_beam + l->damping + l->friction - l->external_work;
 }
@@ -57,24 +55,32 @@ static void held_force(const struct dem_run *run, double force[2]) {
  * without a step in which they overlap, and the energy ledger would not show it. */
 static const double largest_way = 0.5;
 
-static double longest_way(const struct dem_run *run) {
-  double fastest = 0, area = 0;
+/* The fastest grain, or the first one that is not finite. */
+static uint32_t fastest_grain(const struct dem_run *run, double *speed) {
+  uint32_t fastest = 0;
+  *speed = 0;
   for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
     struct dem_grain g = dem_system_grain(run->system, i);
-    fastest = g.present ? fmax(fastest, hypot(g.vx, g.vy)) : fastest;
-    area += run->tessellation->area[i];
+    const double v = g.present ? hypot(g.vx, g.vy) : 0;
+    if (v > *speed || !isfinite(v + g.x + g.y)) {
+      fastest = i;
+      *speed = v;
+    }
+    if (!isfinite(v + g.x + g.y))
+      break;
   }
-  double diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
-  return fastest * run->inputs.fidelity.time_step / diameter;
+  return fastest;
 }
 
 static void check_speed(struct dem_run *run) {
-  double way = longest_way(run);
+  double speed;
+  const uint32_t grain = fastest_grain(run, &speed);
+  const double way = speed * run->inputs.fidelity.time_step / run->grain_diameter;
   if (run->inputs.contact.law != DEM_CONTACT_OFF && way > largest_way)
     dem_run_end(run, DEM_STOP_FAULT, OUTCOME_TIME_STEP,
-                "at %.6g s a grain moves by %.3g grain diameters in a time step and could pass through others unseen: "
+                "at %.6g s grain %u moves by %.3g grain diameters in a time step and could pass through others unseen: "
                 "give a fidelity.time_step below %.3g s",
-                dem_system_time(run->system), way, run->inputs.fidelity.time_step * largest_way / way);
+                dem_system_time(run->system), (unsigned)grain, way, run->inputs.fidelity.time_step * largest_way / way);
 }
 
 status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem_run **out, struct error *error) {
@@ -98,6 +104,10 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
     code = status_fail(error, STATUS_MEMORY, "no memory for %zu grains", run->tessellation->cell_count);
     goto cleanup;
   }
+  double area = 0;
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++)
+    area += run->tessellation->area[i];
+  run->grain_diameter = sqrt(4 / M_PI * area / (double)run->tessellation->cell_count);
   run->stable_time_step = dem_system_stable_time_step(run->system);
   run->passing_speed = dem_describe_passing_speed(inputs);
   if (inputs->fidelity.time_step > run->stable_time_step) {
@@ -140,23 +150,39 @@ static double input_now(const struct dem_run *run, const struct dem_ledger *ledg
   return run->state.energy_input + fabs(ledger->external_work);
 }
 
+static void end_not_finite(struct dem_run *run, const char *quantity) {
+  double speed;
+  const uint32_t grain = fastest_grain(run, &speed);
+  dem_run_end(run, DEM_STOP_FAULT, OUTCOME_NOT_FINITE,
+              "%s is no longer finite at %.6g s; grain %u is the fastest, at %.3g m/s: give a shorter "
+              "fidelity.time_step, or less contact damping",
+              quantity, dem_system_time(run->system), (unsigned)grain, speed);
+}
+
 static void check_energy(struct dem_run *run) {
   struct dem_ledger ledger = dem_system_ledger(run->system);
   double closed = dem_run_closed(&ledger), input = input_now(run, &ledger);
   if (!isfinite(closed)) {
-    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s",
-                dem_system_time(run->system));
+    end_not_finite(run, "the energy");
     return;
   }
   double drift = fabs(closed - run->state.closed_start), bound = run->inputs.fidelity.energy_bound;
   /* Under a load the work starts from zero: check once the sides move at their full speed. */
   if (dem_inputs_loaded(&run->inputs) && dem_system_time(run->system) < run->inputs.loading.ramp)
     return;
-  if (!field_is_off(bound) && input > 0 && drift > bound * input)
-    dem_run_end(run, DEM_STOP_FAULT, OUTCOME_ENERGY,
-                "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound "
-                "%.3g: give a shorter time step",
-                dem_system_time(run->system), drift / input, bound);
+  if (field_is_off(bound) || !(input > 0) || drift <= bound * input)
+    return;
+  double speed;
+  const uint32_t grain = fastest_grain(run, &speed);
+  dem_run_end(run, DEM_STOP_FAULT, OUTCOME_ENERGY,
+              "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound "
+              "%.3g; grain %u is the fastest, at %.3g m/s: give a shorter fidelity.time_step, or less contact damping",
+              dem_system_time(run->system), drift / input, bound, (unsigned)grain, speed);
+}
+
+void dem_run_look(struct dem_run *run) {
+  check_energy(run);
+  check_speed(run);
 }
 
 static void check_stop(struct dem_run *run) {
@@ -185,8 +211,7 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
     if (is_loaded)
       dem_loading_drive(run);
     if (!dem_system_step(run->system)) {
-      dem_run_end(run, DEM_STOP_FAULT, OUTCOME_NOT_FINITE, "a grain's position or velocity is not finite at %.6g s",
-                  dem_system_time(run->system));
+      end_not_finite(run, "a position or velocity");
       return;
     }
     if (is_loaded) {
@@ -199,9 +224,7 @@ void dem_run_advance(struct dem_run *run, uint64_t max_steps) {
       dem_loading_record(run);
     }
     check_stop(run);
-    if (dem_system_steps(run->system) % CHECK_INTERVAL == 0 || run->state.finished) {
-      check_energy(run);
-      check_speed(run);
-    }
+    if (dem_system_steps(run->system) % DEM_RUN_LOOKS == 0 || run->state.finished)
+      dem_run_look(run);
   }
 }

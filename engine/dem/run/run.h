@@ -6,6 +6,7 @@
 #include "engine/dem/scene/inputs.h"
 #include "engine/dem/step/system.h"
 #include "engine/engine.h"
+#include "engine/warnings.h"
 
 /* One point of the stress-strain curve: means over the steps since the point before it. Extension is positive. */
 struct dem_sample {
@@ -32,7 +33,8 @@ struct dem_run {
   struct dem_system *system;
   struct dem_state state;
   double stable_time_step;
-  double passing_speed; /* m/s: grains that close in faster pass through each other; 0 without contacts */
+  double grain_diameter; /* m, of the circle of mean area */
+  double passing_speed;  /* m/s: grains that close in faster pass through each other; 0 without contacts */
 
   uint32_t charge;     /* the explosive grain, or UINT32_MAX */
   unsigned char *held; /* by grain: bit 1 x, 2 y, 4 rotation */
@@ -50,6 +52,10 @@ status dem_run_create(const struct dem_inputs *inputs, uint64_t seed, struct dem
 void dem_run_free(struct dem_run *run); /* NULL is fine */
 /* At most max_steps, independent of how they are split over calls. */
 void dem_run_advance(struct dem_run *run, uint64_t max_steps);
+/* The monitor: ends the run when its energy drifts or a grain is too fast. Called every DEM_RUN_LOOKS steps and at the
+ * end; a look costs about a step. That all is finite is seen at every step. */
+enum { DEM_RUN_LOOKS = 100 };
+void dem_run_look(struct dem_run *run);
 double dem_run_closed(const struct dem_ledger *ledger); /* the sum that must stay constant, J/m */
 /* Sum over grains free along each axis, and sum of all magnitudes, kg/s per m of thickness. */
 void dem_run_momentum(const struct dem_run *run, double momentum[2], double *magnitude);
@@ -80,6 +86,14 @@ double dem_describe_threshold_energy(const struct dem_inputs *inputs, const stru
 /* Closing speed above which two free grains pass through each other: no overlap stores so much energy, m/s. */
 double dem_describe_passing_speed(const struct dem_inputs *inputs);
 void dem_describe_sound_speeds(const struct dem_inputs *inputs, double *extension, double *compression);
+
+/* warn.c */
+double dem_warn_stable_step(const struct dem_inputs *inputs); /* s: an estimate, without a body */
+double dem_warn_damping(const struct dem_inputs *inputs);     /* 1/s: the largest that acts */
+/* Doubts about step and damping, once the longest stable step is known. */
+unsigned dem_warn_known(const struct dem_inputs *inputs, double stable_step);
+/* Doubts before the run: engine_kind.warn. */
+unsigned dem_warn_inputs(const struct dem_inputs *inputs, FILE *out);
 
 /* snapshot.c */
 status dem_snapshot_write(struct dem_run *run, const char *path, struct error *error);

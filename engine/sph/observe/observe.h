@@ -7,6 +7,7 @@
 #include "engine/sph/observe/crater.h"
 #include "engine/sph/observe/sph_fragments.h"
 #include "engine/sph/run/run.h"
+#include "engine/warnings.h"
 
 /* protocol_record.c: the curve of a stretch, a vibration or a piston. Other protocols record nothing. STATUS_MEMORY. */
 status sph_protocol_record_start(struct sph_run *run, struct error *error);
@@ -30,6 +31,8 @@ struct sph_plate_regions sph_plate_regions(const struct sph_run *run);
 double sph_plate_mean(const struct sph_run *run, const double *column, const double region[2]);
 /* Fills the results shock.* and precursor.* from the recorded curve and from the particles last read. */
 void sph_plate_report(const struct sph_run *run, struct sph_results *results);
+/* Is matter of the plate behind the piston's face? From the particles last read. */
+bool sph_plate_leaks(const struct sph_run *run);
 
 /* report.c: from the final state to outcome, results and fragments. */
 struct sph_crater_options sph_report_crater_options(const struct sph_run *run);

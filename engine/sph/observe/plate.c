@@ -140,3 +140,12 @@ void sph_plate_report(const struct sph_run *run, struct sph_results *r) {
     r->precursor.pressure_exact = exact->precursor.pressure;
   }
 }
+
+bool sph_plate_leaks(const struct sph_run *run) {
+  const double piston = run->inputs.piston.speed * sph_system_time(run->system);
+  const double behind = piston - sph_derived_spacing(&run->inputs) / 2;
+  for (size_t i = run->range[0].first; i < run->range[0].first + run->range[0].n; i++)
+    if (run->now->x[i] < behind)
+      return true;
+  return false;
+}

@@ -12,6 +12,9 @@
 /* `link_h` of the inputs; parts of a rod count as separate when each is more than 1/ROD_PARTS of it. */
 enum { INITIAL_H = 0, ROD_PARTS = 100 };
 
+/* Shares above which a run is warned of (engine/warnings.h). */
+static const double largest_clamped = 0.01, largest_held = 0.01;
+
 status sph_report_fragments(const struct sph_run *run, double static_strength, bool layer, struct sph_fragments *out,
                             struct error *error) {
   const struct sph_inputs *in = &run->inputs;
@@ -287,6 +290,20 @@ static void fill_outcome(const struct sph_run *run, const struct sph_ledger *led
   outcome->momentum_error = closed(run) ? sph_results_share(norm(change), momentum_scale(run, ledger)) : (double)NAN;
 }
 
+/* The words of doubts. Whether the piston leaks is seen, not told from the inputs. */
+static void warn(const struct sph_run *run, const struct sph_results *results, struct outcome *outcome) {
+  unsigned set = sph_warn_inputs(&run->inputs, NULL) & ~(unsigned)WARNINGS_PISTON;
+  if (outcome->energy_error > WARNINGS_LARGEST_DRIFT)
+    set |= WARNINGS_DRIFT;
+  if (results->clamped_share > largest_clamped)
+    set |= WARNINGS_CLAMPED;
+  if (results->density_held_share > largest_held)
+    set |= WARNINGS_HELD;
+  if (run->inputs.kind == SPH_PISTON && sph_plate_leaks(run))
+    set |= WARNINGS_PISTON;
+  warnings_words(set, outcome->warnings, sizeof outcome->warnings);
+}
+
 status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sph_results *results,
                          struct fragment **fragments, size_t *count, struct error *error) {
   *fragments = NULL;
@@ -303,6 +320,7 @@ status sph_report_finish(struct sph_run *run, struct outcome *outcome, struct sp
   code = fill_results(run, &ledger, input, &found, results, error);
   if (!code) {
     fill_outcome(run, &ledger, input, &found, outcome);
+    warn(run, results, outcome);
     *fragments = found.fragments;
     *count = found.count;
     found.fragments = NULL;

@@ -10,11 +10,9 @@
 #include "engine/sph/observe/observe.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
+#include "engine/warnings.h"
 
-enum {
-  LOOK_INTERVAL = 8,    /* steps between looks at the damage */
-  LEDGER_INTERVAL = 64, /* steps between looks at the energy, each a pass over all particles */
-};
+enum { LOOK_INTERVAL = 8 }; /* steps between looks at the damage */
 
 double sph_run_closed(const struct sph_ledger *l) {
   return l->kinetic + l->internal + l->damped - l->work_of_held;
@@ -154,23 +152,45 @@ static void look_at_damage(struct sph_run *run) {
     end(run, SPH_STOP_QUIET, OUTCOME_COMPLETED, "%s", "");
 }
 
+/* The particle whose speed is largest, by its id; its speed, m/s. */
+static size_t fastest_particle(struct sph_run *run, double *speed) {
+  const struct sph_particles *p = sph_run_read(run);
+  size_t fastest = 0;
+  *speed = 0;
+  for (size_t i = 0; i < p->n; i++) {
+    const double v = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i] + p->vz[i] * p->vz[i]);
+    if (!(v <= *speed)) {
+      fastest = i;
+      *speed = v;
+    }
+  }
+  return fastest;
+}
+
+/* What helps against a drift, by its cause. */
+static const char *remedy_of_drift(const struct sph_run *run, const struct sph_ledger *ledger, double drift) {
+  if (sph_warn_inputs(&run->inputs, NULL) & WARNINGS_CONTRAST)
+    return "bodies differ much in density: set method.volume_weights: true";
+  if (fabs(ledger->clamped) > drift / 2)
+    return "most of it is energy.clamped, of cold matter held at u = 0: raise the bound, or take more particles";
+  return "lower fidelity.cfl, or take more particles";
+}
+
 static void look_at_energy(struct sph_run *run) {
   struct sph_ledger ledger = sph_system_ledger(run->system);
   double closed = sph_run_closed(&ledger), input = run->state.energy_input + fabs(ledger.work_of_held);
-  double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound;
-  if (!isfinite(closed))
-    end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE, "the energy is no longer finite at %.6g s",
-        sph_system_time(run->system));
-  else if (!field_is_off(bound) && input > 0 && drift > bound * input) {
-    char clamped[120] = "";
-    if (fabs(ledger.clamped) > drift / 2)
-      snprintf(clamped, sizeof clamped,
-               "; %.3g of it is energy.clamped, of cold matter held at u = 0: if that stays, raise the bound",
-               ledger.clamped / input);
+  double drift = fabs(closed - run->state.energy_start), bound = run->inputs.fidelity.energy_bound, speed;
+  if (!isfinite(closed)) {
+    const size_t particle = fastest_particle(run, &speed);
+    end(run, SPH_STOP_FAULT, OUTCOME_NOT_FINITE,
+        "the energy is no longer finite at %.6g s; particle %zu is the fastest, at %.3g m/s: lower fidelity.cfl",
+        sph_system_time(run->system), particle, speed);
+  } else if (!field_is_off(bound) && input > 0 && drift > bound * input) {
+    const size_t particle = fastest_particle(run, &speed);
     end(run, SPH_STOP_FAULT, OUTCOME_ENERGY,
-        "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g: lower "
-        "fidelity.cfl, or take more particles%s",
-        sph_system_time(run->system), drift / input, bound, clamped);
+        "at %.6g s the energy ledger has drifted by %.3g of the energy put in, above fidelity.energy_bound %.3g; "
+        "particle %zu is the fastest, at %.3g m/s: %s",
+        sph_system_time(run->system), drift / input, bound, particle, speed, remedy_of_drift(run, &ledger, drift));
   }
 }
 
@@ -206,7 +226,7 @@ status sph_run_advance(struct sph_run *run, uint64_t max_steps) {
     if (can_crack(run) && steps % LOOK_INTERVAL == 0)
       look_at_damage(run);
     look_at_end(run);
-    if (steps % LEDGER_INTERVAL == 0 || state->finished)
+    if (steps % SPH_RUN_LOOKS == 0 || state->finished)
       look_at_energy(run);
   }
   return STATUS_OK;

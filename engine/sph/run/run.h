@@ -60,6 +60,8 @@ struct sph_run {
 
 status sph_run_create(const struct sph_inputs *inputs, uint64_t seed, struct sph_run **out, struct error *error);
 void sph_run_free(struct sph_run *run); /* NULL is fine */
+/* Steps between looks at the energy, each a pass over all particles. That all is finite is seen at every step. */
+enum { SPH_RUN_LOOKS = 64 };
 /* At most max_steps. The result does not depend on how steps are split over calls. STATUS_MEMORY: this is no result,
  * and the run cannot go on. */
 status sph_run_advance(struct sph_run *run, uint64_t max_steps);
@@ -76,5 +78,11 @@ status sph_protocol_bodies(struct sph_run *run, struct error *error);
 char *sph_describe_scene(const struct sph_inputs *inputs);
 size_t sph_describe_memory(const struct sph_inputs *inputs); /* bytes a run will need */
 double sph_describe_work(const struct sph_inputs *inputs);   /* particle-steps, near enough */
+
+/* warn.c */
+/* Ratio of the densities of target and projectile, 1 where it does no harm. */
+double sph_warn_contrast(const struct sph_inputs *inputs);
+/* Doubts before the run: engine_kind.warn. */
+unsigned sph_warn_inputs(const struct sph_inputs *inputs, FILE *out);
 
 #endif

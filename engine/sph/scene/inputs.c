@@ -286,7 +286,7 @@ static const struct field rows[] = {
            .doc = "Arithmetic of the pair loop."),
     COUNT(fidelity.threads, 1, 1, 1024,
           .doc = "Threads of one run, for a big one on an idle machine. The bits do not depend on it."),
-    REAL(fidelity.energy_bound, "1", 0.05, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
+    REAL(fidelity.energy_bound, "1", 0.01, 0, 1e3, .flags = FIELD_MAY_BE_OFF | FIELD_ABOVE_MINIMUM | FIELD_PERCENT,
          .doc = "The run ends with state `energy` when the ledger drifts by more than this share of the energy put in. "
                 "off: it "
                 "only reports the drift."),

@@ -146,8 +146,8 @@ static bool gather(struct sph_system *s, double dt) {
       const size_t i = s->block[k].lost;
       s->fault = SPH_FAULT_NOT_FINITE;
       snprintf(s->failure, sizeof s->failure,
-               "particle %u of body %u is no longer finite (or beyond 1e30) at %.6g s, step %llu: x %.4g %.4g %.4g m, "
-               "density %.4g kg/m^3, energy %.4g J/kg",
+               "particle %u of body %u is not finite (or beyond 1e30) at %.6g s, step %llu: x %.3g %.3g %.3g m, "
+               "density %.3g kg/m^3, energy %.3g J/kg: lower fidelity.cfl",
                (unsigned)s->id[i], (unsigned)s->block[k].body, s->now.time, (unsigned long long)s->now.steps, s->c.x[i],
                s->c.y[i], s->c.z[i], s->c.density[i], s->c.energy[i]);
       return false;
@@ -199,6 +199,14 @@ static double choose_step(const struct sph_system *s, double until, int *limiter
   return dt;
 }
 
+static size_t hottest(const struct sph_system *s) {
+  size_t most = 0;
+  for (size_t i = 1; i < s->n; i++)
+    if (s->c.energy[i] > s->c.energy[most])
+      most = i;
+  return most;
+}
+
 bool sph_system_step(struct sph_system *s, double until) {
   int limiter;
   if (s->fault)
@@ -214,10 +222,14 @@ bool sph_system_step(struct sph_system *s, double until) {
 #define TIME_STEP_LIMIT(NAME, member, ...) #member,
 #include "engine/sph/modules/declarations.h"
         "given", "end"};
+    const char *remedy = s->in.method.volume_weights ? "lower fidelity.cfl, or take more particles"
+                                                     : "lower fidelity.cfl, or set method.volume_weights: true";
     s->fault = SPH_FAULT_TIME_STEP;
     snprintf(s->failure, sizeof s->failure,
-             "the time step fell to %.3g s (%s limit) at %.6g s, step %llu; it began with %.3g s", dt, names[limiter],
-             s->now.time, (unsigned long long)s->now.steps, s->now.first_step);
+             "the time step fell to %.3g s (%s limit) at %.6g s, step %llu; it began with %.3g s. Particle %u is the "
+             "hottest, at %.3g J/kg: %s",
+             dt, names[limiter], s->now.time, (unsigned long long)s->now.steps, s->now.first_step,
+             (unsigned)s->id[hottest(s)], s->c.energy[hottest(s)], remedy);
     return false;
   }
   const bool done = advance(s, dt);

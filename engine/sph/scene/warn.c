@@ -1,0 +1,59 @@
+/* Doubts that inputs raise before a run. The limits are measured: tests/extremes/map.md. */
+#include <math.h>
+
+#include "engine/sph/run/run.h"
+#include "engine/sph/scene/derived.h"
+#include "engine/warnings.h"
+
+/* Without much viscosity the energy drifts at smaller steps, too. */
+static const double largest_cfl = 0.5, largest_undamped_cfl = 0.2, least_viscosity = 0.5;
+/* Densities of bodies that touch: without volume weights the energy drifts by 1 % in some runs from 4 on. */
+static const double largest_contrast = 4;
+/* Compression that four layers of piston hold (tests/verification/sph_palpha_plate.md). */
+static const double largest_compression = 1.8;
+
+double sph_warn_contrast(const struct sph_inputs *in) {
+  if (!sph_derived_has_projectile(in) || in->method.volume_weights)
+    return 1;
+  const double target = sph_derived_density(&in->target), projectile = sph_derived_density(&in->projectile);
+  return fmax(target, projectile) / fmin(target, projectile);
+}
+
+/* Of the exact shock, NaN without one. */
+static double compression(const struct sph_inputs *in) {
+  struct sph_plane_shock exact;
+  if (in->kind != SPH_PISTON || sph_plane_shock(&in->target.material, in->piston.speed, &exact, NULL) ||
+      !exact.has_shock)
+    return (double)NAN;
+  return exact.shock.density / exact.first_density;
+}
+
+unsigned sph_warn_inputs(const struct sph_inputs *in, FILE *out) {
+  const double contrast = sph_warn_contrast(in), compressed = compression(in);
+  const double most = in->viscosity.alpha < least_viscosity ? largest_undamped_cfl : largest_cfl;
+  unsigned set = 0;
+  if (in->fidelity.cfl > most)
+    set |= WARNINGS_STEP;
+  if (contrast > largest_contrast)
+    set |= WARNINGS_CONTRAST;
+  if (compressed > largest_compression)
+    set |= WARNINGS_PISTON;
+  if (out && set & WARNINGS_STEP)
+    fprintf(out,
+            "step: fidelity.cfl %g is above %g with viscosity.alpha %g: energy may drift; give a cfl of %g, or more "
+            "viscosity\n",
+            in->fidelity.cfl, most, in->viscosity.alpha, most == largest_cfl ? 0.3 : 0.15);
+  if (out && set & WARNINGS_CONTRAST)
+    fprintf(
+        out,
+        "contrast: the densities of target and projectile differ by a factor of %.3g, above %g: energy may drift; set "
+        "method.volume_weights: true\n",
+        contrast, largest_contrast);
+  if (out && set & WARNINGS_PISTON)
+    fprintf(
+        out,
+        "piston: the shock compresses the plate %.3g-fold, and above %g-fold matter leaks through the piston: lower "
+        "piston.speed\n",
+        compressed, largest_compression);
+  return set;
+}

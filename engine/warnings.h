@@ -1,0 +1,38 @@
+/* Doubts about a run that is no failure: a word each, in the result column `warnings`. Some are known from the inputs,
+ * before the run; others only from what happened. */
+#ifndef CLAST_ENGINE_WARNINGS_H
+#define CLAST_ENGINE_WARNINGS_H
+
+#include <stddef.h>
+
+/* Name, word, what it means. The limits stand below, or in the engine that judges. */
+#define WARNINGS(X)                                                                                                    \
+  X(DRIFT, "drift", "the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows")      \
+  X(PASSING, "passing",                                                                                                \
+    "grains that no beam joins closed in faster than the speed at which they pass through each other (dem)")           \
+  X(STEP, "step",                                                                                                      \
+    "the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or "                       \
+    "above 0.2 with viscosity.alpha below 0.5 (sph)")                                                                  \
+  X(DAMPING, "damping", "damping over a time step is above 0.1: the integrator does not resolve it (dem)")             \
+  X(CLAMPED, "clamped", "cold matter held at u = 0 was given more than 1 % of the energy put in (sph)")                \
+  X(HELD, "held", "the density was held at its lower limit in more than 1 % of all particle steps (sph)")              \
+  X(CONTRAST, "contrast",                                                                                              \
+    "the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph)")    \
+  X(PISTON, "piston", "matter of the plate went through the piston (sph)")
+
+#define WARNINGS_BIT(name_, word_, doc_) WARNINGS_PLACE_##name_,
+enum warnings_place { WARNINGS(WARNINGS_BIT) WARNINGS_COUNT };
+#undef WARNINGS_BIT
+
+/* One bit each, to be joined with |. */
+#define WARNINGS_MASK(name_, word_, doc_) WARNINGS_##name_ = 1 << WARNINGS_PLACE_##name_,
+enum warnings_bits { WARNINGS(WARNINGS_MASK) };
+#undef WARNINGS_MASK
+
+/* Drift of the energy ledger over the energy put in, above which a run is warned of. */
+#define WARNINGS_LARGEST_DRIFT 0.01
+
+/* The words of a set, "passing, step"; empty for none. */
+void warnings_words(unsigned set, char *text, size_t size);
+
+#endif

@@ -1,0 +1,148 @@
+/* Limits with exact answers, on small bodies: nothing breaks, everything breaks, all flaws alike, no pores left, no
+ * speed. */
+#include "tests/support/run_case.h"
+
+static void release(struct ran *ran) {
+  free(ran->fragments);
+}
+
+#define DISC(...)                                                                                                      \
+  DEM_CASE("disc-explosion", "body.diameter=8 cm", "charge.energy=2 kJ/m", "stop.end_time=1 ms", __VA_ARGS__)
+#define IMPACT(...)                                                                                                    \
+  SPH_CASE("basalt-sphere", "fidelity.particles=300", "fidelity.projectile_spacing=0.6", "stop.end_time=30 us",        \
+           "fragments.static_strength=off", __VA_ARGS__)
+
+/* Grains and mass stay in one piece; energy and momenta are conserved. */
+static void one_piece(const struct ran *ran, double energy, double momentum) {
+  assert_int_equal(ran->outcome.state, OUTCOME_COMPLETED);
+  assert_true(ran->outcome.largest_fraction == 1 && ran->outcome.second_fraction == 0);
+  assert_int_equal(ran->outcome.fragment_count, 1);
+  assert_true(ran->outcome.dust_fraction == 0);
+  assert_true(ran->outcome.energy_error < energy);
+  assert_true(ran->outcome.momentum_error < momentum);
+}
+
+static void grains_that_cannot_part_stay_one_body(void **state) {
+  (void)state;
+  const struct dem_inputs cases[] = {
+      DISC("threshold.breaking=false"),
+      DISC("threshold.strain=100000 %", "threshold.angle=1000 rad"),
+      DISC("threshold.breaking=false", "fidelity.integrator=gear"),
+      DISC("threshold.breaking=false", "contact.law=off"),
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    struct ran ran = run_case_run(&dem_engine, &cases[c], 3);
+    /* 0.002 of the energy: Verlet at 1 us (0.0009 at 10 ms). Momentum: rounding of 1000 steps. */
+    one_piece(&ran, 2e-3, 1e-11);
+    assert_int_equal(ran.results.dem.broken, 0);
+    release(&ran);
+  }
+}
+
+/* Beams that bear nothing: each grain is a fragment, and the largest fragment is the largest grain. */
+static void beams_of_no_strength_leave_dust(void **state) {
+  (void)state;
+  const struct dem_inputs inputs = DISC("threshold.strain=1e-7 %", "threshold.angle=1e-6 deg");
+  struct ran ran = run_case_run(&dem_engine, &inputs, 3);
+  assert_true(ran.outcome.state <= OUTCOME_END_TIME);
+  assert_int_equal(ran.outcome.fragment_count, ran.results.dem.grains);
+  assert_int_equal(ran.outcome.single_count, ran.results.dem.grains);
+  assert_true(ran.outcome.dust_fraction == 1);
+  assert_int_equal(ran.fragments[0].count, 1);
+  release(&ran);
+}
+
+/* m to infinity: thresholds drawn by a law of one value are the thresholds themselves. */
+static void thresholds_of_large_modulus_are_all_alike(void **state) {
+  (void)state;
+  const struct dem_inputs cases[] = {DISC("threshold.modulus=off"), DISC("threshold.modulus=1e6")};
+  struct ran all = run_case_run(&dem_engine, &cases[0], 3), drawn = run_case_run(&dem_engine, &cases[1], 3);
+  assert_true(all.results.dem.broken > 20); /* else the comparison says nothing */
+  assert_int_equal(all.results.dem.broken, drawn.results.dem.broken);
+  assert_int_equal(all.count, drawn.count);
+  for (size_t k = 0; k < all.count; k++)
+    assert_true(all.fragments[k].mass == drawn.fragments[k].mass && all.fragments[k].first == drawn.fragments[k].first);
+  /* Thresholds differ by 1e-5 at most, and so does the time of the first break, to a time step. */
+  assert_true(fabs(all.results.dem.first_break - drawn.results.dem.first_break) < 1.5e-6);
+  release(&all);
+  release(&drawn);
+}
+
+static void solids_without_flaws_stay_whole(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {
+      IMPACT("target.fracture=off"),
+      IMPACT("target.material.weibull.k=1 1/m^3", "target.material.weibull.m=1"), /* strains of 1e4 */
+  };
+  for (size_t c = 0; c < sizeof cases / sizeof cases[0]; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    one_piece(&ran, 1e-3, 1e-11); /* 2e-4 and rounding */
+    assert_true(ran.results.sph.mean_damage == 0 && ran.results.sph.undamaged_fraction == 1);
+    release(&ran);
+  }
+}
+
+/* Flaws that open at no strain: nothing is left of the target. */
+static void solids_of_no_strength_become_dust(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = IMPACT("target.material.weibull.k=1e200 1/m^3", "target.material.weibull.m=8.5",
+                                          "fracture.cap=none", "fragments.dust_mass=20 g");
+  struct ran ran = run_case_run(&sph_engine, &inputs, 3);
+  assert_true(ran.outcome.state <= OUTCOME_END_TIME);
+  assert_true(ran.results.sph.undamaged_fraction == 0);
+  assert_int_equal(ran.outcome.fragment_count, ran.results.sph.particles); /* single particles */
+  assert_true(ran.outcome.dust_fraction == 1);
+  release(&ran);
+}
+
+/* alpha_0 to 1 from above: a sphere with ever fewer pores becomes the solid one, and at 1 it is the solid to the bit.
+ */
+static void pores_that_vanish_leave_the_solid(void **state) {
+  (void)state;
+#define POROUS(alpha)                                                                                                  \
+  IMPACT("target.material.porosity.curve=quadratic", "target.material.porosity.distention=" alpha,                     \
+         "target.material.porosity.elastic_pressure=1 MPa", "target.material.porosity.solid_pressure=200 MPa",         \
+         "target.material.porosity.sound_speed=off")
+  const struct sph_inputs solid = IMPACT("fidelity.precision=double"), none = POROUS("1");
+  const struct sph_inputs few[] = {POROUS("1.001"), POROUS("1.00001"), POROUS("1.0000001")};
+  struct ran whole = run_case_run(&sph_engine, &solid, 3), same = run_case_run(&sph_engine, &none, 3);
+  assert_int_equal(whole.count, same.count);
+  assert_memory_equal(whole.fragments, same.fragments, whole.count * sizeof *whole.fragments);
+  double before = HUGE_VAL;
+  for (size_t k = 0; k < 3; k++) {
+    struct ran ran = run_case_run(&sph_engine, &few[k], 3);
+    const double off = fabs(ran.results.sph.mean_damage - whole.results.sph.mean_damage);
+    assert_true(off < before || off < 1e-6);
+    before = off;
+    release(&ran);
+  }
+  assert_true(before < 1e-3);
+  release(&whole);
+  release(&same);
+}
+
+/* Nothing moves: no energy, no damage, no step too short. */
+static void no_speed_changes_nothing(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = IMPACT("impact.speed=0 m/s", "impact.gap=0");
+  struct ran ran = run_case_run(&sph_engine, &inputs, 3);
+  assert_int_equal(ran.outcome.state, OUTCOME_COMPLETED);
+  assert_true(ran.outcome.largest_fraction == 1 && ran.results.sph.mean_damage == 0);
+  assert_true(ran.results.sph.energy_input == 0 && isnan(ran.outcome.energy_error));
+  for (int d = 0; d < 3; d++)
+    assert_true(ran.fragments[0].velocity[d] == 0);
+  release(&ran);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(grains_that_cannot_part_stay_one_body),
+      cmocka_unit_test(beams_of_no_strength_leave_dust),
+      cmocka_unit_test(thresholds_of_large_modulus_are_all_alike),
+      cmocka_unit_test(solids_without_flaws_stay_whole),
+      cmocka_unit_test(solids_of_no_strength_become_dust),
+      cmocka_unit_test(pores_that_vanish_leave_the_solid),
+      cmocka_unit_test(no_speed_changes_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,243 @@
+/* The monitor of a run: faults planted into the moving system end the run at most 100 steps later, with a message that
+ * names the quantity, the grain or particle, the time and what to do. What it costs. */
+#include "engine/dem/run/run.h"
+#include "engine/dem/step/system_layout.h"
+#include "engine/sph/run/run.h"
+#include "engine/sph/step/system_layout.h"
+#include "engine/warnings.h"
+#include "schemas/clock.h"
+#include "tests/support/run_case.h"
+
+enum { LATE = 100, BEFORE = 300, VICTIM = 7 };
+
+static void names(const char *message, const char *const *words) {
+  for (; *words; words++)
+    if (!strstr(message, *words))
+      fail_msg("'%s' is not in '%s'", *words, message);
+}
+
+/* ---- dem ---- */
+
+static struct dem_run *disc(const char *extra) {
+  const struct dem_inputs inputs = DEM_CASE("disc-explosion", "body.diameter=8 cm", "charge.energy=2 kJ/m",
+                                            "stop.end_time=5 ms", extra);
+  struct dem_run *run = NULL;
+  struct error error = {0};
+  if (dem_run_create(&inputs, 3, &run, &error))
+    fail_msg("%s", error.message);
+  dem_run_advance(run, BEFORE);
+  assert_false(run->state.finished);
+  return run;
+}
+
+static void dem_ends(struct dem_run *run, int state, const char *const *words) {
+  uint64_t before = dem_system_steps(run->system);
+  dem_run_advance(run, 10000);
+  assert_true(run->state.finished);
+  assert_true(dem_system_steps(run->system) - before <= LATE);
+  assert_int_equal(run->state.outcome_state, state);
+  names(run->state.message, words);
+  dem_run_free(run);
+}
+
+static void energy_from_nowhere_ends_a_run_of_grains(void **state) {
+  (void)state;
+  struct dem_run *run = disc("threshold.breaking=true");
+  run->system->c.vx[VICTIM] += 400; /* a grain is hit by nothing */
+  dem_ends(run, OUTCOME_ENERGY,
+           (const char *const[]){"energy ledger has drifted", "is the fastest", " s ", "fidelity.time_step", NULL});
+}
+
+static void grains_that_are_lost_end_a_run(void **state) {
+  (void)state;
+  struct dem_run *run = disc("threshold.breaking=true");
+  run->system->c.vx[VICTIM] = (double)NAN;
+  dem_ends(run, OUTCOME_NOT_FINITE,
+           (const char *const[]){"position or velocity", "grain 7", " s", "fidelity.time_step", NULL});
+}
+
+static void grains_too_fast_for_the_step_end_a_run(void **state) {
+  (void)state;
+  struct dem_run *run = disc("fidelity.energy_bound=off");
+  run->system->c.vx[VICTIM] = 2e4; /* 2 cm in a step */
+  dem_ends(run, OUTCOME_TIME_STEP, (const char *const[]){"grain 7 moves by", "grain diameters", " s ", "below", NULL});
+}
+
+/* A time step that the run was not checked for: what is stable at the start need not stay so. */
+static void a_step_beyond_stability_ends_a_run(void **state) {
+  (void)state;
+  for (int gear = 0; gear < 2; gear++) {
+    struct dem_run *run = disc(gear ? "fidelity.integrator=gear" : "fidelity.integrator=verlet");
+    run->inputs.fidelity.time_step = 4 * run->stable_time_step;
+    const uint64_t before = dem_system_steps(run->system);
+    dem_run_advance(run, 1000);
+    assert_true(run->state.finished && run->state.outcome_state != OUTCOME_COMPLETED);
+    assert_true(dem_system_steps(run->system) - before <= 1000 && *run->state.message);
+    dem_run_free(run);
+  }
+}
+
+/* ---- sph ---- */
+
+static struct sph_run *sphere(const char *extra) {
+  const struct sph_inputs inputs = SPH_CASE("basalt-sphere", "fidelity.particles=300",
+                                            "fidelity.projectile_spacing=0.6", "stop.end_time=1 ms",
+                                            "stop.quiet_time=1 ms", extra);
+  struct sph_run *run = NULL;
+  struct error error = {0};
+  if (sph_run_create(&inputs, 3, &run, &error))
+    fail_msg("%s", error.message);
+  assert_int_equal(sph_run_advance(run, BEFORE), STATUS_OK);
+  assert_false(run->state.finished);
+  return run;
+}
+
+static void sph_ends(struct sph_run *run, int state, const char *const *words) {
+  uint64_t before = sph_system_steps(run->system);
+  assert_int_equal(sph_run_advance(run, 10000), STATUS_OK);
+  assert_true(run->state.finished);
+  assert_true(sph_system_steps(run->system) - before <= LATE);
+  assert_int_equal(run->state.outcome_state, state);
+  names(run->state.message, words);
+  sph_run_free(run);
+}
+
+static void energy_from_nowhere_ends_a_run_of_particles(void **state) {
+  (void)state;
+  struct sph_run *run = sphere("fidelity.precision=double");
+  run->system->c.vx[VICTIM] += 5000;
+  sph_ends(run, OUTCOME_ENERGY,
+           (const char *const[]){"energy ledger has drifted", "particle ", "is the fastest", " s ", "fidelity.cfl",
+                                 NULL});
+}
+
+static void particles_that_are_lost_end_a_run(void **state) {
+  (void)state;
+  struct sph_run *run = sphere("fidelity.precision=double");
+  char particle[40];
+  run->system->c.energy[VICTIM] = (double)NAN;
+  snprintf(particle, sizeof particle, "particle %u of body", (unsigned)run->system->id[VICTIM]);
+  sph_ends(run, OUTCOME_NOT_FINITE, (const char *const[]){particle, "energy nan J/kg", " s,", "fidelity.cfl", NULL});
+}
+
+static void steps_that_collapse_end_a_run(void **state) {
+  (void)state;
+  struct sph_run *run = sphere("fidelity.energy_bound=off");
+  char particle[60];
+  run->system->c.energy[VICTIM] = 1e28; /* hotter than anything: its sound speed allows no step */
+  snprintf(particle, sizeof particle, "Particle %u is the hottest", (unsigned)run->system->id[VICTIM]);
+  sph_ends(run, OUTCOME_TIME_STEP, (const char *const[]){"time step fell to", particle, " s", "fidelity.cfl", NULL});
+}
+
+/* ---- doubts ---- */
+
+static struct ran finished(const struct engine_kind *kind, const void *inputs) {
+  struct ran ran = run_case_run(kind, inputs, 3);
+  free(ran.fragments);
+  return ran;
+}
+
+static void doubts_are_in_the_result(void **state) {
+  (void)state;
+#define SMALL_DISC(...)  DEM_CASE("disc-explosion", "body.diameter=8 cm", "stop.end_time=0.2 ms", __VA_ARGS__)
+#define SMALL_PLATE(...) SPH_CASE("porous-plate", "fidelity.points=40", __VA_ARGS__)
+  struct dem_inputs in = SMALL_DISC("charge.energy=2 MJ/m", "fidelity.time_step=0.1 us");
+  assert_string_equal(finished(&dem_engine, &in).outcome.warnings, "passing");
+  assert_int_equal(dem_engine.warn(&in, NULL), WARNINGS_PASSING);
+  in = SMALL_DISC("charge.energy=200 J/m");
+  assert_string_equal(finished(&dem_engine, &in).outcome.warnings, "");
+  in = SMALL_DISC("charge.energy=200 J/m", "fidelity.time_step=3 us", "fidelity.integrator=gear");
+  assert_string_equal(finished(&dem_engine, &in).outcome.warnings, "step");
+  in = SMALL_DISC("charge.energy=200 J/m", "contact.normal_damping=1e6 1/s");
+  assert_non_null(strstr(finished(&dem_engine, &in).outcome.warnings, "damping"));
+
+  struct sph_inputs plate = SMALL_PLATE("piston.speed=458 m/s");
+  assert_string_equal(finished(&sph_engine, &plate).outcome.warnings, "");
+  plate = SMALL_PLATE("piston.speed=20 km/s", "target.material.porosity.distention=2");
+  assert_string_equal(finished(&sph_engine, &plate).outcome.warnings, "piston");
+  assert_int_equal(sph_engine.warn(&plate, NULL), WARNINGS_PISTON);
+}
+
+/* A drift of 1.2 % within a bound of 2 % counts, and says so. */
+static void drift_within_a_wide_bound_is_flagged(void **state) {
+  (void)state;
+  struct dem_run *run = disc("fidelity.energy_bound=50 %");
+  struct outcome outcome;
+  struct dem_results results;
+  struct fragment *fragments;
+  size_t count;
+  struct error error;
+  run->state.closed_start *= 1.05;
+  dem_run_advance(run, LATE);
+  assert_int_equal(dem_report_finish(run, &outcome, &results, &fragments, &count, &error), STATUS_OK);
+  assert_string_equal(outcome.warnings, "drift");
+  free(fragments);
+  dem_run_free(run);
+}
+
+/* Wide densities: the heavy body's particles are too strong for the light one's step, and volume weights cure it. */
+static void bodies_of_unlike_density_need_volume_weights(void **state) {
+  (void)state;
+#define LIGHT(...)                                                                                                     \
+  SPH_CASE("basalt-sphere", "fidelity.particles=200", "fidelity.projectile_spacing=0.8", "stop.end_time=20 us",        \
+           "target.material.density=20 kg/m^3", "projectile.material.name=basalt", "impact.projectile=size",           \
+           "projectile.radius=2 cm", "impact.angle=0 deg", "impact.gap=0 m", __VA_ARGS__)
+  struct sph_inputs in = LIGHT("impact.speed=1 km/s");
+  struct ran ran = finished(&sph_engine, &in);
+  assert_int_equal(ran.outcome.state, OUTCOME_ENERGY);
+  assert_non_null(strstr(ran.outcome.message, "method.volume_weights: true"));
+  assert_int_equal(sph_engine.warn(&in, NULL), WARNINGS_CONTRAST);
+  in = LIGHT("impact.speed=1 km/s", "method.volume_weights=true");
+  ran = finished(&sph_engine, &in);
+  assert_true(ran.outcome.state <= OUTCOME_END_TIME && ran.outcome.energy_error < 1e-3);
+  assert_int_equal(sph_engine.warn(&in, NULL), 0);
+}
+
+/* ---- cost ---- */
+
+/* Processor time of the looks at the ledger over that of the steps. */
+static void the_monitor_is_cheap(void **state) {
+  (void)state;
+  const int steps = run_case_full() ? 3000 : 1000;
+  struct dem_run *run = disc(run_case_full() ? "body.diameter=40 cm" : "stop.end_time=1 s");
+  double begin = clock_cpu_s();
+  dem_run_advance(run, (uint64_t)steps);
+  const double all = clock_cpu_s() - begin;
+  begin = clock_cpu_s();
+  for (int k = 0; k < steps / LATE; k++)
+    dem_run_look(run);
+  const double dem = (clock_cpu_s() - begin) / all;
+  dem_run_free(run);
+
+  struct sph_run *solid = sphere("fidelity.precision=double");
+  begin = clock_cpu_s();
+  const uint64_t from = sph_system_steps(solid->system);
+  assert_int_equal(sph_run_advance(solid, (uint64_t)steps), STATUS_OK);
+  const double whole = clock_cpu_s() - begin;
+  const uint64_t looks = (sph_system_steps(solid->system) - from) / SPH_RUN_LOOKS;
+  begin = clock_cpu_s();
+  for (uint64_t k = 0; k < looks; k++)
+    (void)sph_system_ledger(solid->system);
+  const double sph = (clock_cpu_s() - begin) / whole;
+  sph_run_free(solid);
+  print_message("monitor: %.2f %% of a run of dem, %.2f %% of sph\n", 100 * dem, 100 * sph);
+  const double most = run_case_full() ? 0.02 : 0.05; /* short times are noisy on a busy machine */
+  assert_true(dem < most && sph < most);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(energy_from_nowhere_ends_a_run_of_grains),
+      cmocka_unit_test(grains_that_are_lost_end_a_run),
+      cmocka_unit_test(grains_too_fast_for_the_step_end_a_run),
+      cmocka_unit_test(a_step_beyond_stability_ends_a_run),
+      cmocka_unit_test(energy_from_nowhere_ends_a_run_of_particles),
+      cmocka_unit_test(particles_that_are_lost_end_a_run),
+      cmocka_unit_test(steps_that_collapse_end_a_run),
+      cmocka_unit_test(doubts_are_in_the_result),
+      cmocka_unit_test(drift_within_a_wide_bound_is_flagged),
+      cmocka_unit_test(bodies_of_unlike_density_need_volume_weights),
+      cmocka_unit_test(the_monitor_is_cheap),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
