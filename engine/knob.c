@@ -60,9 +60,9 @@ static const struct knob knobs[] = {
         .meaning = "time step"),
     DEM("integrator", RESOLUTION, .inputs = {{"fidelity.integrator"}}, .choices = {"verlet", "gear"}, .pairs = true,
         .meaning = "velocity Verlet, or Gear's method of fifth order"),
-    DEM("stop", RESOLUTION, .inputs = {{"stop.least_time", 1}, {"stop.quiet_time", 1}, {"stop.end_time", 1}},
+    DEM("stop", RESOLUTION, .inputs = {{"stop.quiet_time", 1}, {"stop.least_time", 1}, {"stop.end_time", 1}},
         .factors = {0.25, 0.5, 1, 2, 4}, .pairs = true,
-        .meaning = "least time of a run; how long no beam must break until it ends, and the hard end move with it"),
+        .meaning = "how long no beam must break until a run ends; its least time and the hard end move with it"),
 
     DEM("contact_law", MODEL, .inputs = {{"contact.law"}}, .choices = {"off", "printed", "conservative"}, .pairs = true,
         .meaning = "repulsion of overlapping grains"),

@@ -97,6 +97,7 @@ void document_free(struct document *document) {
   for (size_t i = 0; i < document->error_count && i < DOCUMENT_MOST_ERRORS; i++)
     free(document->errors[i].message);
   free(document->name);
+  free(document->origin);
   free(document->text);
   free(document->report);
   free(document);
@@ -109,7 +110,7 @@ status document_finish(struct document *document, const char **report) {
   free(document->report);
   document->report = document_report_text(document);
   *report = document->report ? document->report : "no memory for the report of errors";
-  return STATUS_CONTENT;
+  return document->elsewhere == document->error_count ? STATUS_USAGE : STATUS_CONTENT;
 }
 
 void document_take_si(struct document *document) {

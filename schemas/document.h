@@ -28,6 +28,15 @@ void document_take_si(struct document *document);
 
 const char *document_text(const struct document *document); /* the file as read, NUL-terminated */
 
+/* Sets the value of a key as if the file had it: keys[0] at the root, keys[1] (NULL: none) in the mapping there, which
+ * is made when it is absent. `origin` names where it comes from ("command line"): errors about it begin with that. Call
+ * it before the document is read. STATUS_CONTENT: keys[0] is there and no mapping; STATUS_MEMORY. */
+status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
+                           struct error *error);
+/* The document as text that document_parse reads to the same values, malloc'd: the file as read, or after
+ * document_change_put its values without comments. NULL: no memory. */
+char *document_change_text(const struct document *document);
+
 enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };
 
 document_node *document_root(struct document *document);
@@ -58,7 +67,8 @@ void document_report(document_node *node, const char *path, const char *format, 
  * call above. */
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known);
 
-/* STATUS_OK when nothing was reported; else STATUS_CONTENT with the whole report in *report (owned by the document). */
+/* STATUS_OK when nothing was reported; else STATUS_CONTENT with the whole report in *report (owned by the document).
+ * STATUS_USAGE when all of it is about values of document_change_put. */
 status document_finish(struct document *document, const char **report);
 
 #endif

@@ -8,9 +8,10 @@
 
 enum { SHOWN = 120, BEFORE = 70 }; /* bytes of a long line that are shown, and of these before the error */
 
-static void add(struct document *document, size_t start, size_t end, const char *path, const char *format,
+static void add(struct document *document, size_t start, size_t end, bool put, const char *path, const char *format,
                 va_list arguments) {
   size_t order = document->error_count++;
+  document->elsewhere += put;
   if (order >= DOCUMENT_MOST_ERRORS)
     return;
   char message[1024];
@@ -22,14 +23,14 @@ static void add(struct document *document, size_t start, size_t end, const char 
   for (char *at = message; *at; at++)
     if (*at == '\n' || *at == '\r')
       *at = ' ';
-  document->errors[order] = (struct document_error){start, end, order, strdup(message)};
+  document->errors[order] = (struct document_error){start, end, order, put, strdup(message)};
 }
 
 void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format,
                         ...) {
   va_list arguments;
   va_start(arguments, format);
-  add(document, start, end, path, format, arguments);
+  add(document, start, end, false, path, format, arguments);
   va_end(arguments);
 }
 
@@ -37,7 +38,7 @@ void document_report(document_node *node, const char *path, const char *format, 
   va_list arguments;
   va_start(arguments, format);
   if (!node->faulty)
-    add(node->document, node->start, node->end, path, format, arguments);
+    add(node->document, node->start, node->end, node->put, path, format, arguments);
   va_end(arguments);
 }
 
@@ -109,6 +110,10 @@ static void write_marker(const char *text, const struct excerpt *e, size_t start
 /* One error as text. Columns count characters from 1, as editors do. */
 static void write_error(const struct document *document, const struct document_error *error, FILE *out) {
   const char *text = document->text;
+  if (error->put) {
+    fprintf(out, "%s: error: %s\n", document->origin, error->message ? error->message : "(no memory for the message)");
+    return;
+  }
   const size_t start = error->start < document->size ? error->start : document->size;
   const struct excerpt e = excerpt_around(document, start);
   size_t column = 1;

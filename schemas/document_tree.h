@@ -24,6 +24,7 @@ struct document_node {
   document_node *parent, *key; /* NULL at the root; the key is NULL in a list */
   enum document_kind kind;
   bool plain;        /* scalar without quotes: the core schema gives it a type */
+  bool put;          /* from document_change_put: it stands nowhere in the text */
   bool faulty;       /* an error about it was reported already: readers skip it */
   size_t start, end; /* bytes in the text */
   struct document_pair *pairs;
@@ -33,12 +34,16 @@ struct document_node {
 
 struct document_error {
   size_t start, end, order;
+  bool put; /* about a value of document_change_put: it has no place */
   char *message;
 };
 
 struct document {
   char *name, *text;
+  char *origin;                         /* of the values of document_change_put, or NULL */
   size_t size, node_count, error_count; /* more errors may be counted than kept */
+  size_t elsewhere;                     /* errors of these that are about values of document_change_put */
+  bool changed;                         /* by document_change_put */
   document_node *root, *nodes;
   struct document_error errors[DOCUMENT_MOST_ERRORS];
   char *report;

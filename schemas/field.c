@@ -86,6 +86,12 @@ const struct field *field_find(const struct field_table *table, const char *path
   }
   if (candidates == 1)
     return found;
+  for (size_t i = 0; candidates == 0 && i < table->count; i++) { /* as the name of a column */
+    char column[FIELD_TEXT_SIZE];
+    field_column_name(table->rows[i].path, column, sizeof column);
+    if (strcmp(column, path) == 0)
+      return &table->rows[i];
+  }
   if (candidates == 0) {
     fail_unknown(table, path, error);
     return NULL;

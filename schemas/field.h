@@ -77,7 +77,8 @@ struct field_value {
 size_t field_choice_count(const struct field *row);
 bool field_is_off(double value); /* value of a FIELD_MAY_BE_OFF row */
 
-/* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"). NULL: *error names the nearest
+/* Exact path, or unique suffix after a dot ("strain" for "threshold.strain"), or the path as the name of a column
+ * ("threshold_strain"). NULL: *error names the nearest
  * known paths (or the candidates when a suffix is ambiguous), STATUS_CONTENT. */
 const struct field *field_find(const struct field_table *table, const char *path, struct error *error);
 

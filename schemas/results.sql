@@ -1,8 +1,8 @@
--- The store of clast: schema of version 2.
+-- The store of clast: schema of version 3.
 -- Made from the tables in db/store/schema_tables.c and the engines' field tables; do not edit: a test compares.
 -- Views have, besides, one column per input that some campaign varied (table axis).
 PRAGMA application_id = 1129075540;
-PRAGMA user_version = 2;
+PRAGMA user_version = 3;
 
 CREATE TABLE column_doc ( -- Meaning and unit of every column.
   table_name TEXT NOT NULL, -- table or view
@@ -23,6 +23,7 @@ CREATE TABLE campaign ( -- Campaigns, as their files were read.
 
 CREATE TABLE session ( -- Provenance: one row per invocation that wrote to the store.
   session_id INTEGER PRIMARY KEY, -- number of the invocation that computed
+  campaign_id INTEGER, -- the campaign it computed; NULL in sessions of older programs that computed nothing
   started_at TEXT NOT NULL, -- UTC, ISO 8601, to the millisecond
   ended_at TEXT, -- UTC, ISO 8601; NULL while running or when it was killed
   outcome TEXT, -- how it ended: a status name; NULL while running or when it was killed
@@ -57,6 +58,7 @@ CREATE TABLE axis ( -- Inputs that some campaign varied: columns of the views.
   path TEXT NOT NULL PRIMARY KEY, -- path of an input that some campaign varied
   column_name TEXT NOT NULL UNIQUE, -- its column in the views
   unit TEXT, -- SI unit of the input
+  written_unit TEXT, -- unit of its values in the campaign: that of tables for people; NULL: SI
   meaning TEXT NOT NULL -- what the input means
 ) STRICT, WITHOUT ROWID;
 
@@ -367,7 +369,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   precursor_distention_exact REAL -- [1] Piston: distention behind the precursor on the elastic branch.
 ) STRICT;
 
-CREATE VIEW runs AS -- every run with its varied inputs and all its results
+CREATE VIEW runs AS -- every run with its varied inputs and all results of its engine
 SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,
   r."session_id",
   r."results_version",
@@ -639,6 +641,8 @@ INSERT INTO column_doc VALUES ('axis', 'meaning', NULL, 'what the input means', 
 INSERT INTO column_doc VALUES ('axis', 'path', NULL, 'path of an input that some campaign varied', 0);
 
 INSERT INTO column_doc VALUES ('axis', 'unit', NULL, 'SI unit of the input', 0);
+
+INSERT INTO column_doc VALUES ('axis', 'written_unit', NULL, 'unit of its values in the campaign: that of tables for people; NULL: SI', 0);
 
 INSERT INTO column_doc VALUES ('bin', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
 
@@ -1547,6 +1551,8 @@ INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the su
 INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.1: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
+
+INSERT INTO column_doc VALUES ('session', 'campaign_id', NULL, 'the campaign it computed; NULL in sessions of older programs that computed nothing', 0);
 
 INSERT INTO column_doc VALUES ('session', 'ended_at', NULL, 'UTC, ISO 8601; NULL while running or when it was killed', 0);
 

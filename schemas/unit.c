@@ -467,3 +467,15 @@ status unit_read(const char *text, const char *expected_unit, double *si, struct
   *si = value;
   return STATUS_OK;
 }
+
+const char *unit_of(const char *text) {
+  while (*text == ' ')
+    text++;
+  const struct decimal number = scan(text);
+  if (number.length == 0)
+    return "";
+  text += number.length;
+  while (*text == ' ')
+    text++;
+  return text;
+}

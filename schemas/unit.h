@@ -32,4 +32,7 @@ const char *unit_usual(const char *unit);
  * to the exact decimal value whenever the unit is a power of ten of SI. */
 status unit_read(const char *text, const char *expected_unit, double *si, struct error *error);
 
+/* The unit of such a text, within it: "km/s" of "5 km/s"; "" when there is none, or no number. */
+const char *unit_of(const char *text);
+
 #endif

@@ -23,10 +23,11 @@ export function cells(from, quantity) {
   const known = new Map(statistics(from, quantity).map((row) => [row.point_id, row]));
   const studied = has(from, 'resolution')
     ? new Map(ask(from, questions.resolution, {quantity}).map((row) => [row.point_id, row])) : new Map();
+  const modes = has(from, 'modes') ? new Map(ask(from, questions.modes, {quantity}).map((row) => [row.point_id, row])) : new Map();
   return from.points.map((point) => {
     const {mean = null, hw95 = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
-    return {...point, mean, hw95, resolution, verdict};
+    return {...point, mean, hw95, resolution, verdict, modes: modes.get(point.point_id) ?? null};
   });
 }
 
@@ -42,7 +43,7 @@ function axisOf(column, rows, title) {
 
 function tooltip(columns, title) {
   return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
-    {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}];
+    {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}, {field: 'modesText', title: 'modes'}];
 }
 
 // What finer settings may change, as far as clast converge knows.
@@ -51,6 +52,10 @@ function resolutionText({resolution, verdict}) {
   if (resolution === null) return 'not studied';
   return `${verdict === 'at-least' ? 'at least ' : ''}± ${number(resolution, 2)}`;
 }
+
+// Two modes mean that a mean tells little: some runs do one thing, the others another.
+export const modesText = (modes) => (modes ? `two: ${number(modes.lower_mode, 3)} and ${number(modes.upper_mode, 3)}, the upper one in ` +
+  `${number(100 * modes.upper_share, 2)} % of the runs (${number(100 * modes.upper_low, 2)} to ${number(100 * modes.upper_high, 2)} %)` : 'not two');
 
 function data(quantity) {
   return cells(store(), quantity).map((cell) => ({
@@ -62,6 +67,8 @@ function data(quantity) {
     low: cell.mean - cell.hw95,
     high: cell.mean + cell.hw95,
     resolutionText: resolutionText(cell),
+    modesText: modesText(cell.modes),
+    twoModes: cell.modes !== null,
   }));
 }
 
@@ -76,6 +83,7 @@ function planeSpec(rows, title) {
   const middle = rows.map((row) => row.mean).filter((mean) => mean !== null).sort((a, b) => a - b);
   const half = ((middle[0] ?? 0) + (middle[middle.length - 1] ?? 0)) / 2;
   const place = {x: x.encoding, y: flip};
+  const room = (document.getElementById('plane-chart').clientWidth - 90) / columns; // pixels of a cell
   const several = rows.length > new Set(rows.map((row) => JSON.stringify([row[state.x], row[state.y]]))).size;
   const layers = [{
     params: [{name: 'brush', select: {type: 'interval', encodings: ['x', 'y']}}],
@@ -86,12 +94,14 @@ function planeSpec(rows, title) {
       strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];
-  const room = (document.getElementById('plane-chart').clientWidth - 90) / columns; // pixels of a cell
   if (grid && room >= 50 && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
       transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g'))", as: 'cell'},
         {calculate: room >= 130 ? "datum.cell + '  n=' + datum.n" : room >= 90 ? 'datum.cell' : 'datum.text', as: 'cell'}],
       encoding: {...place, text: {field: 'cell'}, color: {condition: {test: `datum.mean === null || datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
+  if (rows.some((row) => row.twoModes))
+    layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: 15, fontSize: 12, tooltip: null},
+      encoding: {...place, color: {condition: {test: `datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
   const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
   return {params: [CHOSEN], data: {values: rows}, height, layer: layers};
 }
@@ -107,7 +117,8 @@ function lineSpec(rows, title) {
       mark: {type: 'point', filled: true, size: 110, cursor: 'pointer', color: COLOURS[0]},
       encoding: {x: place, y, stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
         strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
-        tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}}]};
+        tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}},
+    {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}}]};
 }
 
 // A brush over cells lists values, one over a scale has two ends.
@@ -166,7 +177,7 @@ export async function showPlane() {
   const rows = (plane.rows = data(state.quantity));
   const known = rows.filter((row) => row.mean !== null);
   if (known.length === 0) return nothing(figure, 'No point has a value of this quantity.');
-  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points.`;
+  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}`);
     return;
@@ -197,8 +208,8 @@ export function showPoints() {
   const boxes = (row) => element('input', {type: 'checkbox', value: row.point_id, checked: state.chosen.has(row.point_id), 'aria-label': `point ${row.point_id}`,
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
   fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
-    ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution'],
-    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => number(row[axis])), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText])));
+    ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes'],
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => number(row[axis])), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.twoModes ? row.modesText : '-'])));
 }
 
 export function showChoices() {

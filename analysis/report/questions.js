@@ -38,6 +38,10 @@ export const exponents = `SELECT point_id, results_version, n, beta AS mean, hw9
 export const resolution = `SELECT point_id, half_width, verdict FROM resolution
   WHERE quantity = :quantity ORDER BY results_version`;
 
+export const modes = `SELECT point_id, p, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes
+  WHERE quantity = :quantity`;
+export const quantiles = 'SELECT share, value, low, high FROM quantile WHERE quantity = :quantity AND point_id = :point';
+
 export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra
   WHERE point_id = :point ORDER BY results_version, lower`;
 export const completeMass = `SELECT mean FROM means WHERE quantity = 'complete_mass' AND point_id = :point ORDER BY results_version DESC LIMIT 1`;
@@ -53,8 +57,6 @@ export const pictureOfRun = 'SELECT run_id, quantile, png FROM picture WHERE run
 export const differences = 'SELECT first_point, point_id, pairs, difference, hw95 FROM difference WHERE quantity = :quantity';
 export const keptRuns = 'SELECT count(*) AS n FROM runs';
 
-// For readers: what the box for SQL begins with, the first run of a point, and the values of a histogram.
+// For readers: what the box for SQL begins with, and the first run of a point.
 export const start = 'SELECT * FROM points';
 export const firstRun = (point) => `(SELECT min(run_id) FROM runs WHERE point_id = ${Number(point)})`;
-export const valuesForShell = (quantity, points) => `SELECT point_id, seed, ${quantity} FROM runs WHERE counts` +
-  (points.length <= 20 ? ` AND point_id IN (${points.map(Number).join(', ')})` : '');

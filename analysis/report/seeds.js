@@ -1,12 +1,12 @@
 // How much the seed matters: histogram and quantiles of the quantity over the runs of the chosen points.
 import {body, fill, table} from './elements.js';
 import {COLOURS, DASHES, draw, nothing} from './chart.js';
-import {cells} from './plane.js';
+import {cells, modesText} from './plane.js';
 import * as questions from './questions.js';
-import {nameOf} from './spectrum.js';
+import {nameOf, whereOf} from './spectrum.js';
 import {chosenPoints, state, store} from './state.js';
 import {summary} from './statistics.js';
-import {ask} from './stores.js';
+import {ask, has} from './stores.js';
 import {label, number, plural, shellFile, withError} from './words.js';
 
 function valuesOf(from, point, quantity) {
@@ -33,6 +33,8 @@ function histogram({name, values}, step) {
   return Array.from({length: high - low + 3}, (_, i) => low - 1 + i).map((bin) => ({name, low: bin * step, high: (bin + 1) * step, runs: counts.get(bin) ?? 0}));
 }
 
+const commandOf = (from, quantity, points) => `clast scatter ${shellFile(from.name)}${whereOf(points)} --quantity ${quantity}`;
+
 export async function showSeeds() {
   const figure = document.querySelector('#seeds figure'), below = body('seeds'), quantity = state.quantity, from = store();
   fill(below);
@@ -58,12 +60,18 @@ export async function showSeeds() {
   ]}, {
     name: 'seeds', description: `Histogram of ${title} over ${plural(all.length, 'run')}`,
     caption: `${title} of ${plural(all.length, 'run')}${apart ? '' : `, ${samples.length} points together`}. Upright dashes: means.`,
-    command: `clast query ${shellFile(from.name)} "${questions.valuesForShell(quantity, samples.map((sample) => sample.point.point_id))}" --csv`,
+    command: commandOf(from, quantity, samples.map((sample) => sample.point.point_id)),
     columns: ['point', quantity], rows: samples.flatMap((sample) => sample.values.map((value) => [sample.name, value])),
   });
   const mean = (row) => (row.all ? `${withError(row.all.mean, row.all.hw95)}, n=${row.all.n}` : withError(row.mean, row.hw95));
-  const lines = [['mean', mean], ['runs here', (row) => row.n], ['standard deviation', (row) => number(row.sd)], ['least', (row) => number(row.least)],
-    ['quarter', (row) => number(row.quarter)], ['median', (row) => number(row.median)], ['three quarters', (row) => number(row.threeQuarters)], ['largest', (row) => number(row.largest)]];
-  fill(below, table(`${title}: mean with its 95 % interval over seeds, and quantiles of the runs here`,
+  const known = apart && has(from, 'quantile') ? samples.map(({point}) => new Map(ask(from, questions.quantiles, {quantity, point: point.point_id}).map((row) => [row.share, row]))) : [];
+  const quantileOf = (share, key) => (row, i) => {
+    const all = known[i]?.get(share);
+    return all ? `${number(all.value)}${all.low !== null && all.high !== null ? ` (${number(all.low, 3)} to ${number(all.high, 3)})` : ''}` : number(row[key]);
+  };
+  const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['quarter', quantileOf(0.25, 'quarter')], ['three quarters', quantileOf(0.75, 'threeQuarters')],
+    ['standard deviation of the runs here', (row) => number(row.sd)], ['least here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];
+  if (means.some((row) => row.all?.modes)) lines.splice(1, 0, ['modes', (row) => modesText(row.all?.modes ?? null)]);
+  fill(below, table(`${title}: mean and quantiles with their 95 % intervals over seeds`,
     ['', ...names], lines.map(([word, value]) => [word, ...means.map(value)])));
 }

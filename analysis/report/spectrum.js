@@ -62,10 +62,15 @@ function bandOf(curve) {
   });
 }
 
+// Options that choose these points on a command line.
+export function whereOf(points) {
+  if (points.length === 1) return ` --point ${points[0]}`;
+  return points.length === store().points.length ? '' : ` --where "point_id in (${points.join(', ')})"`;
+}
+
 function commandOf(drawn) {
   const of = drawn.filter((curve) => curve.from === drawn[0].from).flatMap((curve) => curve.points).map((point) => point.point_id);
-  const where = of.length === store().points.length ? '' : of.length === 1 ? ` --point ${of[0]}` : ` --where "point_id in (${of.join(', ')})"`;
-  return `clast spectrum ${shellFile(drawn[0].from.name)}${where}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
+  return `clast spectrum ${shellFile(drawn[0].from.name)}${whereOf(of)}${drawn[0].points.length > 1 ? ' --by ""' : ''} --picture spectrum.png`;
 }
 
 export async function showSpectrum() {

@@ -23,6 +23,8 @@ void commands_help(FILE *out); /* what `clast help` prints */
 
 /* `clast plan` for `clast run --dry-run`: loads a campaign, plans it and prints the plan. store NULL: the campaign's.
  * slots 0: one per core. */
-status commands_plan(const char *path, const char *store, int64_t slots, bool no_trial, bool json, struct error *error);
+struct campaign_option;
+status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
+                     bool no_trial, bool json, struct error *error);
 
 #endif

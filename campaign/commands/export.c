@@ -1,19 +1,20 @@
 /* `clast export STORE [TARGET]`: one compact file for hand-over, rows for other programs, or a folder of CSV files. */
 #include <string.h>
 
+#include "campaign/charts/cinema.h"
 #include "campaign/commands/commands.h"
 #include "campaign/commands/export_files.h"
 
 struct options {
   const char *per;
-  bool csv, lines, bits;
+  bool csv, lines, bits, cinema;
 };
 
 static status check(const struct options *options, const char *target, struct error *error) {
-  if (options->csv + options->lines + options->bits > 1)
-    return status_fail(error, STATUS_USAGE, "--csv, --jsonl and --bits exclude each other");
-  if (options->per && options->bits)
-    return status_fail(error, STATUS_USAGE, "--per and --bits exclude each other");
+  if (options->csv + options->lines + options->bits + options->cinema > 1)
+    return status_fail(error, STATUS_USAGE, "--csv, --jsonl, --bits and --cinema exclude each other");
+  if (options->per && (options->bits || options->cinema))
+    return status_fail(error, STATUS_USAGE, "--per and --%s exclude each other", options->bits ? "bits" : "cinema");
   if (options->per && strcmp(options->per, "run") != 0 && strcmp(options->per, "point") != 0)
     return status_fail(error, STATUS_USAGE, "--per expects run or point, got \"%.64s\"", options->per);
   if (options->lines && !options->per)
@@ -32,6 +33,15 @@ static status export_rows(struct store *store, const struct options *options, co
                 : export_files_view(store, view, format, stdout, error);
 }
 
+static status export_cinema(struct store *store, const char *folder, struct error *error) {
+  size_t rows = 0, not_drawn = 0;
+  const status code = cinema_write(store, folder, &rows, &not_drawn, error);
+  if (code == STATUS_OK && not_drawn > 0)
+    fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n", not_drawn,
+            rows);
+  return code;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
@@ -41,10 +51,11 @@ static status run(const struct command_line *line, struct error *error) {
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
-  code = options->per    ? export_rows(store, options, target, error)
-         : options->csv  ? export_files_folder(store, target, error)
-         : options->bits ? export_files_write(store, target, NULL, TABLE_CSV, error)
-                         : store_export(store, target, error);
+  code = options->per      ? export_rows(store, options, target, error)
+         : options->csv    ? export_files_folder(store, target, error)
+         : options->cinema ? export_cinema(store, target, error)
+         : options->bits   ? export_files_write(store, target, NULL, TABLE_CSV, error)
+                           : store_export(store, target, error);
   if (!code && target)
     fprintf(stderr, "%s written\n", target);
   store_close(store, NULL);
@@ -62,6 +73,9 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("bits", 0, struct options, bits,
                     "Write every value that does not depend on where and when a run was computed, as text in the order "
                     "of identities. Two stores of one campaign give the same file, however they were computed."),
+    OPTION_ROW_FLAG("cinema", 0, struct options, cinema,
+                    "Write a Cinema database for ParaView and Cinema viewers: a folder with data.csv, and pictures of "
+                    "all runs whose fields are kept and of their points' spectra."),
 };
 
 const struct command export_command = {
@@ -71,8 +85,9 @@ const struct command export_command = {
     .summary = "one compact file for hand-over, or rows for other programs",
     .doc =
         "Writes a compact copy of the store as one SQLite file, also while a campaign is running; with --per the rows\n"
-        "of runs or points; or with --csv its views as CSV files in a folder. It never overwrites a store. It does\n"
-        "overwrite CSV, JSON Lines and bits files.",
+        "of runs or points; or with --csv its views as CSV files in a folder; with --cinema pictures. It never "
+        "overwrites\n"
+        "a store. It does overwrite its other files.",
     .examples = "clast export out.db handover.db\nclast export out.db --per point > points.csv",
     .minimum_arguments = 1,
     .maximum_arguments = 2,

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "campaign/commands/estimates.h"
+#include "campaign/commands/estimates_table.h"
 #include "campaign/driver/driver.h"
 #include "campaign/driver/provenance.h"
 #include "campaign/driver/run.h"
@@ -68,10 +68,10 @@ static status print_estimates(const char *path, int64_t campaign, enum table_for
     fprintf(stderr, "estimates of %" PRId64 " points: clast estimates %s --campaign %" PRId64 "\n", points, path,
             campaign);
   else if (!code)
-    code = estimates_print(store, &choice, format, stdout, error);
+    code = estimates_table_print(store, &choice, format, stdout, error);
   if (!code && format == TABLE_TEXT && points <= MANY_POINTS && !quiet) {
     fflush(stdout); /* the legend comes below the table */
-    estimates_explain(store);
+    estimates_table_explain(store);
   }
   store_close(store, NULL);
   return code;

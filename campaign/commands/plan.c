@@ -5,9 +5,11 @@
 #include "campaign/commands/commands.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/driver/plan.h"
+#include "campaign/terminal/campaign_option.h"
 #include "campaign/terminal/table.h"
 
 struct options {
+  struct campaign_option campaign;
   const char *store;
   int64_t slots;
   bool no_trial, json;
@@ -88,11 +90,11 @@ static status settle(struct campaign *campaign, const char *path, const char *st
   return code;
 }
 
-status commands_plan(const char *path, const char *store, int64_t slots, bool no_trial, bool json,
-                     struct error *error) {
+status commands_plan(const char *path, const struct campaign_option *changes, const char *store, int64_t slots,
+                     bool no_trial, bool json, struct error *error) {
   struct campaign *campaign = NULL;
   char *alternatives = NULL;
-  status code = campaign_load(path, &campaign, error);
+  status code = campaign_option_load(path, changes, &campaign, error);
   if (code)
     return code;
   struct plan plan;
@@ -119,10 +121,12 @@ cleanup:
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  return commands_plan(line->arguments[0], options->store, options->slots, options->no_trial, options->json, error);
+  return commands_plan(line->arguments[0], &options->campaign, options->store, options->slots, options->no_trial,
+                       options->json, error);
 }
 
 static const struct option_row rows[] = {
+    CAMPAIGN_OPTION(struct options, campaign),
     OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 1000000, "0",
                        "Runs at a time, for the expected wall time. 0: one per core of this machine."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL,

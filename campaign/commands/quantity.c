@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/estimates.h"
 #include "campaign/terminal/uncertainty.h"
+#include "db/ask/columns.h"
 #include "db/ask/point.h"
 #include "db/ask/points.h"
 #include "engine/outcome.h"
@@ -14,15 +15,36 @@
 /* Columns of ask_group after the axes. */
 enum { VERSION = 1, MEAN = 6, HALF_WIDTH = 9, RESOLUTION = 10, COLUMNS = 12 };
 
+enum { QUANTITY_AXES = 64 };
+
 struct reading {
   struct store *store;
   const struct quantity_choice *choice;
   struct quantity *quantity;
   enum exponent_method method;
   enum estimates_window window;
+  struct ask_column written[QUANTITY_AXES]; /* the varied inputs, in the units that the campaign gives */
+  size_t written_count;
+  const struct ask_column *axis[2]; /* of them; NULL: SI */
   status (*each)(void *context, const struct quantity_row *row, struct error *error);
   void *context;
 };
+
+static const struct ask_column *written_axis(const struct reading *reading, const char *name) {
+  for (size_t i = 0; i < reading->written_count; i++)
+    if (strcmp(reading->written[i].name, name) == 0)
+      return &reading->written[i];
+  return NULL;
+}
+
+/* Gives a row away, its inputs in the campaign's units. */
+static status give(const struct reading *reading, struct quantity_row *row, struct error *error) {
+  struct query_value inputs[2];
+  for (size_t i = 0; i < reading->quantity->axes; i++)
+    inputs[i] = reading->axis[i] ? ask_columns_value(reading->axis[i], &row->input[i]) : row->input[i];
+  row->input = inputs;
+  return reading->each(reading->context, row, error);
+}
 
 static status take_columns(void *context, size_t count, const char *const *names, struct error *error) {
   struct reading *reading = context;
@@ -31,8 +53,10 @@ static status take_columns(void *context, size_t count, const char *const *names
   if (count != axes + COLUMNS || (axes == 2 && strcmp(names[0], names[1]) == 0))
     return status_fail(error, STATUS_USAGE, "%s", reading->choice->refusal);
 
-  for (size_t i = 0; i < axes; i++)
+  for (size_t i = 0; i < axes; i++) {
     snprintf(quantity->column[i], sizeof quantity->column[i], "%s", names[i]);
+    reading->axis[i] = written_axis(reading, names[i]);
+  }
   const char *mean = names[axes + MEAN];
   if (!quantity->exponent)
     snprintf(quantity->name, sizeof quantity->name, "%.*s", (int)(strlen(mean) - strlen("_mean")), mean);
@@ -48,9 +72,9 @@ static status take_group(void *context, size_t count, const struct query_value *
   const struct query_value *rest = values + reading->quantity->axes;
   const double mean = rest[MEAN].real;
   const double half_width = rest[HALF_WIDTH].real; /* NaN for one run */
-  const struct quantity_row row =
+  struct quantity_row row =
       {values, rest[VERSION].integer, mean, mean - half_width, mean + half_width, rest[RESOLUTION].real};
-  return reading->each(reading->context, &row, error);
+  return give(reading, &row, error);
 }
 
 static status take_point(void *context, const struct ask_points_row *point, struct error *error) {
@@ -65,9 +89,9 @@ static status take_point(void *context, const struct ask_points_row *point, stru
   if (code)
     return code;
   const double half_width = fit.interval.half_width;
-  const struct quantity_row row =
+  struct quantity_row row =
       {point->inputs, point->results_version, fit.fit.beta, fit.fit.beta - half_width, fit.fit.beta + half_width, NAN};
-  return reading->each(reading->context, &row, error);
+  return give(reading, &row, error);
 }
 
 status quantity_read(struct store *store, const struct quantity_choice *choice, struct quantity *quantity,
@@ -80,6 +104,9 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
   if (code)
     return code;
 
+  code = ask_columns_axes(store, true, QUANTITY_AXES, reading.written, &reading.written_count, error);
+  if (code)
+    return code;
   char by[600];
   snprintf(by, sizeof by, "%s%s%s", choice->axis[0], choice->axis[1] ? "," : "",
            choice->axis[1] ? choice->axis[1] : "");

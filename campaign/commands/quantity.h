@@ -33,7 +33,7 @@ struct quantity {
 };
 
 struct quantity_row {
-  const struct query_value *input; /* one for each axis; borrowed for the call */
+  const struct query_value *input; /* one for each axis, in the campaign's unit; borrowed for the call */
   int64_t results_version;
   double value, lower, upper; /* the bounds are of the 95 % interval; NaN: unknown */
   double resolution;          /* how far finer settings may move the value; NaN: unknown */

@@ -5,10 +5,12 @@
 #include "campaign/commands/launch.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/document/campaign_warn.h"
+#include "campaign/terminal/campaign_option.h"
 #include "campaign/terminal/table.h"
 
 struct options {
   struct launch_options launch;
+  struct campaign_option campaign;
   const char *store;
   bool dry_run;
 };
@@ -21,9 +23,10 @@ static status run(const struct command_line *line, struct error *error) {
   if (code)
     return code;
   if (options->dry_run)
-    return commands_plan(path, options->store, options->launch.slots, false, options->launch.table.json, error);
+    return commands_plan(path, &options->campaign, options->store, options->launch.slots, false,
+                         options->launch.table.json, error);
   struct campaign *campaign = NULL;
-  code = campaign_load(path, &campaign, error);
+  code = campaign_option_load(path, &options->campaign, &campaign, error);
   const char *store = options->store || code ? options->store : campaign->store;
   if (!code && !launch_other_rank()) /* only the manager takes runs from the campaign */
     code = accuracy_settle(campaign, path, store, error);
@@ -36,6 +39,7 @@ static status run(const struct command_line *line, struct error *error) {
 }
 
 static const struct option_row rows[] = {
+    CAMPAIGN_OPTION(struct options, campaign),
     LAUNCH_OPTIONS(struct options, launch),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
     OPTION_ROW_FLAG("dry-run", 'n', struct options, dry_run, "Print what would be done, like `clast plan`, and stop."),
@@ -51,7 +55,8 @@ const struct command run_command = {
         "Computes every run that the campaign needs and the store lacks, on all cores of this machine or on the ranks\n"
         "of mpirun or srun. At the end it prints the estimates of every point. Ctrl-C stops it (exit 75), and the\n"
         "same command goes on later. A kill loses at most the last second of results.",
-    .examples = "clast run campaign.yaml -j 4\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
+    .examples = "clast run campaign.yaml -j 4\nclast run campaign.yaml --set contact.friction=0.3 --seeds 50 --store "
+                "other.db\nmpirun -n 3 --oversubscribe clast run campaign.yaml",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     .has_runs = true,

@@ -72,7 +72,7 @@ status scatter_print_split(struct store *store, const struct scatter_choice *cho
   char by[ASK_POOL_AXES * (sizeof axis[0].name + 1)] = "";
   size_t axes = 0, runs = 0;
   struct ask_pool_choice pool = choice->pool;
-  status code = ask_columns_axes(store, ASK_POOL_AXES, axis, &axes, error);
+  status code = ask_columns_axes(store, false, ASK_POOL_AXES, axis, &axes, error);
   for (size_t a = 0, used = 0; a < axes; a++)
     used += (size_t)snprintf(by + used, sizeof by - used, "%s%.127s", a ? "," : "", axis[a].name);
   if (!pool.by)

@@ -72,7 +72,7 @@ static status run(const struct command_line *line, struct error *error) {
     return code;
   struct rows rows;
   char pooled[ASK_GROUP_POOLED] = "";
-  struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  struct query_sink sink = rows_sink_written(&rows, store, format, stdout);
   code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, pooled,
                    error);
   code = rows_end(&rows, code, error);

@@ -12,13 +12,14 @@ static status run(const struct command_line *line, struct error *error) {
   enum table_format format = TABLE_TEXT;
   struct store *store = NULL;
   status code = table_choose(&options->table, &format, error);
+  const bool writing = !code && store_is_being_written(line->arguments[0]);
   if (!code)
     code = store_open_reader(line->arguments[0], &store, error);
   if (code)
     return code;
   struct rows rows;
   const struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = rows_end(&rows, ask_campaign_progress(store, &sink, error), error);
+  code = rows_end(&rows, ask_campaign_progress(store, writing, &sink, error), error);
   store_close(store, NULL);
   return code;
 }
@@ -31,9 +32,11 @@ const struct command status_command = {
     .arguments = "STORE",
     .summary = "how far the campaigns of a store are, and what failed",
     .doc =
-        "Prints one row per campaign: its points, the runs stored, and how many of them count in statistics, are\n"
-        "censored (ended at the hard end time), failed, or are surplus; failed attempts, and runs given up without a\n"
-        "result; and how the last session ended. Works while a campaign is running.",
+        "Prints one row per campaign: its state; its points, the runs stored, and how many of them count in\n"
+        "statistics, are censored (ended at the hard end time), failed, or are surplus; failed attempts, and runs\n"
+        "given up without a result. Works while a campaign is running. States: running; finished; stopped (by Ctrl-C\n"
+        "or a signal; the same command goes on); failed (an error ended it); killed (its process ended without a\n"
+        "word; the same command goes on); not known (of a program that did not note it).",
     .examples = "clast status out.db\nclast status out.db --json",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -80,18 +80,23 @@ static double wall_time(const struct rounds *rounds, const struct study_ladder *
 }
 
 /* Leaves out the most expensive levels until the first round fits into the ladder's share of the time left: as much as
- * each of those that wait for their first round. Returns how many levels are left. */
+ * each of those that wait for their first round. Levels that other ladders have run cost nothing and stay. Returns how
+ * many levels are left. */
 static size_t fit_levels(const struct rounds *rounds, struct study_ladder *ladder, int64_t seeds) {
   size_t count = ladder->levels.count, waiting = 0;
   for (size_t i = 0; i < rounds->study->ladder_count; i++)
     waiting += rounds->study->ladder[i].seeds == 0 && !rounds->study->ladder[i].done;
-  const double share = seconds_left(rounds) / (double)waiting;
-  for (; count > 0 && wall_time(rounds, ladder, seeds) > share; count--) {
-    size_t worst = ladder->levels.count;
-    for (size_t l = 0; l < ladder->levels.count; l++)
-      if (!ladder->left_out[l] &&
-          (worst == ladder->levels.count || cost_of(rounds, ladder, l, seeds) > cost_of(rounds, ladder, worst, seeds)))
+  const double share = fmax(0, seconds_left(rounds)) / (double)waiting;
+  for (; wall_time(rounds, ladder, seeds) > share; count--) {
+    size_t worst = 0;
+    double most = 0;
+    for (size_t l = 0; l < ladder->levels.count; l++) {
+      const double cost = ladder->left_out[l] ? 0 : cost_of(rounds, ladder, l, seeds);
+      if (cost > most) {
         worst = l;
+        most = cost;
+      }
+    }
     ladder->left_out[worst] = true;
   }
   return count;

@@ -17,6 +17,7 @@ enum design_axis_kind {
 
 struct design_axis {
   const struct field *row;    /* of the engine's inputs */
+  char unit[32];              /* that the campaign gives its values in; "": SI */
   int kind;                   /* enum design_axis_kind */
   struct field_value *levels; /* owned */
   size_t level_count;

@@ -363,18 +363,24 @@ static char *text_for_store(const char *document, const struct campaign *campaig
   return text_close(out, &text);
 }
 
-static status from_document(struct document *document, const char *folder, struct campaign **out, struct error *error) {
+static status from_document(struct document *document, const struct campaign_changes *changes, const char *folder,
+                            struct campaign **out, struct error *error) {
+  status code = changes ? campaign_change(document, changes, error) : STATUS_OK;
+  if (code != STATUS_OK)
+    return code;
   struct campaign *campaign = calloc(1, sizeof *campaign);
   if (!campaign)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   read_all(document_root(document), folder, campaign); /* its defaults clear the whole struct */
-  campaign->text = text_for_store(document_text(document), campaign);
+  char *changed = document_change_text(document);
+  campaign->text = changed ? text_for_store(changed, campaign) : NULL;
+  free(changed);
   if (!campaign->text) {
     campaign_free(campaign);
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   }
   const char *report = NULL;
-  status code = document_finish(document, &report);
+  code = document_finish(document, &report);
   if (code != STATUS_OK) {
     status_fail(error, code, "%s", report);
     campaign_free(campaign);
@@ -392,7 +398,7 @@ static status from_text(const char *name, const char *text, size_t size, const c
   if (code == STATUS_OK && si)
     document_take_si(document);
   if (code == STATUS_OK)
-    code = from_document(document, folder, out, error);
+    code = from_document(document, NULL, folder, out, error);
   document_free(document);
   return code;
 }
@@ -408,6 +414,11 @@ status campaign_parse_stored(const char *name, const char *text, const char *fol
 }
 
 status campaign_load(const char *path, struct campaign **out, struct error *error) {
+  return campaign_load_changed(path, NULL, out, error);
+}
+
+status campaign_load_changed(const char *path, const struct campaign_changes *changes, struct campaign **out,
+                             struct error *error) {
   struct document *document = NULL;
   *out = NULL;
   status code = document_open(path, &document, error);
@@ -418,7 +429,7 @@ status campaign_load(const char *path, struct campaign **out, struct error *erro
   if (slash && !folder)
     code = status_fail(error, STATUS_MEMORY, "no memory for the campaign");
   else
-    code = from_document(document, folder, out, error);
+    code = from_document(document, changes, folder, out, error);
   free(folder);
   document_free(document);
   return code;

@@ -19,6 +19,7 @@
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_H
 
 #include "campaign/design/axis.h"
+#include "campaign/document/campaign_change.h"
 #include "engine/scene.h"
 #include "schemas/field.h"
 
@@ -70,6 +71,9 @@ extern const struct field_table campaign_design_table; /* the keys of `design` a
 /* Reports all errors of the document together in *error, each with its place. STATUS_MISSING, STATUS_IO,
  * STATUS_CONTENT. May be called before farm_start: opens no HDF5 file, starts no thread. */
 status campaign_load(const char *path, struct campaign **out, struct error *error);
+/* The same with changes from the command line (NULL: none). STATUS_USAGE when they alone are at fault. */
+status campaign_load_changed(const char *path, const struct campaign_changes *changes, struct campaign **out,
+                             struct error *error);
 /* `folder` is what `scene` is relative to (NULL: the current one). */
 status campaign_parse(const char *name, const char *text, size_t size, const char *folder, struct campaign **out,
                       struct error *error);

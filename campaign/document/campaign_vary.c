@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/unit.h"
+
 enum { MOST_LEVELS = 1000000, PATH_SIZE = 320 };
 
 struct reading { /* one axis being read */
@@ -37,6 +39,17 @@ static unsigned own_percent(const struct reading *r) {
   return r->axis->row->flags & FIELD_PERCENT;
 }
 
+/* The unit of the first value that has one is the one that tables are in. `unit`: SI, of the row that the value was
+ * read by; that of the law's sigma or factor is another one. */
+static void note_unit(struct reading *r, document_node *node, const char *unit) {
+  const char *text = document_scalar(node);
+  if (*r->axis->unit || !text || !unit || r->axis->row->unit == NULL || strcmp(unit, r->axis->row->unit) != 0)
+    return;
+  text = unit_of(text);
+  if (strlen(text) < sizeof r->axis->unit)
+    snprintf(r->axis->unit, sizeof r->axis->unit, "%s", text);
+}
+
 static bool read_number(struct reading *r, document_node *node, const char *what, const struct field *row, double *x) {
   struct field_value value;
   if (!node) {
@@ -45,6 +58,7 @@ static bool read_number(struct reading *r, document_node *node, const char *what
   }
   if (!document_value(node, row, &value))
     return false;
+  note_unit(r, node, row->unit);
   *x = value.number;
   return true;
 }
@@ -57,6 +71,7 @@ static bool read_own(struct reading *r, document_node *node, double *x) {
   row.flags &= ~(unsigned)FIELD_MAY_BE_OFF; /* an end of a range cannot be off */
   if (!document_value(node, &row, &value))
     return false;
+  note_unit(r, node, row.unit);
   *x = row.kind == FIELD_INTEGER ? (double)value.integer : value.number;
   return true;
 }
@@ -94,7 +109,10 @@ static bool read_values(struct reading *r, document_node *node) {
   struct field row = *r->axis->row;
   row.path = r->path;
   for (size_t i = 0; i < count; i++)
-    good &= document_value(document_item(node, i, NULL), &row, &r->axis->levels[i]);
+    if (document_value(document_item(node, i, NULL), &row, &r->axis->levels[i]))
+      note_unit(r, document_item(node, i, NULL), row.unit);
+    else
+      good = false;
   return good;
 }
 
@@ -272,6 +290,8 @@ static bool check_links(struct reading *readings, struct campaign *campaign) {
     if (axis->kind != DESIGN_AXIS_LINKED)
       continue;
     const struct design_axis *other = &campaign->axes[axis->linked];
+    if (!*axis->unit && axis->row->unit && other->row->unit && strcmp(axis->row->unit, other->row->unit) == 0)
+      memcpy(axis->unit, other->unit, sizeof axis->unit);
     if (other->kind == DESIGN_AXIS_LINKED)
       return wrong(&readings[i], NULL, "follows an input that is linked itself; link both to the same one");
     if (axis->level_count && (other->kind != DESIGN_AXIS_LEVELS || other->level_count != axis->level_count))

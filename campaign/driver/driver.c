@@ -34,6 +34,10 @@ static status announce(struct driver *driver, struct error *error) {
            campaign->design.kind, (unsigned long long)design_points(driver->walk.design),
            (long long)campaign_replicates_least(campaign), (long long)campaign_replicates_most(campaign));
   code = store_add_campaign(driver->store, campaign->name, campaign->text, plan, &driver->summary.campaign_id, error);
+  if (code == STATUS_OK)
+    code = store_set_session(driver->store, driver->summary.session_id, driver->summary.campaign_id, error);
+  for (size_t i = 0; code == STATUS_OK && i < campaign->axis_count; i++)
+    code = store_add_axis(driver->store, campaign->axes[i].row, campaign->axes[i].unit, error);
   return code == STATUS_OK ? store_flush(driver->store, error) : code;
 }
 

@@ -507,7 +507,7 @@ static void receive_all(struct manager *m) {
   int64_t timeout_ns = m->ticked_ns + TICK_NS - clock_ns();
   if (farm->ranks > 1 && m->sleep_ns < timeout_ns)
     timeout_ns = m->sleep_ns;
-  const bool heard = farm_pool_wait(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
+  const bool heard = farm_pool_listen(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
   int count = 0;
   if (farm->ranks > 1)
     fail(m, farm_link_drain(farm->link, take, m, &count, error_of(m)));

@@ -12,7 +12,7 @@
 
 struct farm_pool;
 
-/* A job has ended. Called from farm_pool_wait only. The receiver owns the job and frees it; all else is borrowed. */
+/* A job has ended. Called from farm_pool_listen only. The receiver owns the job and frees it; all else is borrowed. */
 struct farm_pool_sink {
   void *context;
   void (*ended)(void *context, struct farm_job *job, const struct farm_result *result, const uint8_t *bytes,
@@ -24,11 +24,11 @@ void farm_pool_sink_to(struct farm_pool *pool, struct farm_pool_sink sink);
 void farm_pool_submit(struct farm_pool *pool, struct farm_job *job); /* owns the job until it ended */
 /* Takes back up to `most` jobs that have not begun, from the end of the queue, then from slots. */
 void farm_pool_withdraw(struct farm_pool *pool, size_t most, struct farm_job_queue *into);
-/* Sends waiting jobs to slots. To be called after submitting and after farm_pool_wait. */
+/* Sends waiting jobs to slots. To be called after submitting and after farm_pool_listen. */
 void farm_pool_dispatch(struct farm_pool *pool);
 /* Sleeps until a slot or `signals` (a file to watch, or -1) has something to read, or the timeout is over, and takes in
  * what the slots have written. True when anything was there. */
-bool farm_pool_wait(struct farm_pool *pool, int signals, int64_t timeout_ns);
+bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns);
 int farm_pool_slots(const struct farm_pool *pool); /* that work or will; 0: the pool is lost */
 /* How many jobs it takes in all, at the recent length of tasks. */
 size_t farm_pool_capacity(const struct farm_pool *pool);

@@ -90,7 +90,7 @@ status farm_serve(struct farm *farm, struct error *error) {
   bool empty_said = false;
   while (!server.ended) {
     int count = 0;
-    const bool heard = farm_pool_wait(farm->pool, farm->signals, sleep_ns);
+    const bool heard = farm_pool_listen(farm->pool, farm->signals, sleep_ns);
     keep(&server, farm_link_drain(farm->link, take, &server, &count, error));
     farm_pool_dispatch(farm->pool);
     const int64_t now = clock_ns();

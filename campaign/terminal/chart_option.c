@@ -46,10 +46,11 @@ void chart_option_label(const char *column, char label[CHART_OPTION_LABEL]) {
 }
 
 status chart_option_axis(struct store *store, const char *column, char label[CHART_OPTION_LABEL], struct error *error) {
-  char unit[64] = "", shown[96];
-  status code = ask_columns_unit(store, column, unit, sizeof unit, error);
+  char shown[96];
+  struct ask_column written;
+  status code = ask_columns_written(store, column, &written, error);
   chart_option_label(column, label);
-  field_label_unit(unit, shown, sizeof shown);
+  field_label_unit(written.unit, shown, sizeof shown);
   const size_t used = strlen(label);
   if (*shown)
     snprintf(label + used, CHART_OPTION_LABEL - used, " (%s)", shown);

@@ -6,12 +6,23 @@
 
 enum { BLOB_SHOWN = 64 }; /* bytes shown in the aligned table: an identity fits, a list of masses does not */
 
+/* The varied input of this name, or -1. */
+static int written_place(const struct rows *rows, const char *name) {
+  for (size_t i = 0; i < rows->written_count; i++)
+    if (strcmp(rows->written[i].name, name) == 0)
+      return (int)i;
+  return -1;
+}
+
 static status columns(void *context, size_t count, const char *const *names, struct error *error) {
-  (void)error;
   struct rows *rows = context;
+  rows->place = calloc(count + 1, sizeof *rows->place);
+  if (!rows->place)
+    return status_fail(error, STATUS_MEMORY, "no memory for a table");
   rows->table = table_new(rows->format, rows->out);
   for (size_t i = 0; i < count; i++) {
-    const char *unit = NULL;
+    rows->place[i] = written_place(rows, names[i]);
+    const char *unit = rows->place[i] >= 0 ? rows->written[rows->place[i]].unit : NULL;
     for (size_t k = 0; k < rows->unit_count && !unit; k++)
       if (strcmp(rows->units[k].name, names[i]) == 0)
         unit = rows->units[k].unit;
@@ -54,10 +65,13 @@ static status row(void *context, size_t count, const struct query_value *values,
   (void)error;
   struct rows *rows = context;
   for (size_t i = 0; i < count; i++) {
-    if (values[i].kind == QUERY_BLOB)
+    if (values[i].kind == QUERY_BLOB) {
       print_blob(rows, values[i].blob, values[i].size);
-    else
-      rows_cell(rows->table, &values[i]);
+      continue;
+    }
+    const struct query_value shown = rows->place[i] >= 0 ? ask_columns_value(&rows->written[rows->place[i]], &values[i])
+                                                         : values[i];
+    rows_cell(rows->table, &shown);
   }
   return table_broken(rows->table) ? STATUS_IO : STATUS_OK; /* rows_end says what it was */
 }
@@ -69,9 +83,18 @@ struct query_sink rows_sink(struct rows *rows, struct store *store, enum table_f
   return (struct query_sink){rows, columns, row};
 }
 
+struct query_sink rows_sink_written(struct rows *rows, struct store *store, enum table_format format, FILE *out) {
+  const struct query_sink sink = rows_sink(rows, store, format, out);
+  if (format == TABLE_TEXT) /* on an error they stay in SI */
+    (void)ask_columns_axes(store, true, ROWS_AXES, rows->written, &rows->written_count, NULL);
+  return sink;
+}
+
 status rows_end(struct rows *rows, status code, struct error *error) {
   free(rows->units);
+  free(rows->place);
   rows->units = NULL;
+  rows->place = NULL;
   if (!rows->table)
     return code;
   bool broken = table_broken(rows->table);

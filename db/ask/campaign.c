@@ -5,8 +5,26 @@
 #include <stdio.h>
 #include <string.h>
 
-status ask_campaign_progress(struct store *store, const struct query_sink *sink, struct error *error) {
-  static const char sql[] =
+#include "db/store/internal.h"
+#include "db/store/schema.h"
+
+/* Sessions with their campaigns. A store of an older program that is only read does not name the campaign: it is one
+ * of those of the session's runs. */
+static const char sessions_named[] = "SELECT campaign_id, started_at, ended_at, outcome FROM session";
+static const char sessions_of_runs[] =
+    "SELECT max(c.campaign_id) AS campaign_id, started_at, ended_at, outcome FROM (SELECT DISTINCT session_id, point_id"
+    " FROM run) JOIN session USING (session_id) JOIN campaign_point p USING (point_id) JOIN campaign c ON"
+    " c.campaign_id = p.campaign_id WHERE ended_at IS NULL OR substr(c.added_at, 1, 19) <= substr(ended_at, 1, 19)"
+    " GROUP BY session_id";
+
+status ask_campaign_progress(struct store *store, bool writing, const struct query_sink *sink, struct error *error) {
+  bool named = false;
+  char sql[3600];
+  const status code = schema_has_column(store->db, "session", "campaign_id", &named, error);
+  if (code != STATUS_OK)
+    return code;
+  snprintf(
+      sql, sizeof sql,
       "WITH done AS (SELECT campaign_id, count(*) AS runs, sum(counts) AS counted,"
       "   sum(counts AND state = 'end-time') AS censored,"
       "   sum(state NOT IN ('completed', 'end-time')) AS failed, sum(surplus) AS surplus, sum(cpu_time) AS cpu_time"
@@ -16,17 +34,29 @@ status ask_campaign_progress(struct store *store, const struct query_sink *sink,
       " given_up AS (SELECT campaign_id, count(DISTINCT attempt.identity) AS without_result"
       "   FROM campaign_point JOIN attempt USING (point_id)"
       "   WHERE NOT EXISTS (SELECT 1 FROM run WHERE run.identity = attempt.identity) GROUP BY campaign_id),"
-      " last AS (SELECT started_at, ended_at, outcome, host, pid FROM session ORDER BY session_id DESC LIMIT 1)"
+      " sessions AS (%s),"
+      " last AS (SELECT campaign_id, max(started_at) AS started_at, ended_at, outcome FROM sessions"
+      "   GROUP BY campaign_id),"
+      " planned AS (SELECT campaign_id, plan ->> '$.points' AS points, plan ->> '$.replicates_least' AS least,"
+      "   plan ->> '$.replicates_most' AS most FROM campaign WHERE json_valid(plan)),"
+      " filled AS (SELECT campaign_id, count(*) AS points FROM (SELECT campaign_id, point_id, count(DISTINCT seed) AS n"
+      "   FROM campaign_point JOIN run USING (point_id) GROUP BY campaign_id, point_id) JOIN planned"
+      "   USING (campaign_id) WHERE n >= least AND least = most GROUP BY campaign_id)"
       " SELECT campaign_id AS campaign, name,"
+      "   CASE WHEN %d AND last.ended_at IS NULL AND last.started_at = (SELECT max(started_at) FROM session)"
+      "     THEN 'running'"
+      "   WHEN last.outcome = 'finished' OR filled.points = planned.points THEN 'finished'"
+      "   WHEN last.outcome IS NOT NULL THEN last.outcome WHEN last.started_at IS NULL THEN 'not known'"
+      "   ELSE 'killed' END AS state,"
       "   (SELECT count(*) FROM campaign_point AS p WHERE p.campaign_id = campaign.campaign_id) AS points,"
       "   coalesce(runs, 0) AS runs, coalesce(counted, 0) AS counted, coalesce(censored, 0) AS censored,"
       "   coalesce(failed, 0) AS failed, coalesce(surplus, 0) AS surplus,"
       "   coalesce(failed_attempts, 0) AS failed_attempts, coalesce(without_result, 0) AS without_result,"
-      "   coalesce(cpu_time, 0.0) AS cpu_time,"
-      "   last.started_at AS last_started, last.ended_at AS last_ended,"
-      "   coalesce(last.outcome, 'running or killed') AS last_outcome"
+      "   coalesce(cpu_time, 0.0) AS cpu_time, last.started_at AS last_started, last.ended_at AS last_ended"
       " FROM campaign LEFT JOIN done USING (campaign_id) LEFT JOIN tried USING (campaign_id)"
-      " LEFT JOIN given_up USING (campaign_id) LEFT JOIN last ON true ORDER BY campaign_id";
+      " LEFT JOIN given_up USING (campaign_id) LEFT JOIN last USING (campaign_id) LEFT JOIN planned"
+      " USING (campaign_id) LEFT JOIN filled USING (campaign_id) ORDER BY campaign_id",
+      named ? sessions_named : sessions_of_runs, writing);
   return query_run(store, sql, 0, NULL, 0, sink, error);
 }
 

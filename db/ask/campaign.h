@@ -4,9 +4,10 @@
 
 #include "db/ask/query.h"
 
-/* One row per campaign: campaign, name, points, runs, counted, censored, failed, surplus, failed_attempts,
- * without_result, cpu_time (s), and start, end and outcome of the store's last session. */
-status ask_campaign_progress(struct store *store, const struct query_sink *sink, struct error *error);
+/* One row per campaign: campaign, name, state, points, runs, counted, censored, failed, surplus, failed_attempts,
+ * without_result, cpu_time (s), and start and end of its last session. `writing`: a process writes the store now
+ * (store_is_being_written). */
+status ask_campaign_progress(struct store *store, bool writing, const struct query_sink *sink, struct error *error);
 
 /* Name and YAML text of a campaign (0: the last one), to be freed by the caller. Both NULL: there is none. */
 status ask_campaign_document(struct store *store, int64_t campaign, char **name, char **document, struct error *error);

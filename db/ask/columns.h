@@ -8,10 +8,19 @@
 struct ask_column {
   char name[128];
   char unit[64]; /* "" when the store does not tell it; "1" for a pure number */
+  double factor; /* one of this unit in SI; values of the store are SI */
 };
 
-/* The columns of the varied inputs, in the order of their paths; at most `most` of them. */
-status ask_columns_axes(struct store *store, size_t most, struct ask_column *axes, size_t *count, struct error *error);
+/* The columns of the varied inputs, in the order of their paths; at most `most` of them. With `written` their units are
+ * those that the campaign gives the values in; else SI. */
+status ask_columns_axes(struct store *store, bool written, size_t most, struct ask_column *axes, size_t *count,
+                        struct error *error);
+/* One of them by name, with its written unit. A column that is no varied input has its unit of the store. */
+status ask_columns_written(struct store *store, const char *column, struct ask_column *out, struct error *error);
+/* Gives the column a written unit in place of its SI one, if it is one of the same dimension. */
+void ask_columns_write_in(struct ask_column *column, const char *unit);
+/* A value of the store in the unit of the column: numbers are divided by its factor, all else stays. */
+struct query_value ask_columns_value(const struct ask_column *column, const struct query_value *value);
 
 /* Unit of one column in `unit`; "" for a pure number or an unknown column. */
 status ask_columns_unit(struct store *store, const char *column, char *unit, size_t size, struct error *error);

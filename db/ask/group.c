@@ -5,6 +5,7 @@
 #include "db/ask/query.h"
 #include "db/store/internal.h"
 #include "db/store/views.h"
+#include "engine/engine.h"
 #include "schemas/text.h"
 
 enum { NAMES = 32, NAME = 128 };
@@ -57,6 +58,17 @@ static status consider(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
+/* "energy_kinetic" for "result_dem_energy_kinetic", the name that it has in a store with two engines; else `column`. */
+static const char *without_engine(const char *column) {
+  for (size_t i = 0; i < engine_count(); i++) {
+    char prefix[NAME];
+    const int length = snprintf(prefix, sizeof prefix, "result_%s_", engine_at(i)->name);
+    if (strncmp(column, prefix, (size_t)length) == 0)
+      return column + length;
+  }
+  return column;
+}
+
 static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
                       struct names *out, struct error *error) {
   while (*list) {
@@ -69,9 +81,17 @@ static status resolve(struct store *store, const char *list, const char *what, c
       from[n - 1] = '\0';
     if (!*from)
       continue;
-    struct choice choice = {.wanted = from, .guess = text_guess(from)};
+    struct choice choice = {.guess = text_guess(from)};
     const struct query_sink sink = {.context = &choice, .row = consider};
-    status result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
+    status result = STATUS_OK;
+    char column[NAME];
+    field_column_name(from, column, sizeof column);
+    const char *const forms[] = {from, column, without_engine(column)};
+    for (size_t i = 0; result == STATUS_OK && choice.matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
+      choice.wanted = forms[i];
+      choice.known[0] = '\0';
+      result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
+    }
     if (result != STATUS_OK)
       return result;
     if (choice.matches > 1)

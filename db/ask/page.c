@@ -157,6 +157,8 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
     code = copy_attempts(page, store, error);
   if (code == STATUS_OK)
     code = ask_page_runs(page, store, error);
+  if (code == STATUS_OK)
+    code = ask_page_scatter(page, store, error);
   if (code == STATUS_OK) /* the ready questions know the table by the store's name, too */
     code = sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error);
   return code ? code : add_questions(page, error);

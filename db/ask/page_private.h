@@ -11,6 +11,7 @@ enum {
   ASK_PAGE_VALUES = 120000,  /* results of single runs */
   ASK_PAGE_MEANS = 40000,    /* rows of the table means */
   ASK_PAGE_SPECTRUM = 12000, /* rows of the table spectra */
+  ASK_PAGE_QUANTILES = 200,  /* points with quantiles */
   ASK_PAGE_ATTEMPTS = 500,   /* failed attempts, and failed runs */
 };
 
@@ -26,5 +27,8 @@ status ask_page_copy(struct ask_page *page, struct store *store, const char *tab
 
 /* Fills in `runs` and `means`. */
 status ask_page_runs(struct ask_page *page, struct store *store, struct error *error);
+
+/* Fills in `quantile` and `modes`. */
+status ask_page_scatter(struct ask_page *page, struct store *store, struct error *error);
 
 #endif

@@ -201,7 +201,7 @@ static status copy_runs(struct reading *reading, struct store *store, struct err
   if (code == STATUS_OK)
     code = query_number(store, "SELECT sum(runs + failed) FROM point_total", 0, NULL, &all, error);
   if (code == STATUS_OK)
-    code = ask_columns_axes(store, COLUMNS, axes, &axis_count, error);
+    code = ask_columns_axes(store, false, COLUMNS, axes, &axis_count, error);
   if (code)
     return code;
   FILE *out = open_memstream(&sql, &size);

@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "db/ask/columns.h"
 #include "db/sql.h"
+#include "db/store/internal.h"
+#include "db/store/schema.h"
 
 /* Condition for the points of a choice, on any table with a column point_id. */
 static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
@@ -152,17 +155,22 @@ struct label {
   size_t size, used;
 };
 
-/* A row of path, value and unit. */
+/* A row of path, value, SI unit and written unit. */
 static status add_input(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
   struct label *label = context;
   const char *path = values[0].text, *word = strrchr(path, '.');
-  const char *unit = values[2].kind == QUERY_TEXT && strcmp(values[2].text, "1") != 0 ? values[2].text : "";
+  struct ask_column column = {.factor = 1};
+  snprintf(column.unit, sizeof column.unit, "%s", values[2].kind == QUERY_TEXT ? values[2].text : "");
+  if (values[3].kind == QUERY_TEXT)
+    ask_columns_write_in(&column, values[3].text);
+  const struct query_value shown = ask_columns_value(&column, &values[1]);
+  const char *unit = strcmp(column.unit, "1") != 0 ? column.unit : "";
   char value[64], item[256];
-  if (values[1].kind == QUERY_TEXT)
-    snprintf(value, sizeof value, "%s", values[1].text);
+  if (shown.kind == QUERY_TEXT)
+    snprintf(value, sizeof value, "%s", shown.text);
   else
-    snprintf(value, sizeof value, "%.3g", values[1].real);
+    snprintf(value, sizeof value, "%.3g", shown.real);
 
   const int size = snprintf(item, sizeof item, "%s%s %s%s%s", label->used ? ", " : "", word ? word + 1 : path, value,
                             *unit ? " " : "", unit);
@@ -178,9 +186,14 @@ status ask_points_label(struct store *store, int64_t point_id, char *text, size_
   const struct query_sink sink = {.context = &label, .row = add_input};
   char sql[256];
   snprintf(text, size, "point %lld", (long long)point_id);
+  bool written = false;
+  const status code = schema_has_column(store->db, "axis", "written_unit", &written, error);
+  if (code != STATUS_OK)
+    return code;
   snprintf(sql, sizeof sql,
-           "SELECT path, value, unit FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path DESC",
-           (long long)point_id);
+           "SELECT path, value, unit, %s FROM point_input JOIN axis USING (path) WHERE point_id = %lld ORDER BY path "
+           "DESC",
+           written ? "written_unit" : "NULL", (long long)point_id);
   return query_run(store, sql, 0, NULL, 0, &sink, error);
 }
 

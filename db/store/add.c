@@ -124,15 +124,11 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
 }
 
 /* *grown: the views need another column. */
-static status add_axis(struct store *store, const struct scene *scene, const char *path, bool *grown,
-                       struct error *error) {
+static status add_axis(struct store *store, const struct field *row, bool *grown, struct error *error) {
   status result = sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point,
                                    error);
   if (result != STATUS_OK)
     return result;
-  const struct field *row = field_find(scene->kind->inputs, path, error);
-  if (!row)
-    return STATUS_CONTENT;
   sql_bind_text(store->axis_find, 1, row->path);
   bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
   sqlite3_reset(store->axis_find);
@@ -146,6 +142,22 @@ static status add_axis(struct store *store, const struct scene *scene, const cha
   return sql_executef(store->db, adding_point, error,
                       "INSERT INTO axis (path, column_name, unit, meaning) VALUES (%Q, %Q, %Q, %Q)", row->path, name,
                       row->unit, row->doc ? row->doc : "");
+}
+
+static status add_axis_with_unit(struct store *store, const struct field *row, const char *unit, struct error *error) {
+  bool grown = false;
+  status result = add_axis(store, row, &grown, error);
+  if (result == STATUS_OK)
+    result = sql_executef(store->db, adding_point, error,
+                          "UPDATE axis SET written_unit = nullif(%Q, '') WHERE path = %Q", unit, row->path);
+  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+}
+
+status store_add_axis(struct store *store, const struct field *row, const char *unit, struct error *error) {
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  return store_end(store, add_axis_with_unit(store, row, unit, error), 1, error);
 }
 
 static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
@@ -162,6 +174,17 @@ static status name_columns(struct store *store, struct store_kind *kind, struct 
   if (result == STATUS_OK)
     result = digest_names_make(&store->estimate_names, "estimate", &estimates_table, error);
   return result == STATUS_OK ? digest_names_make(&kind->names, results.name, kind->kind->results, error) : result;
+}
+
+static status has_no_rows(struct store *store, const char *table, bool *none, struct error *error) {
+  int64_t filled = 0;
+  char *sql = sqlite3_mprintf("SELECT EXISTS (SELECT 1 FROM \"%w\")", table);
+  if (!sql)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
+  const status result = sql_integer(store->db, sql, 0, &filled, error);
+  sqlite3_free(sql);
+  *none = filled == 0;
+  return result;
 }
 
 /* The statement of the run's engine. Creates the engine's result table when the store has none. */
@@ -191,6 +214,9 @@ static status find_kind(struct store *store, const struct engine_kind *kind, str
   if (result != STATUS_OK)
     return result;
   *grown = *grown || before != after;
+  result = has_no_rows(store, table.name, &entry->first, error);
+  if (result != STATUS_OK)
+    return result;
   entry->kind = kind;
   result = name_columns(store, entry, error);
   if (result != STATUS_OK)
@@ -221,8 +247,10 @@ static status add_point(struct store *store, int64_t campaign_id, const struct s
   result = find_or_add_point(store, scene, point_id, error);
   if (result == STATUS_OK && campaign_id > 0)
     result = add_to_campaign(store, campaign_id, *point_id, error);
-  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++)
-    result = add_axis(store, scene, varied_paths[i], &grown, error);
+  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++) {
+    const struct field *row = field_find(scene->kind->inputs, varied_paths[i], error);
+    result = row ? add_axis(store, row, &grown, error) : STATUS_CONTENT;
+  }
   return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
 }
 
@@ -318,6 +346,10 @@ static status add_run(struct store *store, const struct store_run *run, struct e
     result = add_row(store, kind, run, &run_id, error);
   if (result == STATUS_OK && run->result)
     result = add_result(kind, run_id, run->result, error);
+  if (result == STATUS_OK && run->result && kind->first) {
+    kind->first = false;
+    result = views_regenerate(store->db, error);
+  }
   if (result != STATUS_OK)
     return result;
   result = store_fragments_add(store, run_id, run, error);

@@ -13,6 +13,7 @@ enum { STORE_BATCH_ROWS = 500, STORE_KINDS = 16 };
 
 struct store_kind { /* fills result_<engine> */
   const struct engine_kind *kind;
+  bool first; /* no run of it is stored yet: the views have no columns for its results */
   struct sql_insert insert;
   struct digest_names names;
 };

@@ -40,11 +40,12 @@ status lock_take(const char *path, int *descriptor, bool *held, struct error *er
 }
 
 bool lock_is_held(const char *path) {
+  const int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (descriptor < 0)
+    return false;
   struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCK_BYTE, .l_len = 1};
-  const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
-  const bool held = descriptor >= 0 && fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  if (descriptor >= 0)
-    close(descriptor);
+  const bool held = fcntl(descriptor, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(descriptor);
   return held;
 }
 

@@ -158,6 +158,36 @@ static status copy_results(sqlite3 *db, struct error *error) {
 }
 
 /* Tables, then rows in the order of their references. */
+/* The campaigns of the sessions that were copied. A source of an older version does not name them: they are found by
+ * their runs. */
+static status copy_campaigns_of_sessions(sqlite3 *db, struct error *error) {
+  int64_t named = 0;
+  status result = sql_integer(db,
+                              "SELECT count(*) FROM pragma_table_info('session', 'other') WHERE name = 'campaign_id'",
+                              0, &named, error);
+  if (result == STATUS_OK && named)
+    result = sql_execute(db,
+                         "UPDATE main.session SET campaign_id = of.campaign_id FROM (SELECT m.ours, a.campaign_id FROM "
+                         "merge_session m JOIN other.session b ON b.session_id = m.theirs JOIN other.campaign c USING "
+                         "(campaign_id) JOIN main.campaign a ON a.name = c.name AND a.document = c.document) AS of "
+                         "WHERE of.ours = session.session_id AND session.campaign_id IS NULL",
+                         doing, error);
+  return result == STATUS_OK ? sql_execute(db, schema_sessions_sql, doing, error) : result;
+}
+
+/* Units that only the other store knows. */
+static status copy_written_units(sqlite3 *db, struct error *error) {
+  int64_t named = 0;
+  status result = sql_integer(db, "SELECT count(*) FROM pragma_table_info('axis', 'other') WHERE name = 'written_unit'",
+                              0, &named, error);
+  if (result != STATUS_OK || !named)
+    return result;
+  return sql_execute(db,
+                     "UPDATE main.axis SET written_unit = b.written_unit FROM other.axis b WHERE b.path = axis.path "
+                     "AND axis.written_unit IS NULL",
+                     doing, error);
+}
+
 static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
   status result = make_tables(db, error);
   if (result != STATUS_OK)
@@ -169,7 +199,11 @@ static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
   if (result != STATUS_OK)
     return result;
   result = copy_results(db, error);
-  return result == STATUS_OK ? copy_attempts(db, error) : result;
+  if (result == STATUS_OK)
+    result = copy_attempts(db, error);
+  if (result == STATUS_OK)
+    result = copy_campaigns_of_sessions(db, error);
+  return result == STATUS_OK ? copy_written_units(db, error) : result;
 }
 
 static status merge(sqlite3 *db, int64_t *added, struct error *error) {

@@ -86,7 +86,12 @@ static status to_version_2(sqlite3 *db, struct error *error) {
   return result == STATUS_OK ? digest_rows_fill(db, DIGEST_POINTS, 0, error) : result;
 }
 
-static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1, to_version_2};
+/* Version 2 did not say which campaign a session computed. */
+static status to_version_3(sqlite3 *db, struct error *error) {
+  return sql_execute(db, schema_sessions_sql, "bringing the store forward", error);
+}
+
+static status (*const steps[SCHEMA_VERSION])(sqlite3 *, struct error *) = {to_version_1, to_version_2, to_version_3};
 
 static status back_up(sqlite3 *db, const char *path, int version, struct error *error) {
   char *copy = NULL;

@@ -4,6 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char schema_sessions_sql[] =
+    "UPDATE session SET campaign_id = of.campaign_id FROM (SELECT s.session_id, max(c.campaign_id) AS campaign_id FROM"
+    " (SELECT DISTINCT session_id, point_id FROM run) r JOIN session s USING (session_id) JOIN campaign_point p USING"
+    " (point_id) JOIN campaign c ON c.campaign_id = p.campaign_id WHERE s.ended_at IS NULL OR substr(c.added_at, 1, "
+    "19) <="
+    " substr(s.ended_at, 1, 19) GROUP BY s.session_id) AS of WHERE of.session_id = session.session_id AND"
+    " session.campaign_id IS NULL";
+
 static const struct schema_column result_columns[] = {
     {"run_id", "INTEGER PRIMARY KEY REFERENCES run (run_id)", NULL, "the run"},
 };

@@ -11,7 +11,7 @@
 
 enum {
   SCHEMA_APPLICATION_ID = 0x434c5354, /* "CLST" */
-  SCHEMA_VERSION = 2,
+  SCHEMA_VERSION = 3,
   SCHEMA_READABLE = 1, /* the oldest version that can be read without being brought forward */
   SCHEMA_NAME_SIZE = 128,
 };
@@ -60,5 +60,9 @@ status schema_has_column(sqlite3 *db, const char *table, const char *column, boo
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error);
 /* schema_complete of every table. Within the caller's transaction. */
 status schema_complete_all(sqlite3 *db, struct error *error);
+
+/* Names the campaign of sessions that do not: of those of the runs' points the last one that was there when the session
+ * ended. */
+extern const char schema_sessions_sql[];
 
 #endif

@@ -15,6 +15,8 @@ static const struct schema_column campaign[] = {
 
 static const struct schema_column session[] = {
     {"session_id", "INTEGER PRIMARY KEY", NULL, "number of the invocation that computed"},
+    {"campaign_id", "INTEGER", NULL,
+     "the campaign it computed; NULL in sessions of older programs that computed nothing"},
     {"started_at", "TEXT NOT NULL", NULL, "UTC, ISO 8601, to the millisecond"},
     {"ended_at", "TEXT", NULL, "UTC, ISO 8601; NULL while running or when it was killed"},
     {"outcome", "TEXT", NULL, "how it ended: a status name; NULL while running or when it was killed"},
@@ -50,6 +52,7 @@ static const struct schema_column axis[] = {
     {"path", "TEXT NOT NULL PRIMARY KEY", NULL, "path of an input that some campaign varied"},
     {"column_name", "TEXT NOT NULL UNIQUE", NULL, "its column in the views"},
     {"unit", "TEXT", NULL, "SI unit of the input"},
+    {"written_unit", "TEXT", NULL, "unit of its values in the campaign: that of tables for people; NULL: SI"},
     {"meaning", "TEXT NOT NULL", NULL, "what the input means"},
 };
 

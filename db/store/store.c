@@ -100,6 +100,10 @@ static status take_identity(struct store *store, sqlite3_stmt *row, struct error
   return STATUS_OK;
 }
 
+bool store_is_being_written(const char *path) {
+  return lock_is_held(path);
+}
+
 static status load_identities(struct store *store, struct error *error) {
   static const char doing[] = "reading the stored identities";
   sqlite3_stmt *statement = NULL;
@@ -351,6 +355,16 @@ status store_begin_session(struct store *store, const char *facts_json, int64_t 
   *session_id = sqlite3_last_insert_rowid(store->db);
   result = store_end(store, result, 1, error);
   return result == STATUS_OK ? store_flush(store, error) : result;
+}
+
+status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error) {
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  result = sql_executef(store->db, "beginning a session", error,
+                        "UPDATE session SET campaign_id = %lld WHERE session_id = %lld", (long long)campaign_id,
+                        (long long)session_id);
+  return store_end(store, result, 1, error);
 }
 
 status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error) {

@@ -26,15 +26,24 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
 /* Opens for reading only; never blocks the writer. STATUS_MISSING when absent. db/ask/query.h reads from a store; it
  * works on a writer too, and then sees its open batch. */
 status store_open_reader(const char *path, struct store **out, struct error *error);
+/* Does a process write this store now? Ask before the store is opened: closing a descriptor of the file drops SQLite's
+ * locks on it. */
+bool store_is_being_written(const char *path);
 /* Commits and leaves one plain file in journal_mode=DELETE when writing. NULL is fine. */
 status store_close(struct store *store, struct error *error);
 
 /* Provenance: one row per invocation of `clast run`. `facts` is a JSON object (version, commit, compiler, flags, cpu
  * class, libraries, host, ranks, slots, command line). */
 status store_begin_session(struct store *store, const char *facts_json, int64_t *session_id, struct error *error);
+/* Notes which campaign the session computes. */
+status store_set_session(struct store *store, int64_t session_id, int64_t campaign_id, struct error *error);
 status store_end_session(struct store *store, int64_t session_id, const char *outcome, struct error *error);
 status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
                           int64_t *campaign_id, struct error *error);
+
+/* An input that a campaign varies: a column of the views. `unit`: the one that the campaign gives its values in, "" for
+ * SI; the last campaign decides. */
+status store_add_axis(struct store *store, const struct field *input, const char *unit, struct error *error);
 
 /* The point of this resolved scene (inputs, no seed), found by its hash or added; varied paths widen the views. */
 status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,

@@ -62,9 +62,64 @@ static status write_axes(sqlite3 *db, FILE *out, struct error *error) {
                   write_text, out, error);
 }
 
-/* Columns of run, then of every result table. An engine's column with the name of another column gets its table's name
- * in front. */
-static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) {
+/* Does the result table of an engine hold a row? */
+static bool is_filled(sqlite3 *db, const char *table) {
+  int64_t filled = 0;
+  char *sql = sqlite3_mprintf("SELECT EXISTS (SELECT 1 FROM main.\"%w\")", table);
+  const bool is = sql && sql_integer(db, sql, 0, &filled, NULL) == STATUS_OK && filled;
+  sqlite3_free(sql);
+  return is;
+}
+
+/* The result tables of the engines that have runs, as the inside of IN (...); all of them while there are no runs.
+ * sqlite3_free() it. NULL: *error. */
+static char *result_tables(sqlite3 *db, struct error *error) {
+  static const char
+      sql[] = "SELECT name FROM main.sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY 1";
+  char *list = NULL;
+  for (int all = 0; all < 2 && !list; all++) {
+    sqlite3_stmt *names = NULL;
+    status result = sql_prepare(db, sql, &names, "making the views", error);
+    if (result != STATUS_OK)
+      return NULL;
+    while (sql_next(names, &result, "making the views", error)) {
+      if (!all && !is_filled(db, sql_text(names, 0)))
+        continue;
+      char *longer = sqlite3_mprintf("%z%s%Q", list, list ? ", " : "", sql_text(names, 0));
+      list = longer;
+    }
+    sqlite3_finalize(names);
+    if (result != STATUS_OK) {
+      sqlite3_free(list);
+      return NULL;
+    }
+  }
+  if (!list)
+    list = sqlite3_mprintf("''");
+  if (!list)
+    status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  return list;
+}
+
+/* each_row of an SQL text in which %s is the list of result tables. */
+static status each_of_tables(sqlite3 *db, const char *format, const char *tables, FILE *out, struct error *error) {
+  char *sql = NULL;
+  size_t size = 0;
+  FILE *text = open_memstream(&sql, &size);
+  const char *place = strstr(format, "%s");
+  if (!text)
+    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  fprintf(text, "%.*s%s%s", (int)(place - format), format, tables, place + 2);
+  if (!text_close(text, &sql))
+    return status_fail(error, STATUS_MEMORY, "making the views: memory ran out");
+  const status result = each_row(db, sql, write_text, out, error);
+  free(sql);
+  return result;
+}
+
+/* Columns of run, then of the engines' result tables. An engine's column with the name of another column gets its
+ * table's name in front: so in a store with runs of two engines. */
+static status write_result_columns(sqlite3 *db, const char *tables, FILE *out, struct error *error) {
   status
       result = each_row(db,
                         "SELECT format('  r.\"%w\",' || char(10), name) FROM pragma_table_xinfo('run') WHERE name NOT "
@@ -72,32 +127,40 @@ static status write_result_columns(sqlite3 *db, FILE *out, struct error *error) 
                         write_text, out, error);
   if (result != STATUS_OK)
     return result;
-  return each_row(
+  return each_of_tables(
       db,
       "WITH mine AS MATERIALIZED (SELECT t.name AS place, c.name AS name, c.cid AS cid FROM main.sqlite_schema t, "
-      "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name GLOB 'result_*' AND c.name <> 'run_id'), "
+      "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name IN (%s) AND c.name <> 'run_id'), "
       "shared AS MATERIALIZED (SELECT name FROM pragma_table_xinfo('run', 'main') UNION ALL SELECT name FROM mine "
-      "GROUP "
-      "BY name HAVING count(*) > 1) SELECT format('  \"%w\".\"%w\"%s,' || char(10), place, name, iif(name IN shared, "
-      "format(' AS \"%w_%w\"', place, name), '')) FROM mine ORDER BY place, cid",
-      write_text, out, error);
+      "GROUP BY name HAVING count(*) > 1) SELECT format('  \"%w\".\"%w\"%s,' || char(10), place, name, iif(name IN "
+      "shared, format(' AS \"%w_%w\"', place, name), '')) FROM mine ORDER BY place, cid",
+      tables, out, error);
 }
 
-static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
-  fprintf(out, "runs AS -- every run with its varied inputs and all its results\n"
+static status write_runs_of(sqlite3 *db, const char *tables, FILE *out, struct error *error) {
+  fprintf(out, "runs AS -- every run with its varied inputs and all results of its engine\n"
                "SELECT r.run_id, r.point_id, p.engine, p.scene_name AS scene, r.replicate, r.seed,\n");
   status result = write_axes(db, out, error);
   if (result != STATUS_OK)
     return result;
-  result = write_result_columns(db, out, error);
+  result = write_result_columns(db, tables, out, error);
   if (result != STATUS_OK)
     return result;
   fprintf(out, "  lower(hex(r.identity)) AS identity\nFROM run r JOIN point p ON p.point_id = r.point_id");
-  result = each_row(db,
-                    "SELECT format(char(10) || '  LEFT JOIN \"%w\" ON \"%w\".run_id = r.run_id', name, name) FROM "
-                    "sqlite_schema WHERE type = 'table' AND name GLOB 'result_*' ORDER BY name",
-                    write_text, out, error);
+  result = each_of_tables(db,
+                          "SELECT format(char(10) || '  LEFT JOIN \"%w\" ON \"%w\".run_id = r.run_id', name, name) "
+                          "FROM main.sqlite_schema WHERE type = 'table' AND name IN (%s) ORDER BY name",
+                          tables, out, error);
   fprintf(out, ";\n");
+  return result;
+}
+
+static status write_runs(sqlite3 *db, FILE *out, struct error *error) {
+  char *tables = result_tables(db, error);
+  if (!tables)
+    return error ? error->status : STATUS_MEMORY;
+  const status result = write_runs_of(db, tables, out, error);
+  sqlite3_free(tables);
   return result;
 }
 
@@ -379,7 +442,9 @@ status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size,
   status result = sql_prepare(db,
                               "SELECT 1 FROM (VALUES ('runs'), ('points'), ('spectra'), ('estimates')) v, "
                               "pragma_table_info(v.column1) c WHERE c.name = ?1 UNION ALL SELECT 1 FROM axis WHERE "
-                              "column_name = ?1",
+                              "column_name = ?1 UNION ALL SELECT 1 FROM main.sqlite_schema t, "
+                              "pragma_table_xinfo(t.name, 'main') c WHERE t.type = 'table' AND t.name GLOB 'result_*' "
+                              "AND c.name = ?1",
                               &statement, "making the views", error);
   if (result != STATUS_OK)
     return result;

@@ -90,7 +90,7 @@ angles = sorted({r['threshold_angle'] for r in rows})
 assert len(drawn) == len(angles) == 2, drawn
 for angle, line in zip(angles, drawn):
     table = sorted((r['threshold_strain'], r['beta_masses']) for r in rows if r['threshold_angle'] == angle)
-    assert len(table) == 2 and all(abs(x - a) < 1e-8 and abs(y - b) < 1e-8 for (x, y, *_), (a, b) in zip(line, table, strict=True)), (line, table)
+    assert len(table) == 2 and all(abs(x - 100 * a) < 1e-8 and abs(y - b) < 1e-8 for (x, y, *_), (a, b) in zip(line, table, strict=True)), (line, table)
 PY
 ok "the picture shows the table's exponents"
 expect 64 "$clast" plot small.db m.png -x strain -q beta

@@ -117,12 +117,13 @@ def seeds(browser):
 
 def one_run(browser):
     browser.js("document.querySelector('#runs tbody button').click()")
+    browser.until("document.querySelectorAll('#runs .pictures img').length > 0 && [...document.querySelectorAll('#runs .pictures img')].every((i) => i.naturalWidth > 100)")
     command = browser.js("document.querySelector('#run code').textContent")
     words = shlex.split(command)
     assert words[:2] == ["clast", "replay"], command
     subprocess.run([clast, *words[1:]], check=True, capture_output=True)
     assert os.path.exists(words[-1])
-    done("a run shows the command that computes it again, and it works")
+    done("kept fields are pictures; a run shows the command that computes it again, and it works")
 
 
 def sql(browser):

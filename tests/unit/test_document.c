@@ -596,6 +596,43 @@ static void trees_are_walked(void **state) {
   document_free(document);
 }
 
+/* Values put in are read like those of the file, and the text of the changed document gives them again. */
+static void values_are_put(void **state) {
+  (void)state;
+  static const char text[] = "# a comment\nbody: {length: 2 m, count: 5}\nname: 'a: b'\nset:\n  x: [1 %, off]\n";
+  struct document *document = NULL, *again = NULL;
+  struct error error = {0};
+  const char *report = NULL;
+  assert_int_equal(document_parse("a.yaml", text, strlen(text), &document, &error), STATUS_OK);
+  char *unchanged = document_change_text(document);
+  assert_string_equal(unchanged, text);
+  free(unchanged);
+  assert_int_equal(document_change_put(document, (const char *const[]){"body", "count"}, "6", "command line", &error),
+                   STATUS_OK);
+  assert_int_equal(document_change_put(document, (const char *const[]){"set", "y.z"}, "#3", "command line", &error),
+                   STATUS_OK);
+  assert_int_equal(document_change_put(document, (const char *const[]){"new", "a"}, "5 km/s", "command line", &error),
+                   STATUS_OK);
+  assert_int_equal(document_change_put(document, (const char *const[]){"name", "a"}, "1", "command line", &error),
+                   STATUS_CONTENT);
+  assert_string_equal(document_scalar(document_key(document_key(document_root(document), "body"), "count")), "6");
+  char *changed = document_change_text(document);
+  assert_string_equal(changed, "# as read, with values of the command line; comments are left out\n"
+                               "body: {length: 2 m, count: 6}\nname: \"a: b\"\nset: {x: [1 %, off], y.z: \"#3\"}\n"
+                               "new: {a: 5 km/s}\n");
+  assert_int_equal(document_parse("b.yaml", changed, strlen(changed), &again, &error), STATUS_OK);
+  assert_string_equal(document_scalar(document_key(document_key(document_root(again), "set"), "y.z")), "#3");
+  document_free(again);
+  free(changed);
+  /* an error about such a value names the command line and no place of the file, and is one of usage */
+  document_report(document_key(document_key(document_root(document), "new"), "a"), "new.a", "is wrong");
+  assert_int_equal(document_finish(document, &report), STATUS_USAGE);
+  assert_string_equal(report, "command line: error: new.a: is wrong");
+  document_report(document_key(document_root(document), "name"), "name", "is wrong, too");
+  assert_int_equal(document_finish(document, &report), STATUS_CONTENT);
+  document_free(document);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(good_documents_are_read),
@@ -607,6 +644,7 @@ int main(void) {
       cmocka_unit_test(parts_have_whole_paths),
       cmocka_unit_test(utf8_is_judged_strictly),
       cmocka_unit_test(trees_are_walked),
+      cmocka_unit_test(values_are_put),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

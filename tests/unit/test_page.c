@@ -125,6 +125,42 @@ static void test_a_large_store_is_thinned(void **state) {
   store_close(store, NULL);
 }
 
+/* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: all of them, evenly. */
+static void test_two_modes_are_told(void **state) {
+  (void)state;
+  char path[64];
+  struct fixture_inputs inputs;
+  struct fixture_run *f = malloc(sizeof *f);
+  struct store *store = NULL;
+  fixture_path(path, "page-modes");
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  for (int p = 1; p <= 2; p++) {
+    int64_t point = 0;
+    struct scene scene = fixture_scene(&inputs, p, 1e30);
+    OK(store_add_point(store, 0, &scene, 2, fixture_axes, &point, &error));
+    for (int r = 0; r < 60; r++) {
+      fixture_fill(f, &scene, point, 0, r, FIXTURE_FRAGMENTS);
+      f->outcome.largest_fraction = 0.2 + 0.1 * (r * 7 % 60) / 60.0 + (p == 1 && r % 3 == 0 ? 0.6 : 0);
+      OK(store_add_run(store, &f->run, &error));
+    }
+  }
+  OK(store_close(store, &error));
+  OK(store_open_reader(path, &store, &error));
+  struct ask_page *page = NULL;
+  OK(ask_page_make(store, &page, &error));
+  sqlite3 *db = opened(page);
+  assert_near(asked(db, "SELECT count(*) FROM modes"), 1, 0);
+  assert_near(asked(db, "SELECT point_id FROM modes"), 1, 0);
+  assert_near(asked(db, "SELECT upper_share FROM modes"), 1.0 / 3, 1e-12);
+  assert_near(asked(db, "SELECT upper_mode - lower_mode FROM modes"), 0.6, 0.05);
+  const double median = asked(db, "SELECT value FROM quantile WHERE point_id = 2 AND share = 0.5");
+  assert_true(median > 0.22 && median < 0.28);
+  sqlite3_close(db);
+  ask_page_free(page);
+  store_close(store, NULL);
+  free(f);
+}
+
 static void test_a_page_needs_a_place_for_data(void **state) {
   (void)state;
   char path[64];
@@ -150,6 +186,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_a_small_store_is_whole),
       cmocka_unit_test(test_a_large_store_is_thinned),
+      cmocka_unit_test(test_two_modes_are_told),
       cmocka_unit_test(test_a_page_needs_a_place_for_data),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

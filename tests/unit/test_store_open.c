@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include "db/ask/campaign.h"
+#include "db/ask/columns.h"
 #include "db/store/internal.h"
 #include "db/store/schema.h"
 #include "tests/support/store_checks.h"
@@ -190,6 +192,38 @@ static void digests_are_added(void **state) {
   OK(store_close(store, &error));
 }
 
+/* Version 2: no session named its campaign, no axis the unit of the document. A reader takes it as it is. */
+static void sessions_get_their_campaign(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct ask_column axes[4];
+  size_t count = 0;
+  populated(fixture_path(path, "sessions"));
+  sql(path, "ALTER TABLE session DROP COLUMN campaign_id; ALTER TABLE axis DROP COLUMN written_unit; "
+            "PRAGMA user_version = 2");
+  const struct query_sink nobody = {0};
+  OK(store_open_reader(path, &store, &error));
+  OK(ask_campaign_progress(store, false, &nobody, &error));
+  OK(ask_columns_axes(store, true, 4, axes, &count, &error));
+  assert_int_equal(count, 2);
+  assert_string_equal(axes[1].unit, "1");
+  OK(store_close(store, &error));
+  OK(store_open_writer(path, &store, NULL, 0, &error));
+  assert_near(number(store, "PRAGMA user_version"), SCHEMA_VERSION, 0);
+  assert_near(number(store, "SELECT count(*) FROM session WHERE campaign_id = 1"), 1, 0);
+  OK(store_add_axis(store, &fixture_input_rows[0], "%", &error));
+  OK(ask_columns_axes(store, true, 4, axes, &count, &error));
+  assert_string_equal(axes[1].name, "material_m");
+  assert_string_equal(axes[1].unit, "%");
+  assert_near(axes[1].factor, 0.01, 0);
+  OK(store_add_axis(store, &fixture_input_rows[0], "km/s", &error)); /* no unit of this input: not taken */
+  OK(ask_columns_axes(store, true, 4, axes, &count, &error));
+  assert_string_equal(axes[1].unit, "1");
+  OK(store_check(store, NULL, NULL, &error));
+  OK(store_close(store, &error));
+}
+
 /* Stores of earlier programs have a table of the fragments' motion: an empty one goes, rows stay. */
 static void table_of_motion_goes_when_it_is_empty(void **state) {
   (void)state;
@@ -325,6 +359,7 @@ int main(void) {
       cmocka_unit_test(empty_file_is_a_new_store),
       cmocka_unit_test(old_store_is_brought_forward),
       cmocka_unit_test(digests_are_added),
+      cmocka_unit_test(sessions_get_their_campaign),
       cmocka_unit_test(table_of_motion_goes_when_it_is_empty),
       cmocka_unit_test(failed_migration_changes_nothing),
       cmocka_unit_test(second_writer_is_told_who_holds_it),

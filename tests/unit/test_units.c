@@ -82,6 +82,14 @@ static void values_are_exact(void **state) {
   assert_int_equal(wrong, 0);
 }
 
+static void the_unit_of_a_text(void **state) {
+  (void)state;
+  assert_string_equal(unit_of("5 km/s"), "km/s");
+  assert_string_equal(unit_of(" 3%"), "%");
+  assert_string_equal(unit_of("-2.5e3"), "");
+  assert_string_equal(unit_of("off"), "");
+}
+
 static void degrees_are_near(void **state) {
   (void)state;
   double si;
@@ -215,8 +223,9 @@ static void numbers_round_trip(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(values_are_exact), cmocka_unit_test(degrees_are_near), cmocka_unit_test(messages_are_these),
-      cmocka_unit_test(limits_hold),      cmocka_unit_test(factors_are_si),   cmocka_unit_test(numbers_round_trip),
+      cmocka_unit_test(values_are_exact),   cmocka_unit_test(degrees_are_near), cmocka_unit_test(the_unit_of_a_text),
+      cmocka_unit_test(messages_are_these), cmocka_unit_test(limits_hold),      cmocka_unit_test(factors_are_si),
+      cmocka_unit_test(numbers_round_trip),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

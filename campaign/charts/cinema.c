@@ -1,0 +1,105 @@
+/* Draws the pictures of a Cinema database and writes its table. */
+#include "campaign/charts/cinema.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "campaign/charts/picture_draw.h"
+#include "campaign/commands/spectrum_curves.h"
+#include "campaign/terminal/rows.h"
+#include "db/ask/kept.h"
+
+enum { PATH = 4096, WIDTH = 600 };
+
+struct cinema {
+  struct store *store;
+  const char *folder;
+  struct table *table;
+  int64_t point; /* whose spectrum is drawn */
+  bool spectrum; /* it has one */
+  size_t rows, not_drawn;
+};
+
+static status take_names(void *context, size_t count, const char *const *names, struct error *error) {
+  (void)error;
+  struct cinema *cinema = context;
+  for (size_t i = 0; i + 1 < count; i++)
+    table_column(cinema->table, names[i], NULL);
+  table_column(cinema->table, "FILE", NULL);
+  table_column(cinema->table, "FILE_spectrum", NULL);
+  return STATUS_OK;
+}
+
+/* A point without fragments has no spectrum: nothing is drawn then. */
+static status draw_spectrum(struct cinema *cinema, int64_t point, struct error *error) {
+  char path[PATH];
+  snprintf(path, sizeof path, "%s/point%" PRId64 ".png", cinema->folder, point);
+  const struct spectrum_choice choice = {.pool = {.point = point}};
+  const struct picture_page page = {.path = path, .width = WIDTH};
+  const status code = spectrum_curves_draw(cinema->store, &choice, &(struct spectrum_drawing){.page = &page}, error);
+  cinema->spectrum = code == STATUS_OK;
+  return code == STATUS_USAGE ? STATUS_OK : code;
+}
+
+static void file_cell(struct cinema *cinema, bool there, const char *kind, int64_t number) {
+  char name[64];
+  snprintf(name, sizeof name, "%s%" PRId64 ".png", kind, number);
+  table_text(cinema->table, there ? name : NULL);
+}
+
+/* run_id, point_id, ..., fields */
+static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
+  struct cinema *cinema = context;
+  const int64_t run = values[0].integer, point = values[1].integer;
+  char path[PATH];
+  status code = STATUS_OK;
+  if (point != cinema->point)
+    code = draw_spectrum(cinema, point, error);
+  if (code)
+    return code;
+  cinema->point = point;
+  snprintf(path, sizeof path, "%s/run%" PRId64 ".png", cinema->folder, run);
+  code = picture_draw(values[count - 1].text, path, &(struct picture_choice){.width = WIDTH}, error);
+  if (code == STATUS_IO)
+    return code;
+  cinema->rows++;
+  cinema->not_drawn += code != STATUS_OK;
+  for (size_t i = 0; i + 1 < count; i++)
+    rows_cell(cinema->table, &values[i]);
+  file_cell(cinema, code == STATUS_OK, "run", run);
+  file_cell(cinema, cinema->spectrum, "point", point);
+  return STATUS_OK;
+}
+
+status cinema_write(struct store *store, const char *folder, size_t *rows, size_t *not_drawn, struct error *error) {
+  char path[PATH], part[PATH + 8];
+  if (mkdir(folder, 0777) && errno != EEXIST)
+    return status_fail(error, STATUS_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+  if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)
+    return status_fail(error, STATUS_USAGE, "the folder's name is too long");
+  snprintf(part, sizeof part, "%s.part", path);
+  FILE *out = fopen(part, "w");
+  if (!out)
+    return status_fail(error, STATUS_IO, "cannot write %s: %s", part, strerror(errno));
+  struct cinema cinema = {.store = store, .folder = folder, .table = table_new(TABLE_CSV, out)};
+  const struct query_sink sink = {&cinema, take_names, take_run};
+  status code = ask_kept(store, &sink, error);
+  const status ended = table_end(cinema.table, code ? NULL : error);
+  code = code ? code : ended;
+  if (fclose(out) && !code)
+    code = status_fail(error, STATUS_IO, "cannot write %s: %s", part, strerror(errno));
+  if (!code && cinema.rows == 0)
+    code = status_fail(error, STATUS_USAGE,
+                       "no run of the store has its fields kept, so there is nothing to draw: give the campaign keep: "
+                       "{fields: first 1} and run it again");
+  if (!code && rename(part, path))
+    code = status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
+  if (code)
+    remove(part);
+  *rows = cinema.rows;
+  *not_drawn = cinema.not_drawn;
+  return code;
+}

@@ -1,0 +1,13 @@
+/* A Cinema database: a folder with pictures and a table of them (data.csv, Cinema specification D), which ParaView and
+ * the Cinema viewers open. */
+#ifndef CLAST_CAMPAIGN_CHARTS_CINEMA_H
+#define CLAST_CAMPAIGN_CHARTS_CINEMA_H
+
+#include "db/store/store.h"
+
+/* One row per run whose fields are kept: its inputs and main results, FILE (its broken body) and FILE_spectrum (of its
+ * point). data.csv is written last. *not_drawn: runs without a picture, as their fields cannot be read. STATUS_USAGE:
+ * the store has no run with fields. STATUS_MISSING: no gnuplot. STATUS_IO. */
+status cinema_write(struct store *store, const char *folder, size_t *rows, size_t *not_drawn, struct error *error);
+
+#endif

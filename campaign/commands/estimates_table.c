@@ -1,0 +1,240 @@
+/* The table of estimates: for programs with a column for every number, for people no wider than a terminal. */
+#include <math.h>
+#include <string.h>
+
+#include "campaign/commands/estimates_table.h"
+#include "campaign/commands/quantity.h"
+#include "campaign/terminal/rows.h"
+#include "campaign/terminal/uncertainty.h"
+#include "db/ask/columns.h"
+#include "db/ask/point.h"
+
+enum { AXES_MAXIMUM = 16 };
+
+struct printing {
+  struct store *store;
+  enum table_format format;
+  struct table *table;
+  size_t axes;
+  struct ask_column axis[AXES_MAXIMUM];
+  size_t shown;   /* axes that fit into a terminal */
+  bool hidden[3]; /* methods that do not */
+};
+
+/* Order of the methods in point_estimates. */
+static const enum exponent_method methods[] = {EXPONENT_LEAST_SQUARES, EXPONENT_BINNED, EXPONENT_MASSES};
+static const char *const short_names[] = {"beta LSQ", "binned", "ML"};
+enum { METHODS = sizeof methods / sizeof methods[0], MASSES = METHODS - 1 };
+
+/* ---- for programs: every number in a column of its own ---- */
+
+static void columns_for_programs(struct printing *printing) {
+  struct table *table = printing->table;
+  table_column(table, "point_id", NULL);
+  for (size_t i = 0; i < printing->axes; i++)
+    table_column(table, printing->axis[i].name, printing->axis[i].unit);
+  table_columns(table, (const char *const[]){"n", "failed", "largest_fraction_mean", "largest_fraction_hw95",
+                                             "largest_fraction_resolution", "largest_fraction_resolution_verdict",
+                                             "window", "fragments", NULL});
+  for (int m = 0; m < METHODS; m++) {
+    char name[64];
+    const char *method = exponent_method_names[methods[m]];
+    snprintf(name, sizeof name, "beta_%s", method);
+    table_column(table, name, NULL);
+    snprintf(name, sizeof name, "beta_%s_hw95", method);
+    table_column(table, name, NULL);
+  }
+}
+
+static void row_for_programs(struct printing *printing, const struct ask_points_row *row, int window,
+                             const struct point_estimate *fits) {
+  struct table *table = printing->table;
+  table_integer(table, row->point_id);
+  for (size_t i = 0; i < row->input_count; i++)
+    rows_cell(table, &row->inputs[i]);
+  table_integer(table, row->n);
+  table_integer(table, row->failed);
+  table_real(table, row->mean);
+  table_real(table, row->half_width);
+  table_real(table, row->resolution);
+  table_text(table, ask_resolution_names[row->resolution_verdict]);
+  table_text(table, estimates_window_names[window]);
+  table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
+  for (int m = 0; m < METHODS; m++) {
+    const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
+    table_real(table, fit->fit.beta);
+    table_real(table, fit->interval.half_width);
+  }
+}
+
+/* ---- for people: values with their intervals, and no wider than a terminal ---- */
+
+enum { WIDTH = 100, FIXED = 46, METHOD = 11, GAP = 2 }; /* columns: of all but axes and methods; of a method */
+
+/* A heading for the axis: the last word of its path where no other axis has it, else its whole name. */
+static const char *short_axis(const struct printing *printing, size_t axis) {
+  const char *name = printing->axis[axis].name, *word = name;
+  for (const char *at = name; *at; at++)
+    if (*at == '_')
+      word = at + 1;
+  for (size_t i = 0; i < printing->axes; i++) {
+    const size_t length = strlen(printing->axis[i].name), tail = strlen(word);
+    if (i != axis && length >= tail && strcmp(printing->axis[i].name + length - tail, word) == 0)
+      return name;
+  }
+  return strlen(word) > 1 ? word : name; /* "m" and "k" alone say too little */
+}
+
+enum { NUMBER = 5 }; /* width of most values */
+
+static size_t axis_width(const struct printing *printing, size_t axis) {
+  const char *unit = printing->axis[axis].unit;
+  const size_t head = strlen(short_axis(printing, axis)), cell = NUMBER + (strcmp(unit, "1") ? strlen(unit) + 1 : 0);
+  return (head > cell ? head : cell) + GAP;
+}
+
+/* "4 deg": the heading has no unit, so that it is short. */
+static void axis_cell(struct table *table, const struct ask_column *axis, const struct query_value *value) {
+  const struct query_value shown = ask_columns_value(axis, value);
+  char text[sizeof axis->unit + 40];
+  if ((shown.kind != QUERY_REAL && shown.kind != QUERY_INTEGER) || !*axis->unit || strcmp(axis->unit, "1") == 0) {
+    rows_cell(table, &shown);
+    return;
+  }
+  snprintf(text, sizeof text, "%.5g %s", shown.real, axis->unit);
+  table_text(table, text);
+}
+
+/* As many axes as fit beside one method (maximum likelihood on masses), then as many methods. */
+static void choose_columns(struct printing *printing) {
+  size_t used = FIXED + METHOD;
+  printing->shown = 0;
+  while (printing->shown < printing->axes && used + axis_width(printing, printing->shown) <= WIDTH)
+    used += axis_width(printing, printing->shown++);
+  printing->hidden[0] = used + METHOD > WIDTH;     /* least squares */
+  printing->hidden[1] = used + 2 * METHOD > WIDTH; /* bins */
+}
+
+static void columns_for_people(struct printing *printing) {
+  struct table *table = printing->table;
+  choose_columns(printing);
+  table_column(table, "point", NULL);
+  for (size_t i = 0; i < printing->shown; i++)
+    table_column(table, short_axis(printing, i), NULL);
+  table_columns(table, (const char *const[]){"runs", "M_1/M", "\xc2\xb1res", "window", "n", NULL});
+  for (int m = 0; m < METHODS; m++)
+    if (!printing->hidden[m])
+      table_column(table, m && printing->hidden[0] ? "beta ML" : short_names[m], NULL);
+}
+
+/* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
+static void with_interval(struct table *table, double value, double half_width, int decimals) {
+  char text[80];
+  if (isnan(value))
+    table_missing(table);
+  else {
+    const int used = snprintf(text, sizeof text, "%.*f", decimals, value);
+    if (!isnan(half_width))
+      snprintf(text + used, sizeof text - (size_t)used, "\xc2\xb1%.*f", decimals, half_width);
+    table_text(table, text);
+  }
+}
+
+static void resolution_cell(struct table *table, const struct ask_points_row *row) {
+  char text[UNCERTAINTY_TEXT];
+  if (row->resolution_verdict == ASK_RESOLUTION_NOT_STUDIED)
+    snprintf(text, sizeof text, "?");
+  else
+    uncertainty_resolution_cell(row->resolution_verdict, row->resolution, text);
+  table_text(table, text);
+}
+
+static void row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
+                           const struct point_estimate *fits) {
+  struct table *table = printing->table;
+  if (window > 0) { /* the point and its runs stand in its first row only */
+    for (size_t i = 0; i < printing->shown + 4; i++)
+      table_text(table, "");
+  } else {
+    char runs[64];
+    table_integer(table, row->point_id);
+    for (size_t i = 0; i < printing->shown; i++)
+      axis_cell(table, &printing->axis[i], &row->inputs[i]);
+    const int used = snprintf(runs, sizeof runs, "%lld", (long long)row->n);
+    if (row->failed)
+      snprintf(runs + used, sizeof runs - (size_t)used, "/%lld", (long long)(row->n + row->failed));
+    table_text(table, runs);
+    with_interval(table, row->mean, row->half_width, 3);
+    resolution_cell(table, row);
+  }
+  table_text(table, estimates_window_names[window]);
+  table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
+  for (int m = 0; m < METHODS; m++) {
+    const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
+    if (!printing->hidden[m])
+      with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
+  }
+}
+
+static status print_point(void *context, const struct ask_points_row *row, struct error *error) {
+  struct printing *printing = context;
+  struct point_estimate fits[POINT_ESTIMATES];
+  struct point_data point;
+  status code = point_read(printing->store, row->point_id, row->results_version, &point, error);
+  if (code)
+    return code;
+  code = point_estimates(&point, 0.95, fits, error);
+  point_release(&point);
+  if (code)
+    return code;
+
+  for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
+    if (printing->format != TABLE_TEXT)
+      row_for_programs(printing, row, window, fits);
+    else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
+      row_for_people(printing, row, window, fits); /* an empty line tells people nothing */
+  }
+  return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
+}
+
+static const char *const estimates_legend =
+    "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment.\n"
+    "\xc2\xb1: half width of the 95 % interval over seeds (Student's t); one run has none. \xc2\xb1res: how far finer "
+    "settings\nmay move M_1/M (`clast converge` measures it; ?: not studied).\n"
+    "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
+    "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. binned, ML: maximum\n"
+    "likelihood on bins and on masses, without the largest fragment of each run.\n"
+    "window from_5: n fragments heavier than 4.5 mean grains (or particles), from_10: than 9.5, from_2: than 1.5.\n";
+
+void estimates_table_explain(struct store *store) {
+  fputs(estimates_legend, stderr);
+  quantity_tell_resolution(store, OUTCOME_DEFAULT, "");
+  quantity_tell_resolution(store, "beta", "");
+}
+
+status estimates_table_print(struct store *store, const struct ask_points_choice *choice, enum table_format format,
+                             FILE *out, struct error *error) {
+  struct printing printing = {.store = store, .format = format};
+  status code = ask_columns_axes(store, format == TABLE_TEXT, AXES_MAXIMUM, printing.axis, &printing.axes, error);
+  if (code)
+    return code;
+  const char *inputs[AXES_MAXIMUM];
+  for (size_t i = 0; i < printing.axes; i++)
+    inputs[i] = printing.axis[i].name;
+
+  printing.table = table_new(format, out);
+  if (format == TABLE_TEXT)
+    columns_for_people(&printing);
+  else
+    columns_for_programs(&printing);
+  code = ask_points_rows(store, choice, true, printing.axes, inputs, print_point, &printing, error);
+  if (code && !table_broken(printing.table)) {
+    table_drop(printing.table);
+    return code;
+  }
+  code = table_end(printing.table, error);
+  if (format == TABLE_TEXT && printing.shown < printing.axes)
+    fprintf(stderr, "clast: %zu of %zu varied inputs are not shown for lack of room; --csv and --json have all\n",
+            printing.axes - printing.shown, printing.axes);
+  return code;
+}

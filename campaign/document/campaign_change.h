@@ -1,0 +1,17 @@
+/* Changes of a campaign from the command line. They become part of its document, so that the store keeps what was run
+ * and `clast retry` runs the same. */
+#ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_CHANGE_H
+#define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_CHANGE_H
+
+#include "schemas/document.h"
+
+struct campaign_changes {
+  size_t input_count;
+  const char *const *inputs; /* "PATH=VALUE": as if under `set` */
+  int64_t seeds;             /* seeds.per_point; 0: as written */
+};
+
+/* STATUS_USAGE: no PATH=VALUE. */
+status campaign_change(struct document *document, const struct campaign_changes *changes, struct error *error);
+
+#endif

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# A campaign changed from the command line, the state of each campaign of a store, units as the user wrote them, and one name
+# for each quantity.
+. "$(dirname "$0")/lib.bash"
+
+tiny tiny
+expect 0 "$clast" plan tiny.yaml --set contact.friction=0.3 --seeds 5 --no-trial
+prints "20, 0 of them"
+expect 0 "$clast" run tiny.yaml --set contact.friction=0.3 --set body.diameter='7 cm' --seeds 2 --quiet
+same "$(sqlite3 tiny.db "select distinct path, value from point_input where path in ('contact.friction', 'body.diameter')" | xargs)" \
+  "body.diameter|0.07 contact.friction|0.3" "inputs of --set in the store"
+same "$(number tiny.db 'select count(*) from run')" 8 "runs of --seeds 2"
+# the store's document is the changed one: run again from it, everything is there
+sqlite3 tiny.db "select document from campaign" >again.yaml
+expect 0 "$clast" run again.yaml
+says "0 runs computed"; says "8 found"
+expect 64 "$clast" run tiny.yaml --set contact.frction=0.3
+says "command line: error: set.contact.frction"; says "contact.friction"
+expect 64 "$clast" run tiny.yaml --set threshold.strain='3 %'
+says "varied"
+expect 64 "$clast" run tiny.yaml --set body.diameter=-1
+expect 64 "$clast" run tiny.yaml --set nonsense
+expect 64 "$clast" run tiny.yaml --seeds -1
+tiny until 'quantity: largest_fraction'
+sed -i 's/seeds: .*/seeds: {until: {half_width: 0.5}}/' until.yaml
+expect 64 "$clast" run until.yaml --seeds 4
+says "exclude each other"
+
+# the closing table: the units of the campaign, no wider than a terminal; programs get SI
+expect 0 "$clast" estimates tiny.db
+same "$(awk 'NR == 2 {print $2, $3, $4, $5}' out)" "2 deg 2 %" "varied inputs in degrees and per cent"
+same "$(python -c "print(max(len(l.rstrip('\n')) for l in open('out')) <= 100)")" True "closing table in 100 columns"
+expect 0 "$clast" stats tiny.db --by angle
+prints "threshold_angle [deg]"
+expect 0 "$clast" estimates tiny.db --csv
+grep -q '^1,0.0349' out || fail "CSV is not in radians"
+cat >wide.yaml <<'YAML'
+name: wide
+scene: disc-explosion
+set: {stop.end_time: 1 ms}
+vary: {threshold.strain: [2 %], threshold.angle: [2 deg], contact.friction: [0.1], body.diameter: [8 cm], charge.energy: [2000 J/m]}
+seeds: {per_point: 2}
+YAML
+expect 0 "$clast" run wide.yaml --quiet
+prints "beta ML"
+same "$(python -c "print(max(len(l.rstrip('\n')) for l in open('out')) <= 100)")" True "table of five inputs in 100 columns"
+
+# each campaign has its own state, also when a merge brings a session that was killed
+state() { "$clast" status "$1" --json | python -c "import json, sys; print(*[r['name'] + '=' + r['state'] for r in json.load(sys.stdin)])"; }
+cp wide.db killed.db
+sqlite3 killed.db "update session set ended_at = null, outcome = null; delete from run where replicate = 1"
+same "$(state killed.db)" "wide=killed" "a session without an end"
+"$clast" merge all.db tiny.db killed.db >/dev/null 2>&1 || fail "merge"
+same "$(state all.db)" "tiny=finished tiny=finished wide=killed" "states after a merge"
+"$clast" merge all.db wide.db >/dev/null 2>&1 || fail "merge again"
+same "$(state all.db)" "tiny=finished tiny=finished wide=finished" "states when the missing runs came"
+slow slow
+"$clast" run slow.yaml -j 1 --quiet >/dev/null 2>&1 &
+for _ in $(seq 100); do sleep 0.05; [ "$(state slow.db 2>/dev/null)" = slow=running ] && break; done
+same "$(state slow.db)" "slow=running" "state while it runs"
+kill -TERM $! # a shell script starts background jobs with SIGINT ignored
+wait $! || true
+same "$(state slow.db)" "slow=stopped" "state after an interrupt"
+
+# one name for each quantity, and only columns of the engine
+columns=$(sqlite3 tiny.db "select count(*) from pragma_table_info('runs')")
+[ "$columns" -lt 80 ] || fail "the view runs has $columns columns"
+same "$(sqlite3 tiny.db "select count(*) from pragma_table_info('runs') where name in ('crater_depth', 'result_dem_energy_kinetic')")" 0 "columns of the other engine"
+for name in energy.kinetic energy_kinetic result_dem_energy_kinetic; do
+  expect 0 "$clast" stats tiny.db --quantity $name --csv
+  grep -q ',energy_kinetic_mean,' out || fail "$name is not energy_kinetic"
+done
+sed -i 's/seeds: .*/seeds: {until: {quantity: energy_kinetic, half_width: 1e9}}/' tiny.yaml
+expect 0 "$clast" plan tiny.yaml --no-trial
+done_after 28

@@ -1,0 +1,201 @@
+/* What engine sph reports of a run: results that are checked once more from the particles, and what is off because it
+ * cannot be told. */
+#include "tests/support/run_case.h"
+
+#include "engine/sph/observe/observe.h"
+#include "engine/sph/step/system_layout.h"
+
+/* A small sphere that is over soon. */
+#define SMALL(...) SPH_CASE("basalt-sphere", "fidelity.particles=400", "fidelity.projectile_spacing=0.7", __VA_ARGS__)
+
+/* The static strength breaks what cracks have entered. A body that cannot crack, and one whose flaws are all stronger
+ * than the blow, stay whole, however they ring. */
+static void sound_matter_stays_whole(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {SMALL("target.fracture=off"),
+                                     SMALL("target.material.weibull.m=100", "target.material.weibull.k=1e200 1/m^3")};
+  for (int c = 0; c < 2; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    print_message("M_1/M %.3f, without static strength %.3f, undamaged %.3f\n", ran.outcome.largest_fraction,
+                  ran.results.sph.largest.dynamic_fraction, ran.results.sph.undamaged_fraction);
+    assert_true(ran.results.sph.largest.dynamic_fraction > 0.9);
+    assert_true(ran.outcome.largest_fraction >
+                ran.results.sph.largest.dynamic_fraction - (c == 0 ? 1e-9 : 0.02)); /* near the crater cracks grow */
+    free(ran.fragments);
+  }
+}
+
+/* A body with next to no pores breaks as the solid does. */
+static void few_pores_change_nothing(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {SMALL("stop.end_time=10 us"),
+                                     SMALL("stop.end_time=10 us", "target.material.porosity.curve=quadratic",
+                                           "target.material.porosity.distention=1.0000001",
+                                           "target.material.porosity.elastic_pressure=5 MPa",
+                                           "target.material.porosity.solid_pressure=300 MPa",
+                                           "target.material.porosity.sound_speed=off")};
+  double damage[2];
+  for (int c = 0; c < 2; c++) {
+    struct ran ran = run_case_run(&sph_engine, &cases[c], 3);
+    damage[c] = ran.results.sph.mean_damage;
+    free(ran.fragments);
+  }
+  print_message("damage of the solid %.6f, with pores of 1e-7 %.6f\n", damage[0], damage[1]);
+  assert_true(damage[0] > 0.05);
+  assert_true(fabs(damage[1] - damage[0]) < 1e-3 * damage[0]); /* 1e-7, and steps that the pores limit */
+}
+
+/* Dust is what is lighter than a mass of the scene, not what is one particle; few particles have no shape and no motion
+ * of their own. */
+static void small_fragments(void **state) {
+  (void)state;
+  for (int c = 0; c < 2; c++) { /* a largest fragment of more and of less than 100 particles */
+    const struct sph_inputs inputs = SMALL(c ? "impact.speed=6 km/s" : "impact.speed=2 km/s",
+                                           "fragments.dust_mass=10 g");
+    struct ran ran = run_case_run(&sph_engine, &inputs, 3);
+    double dust = 0;
+    for (size_t k = 0; k < ran.count; k++)
+      dust += ran.fragments[k].mass < 0.01 ? ran.fragments[k].mass : 0;
+    const double mean = ran.results.sph.target_mass / (double)ran.results.sph.particles;
+    assert_true(fabs(ran.outcome.dust_fraction - dust / ran.results.sph.target_mass) < 1e-12);
+    assert_true(fabs(ran.outcome.complete_mass / (9.5 * mean) - 1) < 1e-12);
+    assert_true(ran.outcome.dust_fraction > (double)ran.outcome.single_count * mean / ran.results.sph.target_mass ||
+                ran.outcome.fragment_count == ran.outcome.single_count + 1);
+    assert_int_equal(ran.fragments[0].count < 100, c);
+    assert_int_equal(isnan(ran.results.sph.largest.speed), c);
+    assert_int_equal(isnan(ran.results.sph.largest.axis_short), c);
+    assert_true(isnan(ran.results.sph.second.angle)); /* the second is small in both */
+    free(ran.fragments);
+  }
+  /* by default a thousandth of the target, however many particles it has */
+  const double few = SMALL(NULL).fragments.dust_mass, many = SPH_CASE("basalt-sphere", NULL).fragments.dust_mass;
+  assert_true(few == many && fabs(few / (4.0 / 3 * M_PI * 2.7e-5 * 2700 * 1e-3) - 1) < 1e-9);
+}
+
+/* What the report makes of the ledger, as the rows of its tables say it: once more, from the particles. Bounds alone do
+ * not see a figure that is ten times too small. */
+static void figures_by_hand(void **state) {
+  (void)state;
+  const struct sph_inputs cases[] = {SMALL("impact.speed=20 km/s", "stop.end_time=10 us", "viscosity.alpha=0",
+                                           "viscosity.beta=0",          /* no heat: u is clamped */
+                                           "fidelity.precision=float"), /* momentum that can be seen to be lost */
+                                     SPH_CASE("tensile-rod", "fidelity.particles=1500", "stop.end_time=20 us",
+                                              "target.turned=false"),
+                                     SPH_CASE("colliding-cylinders", "fidelity.particles=300",
+                                              "stop.end_time=0.6 ms", /* they have stopped each other */
+                                              "fidelity.precision=float")};
+  for (int c = 0; c < 3; c++) {
+    struct sph_run *run;
+    struct ran ran = {0};
+    struct error error = {0};
+    double energy[2] = {0, 0}, kinetic[2] = {0, 0}, momentum[2][3] = {{0}}, scale[2] = {0, 0}, translation = 0,
+           change = 0, turning[2] = {0, 0};
+    assert_int_equal(sph_run_create(&cases[c], 3, &run, NULL), STATUS_OK);
+    for (int b = 0; b < 2 && c == 0; b++) /* a floor under the density that is reached */
+      run->system->solid[b].lowest_density = 0.9 * run->system->solid[b].density;
+    sph_run_advance(run, UINT64_MAX);
+    const struct sph_particles *look[2] = {run->start, sph_run_read(run)};
+    for (int k = 0; k < 2; k++)
+      for (size_t i = 0; i < look[k]->n; i++) {
+        const double m = look[k]->mass[i], v[3] = {look[k]->vx[i], look[k]->vy[i], look[k]->vz[i]};
+        const double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        kinetic[k] += 0.5 * m * square;
+        energy[k] += 0.5 * m * square + m * look[k]->energy[i];
+        for (int d = 0; d < 3; d++)
+          momentum[k][d] += m * v[d];
+        scale[k] += m * sqrt(square);
+        turning[k] += m * (look[k]->x[i] * v[1] -
+                           look[k]->y[i] * v[0]); /* the only one that keeps in a slab that repeats along z */
+      }
+    const struct sph_ledger ledger = sph_system_ledger(run->system);
+    const double input = kinetic[0] + fabs(ledger.work_of_held),
+                 drift = fabs(energy[1] - energy[0] - ledger.work_of_held);
+    if (sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, &error))
+      fail_msg("%s", error.message);
+    for (size_t k = 0; k < ran.count; k++)
+      for (int d = 0; d < 3; d++)
+        translation += 0.5 * ran.fragments[k].mass * pow(ran.fragments[k].velocity[d], 2);
+    for (int d = 0; d < 3; d++)
+      change += pow(momentum[1][d] - momentum[0][d], 2);
+    const struct sph_results *r = &ran.results.sph;
+    print_message("energy_error %.3g, clamped_share %.3g, density_held_share %.3g, momentum_error %.2g\n",
+                  ran.outcome.energy_error, r->clamped_share, r->density_held_share, ran.outcome.momentum_error);
+    /* sums in another order: some n^(1/2) roundings of the whole, 1e-14 */
+    assert_true(fabs(r->energy_input / input - 1) < 1e-12 && fabs(r->energy.kinetic / kinetic[1] - 1) < 1e-12);
+    assert_true(fabs(ran.outcome.energy_error - drift / input) < 1e-12 && ran.outcome.energy_error > 1e-7);
+    assert_true(fabs(ran.outcome.kinetic_energy_share - translation / input) < 1e-12 &&
+                (c == 2 || translation > 0.01 * input));
+    if (c == 2) {
+      const double largest = fmax(scale[0], scale[1]) * sph_run_extent(run);
+      assert_true(scale[1] < 0.7 * scale[0] && fabs(ran.outcome.momentum_error / (sqrt(change) / scale[0]) - 1) < 1e-4);
+      assert_true(fabs(r->angular_momentum_error / (fabs(turning[1] - turning[0]) / largest) - 1) < 1e-9);
+    } else if (c == 0) {
+      assert_true(ledger.clamped > 0 && fabs(r->clamped_share / (ledger.clamped / input) - 1) < 1e-12);
+      const double looks = (double)(sph_system_steps(run->system) * run->start->n);
+      assert_true(ledger.density_held > 0 &&
+                  fabs(r->density_held_share / ((double)ledger.density_held / looks) - 1) < 1e-12);
+      assert_true(change > 0 && fabs(ran.outcome.momentum_error / (sqrt(change) / fmax(scale[0], scale[1])) - 1) <
+                                    1e-4); /* 1e-9 of p, rounded at 1e-14 */
+    } else {                               /* grips take momentum and do work */
+      assert_true(isnan(ran.outcome.momentum_error) && ledger.work_of_held > 0.001 * input);
+      assert_true(r->energy.work_of_held == ledger.work_of_held);
+    }
+    free(ran.fragments);
+    sph_run_free(run);
+  }
+}
+
+/* A part larger than its whole is an error of the sums, and is shown as it is; no whole, no share. */
+static void a_share_above_one_is_shown(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  for (int fault = 0; fault < 3; fault++) {
+    struct ran ran = {0};
+    if (fault == 1) {
+      sph_run_advance(run, UINT64_MAX);
+      for (int k = 0; k < SPH_LIMITS; k++)
+        run->state.limited[k] = 0;
+      run->state.limited[SPH_LIMIT_FORCE] = 3 * sph_system_steps(run->system);
+    }
+    if (fault == 2)
+      run->state.limited[SPH_LIMIT_FORCE] = sph_system_steps(run->system); /* all of it */
+    assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL),
+                     STATUS_OK);
+    const double share = ran.results.sph.limited.force;
+    assert_true(fault == 0 ? isnan(share) : share == (fault == 1 ? 3 : 1));
+    assert_true(fault == 0 || ran.results.sph.limited.courant == 0);
+    free(ran.fragments);
+  }
+  sph_run_free(run);
+}
+
+/* What cannot be told is off, not a number that looks like one. */
+static void no_angle_of_nowhere(void **state) {
+  (void)state;
+  const struct sph_inputs inputs = SMALL("stop.end_time=4 us");
+  struct sph_run *run;
+  assert_int_equal(sph_run_create(&inputs, 3, &run, NULL), STATUS_OK);
+  for (size_t i = 0; i < run->system->n;
+       i++) /* all broken: the second fragment is a particle, and one of them is nowhere */
+    run->system->c.damage[i] = 1;
+  run->system->c.x[0] = NAN;
+  struct ran ran = {0};
+  assert_int_equal(sph_report_finish(run, &ran.outcome, &ran.results.sph, &ran.fragments, &ran.count, NULL), STATUS_OK);
+  assert_true(ran.count > 1 && isnan(ran.results.sph.second.angle));
+  free(ran.fragments);
+  sph_run_free(run);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sound_matter_stays_whole),
+      cmocka_unit_test(few_pores_change_nothing),
+      cmocka_unit_test(small_fragments),
+      cmocka_unit_test(figures_by_hand),
+      cmocka_unit_test(a_share_above_one_is_shown),
+      cmocka_unit_test(no_angle_of_nowhere),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
