@@ -2,17 +2,17 @@
 import {body, element, fill, list, table} from './elements.js';
 import * as questions from './questions.js';
 import {ask} from './stores.js';
-import {number, plural} from './words.js';
+import {inUnit, number, plural, unitOf} from './words.js';
 
 const sum = (points, key) => points.reduce((total, point) => total + (point[key] ?? 0), 0);
 
 function varied(store) {
   return store.axes.map((axis) => {
-    const values = [...new Set(store.points.map((point) => point[axis.column_name]))];
+    const values = [...new Set(store.points.map((point) => inUnit([store], axis.column_name, point[axis.column_name])))];
     const numbers = values.filter((value) => typeof value === 'number').sort((a, b) => a - b);
     const shown = values.length <= 8 ? values.map((value) => number(value)).join(', ')
       : `${values.length} values from ${number(numbers[0])} to ${number(numbers[numbers.length - 1])}`;
-    return [axis.path, shown, axis.unit && axis.unit !== '1' ? axis.unit : '', axis.meaning];
+    return [axis.path, shown, unitOf([store], axis.column_name), axis.meaning];
   });
 }
 

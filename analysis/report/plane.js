@@ -6,7 +6,7 @@ import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {halfWidth} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {label, number, plural, shellFile, withError} from './words.js';
+import {inUnit, label, number, plural, shellFile, withError} from './words.js';
 
 const MOST_CELLS = 40; // values on an axis that are drawn as rows and columns; more are places on a scale
 
@@ -31,7 +31,10 @@ export function cells(from, quantity) {
   });
 }
 
-const placeOf = (value) => (value === null || value === undefined ? 'does not apply' : typeof value === 'number' ? Number(value.toPrecision(7)) : String(value));
+function placeOf(column, value) {
+  if (value === null || value === undefined) return 'does not apply';
+  return typeof value === 'number' ? Number(inUnit(state.stores, column, value).toPrecision(7)) : String(value);
+}
 
 function axisOf(column, rows, title) {
   const values = [...new Set(rows.map((row) => row[column]))];
@@ -60,8 +63,8 @@ export const modesText = (modes) => (modes ? `two: ${number(modes.lower_mode, 3)
 function data(quantity) {
   return cells(store(), quantity).map((cell) => ({
     ...cell,
-    [state.x]: placeOf(cell[state.x]),
-    ...(state.y ? {[state.y]: placeOf(cell[state.y])} : {}),
+    [state.x]: placeOf(state.x, cell[state.x]),
+    ...(state.y ? {[state.y]: placeOf(state.y, cell[state.y])} : {}),
     shown: withError(cell.mean, cell.hw95),
     text: number(cell.mean, 3),
     low: cell.mean - cell.hw95,
@@ -90,10 +93,11 @@ function planeSpec(rows, title) {
     mark: grid ? {type: 'rect', cursor: 'pointer'} : {type: 'point', filled: true, size: 120, cursor: 'pointer'},
     encoding: {...place,
       color: {field: 'mean', type: 'quantitative', title, scale: {scheme: 'viridis', zero: false}, legend: {orient: 'top', gradientLength: 220, titleLimit: 0}},
-      stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
-      strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
+      ...(grid ? {stroke: {value: 'white'}} : {stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'}, strokeWidth: {condition: {test: isChosen, value: 4}, value: 1}}),
       tooltip: tooltip([[state.x, label(state.stores, state.x)], [state.y, label(state.stores, state.y)]], title)},
   }];
+  if (grid) // over the white lines of the neighbours
+    layers.push({transform: [{filter: isChosen}], mark: {type: 'rect', filled: false, stroke: '#D40000', strokeWidth: 4, tooltip: null}, encoding: place});
   if (grid && room >= 50 && !several)
     layers.push({mark: {type: 'text', baseline: 'middle', tooltip: null, fontSize: 12},
       transform: [{calculate: "datum.mean === null ? '-' : datum.text + (datum.hw95 === null ? '' : ' ±' + format(datum.hw95, '.1~g'))", as: 'cell'},
@@ -209,7 +213,7 @@ export function showPoints() {
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
   fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
     ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes'],
-    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => number(row[axis])), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.twoModes ? row.modesText : '-'])));
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.twoModes ? row.modesText : '-'])));
 }
 
 export function showChoices() {

@@ -4,7 +4,7 @@ import {COLOURS, draw, scale} from './chart.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store, writeAddress} from './state.js';
 import {answer, has} from './stores.js';
-import {csv, label, number, plural, shell, shellFile} from './words.js';
+import {csv, number, plain, plural, shell, shellFile} from './words.js';
 
 const MOST = 100000, SHOWN = 500;
 
@@ -22,7 +22,7 @@ function withParameters(query) {
 async function showChart(figure, result, x, y) {
   const rows = result.objects().filter((row) => typeof row[y] === 'number');
   const numeric = rows.every((row) => typeof row[x] === 'number');
-  const title = (column) => label(state.stores, column);
+  const title = (column) => plain(state.stores, column);
   await draw(figure, {data: {values: rows.map((row) => ({x: row[x], y: row[y]}))}, height: 320,
     mark: {type: 'point', filled: true, size: 45, color: COLOURS[0], tooltip: true},
     encoding: {x: numeric ? {field: 'x', type: 'quantitative', scale: scale(rows.map((row) => row[x])), title: title(x)} : {field: 'x', type: 'nominal', title: title(x)},

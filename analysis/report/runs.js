@@ -3,7 +3,7 @@ import {body, command, element, fill, list, table} from './elements.js';
 import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {ask, has} from './stores.js';
-import {label, number, plural, shellFile} from './words.js';
+import {inUnit, label, number, plural, shellFile} from './words.js';
 
 const SHOWN = 200;
 let order = {column: null, down: false};
@@ -24,7 +24,7 @@ function showRun(id) {
   const [picture] = has(from, 'picture') ? ask(from, questions.pictureOfRun, {run: id}) : [];
   const file = shellFile(from.name);
   const pairs = Object.entries(row).filter(([, value]) => value !== null && value !== '' && !(value instanceof Uint8Array))
-    .map(([column, value]) => [label(state.stores, column), number(value, 7)]);
+    .map(([column, value]) => [label(state.stores, column), number(inUnit(state.stores, column, value), 7)]);
   fill(document.getElementById('run'), element('h3', {tabindex: -1, id: 'run-title'}, `Run ${id}`),
     picture ? pictureOf(picture) : element('p', {}, 'Its picture is not on this page. These commands compute the run again, bit by bit, and draw it:'),
     element('p', {}, command(`clast replay ${file} ${id} --fields run${id}.h5`)),

@@ -5,9 +5,9 @@ import * as questions from './questions.js';
 import {chosenPoints, state, store} from './state.js';
 import {pool} from './statistics.js';
 import {ask, has, newest} from './stores.js';
-import {label, number, plural, shellFile, withError} from './words.js';
+import {inUnit, number, plural, shellFile, unitOf, withError} from './words.js';
 
-export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(point[axis.column_name])}`).join(', ');
+export const inputsOf = (from, point) => from.axes.map((axis) => `${axis.path.split('.').pop()} ${number(inUnit(state.stores, axis.column_name, point[axis.column_name]))}${unitOf(state.stores, axis.column_name)}`).join(', ');
 
 export const nameOf = (from, point) =>
   `${state.stores.length > 1 ? `${from.name}: ` : ''}${inputsOf(from, point) || `point ${point.point_id}`}, ${plural(point.n ?? 0, 'run')}`;

@@ -66,7 +66,7 @@ function describe(store) {
   const columns = (table) => ask(store, questions.columns, {table}).map((row) => row.name);
   const read = (table, question) => (has(store, table) ? ask(store, question) : []);
   store.facts = Object.fromEntries(read('fact', questions.facts).map((row) => [row.name, row.value]));
-  store.labels = new Map(read('label', questions.labels).map((row) => [row.column_name, row.label]));
+  store.labels = new Map(read('label', questions.labels).map((row) => [row.column_name, row]));
   store.units = new Map(read('column_doc', questions.units).map((row) => [row.column_name, row.unit]));
   store.axes = ask(store, questions.axes);
   store.pointColumns = columns('points');

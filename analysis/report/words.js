@@ -14,13 +14,30 @@ export const withError = (mean, half) =>
 
 export const plural = (count, word) => `${count} ${word}${count === 1 ? '' : 's'}`;
 
-// The readable name of a column with its unit; its own words where the page has none.
-export function label(stores, column) {
-  if (column === 'beta') return 'exponent β of F(m) ~ m^-β';
-  for (const store of stores) if (store.labels.get(column)) return store.labels.get(column);
+// The first store that names a column decides its name and its unit: inputs are shown in the unit that the campaign
+// gives them in, and one of it is `factor` in SI.
+const named = (stores, column) => stores.map((store) => store.labels.get(column)).find(Boolean);
+
+// The column in SI by its own words.
+export function plain(stores, column) {
   const unit = stores.map((store) => store.units.get(column)).find(Boolean);
   return column.replaceAll('_', ' ') + (unit ? ` (${unit})` : '');
 }
+
+export function label(stores, column) {
+  if (column === 'beta') return 'exponent β of F(m) ~ m^-β';
+  const entry = named(stores, column);
+  return entry ? entry.label + (entry.unit ? ` (${entry.unit})` : '') : plain(stores, column);
+}
+
+// That unit behind a number.
+export function unitOf(stores, column) {
+  const unit = named(stores, column)?.unit;
+  return unit ? ` ${unit}` : '';
+}
+
+// A value of the store in the unit of label().
+export const inUnit = (stores, column, value) => (typeof value === 'number' ? value / (named(stores, column)?.factor ?? 1) : value);
 
 // A word of a shell's command line.
 export const shell = (text) => (/^[\w./:,=+-]+$/.test(text) ? text : `'${String(text).replaceAll("'", "'\\''")}'`);

@@ -10,9 +10,9 @@
 #include "analysis/report/page.h"
 #include "campaign/build_facts.h"
 #include "campaign/charts/picture_draw.h"
+#include "db/ask/columns.h"
 #include "db/ask/page.h"
 #include "db/ask/pairs.h"
-#include "db/store/lock.h"
 #include "engine/atomic_file.h"
 #include "engine/outcome.h"
 
@@ -43,9 +43,14 @@ static status add_facts(struct making *making, const char *name, struct error *e
 
 static status add_label(void *context, const char *column, struct error *error) {
   struct making *making = context;
-  char label[CHART_OPTION_LABEL];
-  const status code = chart_option_axis(making->store, column, label, error);
-  return code ? code : ask_page_label(making->page, column, label, error);
+  struct ask_column written;
+  char label[CHART_OPTION_LABEL], unit[96];
+  const status code = ask_columns_written(making->store, column, &written, error);
+  if (code)
+    return code;
+  chart_option_label(column, label);
+  field_label_unit(written.unit, unit, sizeof unit);
+  return ask_page_label(making->page, column, label, unit, written.factor, error);
 }
 
 struct comparing {
@@ -146,6 +151,6 @@ status report_make(const struct report_choice *choice, size_t *size, struct erro
 bool report_make_running(const struct report_choice *choice) {
   bool running = false;
   for (size_t i = 0; i < choice->count; i++)
-    running = running || lock_is_held(choice->stores[i]);
+    running = running || store_is_being_written(choice->stores[i]);
   return running;
 }

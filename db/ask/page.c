@@ -141,7 +141,7 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
   status code = sql_execute(page->db,
                             "PRAGMA page_size = 4096;"
                             "CREATE TABLE fact (name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
-                            "CREATE TABLE label (column_name TEXT PRIMARY KEY, label) WITHOUT ROWID;"
+                            "CREATE TABLE label (column_name TEXT PRIMARY KEY, label, unit, factor) WITHOUT ROWID;"
                             "CREATE TABLE question (name, doc, sql, parameters);"
                             "CREATE TABLE picture (run_id, point_id, quantile, png);"
                             "CREATE TABLE difference (quantity, first_point, point_id, pairs, difference, hw95);"
@@ -193,8 +193,10 @@ status ask_page_fact(struct ask_page *page, const char *name, const char *value,
   return sql_executef(page->db, doing, error, "INSERT OR REPLACE INTO fact VALUES (%Q, %Q)", name, value);
 }
 
-status ask_page_label(struct ask_page *page, const char *column, const char *label, struct error *error) {
-  return sql_executef(page->db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q)", column, label);
+status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
+                      struct error *error) {
+  return sql_executef(page->db, doing, error, "INSERT OR REPLACE INTO label VALUES (%Q, %Q, %Q, %!.17g)", column, label,
+                      unit, factor);
 }
 
 status ask_page_columns(struct ask_page *page, status (*each)(void *context, const char *column, struct error *error),

@@ -26,8 +26,9 @@ void ask_page_free(struct ask_page *page); /* NULL is fine */
 
 /* A sentence or a number about the page. */
 status ask_page_fact(struct ask_page *page, const char *name, const char *value, struct error *error);
-/* The readable name of a column, and the unit as it is shown. */
-status ask_page_label(struct ask_page *page, const char *column, const char *label, struct error *error);
+/* The readable name of a column, and the unit in which it is shown: one of it is `factor` in SI. */
+status ask_page_label(struct ask_page *page, const char *column, const char *label, const char *unit, double factor,
+                      struct error *error);
 /* All columns of the page that have no label yet: inputs that were varied, and results. */
 status ask_page_columns(struct ask_page *page, status (*each)(void *context, const char *column, struct error *error),
                         void *context, struct error *error);

@@ -69,7 +69,10 @@ def look_at_start(browser):
     done("a hostile name is text")
     asked = text(browser, "#asked")
     assert "4 points" in asked and "12 runs" in asked and "threshold.strain" in asked and "Nothing failed" in asked, asked
-    done("it says what was asked and computed")
+    table = browser.js("[...document.querySelectorAll('#asked tbody tr')].map((r) => [...r.cells].map((c) => c.textContent.trim()).slice(0, 3))")
+    assert table == [["threshold.angle", "2, 6", "deg"], ["threshold.strain", "2, 5", "%"]], table
+    assert "angle 2 deg, strain 2 %" in text(browser, "#spectrum figcaption"), text(browser, "#spectrum figcaption")
+    done("it says what was asked and computed, in the units of the campaign")
 
 
 def brush(browser):
