@@ -62,6 +62,18 @@ struct pooled_exponent {
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error);
 
+/* Does a power law fit at all (pooled_goodness.c)? With the window and the numbers of fragments of pooled_exponent by
+ * masses, which it fits to every draw again. Fragments of one run are taken as independent. */
+struct pooled_goodness {
+  size_t n;        /* fragments */
+  double distance; /* Kolmogorov's, of the fragments from the fit; NaN: too few fragments */
+  double p;        /* share of samples from the fit that are at least as far from their own fits */
+  size_t draws;    /* samples that were drawn: fewer than asked for when p is large */
+};
+/* On all cores; the same numbers on any number of them. */
+status pooled_goodness(const struct pooled_runs *runs, double lower, size_t draws, struct pooled_goodness *out,
+                       struct error *error);
+
 /* Is the pure power law good enough? Likelihood ratios against its two rivals (tempered.h) in the same windows. */
 struct pooled_rivals {
   int64_t n;

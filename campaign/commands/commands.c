@@ -17,6 +17,7 @@ static const struct command *const all[] = {
     &cite_command,
     /* results */ &status_command,
     &estimates_command,
+    &exponents_command,
     &stats_command,
     &scatter_command,
     &sensitivity_command,

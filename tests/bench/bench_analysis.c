@@ -36,6 +36,13 @@ static int pooled(void) {
       return 70;
     printf("analysis_pooled_%s_200_runs_ms %.1f ms\n", exponent_method_names[method], 1e3 * (seconds() - start));
   }
+  runs.count = 13; /* about 1000 fragments: less than 2 s a core is asked for */
+  struct pooled_goodness goodness;
+  const double start = seconds();
+  if (pooled_goodness(&runs, 1, 2500, &goodness, NULL))
+    return 70;
+  printf("analysis_goodness_%zu_fragments_cpu_s %.2f s\nanalysis_goodness_draws %zu 1\n", goodness.n, seconds() - start,
+         goodness.draws);
   return 0;
 }
 

@@ -197,4 +197,16 @@ expect 64 "$clast" scatter small.db --half-width none
 expect 64 "$clast" scatter small.db --split --point 1
 says "two points at least"
 expect 64 "$clast" scatter small.db -q nothing
-done_after 79
+
+# The four names of an exponent, and the goodness of its fit.
+expect 0 "$clast" exponents small.db --draws 200 --json
+python - <<'PY'
+import json
+for r in json.load(open("out")):
+    assert r["from"] >= r["complete_mass"] > 0, r # never below the mass from which the spectrum is complete
+    if r["F(m)"] is not None:
+        assert abs(r["N(>m)"] - (r["F(m)"] - 1)) < 1e-12 and abs(r["N(>L)"] - 2 * r["N(>m)"]) < 1e-12, r # in the plane
+        assert abs(r["F(L)"] - r["N(>L)"] - 1) < 1e-12 and 0 < r["p"] <= 1 and 0 < r["distance"] < 1, r
+PY
+ok "exponents by their names"
+done_after 81

@@ -197,6 +197,51 @@ static void exponent_in_forms(void **state) {
   free(masses);
 }
 
+/* Under the law p is uniform in 0..1; a lognormal law is refused. Windows end at each run's largest fragment. */
+static void goodness_of_fit(void **state) {
+  (void)state;
+  enum { SHOTS = 10, EACH = 40, CASES = 40 };
+  static double masses[SHOTS * EACH];
+  size_t first[SHOTS + 1];
+  for (int law = 0; law < 2; law++) {
+    double mean = 0;
+    int low = 0;
+    for (uint64_t c = 0; c < CASES; c++) {
+      for (size_t r = 0; r <= SHOTS; r++)
+        first[r] = r * EACH;
+      for (size_t i = 0; i < SHOTS * EACH; i++) {
+        const double u = random_draw(41, (uint64_t)law, c, 2 * i), v = random_draw(41, (uint64_t)law, c, 2 * i + 1);
+        masses[i] = law ? exp(1.2 * sqrt(-2 * log1p(-u)) * cos(2 * M_PI * v)) : pow(1 - u, -1 / 0.9);
+      }
+      for (size_t r = 0; r < SHOTS; r++)
+        qsort(masses + first[r], EACH, sizeof *masses, sample_descending);
+      const struct pooled_runs runs = {SHOTS, first, masses};
+      struct pooled_goodness g, again;
+      struct pooled_exponent fit;
+      const double lower = law ? 0.5 : 1;
+      assert_int_equal(pooled_goodness(&runs, lower, 200, &g, NULL), STATUS_OK);
+      assert_int_equal(pooled_exponent(&runs, EXPONENT_MASSES, lower, 0.95, &fit, NULL), STATUS_OK);
+      assert_int_equal(g.n, fit.fit.n);
+      if (c == 0) { /* the same bits on any number of cores */
+        assert_int_equal(pooled_goodness(&runs, lower, 200, &again, NULL), STATUS_OK);
+        assert_true(again.p == g.p && again.distance == g.distance);
+      }
+      mean += g.p / CASES;
+      low += g.p < 0.1;
+    }
+    printf("  goodness: mean p %.3f, below 0.1 in %d of %d (%s)\n", mean, low, CASES, law ? "lognormal" : "power law");
+    if (law)
+      assert_true(low >= 0.9 * CASES);
+    else
+      assert_true(fabs(mean - 0.5) < 4 * sqrt(1 / 12.0 / CASES) && low <= 4 + 4 * 1.9);
+  }
+  const size_t none[2] = {0, 0};
+  struct pooled_goodness g;
+  assert_int_equal(pooled_goodness(&(struct pooled_runs){1, none, masses}, 1, 100, &g, NULL), STATUS_OK);
+  assert_true(g.n == 0 && isnan(g.p) && g.draws == 0);
+  assert_int_equal(pooled_goodness(&(struct pooled_runs){1, none, masses}, 0, 100, &g, NULL), STATUS_USAGE);
+}
+
 static void empty_and_bad(void **state) {
   (void)state;
   const size_t first[4] = {0, 0, 1, 1};
@@ -228,6 +273,7 @@ int main(void) {
       cmocka_unit_test(spectrum_density_and_error),
       cmocka_unit_test(spectrum_forms),
       cmocka_unit_test(exponent_in_forms),
+      cmocka_unit_test(goodness_of_fit),
       cmocka_unit_test(empty_and_bad),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
