@@ -62,11 +62,12 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
 enum picture_view {
   PICTURE_CUT,     /* a cut: every particle that the plane meets, as a disc of its section */
   PICTURE_OUTSIDE, /* all particles from outside, near ones before far ones */
-  PICTURE_APART,   /* from outside, fragments moved away from each other, without dust */
+  PICTURE_APART,   /* from outside, fragments side by side, so that none hides another; without dust */
 };
 struct picture_look {
   enum picture_view view;
-  int axis;     /* the line of sight: 0 x (y to the right, z up), 1 y (x right, z up), 2 z (x right, y up) */
+  int axis;     /* the line of sight: 0 x (y to the right, z up), 1 y (x right, z up), 2 z (x right, y up); -1: from
+                   outside the one from which the heaviest fragments are seen best, else y */
   double plane; /* m, place of the cut along the axis; NaN: the centre of mass of the heaviest fragment, or of all
                    particles */
   const char *title, *subtitle; /* NULL: none */

@@ -110,16 +110,23 @@ void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size
   cairo_restore(cairo);
 }
 
-void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle) {
+/* The size of letters with which a text ends before the right end of the picture, at most `size`. */
+static double fitting(cairo_t *cairo, double width, double size, bool bold, const char *text) {
+  const double wide = picture_canvas_text_width(cairo, size, bold, text);
+  return wide > width ? size * width / wide : size;
+}
+
+void picture_canvas_head(cairo_t *cairo, double x, double width, double font, const char *title, double small,
+                         const char *subtitle) {
   double line = 1.9 * font;
   cairo_set_source_rgb(cairo, 0.1, 0.1, 0.1);
   if (title) {
-    picture_canvas_text(cairo, x, line, 1.35 * font, PICTURE_LEFT, true, title);
+    picture_canvas_text(cairo, x, line, fitting(cairo, width, 1.35 * font, true, title), PICTURE_LEFT, true, title);
     line += 1.6 * font;
   }
   cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
   if (subtitle)
-    picture_canvas_text(cairo, x, line, small, PICTURE_LEFT, false, subtitle);
+    picture_canvas_text(cairo, x, line, fitting(cairo, width, small, false, subtitle), PICTURE_LEFT, false, subtitle);
 }
 
 static double companded(double linear) {

@@ -28,7 +28,8 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
 /* Text centred at (x, y) that reads upwards. */
 void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text);
 /* Title and subtitle at the head of a picture of a body; NULL: none. */
-void picture_canvas_head(cairo_t *cairo, double x, double font, const char *title, double small, const char *subtitle);
+void picture_canvas_head(cairo_t *cairo, double x, double width, double font, const char *title, double small,
+                         const char *subtitle);
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);

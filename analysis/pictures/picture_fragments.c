@@ -137,6 +137,17 @@ static void colour(cairo_t *cairo, size_t fragment, size_t cells, double darker,
     picture_canvas_colour(cairo, 0.70 + wave - darker, 0.125, hue, alpha);
 }
 
+/* A fragment that does not fit into the panel as a whole is not drawn. */
+static bool is_inside(const struct picture_body *body, const struct grouping *g, size_t f, const double view[4]) {
+  for (uint32_t i = g->start[f]; i < g->start[f + 1]; i++)
+    for (uint32_t v = body->first_vertex[g->order[i]]; v < body->first_vertex[g->order[i] + 1]; v++) {
+      const double *at = body->vertex[v];
+      if (at[0] < view[0] || at[0] > view[2] || at[1] < view[1] || at[1] > view[3])
+        return false;
+    }
+  return true;
+}
+
 /* All cells of a fragment: first a wide dark stroke, then the fill and a thin stroke in the fragment's colour. The rest
  * of the dark stroke is the fragment's outline, and no background shows between cells. */
 static void draw_fragment(cairo_t *cairo, const struct picture_body *body, const struct grouping *g, size_t f,
@@ -227,6 +238,7 @@ void picture_fragments_numbers(const struct picture_body *body, const char *cell
 static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, const double view[4], double left,
                          double top, double width, double height, double font) {
   const struct picture_body *body = &panel->body;
+  const bool chosen = panel->view[2] > panel->view[0]; /* a part of the body: its fragments may reach beyond */
   struct grouping grouping;
   status code = group(body, &grouping);
   if (code)
@@ -239,7 +251,8 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   cairo_scale(cairo, scale, -scale);
   cairo_translate(cairo, -(view[0] + view[2]) / 2, -(view[1] + view[3]) / 2);
   for (size_t f = grouping.fragments; f-- > 0;)
-    draw_fragment(cairo, body, &grouping, f, cell); /* the largest on top */
+    if (chosen || is_inside(body, &grouping, f, view))
+      draw_fragment(cairo, body, &grouping, f, cell); /* the largest on top */
   for (size_t i = 0; i < body->cracks; i++)
     if (body->fragment[body->crack[i][0]] == body->fragment[body->crack[i][1]])
       draw_crack(cairo, body, body->crack[i][0], body->crack[i][1]);
@@ -296,7 +309,7 @@ status picture_fragments(const char *path, double width, const char *title, cons
   status code = picture_canvas_open(&canvas, path, width, top + tallest + 3 * font, error);
   if (code)
     return code;
-  picture_canvas_head(canvas.cairo, gap, font, title, font, subtitle);
+  picture_canvas_head(canvas.cairo, gap, width - 2 * gap, font, title, font, subtitle);
   for (size_t p = 0; p < panels && !code; p++) {
     code = draw_panel(canvas.cairo, &panel[p], view[p], gap + (each + gap) * (double)p, top, each, tallest, font);
     if (code)

@@ -6,17 +6,12 @@
 
 #include "analysis/pictures/picture.h"
 #include "analysis/pictures/picture_canvas.h"
+#include "analysis/pictures/picture_layout.h"
 #include "analysis/statistics/sample.h"
 
 enum { RESOLVED = 10 }; /* particles: a smaller fragment is hardly resolved and gets a pale tint */
 
-static const double REACH = 0.80;  /* disc radius over size: discs overlap a little, so that a cut has no holes */
-static const double SPREAD = 0.75; /* apart: fragments' distances from the middle grow by this share */
-
-struct disc {
-  double x, y, radius, depth; /* m; discs are drawn by ascending depth */
-  uint32_t id;
-};
+static const double REACH = 0.80; /* disc radius over size: discs overlap a little, so that a cut has no holes */
 
 struct scene {
   const struct picture_cloud *cloud;
@@ -26,9 +21,12 @@ struct scene {
   double *mass;    /* kg by fragment */
   double (*centre)[3];
   double middle[3]; /* m: of the heaviest fragment, or of all */
-  struct disc *disc;
+  struct picture_layout_disc *disc;
   double low, high, scale; /* of the colours; values are divided by `scale` */
   double view[4];
+  size_t left_out; /* particles beyond the frame */
+  int axis;        /* of the line of sight */
+  double hidden;   /* mass share of large fragments that cannot be seen */
   char label[160];
   enum picture_ramp ramp;
 };
@@ -116,7 +114,7 @@ void picture_particles_numbers(const struct picture_cloud *cloud, char *text, si
 }
 
 static int by_depth(const void *a, const void *b) {
-  const struct disc *p = a, *q = b;
+  const struct picture_layout_disc *p = a, *q = b;
   if (p->depth != q->depth)
     return p->depth < q->depth ? -1 : 1;
   return p->id < q->id ? -1 : p->id > q->id;
@@ -125,18 +123,15 @@ static int by_depth(const void *a, const void *b) {
 static void choose_discs(struct scene *s) {
   const struct picture_cloud *c = s->cloud;
   const struct picture_look *look = s->look;
-  int along = look->axis, right = along == 0 ? 1 : 0, up = along == 2 ? 1 : 2;
+  int along = s->axis, right = along == 0 ? 1 : 0, up = along == 2 ? 1 : 2;
   double plane = isfinite(look->plane) ? look->plane : s->middle[along],
          toward = along == 1 ? -1 : 1; /* x right, z up: y goes away */
+  s->discs = 0;
   for (size_t i = 0; i < c->n; i++) {
-    double at[3], radius = REACH * c->size[i];
-    memcpy(at, c->position[i], sizeof at);
-    if (look->view == PICTURE_APART) {
-      if (c->part[i] >= PICTURE_DUST || c->fragment[i] < 0)
-        continue;
-      for (int d = 0; d < 3; d++)
-        at[d] += SPREAD * (s->centre[c->fragment[i]][d] - s->middle[d]);
-    }
+    const double *at = c->position[i];
+    double radius = REACH * c->size[i];
+    if (look->view == PICTURE_APART && (c->part[i] >= PICTURE_DUST || c->fragment[i] < 0))
+      continue;
     double depth = toward * at[along];
     if (look->view == PICTURE_CUT) {
       double off = at[along] - plane;
@@ -145,9 +140,47 @@ static void choose_discs(struct scene *s) {
       depth = -fabs(off) / c->size[i];
       radius = sqrt(radius * radius - off * off);
     }
-    s->disc[s->discs++] = (struct disc){at[right], at[up], radius, depth, (uint32_t)i};
+    s->disc[s->discs++] = (struct picture_layout_disc){at[right], at[up], radius, depth, (uint32_t)i};
   }
   qsort(s->disc, s->discs, sizeof *s->disc, by_depth);
+}
+
+/* From outside: how much of the least visible of the heaviest fragments can be seen, 0 to 1; and the mass share of
+ * those that cannot. */
+static status look_at_largest(struct scene *s, double *least) {
+  enum { HEAVIEST = 4 };
+  double visible[HEAVIEST], total, single;
+  size_t count = 0;
+  while (count < HEAVIEST && count < s->fragments && s->count[count] >= RESOLVED)
+    count++;
+  sum_masses(s->cloud, &total, &single);
+  *least = 1;
+  s->hidden = 0;
+  const status code = picture_layout_visible(s->cloud, s->discs, s->disc, count, visible);
+  for (size_t f = 0; code == STATUS_OK && f < count; f++) {
+    *least = fmin(*least, visible[f]);
+    s->hidden += visible[f] < 0.03 ? s->mass[f] / total : 0;
+  }
+  return code;
+}
+
+/* Turns the body so that the heaviest fragments are seen as well as they can be, unless the direction is given. */
+static status turn(struct scene *s) {
+  double best = -1, least;
+  int axis = s->look->axis;
+  for (int k = 0; k < 3 && s->look->axis < 0; k++) {
+    s->axis = (k + 1) % 3; /* y first: it stays if no other is better */
+    choose_discs(s);
+    if (look_at_largest(s, &least))
+      return STATUS_MEMORY;
+    if (least > best + 0.01) {
+      best = least;
+      axis = s->axis;
+    }
+  }
+  s->axis = axis;
+  choose_discs(s);
+  return look_at_largest(s, &least);
 }
 
 static void cover(double view[4], double x, double y, double radius) {
@@ -157,7 +190,8 @@ static void cover(double view[4], double x, double y, double radius) {
   view[3] = fmax(view[3], y + radius);
 }
 
-/* All resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. */
+/* All resolved fragments and nine tenths of the rest along each axis, so that jets do not shrink the body. Apart: all
+ * that is drawn. */
 static status choose_view(struct scene *s) {
   double *sorted = malloc((s->discs + 1) * sizeof *sorted), all[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   double *view = s->view;
@@ -165,9 +199,9 @@ static status choose_view(struct scene *s) {
     return STATUS_MEMORY;
   memcpy(view, all, sizeof all);
   for (size_t k = 0; k < s->discs; k++) {
-    const struct disc *d = &s->disc[k];
+    const struct picture_layout_disc *d = &s->disc[k];
     cover(all, d->x, d->y, d->radius);
-    if (resolved(s, d->id))
+    if (s->look->view == PICTURE_APART || resolved(s, d->id))
       cover(view, d->x, d->y, d->radius);
   }
   for (int axis = 0; axis < 2; axis++) {
@@ -184,6 +218,34 @@ static status choose_view(struct scene *s) {
     view[axis] = fmax(view[axis] - margin, all[axis] - margin / 6);
     view[axis + 2] = fmin(view[axis + 2] + margin, all[axis + 2] + margin / 6);
   }
+  return STATUS_OK;
+}
+
+static bool is_inside(const double view[4], const struct picture_layout_disc *d) {
+  return d->x - d->radius >= view[0] && d->x + d->radius <= view[2] && d->y - d->radius >= view[1] &&
+         d->y + d->radius <= view[3];
+}
+
+/* What does not fit into the frame as a whole, a jet or a small fragment far away, is not drawn at all. */
+static status leave_out(struct scene *s) {
+  bool *out = calloc(s->fragments + 1, sizeof *out);
+  size_t kept = 0;
+  if (!out)
+    return STATUS_MEMORY;
+  for (size_t k = 0; k < s->discs; k++) {
+    const int64_t f = s->cloud->fragment[s->disc[k].id];
+    if (f >= 0 && !is_inside(s->view, &s->disc[k]))
+      out[f] = true;
+  }
+  for (size_t k = 0; k < s->discs; k++) {
+    const int64_t f = s->cloud->fragment[s->disc[k].id];
+    const bool gone = f >= 0 ? out[f] : !is_inside(s->view, &s->disc[k]);
+    if (!gone)
+      s->disc[kept++] = s->disc[k];
+    s->left_out += gone;
+  }
+  s->discs = kept;
+  free(out);
   return STATUS_OK;
 }
 
@@ -273,7 +335,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
   bool cut = s->look->view == PICTURE_CUT;
   double near = s->discs ? s->disc[s->discs - 1].depth : 0, far = s->discs ? s->disc[s->discs / 50].depth : 0;
   for (size_t k = 0; k < s->discs; k++) {
-    const struct disc *d = &s->disc[k];
+    const struct picture_layout_disc *d = &s->disc[k];
     double light = cut || !(near > far) ? 0 : fmin(fmax(2 * (d->depth - far) / (near - far) - 1, -1), 1);
     if (!cut) { /* a dark rim sets a disc off from those behind it */
       cairo_arc(cairo, d->x, d->y, 1.1 * d->radius, 0, 2 * M_PI);
@@ -283,7 +345,7 @@ static void draw_discs(cairo_t *cairo, const struct scene *s) {
     if (!value)
       fragment_colour(cairo, s, d->id, light);
     else if (!isfinite(value[d->id]))
-      cairo_set_source_rgb(cairo, 1, 0, 1);
+      cairo_set_source_rgb(cairo, 0.88, 0.88, 0.88); /* it has no value */
     else {
       double share = s->high > s->low ? (value[d->id] - s->low) / (s->high - s->low) : 0.5;
       picture_canvas_ramp(cairo, s->ramp, fmin(fmax(share, 0), 1));
@@ -350,6 +412,23 @@ static void legend(cairo_t *cairo, const struct scene *s, double x, double y, do
   legend_line(cairo, x, y, font, text);
 }
 
+/* What is missing, or has no value, under the picture. */
+static void note(cairo_t *cairo, const struct scene *s, double left, double y, double font) {
+  char text[300] = "";
+  size_t grey = 0, used = 0;
+  for (size_t k = 0; s->cloud->value && k < s->discs; k++)
+    grey += isfinite(s->cloud->value[s->disc[k].id]) ? 0u : 1u;
+  if (grey)
+    used = (size_t)snprintf(text, sizeof text, "Grey: broken matter, which bears no tension. ");
+  if (s->hidden > 0)
+    used += (size_t)snprintf(text + used, sizeof text - used,
+                             "Fragments with %.3g %% of the mass are hidden: see the view apart. ", 100 * s->hidden);
+  if (s->left_out)
+    snprintf(text + used, sizeof text - used, "%zu particles are beyond the frame.", s->left_out);
+  cairo_set_source_rgb(cairo, 0.35, 0.35, 0.35);
+  picture_canvas_text(cairo, left, y, 0.9 * font, PICTURE_LEFT, false, text);
+}
+
 static status draw(const char *path, double width, struct scene *s, struct error *error) {
   const struct picture_look *look = s->look;
   double font = width / 52, gap = 1.5 * font;
@@ -361,7 +440,7 @@ static status draw(const char *path, double width, struct scene *s, struct error
   double scale = fmin(wide / (s->view[2] - s->view[0]), tall / (s->view[3] - s->view[1]));
   double top = font * (1.2 + (look->title ? 1.9 : 0) + (look->subtitle ? 1.6 : 0));
   struct picture_canvas canvas;
-  status code = picture_canvas_open(&canvas, path, width, top + tall + 5 * font, error);
+  status code = picture_canvas_open(&canvas, path, width, top + tall + 6.6 * font, error);
   if (code)
     return code;
   cairo_t *cairo = canvas.cairo;
@@ -373,9 +452,10 @@ static status draw(const char *path, double width, struct scene *s, struct error
   cairo_translate(cairo, -(s->view[0] + s->view[2]) / 2, -(s->view[1] + s->view[3]) / 2);
   draw_discs(cairo, s);
   cairo_restore(cairo);
-  picture_canvas_head(cairo, gap, font, look->title, 0.95 * font, look->subtitle);
-  axes(cairo, look->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
+  picture_canvas_head(cairo, gap, width - 2 * gap, font, look->title, 0.95 * font, look->subtitle);
+  axes(cairo, s->axis, gap + 0.5 * font, top + tall + 3.9 * font, font);
   picture_canvas_scale_bar(cairo, gap + 7 * font, top + tall + 3.9 * font, scale, wide, font);
+  note(cairo, s, gap, top + tall + 5.7 * font, font);
   if (s->cloud->value)
     picture_canvas_colour_bar(cairo, s->ramp, gap + wide + 1.2 * font, top, 1.2 * font, fmin(tall, 26 * font), font,
                               s->low / s->scale, s->high / s->scale, s->label);
@@ -389,21 +469,26 @@ static status compose(const char *path, double width, struct scene *s, struct er
   if (s->cloud->n) {
     if (gather(s))
       return STATUS_MEMORY;
+    s->axis = s->look->axis < 0 ? 1 : s->look->axis;
     choose_discs(s);
+    if (s->look->view == PICTURE_OUTSIDE && turn(s))
+      return STATUS_MEMORY;
   }
   if (s->discs == 0)
     return status_fail(error, STATUS_USAGE,
                        s->look->view == PICTURE_CUT ? "%s: the plane meets no particle"
                                                     : "%s: there is no particle to draw",
                        path);
-  if (choose_view(s) || choose_colours(s))
+  if (s->look->view == PICTURE_APART && picture_layout_apart(s->cloud, s->discs, s->disc))
+    return STATUS_MEMORY;
+  if (choose_view(s) || leave_out(s) || choose_colours(s))
     return STATUS_MEMORY;
   return draw(path, width, s, error);
 }
 
 status picture_particles(const char *path, double width, const struct picture_cloud *cloud,
                          const struct picture_look *look, struct error *error) {
-  if (look->axis < 0 || look->axis > 2)
+  if (look->axis > 2)
     return status_fail(error, STATUS_USAGE, "%s: there is no axis %d", path, look->axis);
   for (size_t i = 0; i < cloud->n; i++)
     if (cloud->fragment[i] >= (int64_t)cloud->n)

@@ -51,10 +51,13 @@ static status choose_look(const struct picture_choice *options, struct picture_l
   if (code)
     return code;
 
-  const char *axis = options->axis ? options->axis : "y";
-  if (strlen(axis) != 1 || !strchr("xyz", axis[0]))
+  const char *axis = options->axis;
+  if (axis && (strlen(axis) != 1 || !strchr("xyz", axis[0])))
     return status_fail(error, STATUS_USAGE, "--axis is x, y or z, not '%s'", axis);
-  look->axis = axis[0] - 'x';
+  if (axis)
+    look->axis = axis[0] - 'x';
+  else if (look->view == PICTURE_OUTSIDE)
+    look->axis = -1;
   if (!options->at)
     return STATUS_OK;
   if (look->view != PICTURE_CUT)

@@ -14,12 +14,14 @@ static const struct option_row rows[] = {
         "distention, flaws..., or fragments."),
     OPTION_ROW_TEXT(
         "view", 0, "VIEW", struct picture_choice, view, NULL,
-        "Particles: cut (through a plane; the default), outside, apart (fragments moved away from each other; the "
+        "Particles: cut (through a plane; the default), outside, apart (fragments side by side; the "
         "default "
         "for fragments), or profile (distention and damage, or --what, against depth along the axis of an impact or a "
         "plate)."),
-    OPTION_ROW_TEXT("axis", 0, "x|y|z", struct picture_choice, axis, NULL,
-                    "Particles: direction of view, at right angles to a cut (y)."),
+    OPTION_ROW_TEXT(
+        "axis", 0, "x|y|z", struct picture_choice, axis, NULL,
+        "Particles: direction of view, at right angles to a cut (y; from outside the one that shows the heaviest "
+        "fragments best)."),
     OPTION_ROW_TEXT("at", 0, "LENGTH", struct picture_choice, at, NULL,
                     "Particles: position of the cut on that axis (the middle of the heaviest fragment)."),
     CHART_OPTIONS(struct picture_choice, chart),

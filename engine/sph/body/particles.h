@@ -3,6 +3,7 @@
 #ifndef CLAST_ENGINE_SPH_BODY_PARTICLES_H
 #define CLAST_ENGINE_SPH_BODY_PARTICLES_H
 
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -52,6 +53,16 @@ struct sph_particles {
 static inline double sph_particles_damage(const struct sph_particles *p, size_t i) {
   double cbrt = p->damage_cbrt ? p->damage_cbrt[i] : 0;
   return cbrt * cbrt * cbrt;
+}
+
+/* Pressure that acts, for files and pictures: of tension, the share 1 - D. NaN in broken matter under tension: it
+ * cannot bear any, and the equation of state gives rubble that flies apart many GPa of it. */
+#define SPH_PARTICLES_BROKEN 0.99 /* D from which matter counts as broken there */
+static inline double sph_particles_acting_pressure(const struct sph_particles *p, size_t i) {
+  const double damage = sph_particles_damage(p, i), pressure = p->pressure[i];
+  if (!(pressure < 0))
+    return pressure;
+  return damage > SPH_PARTICLES_BROKEN ? (double)NAN : (1 - damage) * pressure;
 }
 
 /* Allocates the arrays for n particles; `arrays` are the flags of enum sph_particle_arrays. All are zero, but

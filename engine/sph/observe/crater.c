@@ -198,7 +198,11 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
     struct sph_crater_layer *l = &layers[(size_t)layer];
     l->depth += 1; /* the number of particles, until the loop ends */
     l->damage += sph_particles_damage(now, i);
-    l->pressure += now->pressure[i];
+    const double pressure = sph_particles_acting_pressure(now, i);
+    if (!isnan(pressure)) {
+      l->pressure += pressure;
+      l->bearing += 1;
+    }
     l->velocity += now->vz[i];
 #define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
   l->member += now->of_impact ? now->of_impact[i] : absent;
@@ -213,7 +217,8 @@ size_t sph_crater_profile(const struct sph_particles *start, const struct sph_pa
     layers[count++] = (struct sph_crater_layer){
         .depth = (double)k * o->spacing,
         .damage = l.damage / l.depth,
-        .pressure = l.pressure / l.depth,
+        .pressure = l.pressure / l.bearing,
+        .bearing = l.bearing,
         .velocity = l.velocity / l.depth,
 #define PROFILE_COLUMN(member, ...) .member = l.member / l.depth,
 #include "engine/sph/modules/declarations.h"

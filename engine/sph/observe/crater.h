@@ -38,7 +38,8 @@ status sph_crater_measure(const struct sph_particles *start, const struct sph_pa
 struct sph_crater_layer {
   double depth;    /* m, of the layer's middle, at the start */
   double damage;   /* D */
-  double pressure; /* Pa */
+  double pressure; /* Pa, that acts; of an impact without broken particles under tension, NaN: there are no others */
+  double bearing;  /* particles that the pressure is a mean of */
   double velocity; /* m/s, along +z */
 #define PROFILE_COLUMN(member, ...) double member;
 #include "engine/sph/modules/declarations.h"

@@ -44,7 +44,8 @@ static const struct snapshot_file_column axis_columns[] = {
     COLUMN(depth, "m", "depth of the layer below the surface at the start"),
     COLUMN(damage, "1",
            "mean damage D of the retained particles within 1.5 spacings of the axis; of a plate, of the layer"),
-    COLUMN(pressure, "Pa", "mean pressure of these particles"),
+    COLUMN(pressure, "Pa",
+           "mean pressure of these particles, without broken ones under tension; nan: there are no others"),
     COLUMN(velocity, "m/s", "mean velocity of these particles: outwards; in a plate along x"),
 #undef COLUMN
 #define PROFILE_COLUMN(member, of_impact, of_plate, absent, ...)                                                       \
@@ -113,8 +114,11 @@ void sph_snapshot_particles(struct snapshot_file *file, const struct sph_particl
   scalar(file, AT("mass"), n, p->mass, "kg", "mass");
   scalar(file, AT("density"), n, p->density, "kg m-3", "density of the body");
   scalar(file, AT("energy"), n, p->energy, "J kg-1", "specific internal energy");
-  scalar(file, AT("pressure"), n, p->pressure, "Pa",
-         "pressure, undamaged: where it is negative, (1 - damage) of it acts");
+  for (size_t i = 0; i < n; i++)
+    values[i] = sph_particles_acting_pressure(p, i);
+  scalar(
+      file, AT("pressure"), n, values, "Pa",
+      "pressure that acts: of tension, (1 - damage); nan where broken matter is under tension, which it cannot bear");
   scalar(file, AT("smoothing_length"), n, p->h, "m", "smoothing length h; a particle's reach is 2h");
 #define PARTICLE_COLUMN(FLAG, member, absent, ...) scalar(file, AT(#member), n, p->member, __VA_ARGS__);
 #include "engine/sph/modules/declarations.h"

@@ -1,0 +1,199 @@
+/* Places the fragments of a picture one after another on a grid of cells as wide as a disc. */
+#include "analysis/pictures/picture_layout.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDE = 2048 };          /* cells of the grid along each side */
+static const double GAP = 1.5; /* cells between two fragments */
+
+struct piece {
+  size_t first, count; /* of its discs in `order` */
+  double x, y;         /* centre of its discs, m */
+};
+
+struct layout {
+  struct picture_layout_disc *discs;
+  size_t *order; /* discs by fragment */
+  struct piece *piece;
+  size_t pieces;
+  unsigned char *taken; /* cells */
+  double cell, x, y;    /* side of a cell; the middle of the grid, m */
+};
+
+static void free_layout(struct layout *l) {
+  free(l->order);
+  free(l->piece);
+  free(l->taken);
+}
+
+/* Sorts the discs by fragment, by counting. */
+static status gather(const struct picture_cloud *cloud, size_t count, struct layout *l) {
+  for (size_t k = 0; k < count; k++)
+    if ((size_t)cloud->fragment[l->discs[k].id] >= l->pieces)
+      l->pieces = (size_t)cloud->fragment[l->discs[k].id] + 1;
+  l->order = malloc((count + 1) * sizeof *l->order);
+  l->piece = calloc(l->pieces + 1, sizeof *l->piece);
+  l->taken = calloc((size_t)WIDE * WIDE, 1);
+  if (!l->order || !l->piece || !l->taken)
+    return STATUS_MEMORY;
+  for (size_t k = 0; k < count; k++)
+    l->piece[cloud->fragment[l->discs[k].id]].count++;
+  for (size_t p = 1; p < l->pieces; p++)
+    l->piece[p].first = l->piece[p - 1].first + l->piece[p - 1].count;
+  for (size_t p = 0; p < l->pieces; p++)
+    l->piece[p].count = 0;
+  for (size_t k = 0; k < count; k++) {
+    struct piece *piece = &l->piece[cloud->fragment[l->discs[k].id]];
+    l->order[piece->first + piece->count++] = k;
+    piece->x += l->discs[k].x;
+    piece->y += l->discs[k].y;
+  }
+  for (size_t p = 0; p < l->pieces; p++)
+    if (l->piece[p].count) {
+      l->piece[p].x /= (double)l->piece[p].count;
+      l->piece[p].y /= (double)l->piece[p].count;
+    }
+  return STATUS_OK;
+}
+
+/* Cell of a coordinate from the middle; outside of the grid -1. */
+static long cell_of(const struct layout *l, double from_middle) {
+  const double at = floor(from_middle / l->cell) + WIDE / 2;
+  return at >= 0 && at < WIDE ? (long)at : -1;
+}
+
+/* Is there a free place for the piece when it is moved? Outside of the grid all is free. */
+static bool is_free(const struct layout *l, const struct piece *piece, double dx, double dy) {
+  for (size_t k = 0; k < piece->count; k++) {
+    const struct picture_layout_disc *d = &l->discs[l->order[piece->first + k]];
+    const long i = cell_of(l, d->x + dx - l->x), j = cell_of(l, d->y + dy - l->y);
+    if (i >= 0 && j >= 0 && l->taken[(size_t)j * WIDE + (size_t)i])
+      return false;
+  }
+  return true;
+}
+
+/* Takes the cells of the piece's discs and those around. */
+static void take(struct layout *l, const struct piece *piece) {
+  for (size_t k = 0; k < piece->count; k++) {
+    const struct picture_layout_disc *d = &l->discs[l->order[piece->first + k]];
+    const double reach = 2 * d->radius + GAP * l->cell;
+    const long low_i = cell_of(l, d->x - reach - l->x), high_i = cell_of(l, d->x + reach - l->x);
+    const long low_j = cell_of(l, d->y - reach - l->y), high_j = cell_of(l, d->y + reach - l->y);
+    if (low_i < 0 || low_j < 0 || high_i < 0 || high_j < 0)
+      continue;
+    for (long j = low_j; j <= high_j; j++)
+      for (long i = low_i; i <= high_i; i++)
+        l->taken[(size_t)j * WIDE + (size_t)i] = 1;
+  }
+}
+
+/* The direction of a piece from the middle; of one in the middle that of its number, by golden angles. */
+static void direction_of(const struct layout *l, size_t p, double *x, double *y) {
+  const double dx = l->piece[p].x - l->x, dy = l->piece[p].y - l->y, far = hypot(dx, dy);
+  *x = far > 1e-6 * l->cell ? dx / far : cos(2.399963 * (double)p);
+  *y = far > 1e-6 * l->cell ? dy / far : sin(2.399963 * (double)p);
+}
+
+static void place(struct layout *l, size_t p) {
+  struct piece *piece = &l->piece[p];
+  double x, y, step = 0;
+  direction_of(l, p, &x, &y);
+  while (!is_free(l, piece, step * x, step * y))
+    step += l->cell;
+  for (size_t k = 0; k < piece->count; k++) {
+    l->discs[l->order[piece->first + k]].x += step * x;
+    l->discs[l->order[piece->first + k]].y += step * y;
+  }
+  take(l, piece);
+}
+
+status picture_layout_apart(const struct picture_cloud *cloud, size_t count, struct picture_layout_disc *discs) {
+  struct layout l = {.discs = discs};
+  double extent = 0, radius = 0;
+  const status code = gather(cloud, count, &l);
+  if (code == STATUS_OK && count > 0) {
+    size_t heaviest = 0;
+    while (l.piece[heaviest].count == 0)
+      heaviest++;
+    l.x = l.piece[heaviest].x;
+    l.y = l.piece[heaviest].y;
+    for (size_t k = 0; k < count; k++) {
+      extent = fmax(extent, fmax(fabs(discs[k].x - l.x), fabs(discs[k].y - l.y)));
+      radius += discs[k].radius / (double)count;
+    }
+    l.cell = fmax(radius, 4 * extent / WIDE); /* the grid is twice as wide as the cloud */
+    for (size_t p = 0; p < l.pieces; p++)
+      if (l.piece[p].count)
+        place(&l, p);
+  }
+  free_layout(&l);
+  return code;
+}
+
+/* A raster of what can be seen: the fragment in front, and for each fragment the cells that it covers. */
+enum { SEEN = 256 };
+struct raster {
+  double x, y, cell; /* lower left corner, side of a cell, m */
+  int32_t front[SEEN * SEEN];
+  unsigned char covered[SEEN * SEEN]; /* by the fragment under way */
+};
+
+static void paint(struct raster *raster, const struct picture_layout_disc *d, int32_t fragment, bool front) {
+  const double reach = d->radius / raster->cell, x = (d->x - raster->x) / raster->cell,
+               y = (d->y - raster->y) / raster->cell;
+  for (long j = lround(fmax(ceil(y - reach), 0)); j <= y + reach && j < SEEN; j++)
+    for (long i = lround(fmax(ceil(x - reach), 0)); i <= x + reach && i < SEEN; i++) {
+      if (hypot((double)i - x, (double)j - y) > reach)
+        continue;
+      if (front)
+        raster->front[j * SEEN + i] = fragment;
+      else
+        raster->covered[j * SEEN + i] = 1;
+    }
+}
+
+static struct raster *new_raster(size_t count, const struct picture_layout_disc *discs) {
+  struct raster *raster = malloc(sizeof *raster);
+  double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (size_t k = 0; k < count; k++) {
+    low[0] = fmin(low[0], discs[k].x - discs[k].radius);
+    low[1] = fmin(low[1], discs[k].y - discs[k].radius);
+    high[0] = fmax(high[0], discs[k].x + discs[k].radius);
+    high[1] = fmax(high[1], discs[k].y + discs[k].radius);
+  }
+  if (!raster)
+    return NULL;
+  raster->x = low[0];
+  raster->y = low[1];
+  raster->cell = fmax(fmax(high[0] - low[0], high[1] - low[1]), 1e-300) / (SEEN - 1);
+  for (size_t i = 0; i < SEEN * SEEN; i++)
+    raster->front[i] = -1;
+  return raster;
+}
+
+status picture_layout_visible(const struct picture_cloud *cloud, size_t count, const struct picture_layout_disc *discs,
+                              size_t fragments, double *visible) {
+  struct raster *raster = new_raster(count, discs);
+  if (!raster)
+    return STATUS_MEMORY;
+  for (size_t k = 0; k < count; k++)
+    paint(raster, &discs[k], cloud->part[discs[k].id] >= PICTURE_DUST ? -1 : (int32_t)cloud->fragment[discs[k].id],
+          true);
+  for (size_t f = 0; f < fragments; f++) {
+    size_t covered = 0, seen = 0;
+    memset(raster->covered, 0, sizeof raster->covered);
+    for (size_t k = 0; k < count; k++)
+      if (cloud->fragment[discs[k].id] == (int64_t)f)
+        paint(raster, &discs[k], (int32_t)f, false);
+    for (size_t i = 0; i < SEEN * SEEN; i++) {
+      covered += raster->covered[i];
+      seen += raster->covered[i] && raster->front[i] == (int32_t)f;
+    }
+    visible[f] = covered ? (double)seen / (double)covered : 1;
+  }
+  free(raster);
+  return STATUS_OK;
+}
