@@ -93,8 +93,8 @@ static double misfit_of(const struct ensemble_kalman *e, struct work *w, size_t 
   return covariance_distance(e->outputs, w->root, w->innovation, w->weighted) / 2;
 }
 
-/* The part of the data that a step takes: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, at most what is left.
- */
+/* The part of the data that a step takes: max(d / 2 mean, sqrt(d / 2 variance)) of the misfits, but at least `least`
+ * and at most what is left. */
 static double part_of(const struct ensemble_kalman *e, struct work *w) {
   double mean = 0, variance = 0;
   for (size_t i = 0; i < w->good; i++) {
@@ -104,7 +104,7 @@ static double part_of(const struct ensemble_kalman *e, struct work *w) {
   for (size_t i = 0; i < w->good; i++)
     variance += (w->misfit[i] - mean) * (w->misfit[i] - mean) / (double)(w->good - 1);
   const double half = (double)e->outputs / 2;
-  const double part = fmax(half / mean, sqrt(half / variance));
+  const double part = fmax(fmax(half / mean, sqrt(half / variance)), e->least);
   const double left = 1 - e->tempered;
   return part < left ? part : left;
 }

@@ -20,6 +20,7 @@ struct ensemble_kalman {
   const double *y;      /* outputs: what was measured */
   const double *gamma;  /* outputs x outputs: covariance of the measurement, seed scatter and all errors in it */
   uint64_t seed, round; /* of the perturbed measurements */
+  double least;         /* part that a step takes at least, so that the rounds that are left suffice; 0: none */
   double tempered;      /* sum of the parts taken so far, 0 to 1; a step adds to it */
 };
 

@@ -151,6 +151,8 @@ static void label_of(const struct fit *fit, size_t k, char *label, size_t size) 
   char name[CHART_OPTION_LABEL];
   if (datum->ask.kind == ASK_SPECIMENS_COUNT)
     snprintf(name, sizeof name, "fragments above %.3g M", datum->share);
+  else if (datum->ask.kind == ASK_SPECIMENS_SHARE)
+    snprintf(name, sizeof name, "mass share of fragments above %.3g M", datum->share);
   else
     chart_option_label(datum->ask.row ? datum->ask.row->path : datum->quantity, name);
   snprintf(label, size, "%.40s%s%s = %.4g", shot, shot[0] ? ": " : "", name, datum->value);

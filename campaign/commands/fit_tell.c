@@ -98,10 +98,11 @@ static void tell_not_studied(const struct fit *fit, FILE *out) {
     observed_label(fit->observed, k, label, sizeof label);
     fprintf(words, "%s %s", count++ ? "," : "", label);
   }
-  fprintf(
-      words,
-      ". The intervals are too narrow. Give `resolution` with the value, or study it: `clast converge %s --store %s`.",
-      fit->scene_reference, fit->campaign->store);
+  fprintf(words,
+          ". The intervals are too narrow. Give `resolution` with the value, or study it: `clast converge %s --store "
+          "%s` with what "
+          "the campaign sets (--set).",
+          fit->scene_reference, fit->campaign->store);
   if (text_close(words, &text) && count)
     say(out, text);
   free(text);
@@ -162,13 +163,6 @@ static void tell_doubts(const struct fit *fit, FILE *out) {
           label, fit->surfaces.left_out[k]);
       say(out, text);
     }
-  }
-  if (fit->ensemble.tempered < 1) {
-    snprintf(text, sizeof text,
-             "ROUNDS: the ensemble took in %.0f %% of the data before its rounds ran out (--rounds). The surfaces use "
-             "all points.",
-             100 * fit->ensemble.tempered);
-    say(out, text);
   }
 }
 

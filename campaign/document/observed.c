@@ -8,6 +8,7 @@
 #include "schemas/document.h"
 
 #define COUNT_ABOVE "count_above"
+#define SHARE_ABOVE "share_above"
 
 static const struct field root_rows[] = {
     {.path = "name",
@@ -82,8 +83,8 @@ static bool find_quantity(struct reading *r, document_node *node, struct observe
   struct error error = {0};
   bool exponent = false;
   struct ask_specimens_quantity *ask = &datum->ask;
-  if (strcmp(datum->quantity, COUNT_ABOVE) == 0) {
-    ask->kind = ASK_SPECIMENS_COUNT;
+  if (strcmp(datum->quantity, COUNT_ABOVE) == 0 || strcmp(datum->quantity, SHARE_ABOVE) == 0) {
+    ask->kind = datum->quantity[0] == COUNT_ABOVE[0] ? ASK_SPECIMENS_COUNT : ASK_SPECIMENS_SHARE;
     return true;
   }
   status code = estimates_named(datum->quantity, &exponent, &ask->method, &ask->window, &error);
@@ -95,7 +96,7 @@ static bool find_quantity(struct reading *r, document_node *node, struct observe
     ask->row = campaign_quantity(r->campaign->scene->kind, datum->quantity, &ask->of_outcome, &error);
   if (ask->row)
     return true;
-  document_report(node, "quantity", "%s; or beta, beta_METHOD_WINDOW, " COUNT_ABOVE, error.message);
+  document_report(node, "quantity", "%s; or beta, beta_METHOD_WINDOW, " COUNT_ABOVE ", " SHARE_ABOVE, error.message);
   return false;
 }
 
@@ -133,11 +134,11 @@ static void read_datum(struct reading *r, document_node *node) {
     document_report(node, "measured", "'value' is missing: what was measured?");
   read_number(node, ERROR, datum, &datum->error);
   read_number(node, RESOLUTION, datum, &datum->resolution);
-  const bool count = datum->ask.kind == ASK_SPECIMENS_COUNT;
-  if (count && !read_number(node, SHARE, datum, &datum->share) && !share)
-    document_report(node, "measured", COUNT_ABOVE " needs 'share': fragments heavier than this share of the body");
-  if (!count && share)
-    document_report(share, "share", "only " COUNT_ABOVE " has a share");
+  const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
+  if (above && !read_number(node, SHARE, datum, &datum->share) && !share)
+    document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body", name);
+  if (!above && share)
+    document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
   datum->ask.share = datum->share;
 }
 
@@ -340,6 +341,8 @@ void observed_label(const struct observed *observed, size_t datum, char *label, 
   const char *shot = observed->shot_count > 1 ? observed->shots[d->shot].name : "";
   if (d->ask.kind == ASK_SPECIMENS_COUNT)
     snprintf(label, size, "%s%sfragments above %.3g M", shot, shot[0] ? ": " : "", d->share);
+  else if (d->ask.kind == ASK_SPECIMENS_SHARE)
+    snprintf(label, size, "%s%smass share above %.3g M", shot, shot[0] ? ": " : "", d->share);
   else
     snprintf(label, size, "%s%s%s", shot, shot[0] ? ": " : "", d->ask.row ? d->ask.row->path : d->quantity);
 }

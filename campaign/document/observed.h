@@ -22,8 +22,8 @@ enum { OBSERVED_DATA = 32, OBSERVED_SHOTS = 32 };
 
 /* One number of one shot. */
 struct observed_datum {
-  char quantity[FIELD_TEXT_SIZE];    /* a result, an exponent (beta, beta_METHOD_WINDOW) or count_above */
-  double share;                      /* of count_above: of the body's mass */
+  char quantity[FIELD_TEXT_SIZE];    /* a result, an exponent (beta, beta_METHOD_WINDOW), count_above, share_above */
+  double share;                      /* of count_above and share_above: of the body's mass */
   double value, error;               /* SI; standard deviation of the measurement */
   double resolution;                 /* standard deviation of what a finer resolution would change; NaN: not given */
   struct ask_specimens_quantity ask; /* how a run's value is found */

@@ -141,6 +141,7 @@ static status move_ensemble(struct fit *fit, struct error *error) {
   fit->ensemble.g = g;
   fit->ensemble.y = y;
   fit->ensemble.round = fit->rounds;
+  fit->ensemble.least = (1 - fit->ensemble.tempered) / (double)(fit->rule.rounds - 1 - (int64_t)fit->rounds);
   if (code == STATUS_OK)
     code = ensemble_kalman_step(&fit->ensemble, error);
   fit->ensemble.g = fit->ensemble.y = NULL;
@@ -176,12 +177,11 @@ static void tell(const struct fit *fit) {
 
 static status after_ensemble(struct fit *fit, struct error *error) {
   status code = STATUS_OK;
-  const size_t most = (size_t)fit->rule.rounds;
   fit->rounds++;
   switch (fit->phase) {
   case FIT_ENSEMBLE:
     code = move_ensemble(fit, error);
-    if (fit->ensemble.tempered >= 1 || fit->rounds + 2 >= most)
+    if (fit->ensemble.tempered > 1 - 1e-9)
       fit->phase = FIT_ARRIVED;
     break;
   case FIT_ARRIVED:

@@ -34,16 +34,20 @@ static status take_masses(void *context, size_t count, const struct query_value 
   if (values[1].kind != QUERY_BLOB || values[1].size % sizeof(double) != 0)
     return status_fail(error, STATUS_CONTENT, "the fragment masses of a run are damaged; `clast check` tells more");
   const size_t n = values[1].size / sizeof(double);
-  double total = 0, heavier = 0, mass;
+  double total = 0, number = 0, heavier = 0, mass;
   for (size_t i = 0; i < n; i++) {
     memcpy(&mass, (const char *)values[1].blob + i * sizeof mass, sizeof mass);
     total += mass;
   }
   for (size_t i = 0; i < n; i++) {
     memcpy(&mass, (const char *)values[1].blob + i * sizeof mass, sizeof mass);
-    heavier += mass > giving->quantity->share * total;
+    if (mass > giving->quantity->share * total) {
+      number++;
+      heavier += mass;
+    }
   }
-  giving->each(giving->context, (uint64_t)values[0].integer, heavier);
+  giving->each(giving->context, (uint64_t)values[0].integer,
+               giving->quantity->kind == ASK_SPECIMENS_COUNT ? number : heavier / total);
   return STATUS_OK;
 }
 

@@ -7,7 +7,12 @@
 #include "analysis/statistics/estimates.h"
 #include "db/store/store.h"
 
-enum ask_specimens_kind { ASK_SPECIMENS_RESULT, ASK_SPECIMENS_EXPONENT, ASK_SPECIMENS_COUNT };
+enum ask_specimens_kind {
+  ASK_SPECIMENS_RESULT,
+  ASK_SPECIMENS_EXPONENT,
+  ASK_SPECIMENS_COUNT, /* fragments heavier than a share of the body */
+  ASK_SPECIMENS_SHARE, /* their share of its mass: what a sieve holds back */
+};
 
 struct ask_specimens_quantity {
   enum ask_specimens_kind kind;

@@ -80,12 +80,13 @@ static inline status case_solve(struct case_fit *fit, case_model model, const st
   for (size_t k = 0; k < d; k++)
     y[k] = data[k].value;
   status code = STATUS_OK;
-  while (code == STATUS_OK && e.tempered < 1 && e.round + 1 < CASE_ROUNDS) {
+  while (code == STATUS_OK && e.tempered < 1 - 1e-9) {
     case_run(fit, model, members, 1000 * seed);
     const struct surfaces_runs runs = case_runs(fit, packed);
     for (size_t j = 0; j < CASE_MEMBERS; j++)
       for (size_t k = 0; k < d; k++)
         g[j * d + k] = surfaces_mean(&runs, k, fit->points - CASE_MEMBERS + j);
+    e.least = (1 - e.tempered) / (double)(CASE_ROUNDS - 1 - e.round);
     code = surfaces_errors(&runs, data, bounded, CASE_MEMBERS, gamma, error);
     if (code == STATUS_OK)
       code = ensemble_kalman_step(&e, error);

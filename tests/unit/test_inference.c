@@ -48,6 +48,14 @@ static void kalman_replaces_failed_members(void **state) {
   assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
   for (size_t j = 3; j < 6; j++)
     assert_true(fabs(z[j]) < 4);
+  double far[3] = {90, 100, 110}; /* what few rounds are left for is taken in greater parts */
+  e = (struct ensemble_kalman){.members = 3, .inputs = 1, .outputs = 1, .z = z, .g = far, .y = &y, .gamma = &gamma};
+  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  assert_true(e.tempered < 0.01);
+  e.least = 0.5;
+  assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_OK);
+  assert_true(e.tempered >= 0.5 && e.tempered < 0.51);
+  e = (struct ensemble_kalman){.members = 6, .inputs = 1, .outputs = 1, .z = z, .g = g, .y = &y, .gamma = &gamma};
   g[1] = NAN;
   assert_int_equal(ensemble_kalman_step(&e, &error), STATUS_CONTENT);
   g[1] = 0;

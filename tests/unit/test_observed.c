@@ -98,8 +98,10 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "measured: [{quantity: time, value: 3 kg}]\n", "m.yaml:4|kg");
   bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, error: -1}]\n", "error|at least 0");
   bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, sigma: 1}]\n", "sigma");
-  bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, share: 0.1}]\n", "only count_above has a share");
-  bad(SHOT "measured: [{quantity: count_above, value: 3}]\n", "needs 'share'");
+  bad(SHOT "measured: [{quantity: largest_fraction, value: 0.3, share: 0.1}]\n",
+      "only count_above and share_above have a share");
+  bad(SHOT "measured: [{quantity: count_above, value: 3}]\n", "count_above needs 'share'");
+  bad(SHOT "measured: [{quantity: share_above, value: 3}]\n", "share_above needs 'share'");
   bad(SHOT "measured: [{quantity: count_above, value: 3, share: 2}]\n", "share|below 1");
   bad(SHOT "measured: {quantity: time}\n", "expected a list");
   bad(SHOT "set: {strain: 3 %}\n    measured: [{quantity: time, value: 1}]\n", "unknown in the campaign");
