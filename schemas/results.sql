@@ -223,6 +223,7 @@ CREATE TABLE convergence ( -- Studies of convergence (clast converge): the level
   half_width REAL, -- Half width of the 95 % interval of the mean (Student's t).
   deviation REAL, -- Standard deviation between seeds.
   skew REAL, -- Skewness over seeds. Off for fewer than three.
+  upper_mode REAL, -- Share of the runs in the upper of two modes (`clast scatter`). Off: one mode.
   cpu REAL, -- [s] Mean processor time of a run.
   bias REAL, -- Mean of this level less that of the reference.
   bias_half_width REAL, -- Half width of the 95 % interval of the bias.
@@ -731,6 +732,8 @@ INSERT INTO column_doc VALUES ('convergence', 'setting', NULL, 'Value of the kno
 INSERT INTO column_doc VALUES ('convergence', 'skew', NULL, 'Skewness over seeds. Off for fewer than three.', 1);
 
 INSERT INTO column_doc VALUES ('convergence', 'step', NULL, 'Size that goes to zero as the knob gets finer, such as particles^(-1/3). Off: none.', 1);
+
+INSERT INTO column_doc VALUES ('convergence', 'upper_mode', NULL, 'Share of the runs in the upper of two modes (`clast scatter`). Off: one mode.', 1);
 
 INSERT INTO column_doc VALUES ('convergence_limit', 'base_point_id', NULL, 'the scene studied, as a point', 0);
 

@@ -293,6 +293,7 @@ static const struct field rows[] = {
     LEVEL(half_width, 0, .doc = "Half width of the 95 % interval of the mean (Student's t)."),
     LEVEL(deviation, 0, .doc = "Standard deviation between seeds."),
     LEVEL(skew, -HUGE_VAL, .doc = "Skewness over seeds. Off for fewer than three."),
+    LEVEL(upper_mode, 0, .doc = "Share of the runs in the upper of two modes (`clast scatter`). Off: one mode."),
     ROW(struct convergence_row, cpu, FIELD_REAL, "s", .number = NAN, .maximum = HUGE_VAL, .flags = FIELD_MAY_BE_OFF,
         .doc = "Mean processor time of a run."),
     LEVEL(bias, -HUGE_VAL, .doc = "Mean of this level less that of the reference."),

@@ -11,7 +11,7 @@
 struct options {
   struct launch_options launch;
   struct request request;
-  const char *picture;
+  const char *picture, *frontier;
   bool list;
 };
 
@@ -35,6 +35,7 @@ static status run(const struct command_line *line, struct error *error) {
                                       .quiet = options->launch.quiet,
                                       .format = format,
                                       .picture = options->picture,
+                                      .frontier = options->frontier,
                                       .argc = line->argc,
                                       .argv = line->argv};
   code = request_read(&request, line->arguments[0], subject, error);
@@ -67,7 +68,9 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, request.store, NULL,
                     "Store of the runs. Default: the campaign's, or SCENE-converge.db."),
     OPTION_ROW_TEXT("picture", 0, "FILE", struct options, picture, NULL,
-                    "Draw the first quantity over the cost of a run, a curve per knob (.png or .svg)."),
+                    "Draw the first quantity over the cost of a run, a curve per knob (.png, .svg or .pdf)."),
+    OPTION_ROW_TEXT("frontier", 0, "FILE", struct options, frontier, NULL,
+                    "Draw its error over the cost of a run, with the frontier: the levels worth their cost."),
     OPTION_ROW_FLAG("list", 0, struct options, list, "Print all knobs and stop."),
     LAUNCH_OPTIONS(struct options, launch),
     TABLE_OPTIONS(struct options, launch.table),

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "analysis/statistics/sample.h"
+#include "analysis/statistics/scatter.h"
 
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
@@ -228,11 +229,26 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
   mark_frontier(count, found);
 }
 
+/* Tells two modes of a level apart where there are two. */
+static void find_modes(const struct study_ladder *ladder, size_t quantity, struct study_found *found) {
+  for (size_t l = 0; l < found->count; l++) {
+    struct scatter scatter;
+    struct error ignored;
+    if (found->rows[l].n < 4 ||
+        scatter_make((size_t)ladder->seeds, ladder->values[quantity][l], &scatter, &ignored) != STATUS_OK)
+      continue;
+    found->rows[l].upper_mode = scatter.upper_share;
+    scatter_release(&scatter);
+  }
+}
+
 size_t study_of_scene(const struct study *study, size_t from, size_t quantity, struct study_found *found) {
   size_t count = 0;
   for (size_t i = from; i < study->ladder_count && study->ladder[i].base == study->ladder[from].base; i++)
-    if (count < STUDY_KNOBS)
-      study_find(study, &study->ladder[i], quantity, &found[count++]);
+    if (count < STUDY_KNOBS) {
+      study_find(study, &study->ladder[i], quantity, &found[count]);
+      find_modes(&study->ladder[i], quantity, &found[count++]);
+    }
   combine(&study->ladder[from], count, found);
   return count;
 }

@@ -27,7 +27,11 @@ static void print_summary(const struct study *study, double wall_s) {
 /* On the manager, when the rounds have ended. */
 static status show(const struct study *study, const struct study_launch *launch, struct error *error) {
   status code = study_print(study, launch->format, launch->quiet, error);
-  return code == STATUS_OK && launch->picture ? study_picture(study, launch->picture, error) : code;
+  if (code == STATUS_OK && launch->picture)
+    code = study_picture(study, false, launch->picture, error);
+  if (code == STATUS_OK && launch->frontier)
+    code = study_picture(study, true, launch->frontier, error);
+  return code;
 }
 
 status study_launch(struct study *study, const struct study_launch *launch, struct error *error) {

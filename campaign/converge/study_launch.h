@@ -9,8 +9,8 @@ struct study_launch {
   int slots; /* 0: one per core */
   bool in_process, quiet;
   enum table_format format;
-  const char *picture; /* NULL: none */
-  int argc;            /* the command line, for provenance */
+  const char *picture, *frontier; /* of means, of errors; NULL: none */
+  int argc;                       /* the command line, for provenance */
   char *const *argv;
 };
 

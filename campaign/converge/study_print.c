@@ -32,6 +32,7 @@ static void print_level(struct table *table, const struct convergence_row *row) 
   table_real(table, row->half_width);
   table_real(table, row->deviation);
   table_real(table, row->skew);
+  table_real(table, row->upper_mode);
   table_real(table, row->cpu);
   table_real(table, row->bias);
   table_real(table, row->bias_half_width);
@@ -70,6 +71,31 @@ static void print_limit(const struct study_ladder *ladder, const struct study_fo
   putchar('\n');
 }
 
+/* Would a cheaper level save runs of a finer one? Levels that do not differ from the reference need no such help: the
+ * cheaper one is the answer. */
+static void print_gain(size_t count, const struct study_found *found) {
+  const double worth_it = 1.5; /* below, the estimator costs more care than it saves time */
+  const struct convergence_row *best = NULL;
+  double most = 0;
+  for (size_t i = 0; i < count; i++)
+    for (size_t l = 0; l < found[i].count; l++) {
+      const struct convergence_row *row = &found[i].rows[l];
+      const double gain = convergence_gain(row->correlation_low, row->cost_ratio);
+      if (fabs(row->bias) > row->bias_half_width && gain > most) {
+        best = row;
+        most = gain;
+      }
+    }
+  if (!best)
+    puts("control variates: no level that differs from its reference has a known correlation with the next finer one");
+  else
+    printf("control variates: %s; the best is %s = %s, gain %.2g with its next finer level (at least %.2g)\n",
+           most >= worth_it ? "a pair of levels would save time"
+                            : "no pair of levels is sure to gain 1.5, so that plain "
+                              "runs are the better use of time",
+           best->knob, best->setting, best->gain, most);
+}
+
 static status print_quantity(const struct study *study, size_t from, size_t quantity, size_t count,
                              const struct study_found *found, struct error *error) {
   const struct field *row = study->quantity[quantity].row;
@@ -78,15 +104,16 @@ static status print_quantity(const struct study *study, size_t from, size_t quan
          row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "",
          row->unit && strcmp(row->unit, "1") != 0 ? ")" : "");
   struct table *table = table_new(TABLE_TEXT, stdout);
-  table_columns(table,
-                (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "cpu_s", "bias", "bias_hw95",
-                                      "corr", "corr_low", "corr_high", "break_even", "error", "frontier", NULL});
+  table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
+                                             "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",
+                                             "error", "frontier", NULL});
   for (size_t i = 0; i < count; i++)
     for (size_t l = 0; l < found[i].count; l++)
       print_level(table, &found[i].rows[l]);
   status code = table_end(table, error);
   for (size_t i = 0; i < count; i++)
     print_limit(&study->ladder[from + i], &found[i]);
+  print_gain(count, found);
   return code;
 }
 
@@ -115,7 +142,8 @@ static const char legend[] =
     "* the scene's own setting; ref: what bias is measured against. bias: mean less that of ref, with the half width\n"
     "of its 95 % interval. error: distance to the limit (without one |bias| + half width, which may be too small),\n"
     "and those of the other knobs of group resolution at *. frontier: no level is both cheaper and nearer. corr: with\n"
-    "the next finer level; a control variate would save time from break_even on.\n";
+    "the next finer level; a control variate would save time from break_even on. upper_mode: share of the runs in the\n"
+    "upper of two modes.\n";
 
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error) {
   struct study_found *found = malloc(STUDY_KNOBS * sizeof *found);

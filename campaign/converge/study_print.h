@@ -12,7 +12,8 @@ status study_print_knobs(enum table_format format, struct error *error);
  * programs the rows of convergence_table. */
 status study_print(const struct study *study, enum table_format format, bool quiet, struct error *error);
 
-/* Mean with its interval over the processor time of a run: a curve per knob of the first scene and quantity. */
-status study_picture(const struct study *study, const char *path, struct error *error);
+/* Mean with its interval over the processor time of a run, or (`of_errors`) the error of each level and the frontier: a
+ * curve per knob of the first scene and quantity. */
+status study_picture(const struct study *study, bool of_errors, const char *path, struct error *error);
 
 #endif
