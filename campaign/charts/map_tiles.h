@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_CHARTS_MAP_TILES_H
 #define CLAST_CAMPAIGN_CHARTS_MAP_TILES_H
 
-#include "campaign/commands/quantity.h"
+#include "campaign/charts/quantity.h"
 #include "campaign/terminal/chart_option.h"
 
 /* Reads the quantity over x and y and draws it. STATUS_USAGE: too many tiles, unknown names. */

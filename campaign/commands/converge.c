@@ -2,10 +2,10 @@
 #include <stdlib.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/launch.h"
 #include "campaign/converge/request.h"
 #include "campaign/converge/study_launch.h"
 #include "campaign/converge/study_print.h"
+#include "campaign/launch/launch.h"
 #include "campaign/terminal/scene_option.h"
 
 struct options {

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/fit_launch.h"
+#include "campaign/fit/fit_launch.h"
 
 static status run(const struct command_line *line, struct error *error) {
   const struct fit_launch_options *options = line->options;

@@ -2,7 +2,7 @@
 #ifndef CLAST_CAMPAIGN_COMMANDS_PLOT_LINES_H
 #define CLAST_CAMPAIGN_COMMANDS_PLOT_LINES_H
 
-#include "campaign/commands/quantity.h"
+#include "campaign/charts/quantity.h"
 #include "campaign/terminal/chart_option.h"
 
 /* Reads the quantity over `x`, a line for each value of `by` (may be NULL), and draws it. STATUS_USAGE: x is no number,

@@ -3,9 +3,9 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/launch.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/document/campaign_raise.h"
+#include "campaign/launch/launch_campaign.h"
 #include "db/ask/campaign.h"
 
 struct options {

@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/launch.h"
 #include "campaign/converge/accuracy.h"
 #include "campaign/document/campaign_warn.h"
+#include "campaign/launch/launch_campaign.h"
 #include "campaign/terminal/campaign_option.h"
 #include "campaign/terminal/table.h"
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "analysis/statistics/estimates.h"
+#include "campaign/charts/quantity.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/quantity.h"
 #include "campaign/terminal/rows.h"
 #include "engine/outcome.h"
 
@@ -46,19 +46,6 @@ static status warn_of_twins(struct store *store, struct error *error) {
   return code;
 }
 
-/* One line for each quantity. */
-static void tell_resolution(struct store *store, const char *names, const char *pooled) {
-  char name[128];
-  if (strcmp(names, "main") == 0)
-    names = OUTCOME_DEFAULT;
-  while (*names) {
-    const size_t length = strcspn(names, ",");
-    snprintf(name, sizeof name, "%.*s", (int)length, names);
-    quantity_tell_resolution(store, name + strspn(name, " "), pooled);
-    names += length + (names[length] == ',');
-  }
-}
-
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -79,7 +66,7 @@ static status run(const struct command_line *line, struct error *error) {
   if (code == STATUS_OK && *pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
   if (code == STATUS_OK && format == TABLE_TEXT)
-    tell_resolution(store, options->quantity, pooled);
+    quantity_tell_resolutions(store, options->quantity, pooled);
   if (!code)
     code = warn_of_twins(store, error);
   store_close(store, NULL);

@@ -1,9 +1,11 @@
-/* From a campaign to its finished store: what `clast run` and `clast retry` share. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
-#define CLAST_CAMPAIGN_COMMANDS_LAUNCH_H
+/* What the commands that compute with a farm share: their options, and the farm from its start to its end. */
+#ifndef CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
+#define CLAST_CAMPAIGN_LAUNCH_LAUNCH_H
 
 #include "campaign/document/campaign.h"
+#include "campaign/driver/driver.h"
 #include "campaign/terminal/option.h"
+#include "campaign/terminal/progress.h"
 #include "campaign/terminal/table.h"
 
 struct launch_options {
@@ -23,10 +25,30 @@ struct launch_options {
       OPTION_ROW_FLAG("quiet", 'q', type_, member_.quiet,                                                              \
                       "Print no progress and no remarks on stderr. Warnings and errors are printed.")
 
-/* Starts the farm, runs the campaign, and prints the table of estimates from the store at the end, on rank 0. The farm
- * is started before anything opens HDF5 or starts a thread. */
-status launch_campaign(const struct campaign *campaign, const char *store, const struct launch_options *options,
-                       enum table_format format, const struct command_line *line, struct error *error);
+/* What a remark needs to reach the user: context of launch_note. */
+struct launch_notes {
+  struct progress *progress; /* NULL: none is shown */
+  bool quiet;                /* warnings only */
+};
+void launch_note(void *notes, const char *text);
+
+/* What runs on every rank between the farm's start and its end. */
+struct launch {
+  struct farm *farm;
+  struct driver_options driver; /* facts, notes and slots are filled in; the body adds the store */
+  struct launch_notes notes;
+  bool manager; /* rank 0 */
+  double begin_s;
+};
+
+/* Starts the farm, calls `body` on every rank, and ends the farm. The farm is started before anything opens HDF5 or
+ * starts a thread. `limits`: limits of time and memory. Returns what `body` returns, or an error of the farm. */
+status launch_farm(const struct campaign *limits, const struct launch_options *options, const struct command_line *line,
+                   status (*body)(void *context, struct launch *launch, struct error *error), void *context,
+                   struct error *error);
+
+/* A line on stderr: how many runs were computed and found. */
+void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);
 
 /* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */
 bool launch_other_rank(void);

@@ -1,6 +1,6 @@
 /* What a fit says of itself in sentences: what the data determine, what they leave open, what its errors hold. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_FIT_TELL_H
-#define CLAST_CAMPAIGN_COMMANDS_FIT_TELL_H
+#ifndef CLAST_CAMPAIGN_FIT_FIT_TELL_H
+#define CLAST_CAMPAIGN_FIT_FIT_TELL_H
 
 #include <stdio.h>
 

@@ -1,9 +1,9 @@
 /* From the two documents of a fit to its report: farm, rounds, posterior. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_FIT_LAUNCH_H
-#define CLAST_CAMPAIGN_COMMANDS_FIT_LAUNCH_H
+#ifndef CLAST_CAMPAIGN_FIT_FIT_LAUNCH_H
+#define CLAST_CAMPAIGN_FIT_FIT_LAUNCH_H
 
-#include "campaign/commands/launch.h"
 #include "campaign/fit/fit.h"
+#include "campaign/launch/launch.h"
 #include "campaign/terminal/chart_option.h"
 
 struct fit_launch_options {

@@ -1,7 +1,7 @@
 /* A quantity over one or two varied inputs, as `clast plot` and `clast map` draw it: the mean of a result over the runs
  * that share the inputs, or an exponent fitted to the runs of each point. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_QUANTITY_H
-#define CLAST_CAMPAIGN_COMMANDS_QUANTITY_H
+#ifndef CLAST_CAMPAIGN_CHARTS_QUANTITY_H
+#define CLAST_CAMPAIGN_CHARTS_QUANTITY_H
 
 #include "analysis/statistics/exponent.h"
 #include "campaign/terminal/option.h"
@@ -47,5 +47,7 @@ status quantity_read(struct store *store, const struct quantity_choice *choice, 
 
 /* A line on stderr: what the intervals hold, and what is known of the resolution. pooled: of ask_group. */
 void quantity_tell_resolution(struct store *store, const char *name, const char *pooled);
+/* A line for each of several, comma-separated; "main": the default one. */
+void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled);
 
 #endif

@@ -2,8 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "campaign/commands/estimates_table.h"
-#include "campaign/commands/quantity.h"
+#include "campaign/charts/quantity.h"
+#include "campaign/terminal/estimates_table.h"
 #include "campaign/terminal/rows.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"

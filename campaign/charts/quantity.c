@@ -1,5 +1,5 @@
 /* Reads the quantity from groups of runs, or fits the exponent of each point. */
-#include "campaign/commands/quantity.h"
+#include "campaign/charts/quantity.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -131,4 +131,16 @@ void quantity_tell_resolution(struct store *store, const char *name, const char 
     return;
   uncertainty_resolution(&resolution, text);
   fprintf(stderr, "clast: %s: intervals are over %s (95 %%); %s\n", name, *pooled ? "points" : "seeds", text);
+}
+
+void quantity_tell_resolutions(struct store *store, const char *names, const char *pooled) {
+  char name[128];
+  if (strcmp(names, "main") == 0)
+    names = OUTCOME_DEFAULT;
+  while (*names) {
+    const size_t length = strcspn(names, ",");
+    snprintf(name, sizeof name, "%.*s", (int)length, names);
+    quantity_tell_resolution(store, name + strspn(name, " "), pooled);
+    names += length + (names[length] == ',');
+  }
 }

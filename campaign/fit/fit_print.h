@@ -1,6 +1,6 @@
 /* What `clast fit` prints and draws. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_FIT_PRINT_H
-#define CLAST_CAMPAIGN_COMMANDS_FIT_PRINT_H
+#ifndef CLAST_CAMPAIGN_FIT_FIT_PRINT_H
+#define CLAST_CAMPAIGN_FIT_FIT_PRINT_H
 
 #include "campaign/fit/fit.h"
 #include "campaign/terminal/chart_option.h"

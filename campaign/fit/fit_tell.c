@@ -1,5 +1,5 @@
 /* The sentences under the tables of a fit. */
-#include "campaign/commands/fit_tell.h"
+#include "campaign/fit/fit_tell.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* A fit as tables and as a picture. The sentences are fit_tell.c. */
-#include "campaign/commands/fit_print.h"
+#include "campaign/fit/fit_print.h"
 
 #include <math.h>
 
-#include "campaign/commands/fit_tell.h"
+#include "campaign/fit/fit_tell.h"
 
 static const double levels[PICTURE_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
