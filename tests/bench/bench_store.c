@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include "analysis/statistics/estimates.h"
+#include "db/ask/page.h"
 #include "schemas/clock.h"
 #include "tests/support/store_fixture.h"
 
@@ -95,6 +96,20 @@ static void ask(struct store *store, const char *name, const char *sql, int rows
   printf("%s %.2f ms\n", name, 1e3 * best);
 }
 
+/* The data of `clast report`. */
+static void page(struct store *store) {
+  struct ask_page *page = NULL;
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  const double start = processor();
+  need(ask_page_make(store, &page, &error));
+  need(ask_page_file(page, &bytes, &size, &error));
+  printf("store_page_cpu_s %.2f s\n", processor() - start);
+  printf("store_page_bytes %zu B\n", size);
+  ask_page_free(page);
+  free(bytes);
+}
+
 int main(int argc, char **argv) {
   int64_t runs = argc > 1 ? atoll(argv[1]) : 100000;
   char path[512], copy[600];
@@ -129,6 +144,7 @@ int main(int argc, char **argv) {
   ask(store, "store_spectrum_one_from_runs_ms",
       "SELECT bin, sum(count) FROM run JOIN spectrum USING (run_id) WHERE point_id = 17 GROUP BY bin", BINS);
   ask(store, "store_runs_of_point_ms", "SELECT count(*) FROM runs WHERE point_id = 17", 1);
+  page(store);
   store_close(store, NULL);
   start = clock_s();
   need(store_open_writer(path, &store, NULL, 0, &error));

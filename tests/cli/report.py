@@ -159,11 +159,37 @@ def drop(browser):
     with sqlite3.connect(f"file:{other}?mode=ro", uri=True) as db:
         (mean,) = db.execute("select avg(largest_fraction) from run where counts and point_id = 1").fetchone()
     assert f"mean{mean:.4g}" in text(browser, "#seeds .body"), (mean, text(browser, "#seeds .body"))
+    whole_store(browser)
     with open("no-store.db", "w") as file:
         file.write("this is no store")
     browser.choose_file("#file", "no-store.db")
     browser.until("document.querySelector('#status').textContent.includes('cannot be read')")
     done("a store dropped on the page is read and compared; another file is refused")
+
+
+def whole_store(browser):
+    """What the page computes itself of a store that was dropped: all points as one spectrum, means of any result."""
+    count = shown(browser)
+    browser.js("for (const box of document.querySelectorAll('#points input')) box.checked = true; "
+               "document.querySelector('#points input').dispatchEvent(new Event('change'))")
+    wait_shown(browser, count + 1)
+    drawn = list(csv.DictReader(io.StringIO(taken(browser, "#spectrum", "CSV"))))
+    table = rows_of(["spectrum", other, "--by", "", "--csv"])
+    assert len(drawn) == len(table) > 10, (len(drawn), len(table))
+    for a, b in zip(drawn, table):
+        for got, want in ((a["lower_kg"], b["lower"]), (a["density"], b["density"]), (a["density_hw95"], b["density_hw95"])):
+            assert abs(float(got) - float(want)) <= 1e-9 * abs(float(want)), (a, b)
+    count = shown(browser)
+    browser.js("const box = document.querySelector('[name=quantity]'); box.value = 'broken'; box.dispatchEvent(new Event('change')); 0")
+    wait_shown(browser, count + 1)
+    drawn = list(csv.DictReader(io.StringIO(taken(browser, "#plane-chart", "CSV"))))
+    table = rows_of(["stats", other, "--by", "angle,strain", "--quantity", "broken", "--csv"])
+    got = sorted((float(row["mean"]), float(row["hw95"])) for row in drawn)
+    want = sorted((float(row["broken_mean"]), float(row["broken_hw95"])) for row in table)
+    assert len(got) == len(want) == 8, (got, want)
+    for a, b in zip(got, want):
+        assert all(abs(u - v) <= 1e-5 * abs(v) for u, v in zip(a, b)), (a, b)
+    done("of a dropped store, pooled spectra and means are those of clast")
 
 
 def loads_again(browser):
@@ -205,6 +231,7 @@ with Browser() as browser:
     loads_again(browser)
     browser.open(page)
     wait_shown(browser, 1)
+    keep_downloads(browser)
     drop(browser)
     widths(browser)
     assert browser.complaints == [], browser.complaints

@@ -120,6 +120,17 @@ static void test_a_large_store_is_thinned(void **state) {
   assert_near(asked(db, "SELECT max(replicate) FROM runs"), replicates - 1, 0);
   check_means(store, db);
   assert_near(asked(db, "SELECT sum(n) FROM points"), number(store, "SELECT sum(n) FROM points"), 0);
+  /* With the empty page (1.4 MB) and pictures (up to 0.45 MB as base64) a page of 10 000 runs is below 3 MB. */
+  static const unsigned char html[] = "<!-- data -->";
+  char file[64];
+  size_t size = 0;
+  struct page_data data = {0};
+  fixture_path(file, "page-large-file");
+  OK(ask_page_file(page, &data.bytes, &data.size, &error));
+  OK(page_write(file, html, sizeof html - 1, 1, &data, &size, &error));
+  assert_true(size > 100000 && size < 1150000);
+  free(data.bytes);
+  unlink(file);
   sqlite3_close(db);
   ask_page_free(page);
   store_close(store, NULL);
