@@ -1,4 +1,4 @@
-/* Exponents of a point from all its runs: one fit for a choice of runs, and the jackknife over choices. */
+/* Exponents of a point from all its runs, and the jackknife over runs. */
 #include "analysis/statistics/pooled.h"
 
 #include <math.h>
@@ -8,15 +8,17 @@
 #include "analysis/statistics/power_law.h"
 #include "analysis/statistics/tempered.h"
 
-/* What the fits of all choices of runs share: computed once. */
+/* What a fit needs of every run. */
 struct prepared {
   enum exponent_method method;
-  struct power_law_group *groups, *chosen; /* MASSES, BINNED: of every run, and of a choice */
-  struct exponent_window window;           /* LEAST_SQUARES: the same for all runs */
-  int first_bin;                           /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
+  size_t runs;
+  struct power_law_group *groups; /* MASSES, BINNED */
+  double bin_width;               /* BINNED, in ln m; MASSES: 0 */
+  struct exponent_window window;  /* LEAST_SQUARES: the same for all runs */
+  int first_bin;                  /* LEAST_SQUARES: counts[run * bins + j] of bin first_bin + j */
   size_t bins;
   int64_t *counts;
-  struct spectrum_bin_row *rows;
+  struct spectrum_bin_row *total, *rows; /* of all runs; of those of one fit */
 };
 
 /* Index behind the last fragment of run r whose mass is at least `lower`. */
@@ -104,15 +106,21 @@ static status count_bins(struct prepared *p, const struct pooled_runs *runs) {
   exponent_bins_inside(p->window, &p->first_bin, &end);
   p->bins = (size_t)(end - p->first_bin);
   p->counts = calloc(runs->count * p->bins + 1, sizeof *p->counts);
-  p->rows = calloc(p->bins, sizeof *p->rows);
-  if (!p->counts || !p->rows)
+  p->total = calloc(p->bins + 1, sizeof *p->total);
+  p->rows = calloc(p->bins + 1, sizeof *p->rows);
+  if (!p->counts || !p->total || !p->rows)
     return STATUS_MEMORY;
-  for (size_t r = 0; r < runs->count; r++)
-    for (size_t i = runs->first[r]; i < runs->first[r + 1]; i++) {
-      const int bin = spectrum_bin(runs->masses[i]);
-      if (bin >= p->first_bin && bin < end)
-        p->counts[r * p->bins + (size_t)(bin - p->first_bin)]++;
-    }
+  const double lower = spectrum_edge(p->first_bin), upper = spectrum_edge(end);
+  for (size_t r = 0; r < runs->count; r++) {
+    const size_t stop = window_end(runs, r, lower);
+    for (size_t i = window_end(runs, r, upper); i < stop; i++)
+      p->counts[r * p->bins + (size_t)(spectrum_bin(runs->masses[i]) - p->first_bin)]++;
+  }
+  for (size_t j = 0; j < p->bins; j++) {
+    p->total[j].bin = p->first_bin + (int)j;
+    for (size_t r = 0; r < runs->count; r++)
+      p->total[j].count += p->counts[r * p->bins + j];
+  }
   return STATUS_OK;
 }
 
@@ -122,9 +130,9 @@ static status prepare(struct prepared *p, const struct pooled_runs *runs, double
     return count_bins(p, runs);
   }
   p->groups = calloc(runs->count + 1, sizeof *p->groups);
-  p->chosen = calloc(runs->count + 1, sizeof *p->chosen);
-  if (!p->groups || !p->chosen)
+  if (!p->groups)
     return STATUS_MEMORY;
+  p->bin_width = p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0;
   for (size_t r = 0; r < runs->count; r++)
     p->groups[r] = p->method == EXPONENT_MASSES ? plain_group(runs, r, lower) : binned_group(runs, r, lower);
   return STATUS_OK;
@@ -132,8 +140,8 @@ static status prepare(struct prepared *p, const struct pooled_runs *runs, double
 
 static void forget(struct prepared *p) {
   free(p->groups);
-  free(p->chosen);
   free(p->counts);
+  free(p->total);
   free(p->rows);
 }
 
@@ -144,50 +152,51 @@ static double total_weight(size_t n, const struct power_law_group *groups) {
   return weight;
 }
 
-/* A bin without a fragment has no logarithm. A line through the others reads up to 1 too low, and no interval over the
- * runs knows it; so there is no fit until the runs fill every bin. */
-static void fit_bins(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  for (size_t j = 0; j < p->bins; j++)
-    p->rows[j] = (struct spectrum_bin_row){.bin = p->first_bin + (int)j};
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < p->bins; j++)
-      p->rows[j].count += p->counts[chosen[i] * p->bins + j];
+/* Least squares without the runs begin to end - 1. A bin without a fragment has no logarithm. A line through the others
+ * reads up to 1 too low, and no interval over the runs knows it; so there is no fit until the runs fill every bin. */
+static void fit_bins(struct prepared *p, size_t begin, size_t end, struct exponent *fit) {
   bool filled = true;
-  for (size_t j = 0; j < p->bins; j++)
+  for (size_t j = 0; j < p->bins; j++) {
+    p->rows[j] = p->total[j];
+    for (size_t r = begin; r < end; r++)
+      p->rows[j].count -= p->counts[r * p->bins + j];
     filled = filled && p->rows[j].count > 0;
+  }
   exponent_fit_bins(p->method, p->bins, p->rows, p->window, fit, NULL);
   if (!filled)
     fit->beta = fit->standard_error = NAN;
 }
 
-static void fit_groups(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  for (size_t i = 0; i < n; i++)
-    p->chosen[i] = p->groups[chosen[i]];
-  const double weight = total_weight(n, p->chosen);
+static void fit_groups(const struct prepared *p, struct exponent *fit) {
+  const double weight = total_weight(p->runs, p->groups);
   fit->n = (int64_t)weight;
   if (weight < EXPONENT_LEAST_FRAGMENTS)
     return;
-  const double bin_width = p->method == EXPONENT_BINNED ? log(10) / SPECTRUM_BINS_PER_DECADE : 0;
-  const struct power_law plain = power_law_fit(n, p->chosen, bin_width);
+  const struct power_law plain = power_law_fit(p->runs, p->groups, p->bin_width);
   fit->beta = plain.beta;
   fit->standard_error = plain.standard_error;
   fit->log_likelihood = plain.log_likelihood;
 }
 
-/* Fits the chosen runs and fills in what follows from the choice. */
-static void fit_runs(struct prepared *p, size_t n, const uint32_t *chosen, struct exponent *fit) {
-  fit->n = 0;
-  fit->beta = fit->standard_error = NAN;
-  if (p->method == EXPONENT_LEAST_SQUARES)
-    fit_bins(p, n, chosen, fit);
-  else
-    fit_groups(p, n, chosen, fit);
-}
-
-static double beta_of(size_t n, const uint32_t *chosen, void *context) {
-  struct exponent fit = {0};
-  fit_runs(context, n, chosen, &fit);
-  return fit.beta;
+/* theta[g]: beta without the runs of group g. */
+static status leave_out(struct prepared *p, double theta[SAMPLE_GROUPS]) {
+  size_t each;
+  const size_t groups = sample_groups(p->runs, &each);
+  if (p->groups && !power_law_leave_out(p->runs, p->groups, p->bin_width, each, theta))
+    return STATUS_MEMORY;
+  const double weight = total_weight(p->groups ? p->runs : 0, p->groups);
+  for (size_t g = 0; g < groups; g++) {
+    const size_t begin = g * each, end = g + 1 < groups ? begin + each : p->runs;
+    if (p->groups) {
+      if (weight - total_weight(end - begin, p->groups + begin) < EXPONENT_LEAST_FRAGMENTS)
+        theta[g] = NAN;
+      continue;
+    }
+    struct exponent fit = {0};
+    fit_bins(p, begin, end, &fit);
+    theta[g] = fit.beta;
+  }
+  return STATUS_OK;
 }
 
 static status check(const struct pooled_runs *runs, double lower, struct error *error) {
@@ -227,26 +236,26 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   if (code)
     return code;
 
-  struct prepared p = {.method = method};
-  uint32_t *every = calloc(runs->count + 1, sizeof *every);
-  code = every ? prepare(&p, runs, lower) : STATUS_MEMORY;
+  struct prepared p = {.method = method, .runs = runs->count};
+  double theta[SAMPLE_GROUPS];
+  code = prepare(&p, runs, lower);
+  if (!code && p.groups)
+    fit_groups(&p, &out->fit);
+  else if (!code)
+    fit_bins(&p, 0, 0, &out->fit);
+  if (!code && isfinite(out->fit.beta))
+    code = leave_out(&p, theta);
   if (code) {
-    status_fail(error, code, "exponent: no memory for %zu runs", runs->count);
-    goto cleanup;
+    forget(&p);
+    return status_fail(error, code, "exponent: no memory for %zu runs", runs->count);
   }
-  for (size_t r = 0; r < runs->count; r++)
-    every[r] = (uint32_t)r;
-  fit_runs(&p, runs->count, every, &out->fit);
   double upper;
   out->runs = count_runs(&p, runs, lower, &upper);
   if (upper > 0 && method != EXPONENT_LEAST_SQUARES)
     out->fit.upper = upper;
-  out->interval = sample_jackknife(runs->count, level, beta_of, &p);
-  out->interval.estimate = out->fit.beta;
-cleanup:
+  out->interval = sample_jackknife_of(runs->count, level, out->fit.beta, theta);
   forget(&p);
-  free(every);
-  return code;
+  return STATUS_OK;
 }
 
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {

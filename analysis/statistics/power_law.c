@@ -3,6 +3,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* G(y) = 1/y - 1/(e^y - 1): the mean of an exponential distribution of rate y, cut at 1. It falls from 1 (y -> -inf)
  * through 1/2 to 0. Near zero the two terms cancel; the series to y^7 used there has an error below 1e-15 for
@@ -142,6 +144,86 @@ struct power_law power_law_fit(size_t count, const struct power_law_group *group
     if (groups[g].weight > 0)
       fit.log_likelihood -= groups[g].weight * (y * groups[g].mean + log_normalisation(y, groups[g].span, binned));
   return isfinite(fit.beta) && isfinite(fit.standard_error) ? fit : none;
+}
+
+/* ---- Without a part of the groups ---- */
+
+static double fit_without(size_t count, const struct power_law_group *groups, double bin_width, size_t begin,
+                          size_t end, struct power_law_group *rest) {
+  memcpy(rest, groups, begin * sizeof *rest);
+  memcpy(rest + begin, groups + end, (count - end) * sizeof *rest);
+  return power_law_fit(count - (end - begin), rest, bin_width).beta;
+}
+
+enum { NODES = 8 };
+
+/* y where x falls through 0, from NODES pairs: inverse interpolation by Neville's scheme. NaN when x does not fall
+ * through 0 between the nodes, or when the last node still moves the result: the caller then solves the equation. */
+static double zero_between(const double x[NODES], const double y[NODES]) {
+  double column[NODES], before = NAN;
+  for (int i = 0; i + 1 < NODES; i++)
+    if (!(x[i] > x[i + 1]))
+      return NAN;
+  if (!(x[0] > 0 && x[NODES - 1] < 0))
+    return NAN;
+  for (int i = 0; i < NODES; i++) {
+    column[i] = y[i];
+    for (int k = i - 1; k >= 0; k--)
+      column[k] = (x[k] * column[k + 1] - x[i] * column[k]) / (x[k] - x[i]);
+    if (i == NODES - 2)
+      before = column[0];
+  }
+  return fabs(column[0] - before) <= 1e-12 * (1 + fabs(column[0])) ? column[0] : (double)NAN;
+}
+
+/* The nodes: where to look for the roots without one part, from one Newton step for each. */
+static void place_nodes(size_t count, const struct power_law_group *groups, bool binned, size_t each, double y,
+                        double nodes[NODES]) {
+  double information, furthest = 1e-6 * (1 + fabs(y)); /* equal parts: a width that the slope's rounding cannot blur */
+  const double slope = slope_of_likelihood(count, groups, binned, y, &information);
+  for (size_t begin = 0; begin < count; begin += each) {
+    double part_information;
+    const size_t n = count - begin < each ? count - begin : each;
+    const double part = slope_of_likelihood(n, groups + begin, binned, y, &part_information);
+    furthest = fmax(furthest, fabs((slope - part) / (information - part_information)));
+  }
+  for (int i = 0; i < NODES; i++)
+    nodes[i] = y - 1.5 * furthest * cos(M_PI * (i + 0.5) / NODES);
+}
+
+bool power_law_leave_out(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
+                         double *betas) {
+  const bool binned = bin_width > 0;
+  const double scale = binned ? bin_width : 1;
+  const size_t parts = (count + each - 1) / each;
+  struct power_law_group *rest = malloc((count + 1) * sizeof *rest);
+  double(*slopes)[NODES] = malloc((parts + 1) * sizeof *slopes), nodes[NODES], all[NODES] = {0};
+  if (!rest || !slopes) {
+    free(rest);
+    free(slopes);
+    return false;
+  }
+
+  const double y = scale * (power_law_fit(count, groups, bin_width).beta - 1);
+  place_nodes(count, groups, binned, each, y, nodes);
+  for (size_t p = 0; p < parts; p++)
+    for (int i = 0; i < NODES; i++) {
+      double unused;
+      const size_t n = count - p * each < each ? count - p * each : each;
+      slopes[p][i] = slope_of_likelihood(n, groups + p * each, binned, nodes[i], &unused);
+      all[i] += slopes[p][i];
+    }
+  for (size_t p = 0; p < parts; p++) {
+    double x[NODES];
+    for (int i = 0; i < NODES; i++)
+      x[i] = all[i] - slopes[p][i];
+    betas[p] = 1 + zero_between(x, nodes) / scale;
+    if (isnan(betas[p]))
+      betas[p] = fit_without(count, groups, bin_width, p * each, p + 1 < parts ? (p + 1) * each : count, rest);
+  }
+  free(rest);
+  free(slopes);
+  return true;
 }
 
 double power_law_below(double beta, double u, double span) {

@@ -73,51 +73,62 @@ struct sample_summary sample_summarise(size_t n, const double *values, double le
   return sample_summarise_moments(&moments, level);
 }
 
-/* The interval of what leaving out one group after another has given: theta[g] is the statistic without group g, which
- * has size[g] of the `runs` runs (Busing, Meijer & van der Leeden 1999, equations 4 to 6). */
-static void interval_of_groups(size_t runs, size_t groups, const double *theta, const double *size, double level,
-                               struct sample_interval *interval) {
-  double centre = 0, variance = 0;
+size_t sample_groups(size_t runs, size_t *each) {
+  *each = runs ? (runs + SAMPLE_GROUPS - 1) / SAMPLE_GROUPS : 1;
+  return (runs + *each - 1) / *each;
+}
+
+/* Busing, Meijer & van der Leeden 1999, equations 4 to 6. */
+struct sample_interval sample_jackknife_of(size_t runs, double level, double estimate, const double *theta) {
+  struct sample_interval interval = {estimate, NAN, NAN};
+  size_t each;
+  const size_t groups = sample_groups(runs, &each);
+  bool known = groups > 1 && isfinite(estimate);
+  for (size_t g = 0; g < groups && known; g++)
+    known = isfinite(theta[g]);
+  if (!known)
+    return interval;
+
+  double size[SAMPLE_GROUPS], centre = 0, variance = 0;
   for (size_t g = 0; g < groups; g++) {
-    const double share = size[g] / (double)runs;
-    centre += interval->estimate - (1 - share) * theta[g];
+    size[g] = (double)(g + 1 < groups ? each : runs - g * each);
+    centre += estimate - (1 - size[g] / (double)runs) * theta[g];
   }
   for (size_t g = 0; g < groups; g++) {
     const double h = (double)runs / size[g];
-    const double deviation = h * interval->estimate - (h - 1) * theta[g] - centre;
+    const double deviation = h * estimate - (h - 1) * theta[g] - centre;
     variance += deviation * deviation / (h - 1) / (double)groups;
   }
-  interval->standard_error = sqrt(variance);
-  interval->half_width = sample_student(groups, level) * interval->standard_error;
+  interval.standard_error = sqrt(variance);
+  interval.half_width = sample_student(groups, level) * interval.standard_error;
+  return interval;
 }
 
 struct sample_interval sample_jackknife(size_t runs, double level, sample_statistic statistic, void *context) {
-  struct sample_interval interval = {NAN, NAN, NAN};
-  if (runs == 0 || runs > UINT32_MAX)
-    return interval;
-  const size_t each = (runs + SAMPLE_GROUPS - 1) / SAMPLE_GROUPS, groups = (runs + each - 1) / each;
-  double theta[SAMPLE_GROUPS], size[SAMPLE_GROUPS];
-  uint32_t *kept = malloc(runs * sizeof *kept);
+  const struct sample_interval none = {NAN, NAN, NAN};
+  double theta[SAMPLE_GROUPS];
+  size_t each;
+  const size_t groups = sample_groups(runs, &each);
+  uint32_t *kept = runs > 0 && runs <= UINT32_MAX ? malloc(runs * sizeof *kept) : NULL;
   if (!kept)
-    return interval;
+    return none;
 
   for (size_t i = 0; i < runs; i++)
     kept[i] = (uint32_t)i;
-  interval.estimate = statistic(runs, kept, context);
-  bool known = groups > 1 && isfinite(interval.estimate);
-  for (size_t g = 0; g < groups && known; g++) {
+  const double estimate = statistic(runs, kept, context);
+  for (size_t g = 0; g < groups && groups > 1 && isfinite(estimate); g++) {
     size_t count = 0;
     for (size_t i = 0; i < runs; i++)
       if (i / each != g)
         kept[count++] = (uint32_t)i;
     theta[g] = statistic(count, kept, context);
-    size[g] = (double)(runs - count);
-    known = isfinite(theta[g]);
+    if (!isfinite(theta[g])) {
+      free(kept);
+      return (struct sample_interval){estimate, NAN, NAN};
+    }
   }
   free(kept);
-  if (known)
-    interval_of_groups(runs, groups, theta, size, level, &interval);
-  return interval;
+  return sample_jackknife_of(runs, level, estimate, theta);
 }
 
 bool sample_may_stop(size_t n, const double *values, double half_width, double level, size_t n0) {

@@ -48,6 +48,10 @@ struct sample_interval {
   double half_width; /* of the interval of the level wanted, about the estimate */
 };
 enum { SAMPLE_GROUPS = 100 };
+/* Number of groups that are left out, and of runs in each (the last one may have fewer). */
+size_t sample_groups(size_t runs, size_t *each);
+/* theta[g]: the statistic without group g; `estimate`: of all runs. */
+struct sample_interval sample_jackknife_of(size_t runs, double level, double estimate, const double *theta);
 struct sample_interval sample_jackknife(size_t runs, double level, sample_statistic statistic, void *context);
 
 /* Stopping at a fixed width (Chow & Robbins 1965, doi 10.1214/aoms/1177700156): stop when the interval's half width is

@@ -180,13 +180,65 @@ static void search_of_the_lower_end(void **state) {
   assert_true(fit.ks_distance < all.ks_distance / 3);
 }
 
+/* betas without each part, against a fit of the rest. */
+static void leave_out_like_fits(size_t count, const struct power_law_group *groups, double bin_width, size_t each,
+                                double tolerance) {
+  struct power_law_group rest[256];
+  double betas[256];
+  assert_true(power_law_leave_out(count, groups, bin_width, each, betas));
+  for (size_t p = 0; p * each < count; p++) {
+    size_t n = 0;
+    for (size_t g = 0; g < count; g++)
+      if (g / each != p)
+        rest[n++] = groups[g];
+    const double beta = power_law_fit(n, rest, bin_width).beta;
+    assert_true(isnan(beta) ? isnan(betas[p]) : fabs(betas[p] - beta) <= tolerance * (1 + fabs(beta)));
+  }
+}
+
+static void leaving_out_is_fitting_the_rest(void **state) {
+  (void)state;
+  struct power_law_group masses[203], bins[203];
+  for (uint64_t g = 0; g < 203; g++) {
+    const double weight = 1 + floor(40 * random_draw(9, 1, g, 0)), span = 2 + 6 * random_draw(9, 2, g, 0);
+    masses[g] = (struct power_law_group){weight, span * (0.1 + 0.4 * random_draw(9, 3, g, 0)), span};
+    bins[g] = (struct power_law_group){weight, (span - 1) * (0.1 + 0.4 * random_draw(9, 3, g, 0)), floor(4 * span)};
+  }
+  const size_t counts[] = {1, 2, 3, 5, 20, 100, 203};
+  for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
+    for (size_t each = 1; each <= 7; each += 3) {
+      leave_out_like_fits(counts[c], masses, 0, each, 1e-11); /* the interpolation's own limit, in y and in bins */
+      leave_out_like_fits(counts[c], bins, log(10) / 10, each, 1e-11);
+    }
+
+  struct power_law_group equal[100]; /* no part moves beta */
+  for (int g = 0; g < 100; g++)
+    equal[g] = (struct power_law_group){30, 2, 5};
+  leave_out_like_fits(100, equal, 0, 1, 1e-13);
+
+  struct power_law_group open[10]; /* windows without an end: y > 0 */
+  for (int g = 0; g < 10; g++)
+    open[g] = (struct power_law_group){5, g == 0 ? 50 : 0.1, HUGE_VAL};
+  leave_out_like_fits(10, open, 0, 1, 1e-11);
+
+  struct power_law_group ends[3] = {{10, 0, 4}, {10, 0, 4}, {10, 2, 4}}; /* without the last, all are at one end */
+  double betas[3];
+  assert_true(power_law_leave_out(3, ends, 0, 1, betas));
+  assert_true(isfinite(betas[0]) && isfinite(betas[1]) && isnan(betas[2]));
+}
+
 int main(void) {
   analysis_init();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(masses_any_exponent),     cmocka_unit_test(bins_any_exponent),
-      cmocka_unit_test(groups_are_one_sample),   cmocka_unit_test(normalisation_is_incomplete_gamma),
-      cmocka_unit_test(moments_are_derivatives), cmocka_unit_test(pure_sample_needs_no_factor),
-      cmocka_unit_test(units_do_not_matter),     cmocka_unit_test(search_of_the_lower_end),
+      cmocka_unit_test(masses_any_exponent),
+      cmocka_unit_test(bins_any_exponent),
+      cmocka_unit_test(groups_are_one_sample),
+      cmocka_unit_test(normalisation_is_incomplete_gamma),
+      cmocka_unit_test(moments_are_derivatives),
+      cmocka_unit_test(pure_sample_needs_no_factor),
+      cmocka_unit_test(units_do_not_matter),
+      cmocka_unit_test(search_of_the_lower_end),
+      cmocka_unit_test(leaving_out_is_fitting_the_rest),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
