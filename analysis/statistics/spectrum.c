@@ -83,8 +83,14 @@ static size_t count_bins(size_t n, const double *masses) {
  * of the last one or to a new row below it. */
 size_t spectrum_fill(size_t n, const double *masses, struct spectrum_bin_row *rows, size_t capacity) {
   size_t count = 0, at = 0;
+  int bin = SPECTRUM_NO_BIN;
+  double lower = HUGE_VAL, upper = 0; /* of the last mass's bin */
   for (size_t i = 0; i < n; i++) {
-    int bin = spectrum_bin(masses[i]);
+    if (!(masses[i] >= lower && masses[i] < upper)) {
+      bin = spectrum_bin(masses[i]);
+      lower = spectrum_edge(bin);
+      upper = spectrum_edge(bin + 1);
+    }
     if (bin == SPECTRUM_NO_BIN)
       continue;
     while (at < count && rows[at].bin < bin)

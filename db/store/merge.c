@@ -206,17 +206,18 @@ static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
   return result == STATUS_OK ? copy_written_units(db, error) : result;
 }
 
-static status merge(sqlite3 *db, int64_t *added, struct error *error) {
-  status result = copy_all(db, added, error);
-  if (result != STATUS_OK)
-    return result;
-  result = digest_rows_fill(db, DIGEST_POINTS, 0, error);
+static status merge(struct store *store, int64_t *added, struct error *error) {
+  sqlite3 *db = store->db;
+  int64_t last = 0;
+  status result = sql_integer(db, "SELECT max(run_id) FROM main.run", 0, &last, error);
+  if (result == STATUS_OK)
+    result = copy_all(db, added, error);
+  if (result == STATUS_OK)
+    result = digest_rows_fill(db, DIGEST_POINTS, 0, error);
   if (result == STATUS_OK)
     result = digest_rows_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
-  if (result == STATUS_OK)
-    result = sums_cover_all_bins(db, error);
   if (result == STATUS_OK && *added > 0)
-    result = sums_rebuild(db, 0, error); /* deletes the pooled estimates, too: they came from fewer runs */
+    result = sums_add_runs(&store->sums, db, last + 1, error); /* pooled estimates of these points go: they are stale */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 
@@ -251,7 +252,7 @@ static status merge_attached(struct store *store, const char *source, int64_t *a
     return result;
   result = count_differing(store->db, differing, error);
   if (result == STATUS_OK)
-    result = merge(store->db, added, error);
+    result = merge(store, added, error);
   if (result == STATUS_OK)
     result = keep_paths(store, source, error);
   if (result == STATUS_OK)

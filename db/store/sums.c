@@ -212,12 +212,10 @@ status sums_mismatches(sqlite3 *db, int64_t *count, struct error *error) {
   return result;
 }
 
-enum { BINS_LIMIT = 4000 }; /* ten bins per decade: no float64 lies further out */
-
 status sums_cover_bins(sqlite3 *db, int64_t lowest, int64_t highest, struct error *error) {
   static const char doing[] = "adding bin edges";
   sqlite3_stmt *statement = NULL;
-  if (lowest < -BINS_LIMIT || highest > BINS_LIMIT)
+  if (lowest < -SUMS_BINS_LIMIT || highest > SUMS_BINS_LIMIT)
     return status_fail(error, STATUS_CONTENT,
                        "%s: bins %lld to %lld are no bins of masses. The store is damaged: restore a copy.",
                        sqlite3_db_filename(db, "main"), (long long)lowest, (long long)highest);
