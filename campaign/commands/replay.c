@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/driver/provenance.h"
 #include "campaign/one_run/replay.h"
 #include "db/ask/run.h"
 
@@ -28,7 +29,13 @@ static status print_differences(struct store *store, int64_t run_id, const struc
 }
 
 /* For people: what was compared. */
-static void tell(int64_t run_id, const struct replay_compare *comparison, size_t fragments) {
+static void tell(int64_t run_id, const struct ask_run *stored, const struct replay_compare *comparison,
+                 size_t fragments) {
+  char build[PROVENANCE_BUILD_SIZE];
+  provenance_other_build(stored->version, stored->commit, stored->compiler, build);
+  if (*build)
+    fprintf(stderr, "run %" PRId64 " was made by another build (%s); both make results version %" PRId64 "\n", run_id,
+            build, stored->results_version);
   if (comparison->absent)
     fprintf(stderr, "clast: %zu result%s not compared: the program that stored the run did not store %s\n",
             comparison->absent, comparison->absent == 1 ? "" : "s", comparison->absent_names);
@@ -49,7 +56,7 @@ static status replay(struct store *store, int64_t run_id, const struct options *
   if (code == STATUS_OK)
     code = print_differences(store, run_id, scene->kind, &result, format, &comparison, error);
   if (code == STATUS_OK) {
-    tell(run_id, &comparison, result.fragment_count);
+    tell(run_id, &stored, &comparison, result.fragment_count);
     code = replay_verdict(store, run_id, &stored, &comparison, error);
   }
   if (code == STATUS_OK && options->fields && result.outcome.state == OUTCOME_INVALID)

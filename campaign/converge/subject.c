@@ -65,6 +65,8 @@ static status load_scene(struct subject *subject, const char *reference, const s
   field_defaults(&campaign_table, limits);
   snprintf(limits->name, sizeof limits->name, "%s", scene->name[0] ? scene->name : "scene");
   snprintf(limits->store, sizeof limits->store, "%.200s-converge.db", limits->name);
+  for (char *slash = limits->store; (slash = strchr(slash, '/'));)
+    *slash = '-'; /* a name is no way to another folder */
   snprintf(subject->reference, sizeof subject->reference, "%s", reference);
   return add_scene(subject, set, scene, error);
 }

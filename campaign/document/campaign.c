@@ -326,6 +326,10 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   if (!campaign->store[0] &&
       snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
     document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
+  if (!document_key(root, "store") && strchr(campaign->name, '/')) /* a name is no way to another folder */
+    document_report(document_key(root, "name"), "name",
+                    "\"%s\" has a slash, and the store would be in another folder; take it out, or give `store`",
+                    campaign->name);
   if (campaign->store[0] && place_refused(campaign->store))
     document_report(document_key(root, "store"), "store", "%s", place_refused(campaign->store));
   if (!scene || !campaign->scene_reference[0])

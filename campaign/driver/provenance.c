@@ -76,3 +76,14 @@ char *provenance_json(int ranks, int slots, int argc, char *const *argv) {
   fputs("]}", out);
   return text_close(out, &text);
 }
+
+void provenance_other_build(const char *version, const char *commit, const char *compiler,
+                            char text[PROVENANCE_BUILD_SIZE]) {
+  const char *here = BUILD_DIRTY ? BUILD_COMMIT " with local changes" : BUILD_COMMIT;
+  const bool same = strcmp(version, BUILD_VERSION) == 0 && strcmp(commit, here) == 0 &&
+                    strcmp(compiler, BUILD_COMPILER) == 0;
+  text[0] = '\0';
+  if (!same && *version)
+    snprintf(text, PROVENANCE_BUILD_SIZE, "clast %s, commit %s, %s", version, *commit ? commit : "unknown",
+             *compiler ? compiler : "unknown compiler");
+}

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "campaign/driver/provenance.h"
 #include "engine/atomic_file.h"
 #include "engine/cpu_class.h"
 
@@ -21,12 +22,14 @@ status replay_compute(const struct ask_run *from, int64_t run_id, const char *fi
     return code;
 
   const struct engine_kind *kind = (*scene)->kind;
+  char build[PROVENANCE_BUILD_SIZE];
+  provenance_other_build(from->version, from->commit, from->compiler, build);
   if (kind->results_version != from->results_version)
     return status_fail(error, STATUS_CONTENT,
                        "run %" PRId64 " was made by results version %" PRId64
                        " of engine %s, this program makes version %d: its bits differ on purpose; replay it with the "
-                       "program of that version (table session has its commit)",
-                       run_id, from->results_version, kind->name, kind->results_version);
+                       "program of that version%s%s",
+                       run_id, from->results_version, kind->name, kind->results_version, *build ? ": " : "", build);
   if (fields) {
     code = atomic_file_try(fields, "fields file", error);
     if (code)

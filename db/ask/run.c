@@ -6,9 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+static void take_fact(const struct query_value *value, char *text, size_t size) {
+  snprintf(text, size, "%s", value->kind == QUERY_TEXT ? value->text : "");
+}
+
 static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct ask_run *run = context;
-  if (count != 4 || values[0].kind != QUERY_TEXT)
+  if (count != 7 || values[0].kind != QUERY_TEXT)
     return status_fail(error, STATUS_CONTENT, "the store has no scene for this run");
   run->scene = strdup(values[0].text);
   if (!run->scene)
@@ -16,18 +20,22 @@ static status take_run(void *context, size_t count, const struct query_value *va
 
   run->seed = (uint64_t)values[1].integer;
   run->results_version = values[2].integer;
-  if (values[3].kind == QUERY_TEXT)
-    snprintf(run->cpu_class, sizeof run->cpu_class, "%s", values[3].text);
+  take_fact(&values[3], run->cpu_class, sizeof run->cpu_class);
+  take_fact(&values[4], run->version, sizeof run->version);
+  take_fact(&values[5], run->commit, sizeof run->commit);
+  take_fact(&values[6], run->compiler, sizeof run->compiler);
   return STATUS_OK;
 }
 
 status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error) {
   *run = (struct ask_run){0};
   const struct query_sink sink = {.context = run, .row = take_run};
-  char sql[256];
+  char sql[512];
   snprintf(sql, sizeof sql,
-           "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class') FROM run JOIN point USING"
-           " (point_id) LEFT JOIN session USING (session_id) WHERE run_id = %lld",
+           "SELECT scene, seed, results_version, json_extract(facts, '$.cpu_class'), json_extract(facts, '$.version'), "
+           "json_extract(facts, '$.commit') || iif(json_extract(facts, '$.dirty'), ' with local changes', ''), "
+           "json_extract(facts, '$.compiler') FROM run JOIN point USING (point_id) LEFT JOIN session USING "
+           "(session_id) WHERE run_id = %lld",
            (long long)run_id);
   return query_run(store, sql, 0, NULL, 0, &sink, error);
 }

@@ -8,7 +8,10 @@ struct ask_run {
   char *scene; /* resolved scene as JSON; owned. NULL: the store has no such run */
   uint64_t seed;
   int64_t results_version;
-  char cpu_class[16]; /* that computed it: baseline, v3 or v4; "" when the session does not tell it */
+  /* What computed it. "" where the session does not tell. */
+  char cpu_class[16];              /* baseline, v3 or v4 */
+  char version[64], compiler[128]; /* of the program */
+  char commit[96];                 /* with the words " with local changes" where there were some */
 };
 status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, struct error *error);
 void ask_run_release(struct ask_run *run); /* a zeroed one is fine */

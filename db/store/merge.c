@@ -232,14 +232,46 @@ static status count_differing(sqlite3 *db, int64_t *differing, struct error *err
 }
 
 /* Fields files stay where they are: the paths of the runs that were added lead there from the folder of this store. */
-static status keep_paths(struct store *store, const char *source, struct error *error) {
+static status keep_paths(struct store *store, const char *way, struct error *error) {
+  return sql_executef(store->db, doing, error,
+                      "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
+                      "merge_run) AND fields_path NOT LIKE '/%%'",
+                      way);
+}
+
+/* Of a run that both stores have, the fields file may be in the other one only, or be missing here and not there. */
+static status take_paths(struct store *store, const char *way, struct error *error) {
+  sqlite3_stmt *pairs = NULL, *update = NULL;
+  status result = sql_prepare(store->db,
+                              "SELECT a.run_id, a.fields_path, iif(b.fields_path LIKE '/%', '', ?1) || b.fields_path "
+                              "FROM other.run b JOIN main.run a USING (identity) WHERE b.fields_path IS NOT NULL AND "
+                              "a.run_id NOT IN (SELECT ours FROM merge_run) ORDER BY a.run_id",
+                              &pairs, doing, error);
+  if (result == STATUS_OK)
+    result = sql_prepare(store->db, "UPDATE main.run SET fields_path = ?2 WHERE run_id = ?1", &update, doing, error);
+  if (result == STATUS_OK)
+    sql_bind_text(pairs, 1, way);
+  while (sql_next(pairs, &result, doing, error)) {
+    const char *theirs = sql_text(pairs, 2);
+    const bool here = sqlite3_column_type(pairs, 1) != SQLITE_NULL && paths_readable(store->path, sql_text(pairs, 1));
+    if (here || !paths_readable(store->path, theirs))
+      continue;
+    sqlite3_bind_int64(update, 1, sqlite3_column_int64(pairs, 0));
+    sql_bind_text(update, 2, theirs);
+    result = sql_run(update, doing, error);
+  }
+  sqlite3_finalize(pairs);
+  sqlite3_finalize(update);
+  return result;
+}
+
+static status merge_paths(struct store *store, const char *source, struct error *error) {
   char *way = paths_between(store->path, source);
   if (!way)
     return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", source);
-  status result = sql_executef(store->db, doing, error,
-                               "UPDATE main.run SET fields_path = %Q || fields_path WHERE run_id IN (SELECT ours FROM "
-                               "merge_run) AND fields_path NOT LIKE '/%%'",
-                               way);
+  status result = keep_paths(store, way, error);
+  if (result == STATUS_OK)
+    result = take_paths(store, way, error);
   free(way);
   return result;
 }
@@ -254,7 +286,7 @@ static status merge_attached(struct store *store, const char *source, int64_t *a
   if (result == STATUS_OK)
     result = merge(store, added, error);
   if (result == STATUS_OK)
-    result = keep_paths(store, source, error);
+    result = merge_paths(store, source, error);
   if (result == STATUS_OK)
     result = sql_execute(store->db, "COMMIT", doing, error);
   if (result == STATUS_OK)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "schemas/text.h"
 
@@ -18,6 +19,13 @@ char *paths_of_fields(const char *store_path, const char *fields_path) {
   if (path)
     snprintf(path, size, "%.*s%s", folder, store_path, fields_path);
   return path;
+}
+
+bool paths_readable(const char *store_path, const char *fields_path) {
+  char *path = paths_of_fields(store_path, fields_path);
+  const bool readable = path && access(path, R_OK) == 0;
+  free(path);
+  return readable;
 }
 
 /* The folder of a file without links, with a slash at the end. */

@@ -39,13 +39,6 @@ static int state_of(const struct field *states, const char *name) {
   return OUTCOME_INVALID;
 }
 
-static bool can_read(const struct store *store, const char *fields_path) {
-  char *path = paths_of_fields(store->path, fields_path);
-  bool can = path && access(path, R_OK) == 0;
-  free(path);
-  return can;
-}
-
 status store_point_runs(struct store *store, int64_t point_id, const struct engine_kind *kind, const struct field *row,
                         bool of_outcome, void (*each)(void *context, const struct store_point_run *run), void *context,
                         struct error *error) {
@@ -81,7 +74,7 @@ status store_point_runs(struct store *store, int64_t point_id, const struct engi
         .peak_memory = sqlite3_column_int64(statement, 7),
         .fields_path = (const char *)sqlite3_column_text(statement, 8),
     };
-    run.fields_missing = run.fields_path && !can_read(store, run.fields_path);
+    run.fields_missing = run.fields_path && !paths_readable(store->path, run.fields_path);
     if (sqlite3_column_bytes(statement, 1) == 16)
       memcpy(run.identity, sqlite3_column_blob(statement, 1), 16);
     each(context, &run);

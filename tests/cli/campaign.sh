@@ -127,6 +127,25 @@ db.execute('UPDATE result_dem SET $(cat column) = NULL WHERE run_id = 3')
 db.commit()"
 expect 65 "$clast" replay wrong.db 3
 says "1 of"
+# Another build, and another version of the results, are named.
+cp tiny.db other.db
+python -c "
+import sqlite3
+db = sqlite3.connect('other.db')
+db.execute(\"UPDATE session SET facts = json_set(facts, '$.version', '0.1', '$.commit', 'abcdef')\")
+db.commit()"
+expect 0 "$clast" replay other.db 3
+says "another build (clast 0.1, commit abcdef"
+says "agree to the last bit"
+python -c "
+import sqlite3
+db = sqlite3.connect('other.db')
+db.execute('UPDATE run SET results_version = 1 WHERE run_id = 3')
+db.commit()"
+expect 65 "$clast" replay other.db 3
+says "program of that version: clast 0.1, commit abcdef"
+expect 0 "$clast" replay tiny.db 2
+! grep -q "another build" err || fail "this build is called another one"
 # A program without some input computed the same seeds: each counts twice.
 expect 0 "$clast" stats tiny.db
 says "pooled over threshold.angle, threshold.strain"
@@ -183,4 +202,4 @@ says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
-done_after 58
+done_after 61

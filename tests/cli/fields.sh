@@ -31,4 +31,25 @@ expect 0 "$clast" check there/copy.db
 expect 0 "$clast" merge there/again.db here/kept.db
 same "$(number there/again.db "select count(*) from runs where fields_path like '../here/kept-fields/%'")" 4 "paths upwards"
 expect 0 "$clast" check there/again.db
-done_after 15
+
+# The same runs in both stores: the one without fields, or without the file, takes the way to the other's.
+sed '/keep/d' kept.yaml >bare.yaml
+expect 0 "$clast" run bare.yaml --store bare.db -j 2
+same "$(number bare.db "select count(fields_path) from runs")" 0 "paths of a store without fields"
+expect 0 "$clast" merge bare.db here/kept.db
+says "0 runs added"
+same "$(number bare.db "select count(*) from runs where fields_path like 'here/kept-fields/%'")" 4 "paths of runs in both"
+expect 0 "$clast" check bare.db
+mkdir second
+cp here/kept.db second/kept.db
+expect 65 "$clast" check second/kept.db
+expect 0 "$clast" merge second/kept.db here/kept.db
+expect 0 "$clast" check second/kept.db
+expect 0 "$clast" merge here/kept.db second/kept.db
+same "$(number here/kept.db "select count(*) from runs where fields_path like 'kept-fields/%'")" 4 "paths that lead to files"
+
+# A name is no way to another folder.
+sed 's,^name:.*,name: ../kept,; /^store/d' kept.yaml >out.yaml
+expect 65 "$clast" plan out.yaml
+says "slash"
+done_after 26
