@@ -9,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include "campaign/farm/leftovers.h"
 #include "campaign/farm/private.h"
 #include "schemas/clock.h"
 
@@ -152,6 +153,7 @@ status farm_start(const struct farm_options *options, farm_work work, struct far
   prctl(PR_SET_TIMERSLACK, 1000UL); /* or a sleep of 50 us takes 100 */
   if (o->use_mpi) {
     farm->launcher = getppid();
+    farm_leftovers_remove();
     result = farm_link_open(&farm->link, error);
     if (result != STATUS_OK)
       goto cleanup;
