@@ -217,7 +217,7 @@ static status merge(struct store *store, int64_t *added, struct error *error) {
   if (result == STATUS_OK)
     result = digest_rows_fill(db, DIGEST_RUNS, 0, error); /* of a source without digests */
   if (result == STATUS_OK && *added > 0)
-    result = sums_add_runs(&store->sums, db, last + 1, error); /* pooled estimates of these points go: they are stale */
+    result = sums_runs_add(&store->sums, db, last + 1, error); /* pooled estimates of these points go: they are stale */
   return result == STATUS_OK ? views_regenerate(db, error) : result;
 }
 

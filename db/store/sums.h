@@ -40,7 +40,7 @@ void sums_clear(struct sums *sums);  /* everything, statements too */
 /* Adds the runs from number `first` on, which are stored and in no sum yet, and covers their bins. Runs of any number
  * pass through memory for some thousand sums. Within the caller's transaction. STATUS_CONTENT: no spectrum is like
  * that. */
-status sums_add_runs(struct sums *sums, sqlite3 *db, int64_t first, struct error *error);
+status sums_runs_add(struct sums *sums, sqlite3 *db, int64_t first, struct error *error);
 /* Makes the sums of one point (0: of all) anew from the rows of run and spectrum. Within the caller's transaction. */
 status sums_rebuild(sqlite3 *db, int64_t point_id, struct error *error);
 /* Rows in which the running sums differ from the rows they sum (doubles: by more than their rounding). */

@@ -81,7 +81,7 @@ static status take_row(struct adding *adding, struct error *error) {
              : refuse(run, error);
 }
 
-status sums_add_runs(struct sums *sums, sqlite3 *db, int64_t first, struct error *error) {
+status sums_runs_add(struct sums *sums, sqlite3 *db, int64_t first, struct error *error) {
   struct adding adding = {.sums = sums, .run = INT64_MIN, .lowest = INT64_MAX, .highest = INT64_MIN};
   status result = sql_prepare(db, question, &adding.rows, doing, error);
   sqlite3_bind_int64(adding.rows, 1, first);
