@@ -130,7 +130,12 @@ static void write_points(FILE *out, const struct names *axes, const struct names
             "\"%s\", NULL)) AS o%zu",
             q, i, q, i, q, i);
   }
-  fputs("\nFROM (SELECT * FROM runs WHERE surplus = 0 ORDER BY point_id, results_version, replicate, seed)\nGROUP BY ",
+  fputs("\nFROM (SELECT ", out); /* no more columns than are needed: the rows are sorted */
+  write_names(out, axes);
+  for (size_t i = 0; i < quantities->count; i++)
+    fprintf(out, "\"%s\", ", quantities->name[i]);
+  fputs("engine, results_version, point_id, counts, state FROM runs WHERE surplus = 0 ORDER BY point_id, "
+        "results_version, replicate, seed)\nGROUP BY ",
         out);
   write_names(out, axes);
   fputs("engine, results_version, point_id) LEFT JOIN ", out);

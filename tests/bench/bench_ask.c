@@ -1,0 +1,181 @@
+/* Speed of the questions that people wait for, on a store of 1e5 runs of 100 points with 30 to 300 fragments each.
+ * Prints `name value unit`; wall and processor times, the best of three. Issue: statistics over two axes below 1 s, the
+ * pooled spectrum of a point below 0.2 s, a comparison below 1 s. Usage: bench_ask [runs [folder]]; the store stays in
+ * the folder as bench-ask.db if the folder is given, and is used again. */
+#include <time.h>
+
+#include "analysis/analysis.h"
+#include "analysis/statistics/difference.h"
+#include "analysis/statistics/scatter.h"
+#include "db/ask/pool.h"
+#include "db/ask/values.h"
+#include "schemas/clock.h"
+#include "tests/support/store_fixture.h"
+
+enum { POINTS = 100, LEAST = 30, MOST = 300, REPEATS = 3 };
+
+static struct error error;
+
+static void need(status result) {
+  if (result == STATUS_OK)
+    return;
+  fprintf(stderr, "%s\n", error.message);
+  exit(70);
+}
+
+static void load(const char *path, int64_t runs) {
+  static struct fixture_run f;
+  static struct fragment fragments[MOST];
+  struct fixture_inputs inputs;
+  struct estimate rows[ESTIMATES_COUNT];
+  struct store *store = NULL;
+  int64_t campaign, session, points[POINTS];
+  need(store_open_writer(path, &store, NULL, 0, &error));
+  need(store_add_campaign(store, "bench", "name: bench", "{}", &campaign, &error));
+  need(store_begin_session(store, "{}", &session, &error));
+  for (int p = 0; p < POINTS; p++) {
+    struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
+    need(store_add_point(store, campaign, &scene, 2, fixture_axes, &points[p], &error));
+  }
+  for (int64_t r = 0; r < runs; r++) {
+    const int p = (int)(r % POINTS);
+    struct scene scene = fixture_scene(&inputs, 1 + p / 10, pow(10, 30 + p % 10));
+    const size_t n = LEAST + (size_t)((MOST - LEAST) * fixture_random(3, (uint64_t)r));
+    fixture_fill(&f, &scene, points[p], session, r / POINTS, FIXTURE_FRAGMENTS);
+    for (size_t i = 0; i < n; i++)
+      fragments[i] = (struct fragment){.mass = pow(10, -3 * fixture_random((uint64_t)r, i)), .count = 3};
+    qsort(fragments, n, sizeof *fragments, fixture_by_mass);
+    f.run.fragments = fragments;
+    f.run.fragment_count = n;
+    f.outcome.fragment_count = (int64_t)n;
+    f.outcome.largest_fraction = fixture_random(7, (uint64_t)r);
+    need(estimates_make(n, fragments, 0, rows, &error));
+    f.run.estimates = rows;
+    f.run.estimate_count = ESTIMATES_COUNT;
+    need(store_add_run(store, &f.run, &error));
+  }
+  need(store_end_session(store, session, "ok", &error));
+  need(store_close(store, &error));
+}
+
+static status count_row(void *context, size_t count, const struct query_value *values, struct error *unused) {
+  (void)count, (void)values, (void)unused;
+  ++*(size_t *)context;
+  return STATUS_OK;
+}
+
+static void stats(struct store *store, size_t *rows) {
+  char pooled[ASK_GROUP_POOLED];
+  const struct query_sink sink = {rows, NULL, count_row};
+  need(ask_group(store, "m,k", "largest_fraction", &sink, pooled, &error));
+}
+
+static void stats_of_one(struct store *store, size_t *rows) {
+  char pooled[ASK_GROUP_POOLED];
+  const struct query_sink sink = {rows, NULL, count_row};
+  need(ask_group(store, "m", "largest_fraction", &sink, pooled, &error));
+}
+
+static void twins(struct store *store, size_t *rows) {
+  struct ask_group_twins found;
+  need(ask_group_twins(store, &found, &error));
+  *rows += 1;
+}
+
+static status add_bins(void *context, const struct ask_pool *pool, struct error *unused) {
+  (void)unused;
+  const struct pooled_form form = ask_pool_form(pool, false, 0);
+  struct pooled_bin *bins;
+  size_t count;
+  need(pooled_spectrum(&pool->data.runs, &form, &bins, &count, &error));
+  *(size_t *)context += count;
+  free(bins);
+  return STATUS_OK;
+}
+
+static void spectrum(struct store *store, size_t *rows) {
+  need(ask_pools(store, &(struct ask_pool_choice){.point = 17}, add_bins, rows, &error));
+}
+
+static void spectra(struct store *store, size_t *rows) {
+  need(ask_pools(store, &(struct ask_pool_choice){0}, add_bins, rows, &error));
+}
+
+static void where(struct store *store, size_t *rows) {
+  need(ask_pools(store, &(struct ask_pool_choice){.where = "material_m = 3 AND replicate < 100"}, add_bins, rows,
+                 &error));
+}
+
+static status count_value(void *context, const struct ask_values_row *row, struct error *unused) {
+  (void)row, (void)unused;
+  ++*(size_t *)context;
+  return STATUS_OK;
+}
+
+/* Both sides of a comparison are read like this. */
+static void compare(struct store *store, size_t *rows) {
+  const struct ask_values_choice all = {0};
+  for (int side = 0; side < 2; side++)
+    need(ask_values(store, &all, "largest_fraction", count_value, rows, &error));
+}
+
+static status add_scatter(void *context, const struct ask_pool *pool, struct error *unused) {
+  (void)unused;
+  struct scatter scatter;
+  need(scatter_make(pool->data.runs.count, pool->value, &scatter, &error));
+  *(size_t *)context += scatter.n;
+  scatter_release(&scatter);
+  return STATUS_OK;
+}
+
+static void scatters(struct store *store, size_t *rows) {
+  need(ask_pool_values(store, &(struct ask_pool_choice){0}, "largest_fraction", add_scatter, rows, &error));
+}
+
+static double processor_s(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void measure(struct store *store, const char *name, void (*ask)(struct store *, size_t *)) {
+  double best = HUGE_VAL, least = HUGE_VAL;
+  size_t rows = 0;
+  for (int i = 0; i < REPEATS; i++) {
+    const double start = clock_s(), cpu = processor_s();
+    rows = 0;
+    ask(store, &rows);
+    best = fmin(best, clock_s() - start);
+    least = fmin(least, processor_s() - cpu);
+  }
+  printf("ask_%s_ms %.1f ms\nask_%s_cpu_ms %.1f ms\nask_%s_rows %zu 1\n", name, 1e3 * best, name, 1e3 * least, name,
+         rows);
+  fflush(stdout);
+}
+
+int main(int argc, char **argv) {
+  const int64_t runs = argc > 1 ? atoll(argv[1]) : 100000;
+  char path[512];
+  snprintf(path, sizeof path, "%s/bench-ask.db", argc > 2 ? argv[2] : ".");
+  analysis_init();
+  if (argc <= 2 || access(path, F_OK) != 0) {
+    unlink(path);
+    load(path, runs);
+  }
+  struct store *store = NULL;
+  const double start = clock_s();
+  need(store_open_reader(path, &store, &error));
+  printf("ask_open_ms %.1f ms\n", 1e3 * (clock_s() - start));
+  measure(store, "stats_two_axes", stats);
+  measure(store, "stats_one_axis", stats_of_one);
+  measure(store, "stats_twins", twins);
+  measure(store, "spectrum_of_a_point", spectrum);
+  measure(store, "spectra_where", where);
+  measure(store, "spectra_of_all", spectra);
+  measure(store, "compare", compare);
+  measure(store, "scatter_of_all", scatters);
+  store_close(store, NULL);
+  if (argc <= 2)
+    unlink(path);
+  return 0;
+}
