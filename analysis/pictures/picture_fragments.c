@@ -60,14 +60,14 @@ static void cover(double view[4], const double point[2]) {
 
 static const double nothing[4] = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
 
-/* The views that hold all cells, and all cells of large fragments. */
+/* The views that hold all cells, and all fragments of two and more cells. */
 static void cover_cells(const struct picture_body *body, const struct grouping *grouping, double all[4],
                         double large[4]) {
   memcpy(all, nothing, sizeof nothing);
   memcpy(large, nothing, sizeof nothing);
   for (size_t i = 0; i < body->cells; i++) {
     uint32_t f = body->fragment[i];
-    bool is_large = grouping->start[f + 1] - grouping->start[f] >= LARGE;
+    bool is_large = grouping->start[f + 1] - grouping->start[f] > 1;
     for (uint32_t v = body->first_vertex[i]; v < body->first_vertex[i + 1]; v++) {
       cover(all, body->vertex[v]);
       if (is_large)
@@ -91,7 +91,7 @@ static void cover_most(const struct picture_body *body, double *centre, double v
   }
 }
 
-/* All cells; but if distant ones would shrink the picture much, all large fragments and 96 % of the cells. */
+/* All cells; but if distant single ones would shrink the picture much, all other fragments and 96 % of the cells. */
 static status choose_view(const struct picture_body *body, double view[4]) {
   double *centre = malloc((body->cells + 1) * sizeof *centre), all[4], bulk[4];
   struct grouping grouping;
@@ -253,9 +253,11 @@ static status draw_panel(cairo_t *cairo, const struct picture_panel *panel, cons
   for (size_t f = grouping.fragments; f-- > 0;)
     if (chosen || is_inside(body, &grouping, f, view))
       draw_fragment(cairo, body, &grouping, f, cell); /* the largest on top */
-  for (size_t i = 0; i < body->cracks; i++)
-    if (body->fragment[body->crack[i][0]] == body->fragment[body->crack[i][1]])
+  for (size_t i = 0; i < body->cracks; i++) {
+    const uint32_t f = body->fragment[body->crack[i][0]];
+    if (f == body->fragment[body->crack[i][1]] && (chosen || is_inside(body, &grouping, f, view)))
       draw_crack(cairo, body, body->crack[i][0], body->crack[i][1]);
+  }
   cairo_set_source_rgb(cairo, 0.12, 0.08, 0.08);
   cairo_set_line_cap(cairo, CAIRO_LINE_CAP_ROUND);
   cairo_set_line_width(cairo, 0.11 * cell);

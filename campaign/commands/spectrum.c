@@ -29,25 +29,24 @@ static status ask(struct store *store, const struct options *options, const stru
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct spectrum_choice choice = {.pool = {options->point, options->where, options->by},
-                                   .cumulative = options->cumulative,
-                                   .runs = options->runs};
+  struct spectrum_choice choice = {{options->point, options->where, options->by},
+                                   options->cumulative,
+                                   options->runs,
+                                   0,
+                                   NULL};
   enum table_format format = TABLE_TEXT;
   struct measured measured = {0};
   struct store *store = NULL;
   status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK && options->size && unit_read(options->size, "kg/m^3", &choice.density, error))
-    code = STATUS_USAGE;
-  if (code == STATUS_OK && options->size && !(choice.density > 0))
-    code = status_fail(error, STATUS_USAGE, "--size is a density above 0, not '%s'", options->size);
-  if (code == STATUS_OK && options->with)
-    code = measured_read(options->with, &(struct spectrum_size){choice.density, 3}, &measured, error);
+  if (code == STATUS_OK && options->size &&
+      (unit_read(options->size, "kg/m^3", &choice.density, error) || !(choice.density > 0)))
+    code = status_fail(error, STATUS_USAGE, "--size is a density such as 2700 kg/m^3, not '%s'", options->size);
   if (code == STATUS_OK)
     code = store_open_reader(line->arguments[0], &store, error);
-  if (code == STATUS_OK) {
-    choice.measured = options->with ? &measured : NULL;
+  if (code == STATUS_OK && options->with)
+    code = spectrum_curves_measured(store, options->with, &choice, &measured, error);
+  if (code == STATUS_OK)
     code = ask(store, options, &choice, format, error);
-  }
   store_close(store, NULL);
   measured_release(&measured);
   return code;

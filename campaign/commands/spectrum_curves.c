@@ -9,6 +9,14 @@
 
 enum { COLUMNS = 100 };
 
+status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
+                                struct measured *measured, struct error *error) {
+  struct spectrum_size size = {.density = choice->density};
+  const status code = ask_pool_dimensions(store, &size.dimensions, error);
+  choice->measured = measured;
+  return code ? code : measured_read(path, &size, measured, error);
+}
+
 /* "beta = 2.03 +- 0.05 (seeds, 95 %)" by the name that the exponent has in the form. */
 static void label_fit(struct spectrum_curve *curve, double beta, double half_width) {
   static const char *const names[2][2] = {{"\xce\xb2", "\xce\xb2 \xe2\x88\x92 1"}, {"D + 1", "D"}};

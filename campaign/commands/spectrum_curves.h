@@ -14,6 +14,10 @@ struct spectrum_choice {
   const struct measured *measured; /* NULL: none */
 };
 
+/* Reads a measured spectrum for the choice; sizes by the choice's density, in the dimensions of the store. */
+status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
+                                struct measured *measured, struct error *error);
+
 /* One row per bin of each pool (or of each run). */
 status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
                             struct error *error);

@@ -9,6 +9,7 @@
 #include "db/ask/columns.h"
 #include "db/ask/points.h"
 #include "db/sql.h"
+#include "engine/engine.h"
 #include "schemas/text.h"
 
 struct member { /* a point, in the order of the pools */
@@ -316,6 +317,19 @@ status ask_pool_values(struct store *store, const struct ask_pool_choice *choice
   char column[ASK_GROUP_NAME];
   const status code = ask_group_quantity(store, quantity, column, error);
   return code ? code : ask(store, choice, column, each, context, error);
+}
+
+static status take_engine(void *context, size_t count, const struct query_value *values, struct error *error) {
+  (void)count, (void)error;
+  const struct engine_kind *kind = values[0].kind == QUERY_TEXT ? engine_find(values[0].text, NULL) : NULL;
+  *(int *)context = kind && kind->dimensions == 2 ? 2 : 3;
+  return STATUS_OK;
+}
+
+status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error) {
+  const struct query_sink sink = {dimensions, NULL, take_engine};
+  *dimensions = 3;
+  return query_run(store, "SELECT engine FROM point ORDER BY point_id LIMIT 1", 0, NULL, 0, &sink, error);
 }
 
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density) {

@@ -40,6 +40,9 @@ status ask_pools(struct store *store, const struct ask_pool_choice *choice, ask_
 status ask_pool_values(struct store *store, const struct ask_pool_choice *choice, const char *quantity,
                        ask_pool_each each, void *context, struct error *error);
 
+/* Dimensions of the engine of the store's first point, 2 or 3: masses in the plane are kg per metre. */
+status ask_pool_dimensions(struct store *store, int *dimensions, struct error *error);
+
 /* A pool as the pooled spectrum takes it: the units of mean and interval are the runs of a point, or the points. */
 struct pooled_form ask_pool_form(const struct ask_pool *pool, bool cumulative, double density);
 
