@@ -19,9 +19,9 @@ struct series_summary {
   double cpu_s;
 };
 
-/* Every rank calls it; only rank 0 opens the store, and all callbacks are its. STATUS_STOPPED after a signal. Failed
- * runs are no error: `done` finds them missing. STATUS_FAILED_RUNS: so many of a campaign's first runs failed that it
- * ended (limits.failures). */
+/* Every rank calls it; only rank 0 opens the store, and all callbacks are its. STATUS_STOPPED after a signal, or when
+ * so many of a campaign's first runs failed that it ended (limits.failures); *error says which. Single failed runs are
+ * no error: `done` finds them missing. */
 status series_run(const struct series *series, struct farm *farm, const struct driver_options *options,
                   struct series_summary *summary, struct error *error);
 

@@ -111,6 +111,35 @@ static void errors_have_a_place(void **state) {
   bad(SHOT "fragments: {total: 10 g, masses: [9 g]}\n", "complete");
 }
 
+/* The documents of the pages fit_*.md. */
+static void documents_of_the_pages_are_good(void **state) {
+  (void)state;
+  static const char *const pairs[][2] = {{"sphere-measured", "sphere-k"},
+                                         {"sphere-measured", "sphere-k-measured-m"},
+                                         {"sphere-measured", "sphere-m-k"},
+                                         {"exponent-measured", "exponent"},
+                                         {"quartzite-measured", "quartzite"}};
+  for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; i++) {
+    struct error error = {0};
+    struct campaign *own = NULL;
+    struct observed *observed = NULL;
+    struct fit *fit = NULL;
+    char path[2][512];
+    for (int k = 0; k < 2; k++)
+      snprintf(path[k], sizeof path[k], CLAST_SOURCE_DIR "/tests/validation/fit/%s.yaml", pairs[i][k]);
+    status code = campaign_load(path[1], &own, &error);
+    if (code == STATUS_OK)
+      code = observed_load(path[0], own, &observed, &error);
+    if (code == STATUS_OK)
+      code = fit_create(own, observed, &(struct fit_rule){.rounds = 4}, "", &fit, &error);
+    if (code != STATUS_OK)
+      fail_msg("%s", error.message);
+    fit_free(fit);
+    observed_free(observed);
+    campaign_free(own);
+  }
+}
+
 /* Which campaigns can be fitted. */
 static status create(const char *text, struct error *error) {
   struct campaign *other = NULL;
@@ -162,6 +191,7 @@ int main(void) {
       cmocka_unit_test(numbers_and_units),
       cmocka_unit_test(masses_become_numbers),
       cmocka_unit_test(errors_have_a_place),
+      cmocka_unit_test(documents_of_the_pages_are_good),
       cmocka_unit_test(campaigns_need_priors_and_seeds),
   };
   return cmocka_run_group_tests(tests, start, end);
