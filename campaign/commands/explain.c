@@ -1,4 +1,4 @@
-/* `clast explain [PATH|SCENE]`: what an input or result means; what a scene models and costs. */
+/* `clast explain [PATH|WORD|SCENE]`: what an input or result means; what a scene models and costs. */
 #include <string.h>
 
 #include "campaign/commands/commands.h"
@@ -53,15 +53,15 @@ static const struct option_row rows[] = {
 const struct command explain_command = {
     .name = "explain",
     .group = "scenes and inputs",
-    .arguments = "[PATH|SCENE]",
+    .arguments = "[PATH|WORD|SCENE]",
     .summary = "what an input or result means; what a scene models and costs",
     .doc =
-        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a "
-        "campaign):\n"
-        "meaning, unit, range, default and source. With a SCENE (a built-in name or a file): what is modelled and "
-        "why,\n"
-        "the expected cost, and every input with its value; with --json or --csv the inputs only. Without argument: a\n"
-        "table of all inputs, results and keys.",
+        "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a\n"
+        "campaign): meaning, unit, range, default and source. Results are known by each of their names\n"
+        "(energy.kinetic, energy_kinetic, largest_fraction_mean). With a word (campaign, results, sph, censored,\n"
+        "interval, a column of the store): what it means. With a SCENE (a built-in name or a file): what is modelled\n"
+        "and why, the expected cost, and every input with its value; with --json or --csv the inputs only. Without\n"
+        "argument: a table of all inputs, results and keys.",
     .examples = "clast explain threshold.strain\nclast explain disc-explosion --set threshold.strain=5%",
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct options, rows),

@@ -70,6 +70,15 @@ for name in energy.kinetic energy_kinetic result_dem_energy_kinetic; do
   expect 0 "$clast" stats tiny.db --quantity $name --csv
   grep -q ',energy_kinetic_mean,' out || fail "$name is not energy_kinetic"
 done
+# explain answers for each word that a user meets: keys, columns of the views, words of messages and tables
+for word in campaign results outcome sph dem vary keep seeds set design limits censored counted surplus interval window ML \
+  beta_masses_from_5 result_dem_energy_kinetic largest_fraction_mean \
+  $(sqlite3 tiny.db "select name from pragma_table_info('runs') union select name from pragma_table_info('points')"); do
+  "$clast" explain "$word" >out 2>err && [ -s out ] || fail "explain does not know $word"
+done
+ok "explain knows every word"
+expect 65 "$clast" explain windw
+says "did you mean window"
 sed -i 's/seeds: .*/seeds: {until: {quantity: energy_kinetic, half_width: 1e9}}/' tiny.yaml
 expect 0 "$clast" plan tiny.yaml --no-trial
-done_after 28
+done_after 30
