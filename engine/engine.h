@@ -21,6 +21,9 @@ struct engine_kind {
    * time that scales with a size. A pure function of the given ones, called again after every change. NULL: there are
    * none. */
   void (*complete)(void *inputs, const bool *given);
+  /* Refuses what must be given (one flag per input row) although it has a default or may be off. STATUS_CONTENT. NULL:
+   * there is no such input. */
+  status (*check_given)(const void *inputs, const bool *given, struct error *error);
   /* Checks conditions across fields (a charge energy needs a disc...). STATUS_CONTENT with a remedy. */
   status (*check)(const void *inputs, struct error *error);
   /* Doubts that the inputs raise before the run: the set of enum warnings_bits, and to `out` (NULL: none wanted) a line

@@ -6,6 +6,7 @@
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
+#include "engine/scene_materials.h"
 #include "engine/scene_settings.h"
 #include "schemas/document.h"
 #include "schemas/json_schema.h"
@@ -72,7 +73,8 @@ static struct scene *create(const struct engine_kind *kind) {
 }
 
 /* Frees the document. */
-static status read_document(struct document *document, const char *fallback, struct scene **out, struct error *error) {
+static status read_document(struct document *document, const char *folder, const char *fallback, struct scene **out,
+                            struct error *error) {
   status code = STATUS_CONTENT;
   struct scene *scene = NULL;
   document_node *root = document_root(document), *engine = document_key(root, "engine");
@@ -97,6 +99,7 @@ static status read_document(struct document *document, const char *fallback, str
       code = status_fail(error, STATUS_MEMORY, "no memory for a scene");
       goto cleanup;
     }
+    scene_materials_take(root, kind->inputs, folder);
     document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
     snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
     scene_settings_read(document_key(root, "settings"), scene);
@@ -122,7 +125,7 @@ static bool is_path(const char *reference) {
 static status load_standard(const char *reference, const char *folder, struct scene **out, struct error *error) {
   *out = NULL;
   struct document *document = NULL;
-  char *path = NULL, *stem = NULL;
+  char *path = NULL, *stem = NULL, *own_folder = NULL;
   status code;
   if (!is_path(reference)) {
     const char *text = scene_builtin_text(reference);
@@ -143,12 +146,19 @@ static status load_standard(const char *reference, const char *folder, struct sc
   char *dot = strrchr(stem, '.');
   if (dot && dot != stem)
     *dot = 0;
+  const char *end = strrchr(path, '/');
+  own_folder = end ? strndup(path, (size_t)(end - path) + (end == path)) : NULL;
+  if (end && !own_folder) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
+    goto cleanup;
+  }
   code = document_open(path, &document, error);
   if (!code)
-    code = read_document(document, stem, out, error);
+    code = read_document(document, own_folder, stem, out, error);
 cleanup:
   free(path);
   free(stem);
+  free(own_folder);
   return code;
 }
 
@@ -174,7 +184,7 @@ status scene_parse(const char *name, const char *text, struct scene **out, struc
   *out = NULL;
   struct document *document = NULL;
   status code = document_parse(name, text, strlen(text), &document, error);
-  return code ? code : read_document(document, name, out, error);
+  return code ? code : read_document(document, NULL, name, out, error);
 }
 
 status scene_parse_json(const char *name, const char *json, struct scene **out, struct error *error) {
@@ -184,7 +194,7 @@ status scene_parse_json(const char *name, const char *json, struct scene **out, 
   if (code)
     return code;
   document_take_si(document);
-  return read_document(document, name, out, error);
+  return read_document(document, NULL, name, out, error);
 }
 
 struct scene *scene_copy(const struct scene *scene) {
@@ -278,7 +288,10 @@ status scene_check(struct scene *scene, struct error *error) {
         return code;
     }
   }
-  return scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
+  const status code = scene->kind->check ? scene->kind->check(scene->inputs, error) : STATUS_OK;
+  if (code || !scene->kind->check_given)
+    return code;
+  return scene->kind->check_given(scene->inputs, scene->given, error);
 }
 
 /* ---- output ---- */

@@ -98,19 +98,44 @@ void document_free(struct document *document) {
     free(document->errors[i].message);
   free(document->name);
   free(document->origin);
+  for (struct document *other = document->included, *next; other; other = next) {
+    next = other->next_included;
+    document_free(other);
+  }
   free(document->text);
   free(document->report);
   free(document);
 }
 
+/* The reports of a document and of those that it includes, one after the other. */
+static char *whole_report(struct document *document) {
+  char *text = document->error_count ? document_report_text(document) : NULL;
+  for (struct document *other = document->included; other; other = other->next_included) {
+    char *more = other->error_count ? document_report_text(other) : NULL, *both = NULL;
+    if (!more || !text) {
+      text = text ? text : more;
+      continue;
+    }
+    const size_t size = strlen(text) + strlen(more) + 2;
+    both = malloc(size);
+    if (both)
+      snprintf(both, size, "%s\n%s", text, more);
+    free(both ? text : more);
+    free(both ? more : NULL);
+    text = both ? both : text;
+  }
+  return text;
+}
+
 status document_finish(struct document *document, const char **report) {
   *report = NULL;
-  if (document->error_count == 0)
+  const size_t errors = document->error_count + document->foreign_errors;
+  if (errors == 0)
     return STATUS_OK;
   free(document->report);
-  document->report = document_report_text(document);
+  document->report = whole_report(document);
   *report = document->report ? document->report : "no memory for the report of errors";
-  return document->elsewhere == document->error_count ? STATUS_USAGE : STATUS_CONTENT;
+  return document->elsewhere == errors ? STATUS_USAGE : STATUS_CONTENT;
 }
 
 void document_take_si(struct document *document) {

@@ -37,6 +37,14 @@ status document_change_put(struct document *document, const char *const keys[2],
  * document_change_put its values without comments. NULL: no memory. */
 char *document_change_text(const struct document *document);
 
+/* Takes the contents of `other` (a mapping) into a section, a mapping or a scalar that becomes one. What the section
+ * gives itself stays; keys of `other` in leave_out (NULL: none) do not come. The section's document owns `other` from
+ * now on and reports errors about its values, with their places there. False: no memory. */
+bool document_graft(document_node *section, struct document *other, const char *const *leave_out);
+/* Gives the section a key with a plain word as value, unless it has the key. A scalar becomes a mapping. */
+bool document_graft_word(document_node *section, const char *key, const char *word);
+void document_graft_drop(document_node *mapping, const char *key); /* forgets the key */
+
 enum document_kind { DOCUMENT_SCALAR, DOCUMENT_SEQUENCE, DOCUMENT_MAPPING };
 
 document_node *document_root(struct document *document);

@@ -165,7 +165,8 @@ static bool complete_object(const struct reading *r, bool *given, document_compl
 /* A required row that is active was not given. */
 static void report_missing(document_node *node, const struct field *row) {
   char path[PATH_SIZE], whole[2 * PATH_SIZE];
-  const size_t at = holder(node, row->path)->start;
+  const document_node *place = holder(node, row->path);
+  const size_t at = place->document == node->document ? place->start : node->start;
   document_value_path(node, path, sizeof path);
   snprintf(whole, sizeof whole, "%s%s%s", path, *path ? "." : "", row->path);
   document_report_at(node->document, at, at + 1, whole, "is missing and has no default; %s",
@@ -197,7 +198,7 @@ static void judge_conditions(const struct reading *r, document_node *node) {
 bool document_read_given(document_node *node, const struct field_table *table, const char *const *also, void *object,
                          bool *given, document_complete complete) {
   const struct document *document = node->document;
-  const size_t before = document->error_count;
+  const size_t before = document->error_count + document->foreign_errors;
   if (node->faulty)
     return false;
   if (node->kind != DOCUMENT_MAPPING) {
@@ -219,5 +220,5 @@ bool document_read_given(document_node *node, const struct field_table *table, c
     document_report(node, NULL, "no memory to read it");
   judge_conditions(&r, node);
   free(r.places);
-  return document->error_count == before;
+  return document->error_count + document->foreign_errors == before;
 }

@@ -12,6 +12,8 @@ static void add(struct document *document, size_t start, size_t end, bool put, c
                 va_list arguments) {
   size_t order = document->error_count++;
   document->elsewhere += put;
+  if (document->owner)
+    document->owner->foreign_errors++;
   if (order >= DOCUMENT_MOST_ERRORS)
     return;
   char message[1024];

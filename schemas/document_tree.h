@@ -40,10 +40,12 @@ struct document_error {
 
 struct document {
   char *name, *text;
-  char *origin;                         /* of the values of document_change_put, or NULL */
-  size_t size, node_count, error_count; /* more errors may be counted than kept */
-  size_t elsewhere;                     /* errors of these that are about values of document_change_put */
-  bool changed;                         /* by document_change_put */
+  char *origin;                                      /* of the values of document_change_put, or NULL */
+  size_t size, node_count, error_count;              /* more errors may be counted than kept */
+  size_t elsewhere;                                  /* errors of these that are about values of document_change_put */
+  bool changed;                                      /* by document_change_put */
+  struct document *included, *next_included, *owner; /* by document_graft: documents that this one holds, and its own */
+  size_t foreign_errors;                             /* of the included ones */
   document_node *root, *nodes;
   struct document_error errors[DOCUMENT_MOST_ERRORS];
   char *report;

@@ -179,9 +179,18 @@ static bool requires(const struct field_table *table, const char *prefix, size_t
 
 static void properties(const struct field_table *table, const char *prefix, size_t length, int indent, FILE *out);
 
+/* A section with a choice `name` may be a word or a file instead (engine/scene_materials.h). */
+static bool is_named(const struct field_table *table, const char *path, size_t whole) {
+  for (size_t i = 0; i < table->count; i++)
+    if (same_start(table->rows[i].path, path, whole) && strcmp(table->rows[i].path + whole, "name") == 0)
+      return table->rows[i].kind == FIELD_CHOICE;
+  return false;
+}
+
 /* The section whose path is the first `whole` bytes of `path`, a dot at their end. */
 static void write_section(const struct field_table *table, const char *path, size_t whole, int indent, FILE *out) {
-  fputs("\"type\": \"object\", \"additionalProperties\": false,", out);
+  const bool named = is_named(table, path, whole);
+  fprintf(out, "\"type\": %s, \"additionalProperties\": false,", named ? "[\"object\", \"string\"]" : "\"object\"");
   margin(indent, out);
   if (requires(table, path, whole)) {
     fputs("\"required\": [", out);
@@ -190,6 +199,11 @@ static void write_section(const struct field_table *table, const char *path, siz
     margin(indent, out);
   }
   fputs("\"properties\": {", out);
+  if (named) {
+    margin(indent + 1, out);
+    fputs("\"file\": {\"type\": \"string\", \"description\": \"A document with the values, relative to this one.\"},",
+          out);
+  }
   properties(table, path, whole, indent + 1, out);
   margin(indent, out);
   fputs("}}", out);

@@ -1,66 +1,68 @@
-/* `clast cite SCENE`: the papers behind what is switched on, from the sources of the field tables. */
-#include <math.h>
-#include <string.h>
-
+/* `clast cite SCENE`: the papers behind what is switched on, from the sources of field tables and materials. */
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/references.h"
 #include "campaign/terminal/scene_option.h"
+#include "campaign/terminal/scene_sources.h"
 #include "campaign/terminal/table.h"
 
 struct options {
   struct option_list set;
+  bool bibtex;
   struct table_options table;
 };
 
-static void cite_row(struct table *table, const struct field *row) {
-  if (!row->source)
-    return;
-  table_text(table, row->path);
-  table_text(table, row->source);
+static void add_row(void *context, const char *what, const char *source) {
+  struct table *table = context;
+  char doi[512];
+  references_doi(source, doi, sizeof doi);
+  table_text(table, what);
+  table_text(table, source);
+  table_text(table, *doi ? doi : NULL);
 }
 
-/* A switch that is off, a law `none` or a coefficient of 0 has no effect, so that its paper is not cited. */
-static bool absent(const struct field *row, const void *inputs) {
-  struct field_value value;
-  field_get(row, inputs, &value);
-  switch (row->kind) {
-  case FIELD_REAL: return isnan(value.number) || value.number == 0;
-  case FIELD_BOOLEAN: return value.number == 0;
-  case FIELD_CHOICE: return strcmp(value.text, "none") == 0 || strcmp(value.text, "off") == 0;
-  case FIELD_INTEGER:
-  case FIELD_TEXT: break;
-  }
-  return false;
+enum { PAPERS = 64 };
+static void note_papers(void *context, const char *what, const char *source) {
+  (void)what;
+  bool *named = context;
+  for (size_t i = 0; i < references_count() && i < PAPERS; i++)
+    named[i] = named[i] || references_named(i, source);
+}
+
+static status print_bibtex(const struct scene *scene, struct error *error) {
+  bool named[PAPERS] = {false};
+  scene_sources(scene, note_papers, named);
+  for (size_t i = 0; i < references_count() && i < PAPERS; i++)
+    if (named[i])
+      references_bibtex(i, stdout);
+  return table_flush(stdout, error);
+}
+
+static status print_table(const struct scene *scene, enum table_format format, struct error *error) {
+  struct table *table = table_new(format, stdout);
+  table_columns(table, (const char *const[]){"what", "source", "doi", NULL});
+  scene_sources(scene, add_row, table);
+  return table_end(table, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
   status code = table_choose(&options->table, &format, error);
+  if (code == STATUS_OK && options->bibtex)
+    code = table_text_only(&options->table, "BibTeX", error);
   if (code)
     return code;
   struct scene *scene = NULL;
   code = scene_option_load(line->arguments[0], &options->set, &scene, error);
-  if (code) {
-    scene_free(scene);
-    return code;
-  }
-
-  struct table *table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"what", "source", NULL});
-  table_text(table, scene->kind->name);
-  table_text(table, scene->kind->doc);
-  for (size_t i = 0; i < scene->kind->inputs->count; i++)
-    if (field_is_active(scene->kind->inputs, &scene->kind->inputs->rows[i], scene->inputs) &&
-        !absent(&scene->kind->inputs->rows[i], scene->inputs))
-      cite_row(table, &scene->kind->inputs->rows[i]);
-  for (size_t i = 0; i < scene->kind->results->count; i++)
-    cite_row(table, &scene->kind->results->rows[i]);
+  if (code == STATUS_OK)
+    code = options->bibtex ? print_bibtex(scene, error) : print_table(scene, format, error);
   scene_free(scene);
-  return table_end(table, error);
+  return code;
 }
 
 static const struct option_row rows[] = {
     SCENE_OPTION_SET(struct options, set),
+    OPTION_ROW_FLAG("bibtex", 0, struct options, bibtex, "Print the papers as BibTeX entries."),
     TABLE_OPTIONS(struct options, table),
 };
 
@@ -70,10 +72,10 @@ const struct command cite_command = {
     .arguments = "SCENE",
     .summary = "the papers behind what a scene switches on",
     .doc =
-        "Prints the sources of a scene (a built-in name or a file): of its engine, of the inputs that have an effect,\n"
-        "and of the results. A paper can then cite what it used. `clast explain SCENE` has the sources of the modules\n"
-        "that are on.",
-    .examples = "clast cite disc-explosion\nclast cite my-disc.yaml --csv",
+        "Prints the sources of a scene (a built-in name or a file) with their DOIs: of its engine, of the inputs that\n"
+        "have an effect, of the values of its materials, and of the results. With --bibtex it prints the papers as\n"
+        "entries for a bibliography. `clast explain SCENE` has the sources of the modules that are on.",
+    .examples = "clast cite disc-explosion\nclast cite basalt-sphere --bibtex > papers.bib",
     .minimum_arguments = 1,
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct options, rows),

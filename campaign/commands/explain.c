@@ -58,7 +58,7 @@ const struct command explain_command = {
     .doc =
         "With a PATH (threshold.strain, or strain if that is unique, or contact for a section, or a key of a\n"
         "campaign): meaning, unit, range, default and source. Results are known by each of their names\n"
-        "(energy.kinetic, energy_kinetic, largest_fraction_mean). With a word (campaign, results, sph, censored,\n"
+        "(with dots or underscores, or with _mean behind it). With a word (campaign, results, sph, censored,\n"
         "interval, a column of the store): what it means. With a SCENE (a built-in name or a file): what is modelled\n"
         "and why, the expected cost, and every input with its value; with --json or --csv the inputs only. Without\n"
         "argument: a table of all inputs, results and keys.",

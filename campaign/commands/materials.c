@@ -1,4 +1,5 @@
-/* `clast materials [NAME]`: the built-in materials, or one as a document with its sources. */
+/* `clast materials [NAME|FILE]`: the built-in materials, or one as a document with its sources. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "campaign/commands/commands.h"
@@ -44,6 +45,19 @@ static status list(enum table_format format, struct error *error) {
   return code ? code : ended;
 }
 
+/* A name, or a file: then it is checked, and printed as it is. */
+static status print_document(const char *name, struct error *error) {
+  struct sph_material material;
+  char *text = NULL;
+  const bool file = strchr(name, '/') || strchr(name, '.');
+  const status code = file ? sph_materials_open(name, &material, &text, error)
+                           : sph_materials_load(name, &material, error); /* names the nearest one */
+  if (code == STATUS_OK)
+    fputs(file ? text : sph_materials_text(name), stdout);
+  free(text);
+  return code;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
@@ -55,11 +69,7 @@ static status run(const struct command_line *line, struct error *error) {
   code = table_text_only(&options->table, "a material's document", error);
   if (code)
     return code;
-  struct sph_material material;
-  code = sph_materials_load(line->arguments[0], &material, error); /* names the nearest one */
-  if (code == STATUS_OK)
-    fputs(sph_materials_text(line->arguments[0]), stdout);
-  return code;
+  return print_document(line->arguments[0], error);
 }
 
 static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
@@ -67,12 +77,13 @@ static const struct option_row rows[] = {TABLE_OPTIONS(struct options, table)};
 const struct command materials_command = {
     .name = "materials",
     .group = "scenes and inputs",
-    .arguments = "[NAME]",
+    .arguments = "[NAME|FILE]",
     .summary = "the built-in materials; with a name, its document with sources",
-    .doc = "Lists the materials that a scene of engine sph can name (target.material.name: basalt). With a NAME it\n"
-           "prints the document of that material, with its sources. A scene can override each of its values, and a\n"
-           "campaign can vary it (target.material.weibull.m).",
-    .examples = "clast materials\nclast materials basalt",
+    .doc = "Lists the materials that a scene of engine sph can name (material: basalt). With a NAME it prints the\n"
+           "document of that material, with a source for each value. Save it, edit it, and give the file to a body\n"
+           "(material: ./my-rock.yaml). With such a FILE it checks it and prints it. A scene can override each value,\n"
+           "and a campaign can vary it (target.material.weibull.m).",
+    .examples = "clast materials\nclast materials basalt > my-rock.yaml",
     .maximum_arguments = 1,
     COMMAND_OPTIONS(struct options, rows),
     .run = run,

@@ -27,10 +27,10 @@ static const struct {
      "a campaign takes: clast explain seeds"},
     {"identity", "", "The 128-bit hash of a run's inputs, seed and results_version. Runs are found again by it."},
     {"results_version", "", "A number of each engine that rises when result bits change. Statistics never mix two."},
-    {"attempt", "attempts",
+    {"attempt", "attempts failed_attempts",
      "One try to compute a run. It can crash or meet a limit without a result; limits.attempts says "
      "how often a run is tried."},
-    {"counted", "counts",
+    {"counted", "counts n",
      "A run counts in statistics when it completed, or ended at its end time, and is not surplus."},
     {"censored", "",
      "A run that met its hard end time (stop.end_time) while fragments may still have been breaking. It "
@@ -61,6 +61,8 @@ static const struct {
     {"window", "from_2 from_5 from_10",
      "The masses that an exponent is fitted to. from_5: fragments heavier than 4.5 mean "
      "grains or particles; from_2: than 1.5; from_10: than 9.5."},
+    {"count", "count_mean count_sd count_hw95",
+     "Fragments in a mass bin of a spectrum: of all runs of a point, and their mean, scatter and interval per run."},
     {"dust", "", "Fragments lighter than a mass of the scene (`fragments.dust_mass`); in dem, single grains."},
     {"core", "", "The largest fragment without its damaged layer: clast explain largest.bare_fraction"},
     {"damage", "D", "0 to 1: the share of its tension and shear that a particle has lost to cracks."},
@@ -123,6 +125,8 @@ const char *explain_words_result(const char *name, char plain[256], const char *
   static const char *const ends[][2] = {{"_mean", "mean over the runs of a point"},
                                         {"_sd", "standard deviation between the runs of a point"},
                                         {"_se", "standard error of the mean over the runs of a point"},
+                                        {"_resolution_verdict", "what is known of the error of the resolution"},
+                                        {"_resolution", "how far finer settings may move the result"},
                                         {"_hw95", "half width of the 95 % interval of the mean over seeds"}};
   *said = NULL;
   for (size_t i = 0; i < engine_count(); i++) {

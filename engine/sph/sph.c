@@ -10,6 +10,9 @@ static void complete(void *inputs, const bool *given) {
   sph_inputs_complete(inputs, given);
 }
 
+static status check_given(const void *inputs, const bool *given, struct error *error) {
+  return sph_inputs_check_given(inputs, given, error);
+}
 static status check(const void *inputs, struct error *error) {
   return sph_inputs_check(inputs, error);
 }
@@ -102,6 +105,7 @@ const struct engine_kind sph_engine = {
     .inputs = &sph_inputs,
     .results = &sph_results,
     .complete = complete,
+    .check_given = check_given,
     .check = check,
     .warn = warn,
     .describe = describe,

@@ -14,6 +14,10 @@ for scene in $scenes; do
 done
 expect 0 "$clast" cite basalt-sphere
 ! grep -qE "gradient_correction|artificial_stress" out || fail "what is off is cited"
+prints "10.1006/icar.1994.1009"; prints "target.material.weibull.m of basalt"
+expect 0 "$clast" cite basalt-sphere --bibtex
+for key in benz1994 benz1995 benz1999 melosh1989 monaghan1992; do prints "{$key,"; done
+! grep -q "kun1999\|monaghan2000" out || fail "BibTeX of papers that are not used"
 expect 0 "$clast" cite basalt-sphere --set method.gradient_correction=true
 prints "method.gradient_correction"
 expect 66 "$clast" scenes disc-explosoin
@@ -105,4 +109,4 @@ expect 0 "$clast" explain vary
 prints "log_uniform"
 expect 65 "$clast" explain desing
 says "design"
-done_after $((32 + 3 * $(echo "$scenes" | wc -w)))
+done_after $((33 + 3 * $(echo "$scenes" | wc -w)))

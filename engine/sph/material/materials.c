@@ -66,22 +66,90 @@ const char *sph_materials_text(const char *name) {
   return NULL;
 }
 
-status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error) {
-  static const char *const own_keys[] = {"material", "source", NULL};
-  struct document *document = NULL;
+/* Is it a value, or a section of values? */
+static bool is_value(const char *path) {
+  const size_t length = strlen(path);
+  for (size_t i = 0; i < sph_materials_table.count; i++)
+    if (strncmp(rows[i].path, path, length) == 0 && (rows[i].path[length] == '.' || rows[i].path[length] == '\0'))
+      return true;
+  return false;
+}
+
+/* `sources`: a text for each value or section. */
+static void read_sources(document_node *sources) {
+  if (!sources)
+    return;
+  if (document_kind(sources) != DOCUMENT_MAPPING) {
+    document_report(sources, "sources",
+                    "expected a source for each value, e.g. {density: weighed, weibull: our tests}");
+    return;
+  }
+  for (size_t i = 0; i < document_count(sources); i++) {
+    const char *key = NULL;
+    document_node *node = document_item(sources, i, &key);
+    if (!key || !is_value(key))
+      document_report(node, "sources", "'%.60s' is no value of a material; `clast explain target.material` lists them",
+                      key ? key : "");
+    else if (!document_scalar(node))
+      document_report(node, "sources", "expected a text that says where the value comes from");
+  }
+}
+
+/* Frees the document. */
+static status read_material(struct document *document, struct sph_material *out, struct error *error) {
+  static const char *const own_keys[] = {"material", "source", "sources", NULL};
   const char *report = NULL;
+  status code;
   field_defaults(&sph_materials_table, out);
-  status code = document_parse(name, text, strlen(text), &document, error);
-  if (code)
-    return code;
   document_node *root = document_root(document);
   if (document_read(root, &sph_materials_table, own_keys, out) && !(out->tillotson.E_cv > out->tillotson.E_iv))
     document_report(root, "tillotson.E_cv", "must be above tillotson.E_iv");
+  read_sources(document_key(root, "sources"));
   code = document_finish(document, &report);
   if (code)
     status_fail(error, code, "%s", report);
   document_free(document);
   return code;
+}
+
+status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error) {
+  struct document *document = NULL;
+  const status code = document_parse(name, text, strlen(text), &document, error);
+  return code ? code : read_material(document, out, error);
+}
+
+status sph_materials_open(const char *path, struct sph_material *out, char **text, struct error *error) {
+  struct document *document = NULL;
+  *text = NULL;
+  status code = document_open(path, &document, error);
+  if (code)
+    return code;
+  *text = strdup(document_text(document));
+  code = read_material(document, out, error);
+  return code || *text ? code : status_fail(error, STATUS_MEMORY, "%s: no memory", path);
+}
+
+status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]) {
+  const char *text = sph_materials_text(name);
+  struct document *document = NULL;
+  source[0] = '\0';
+  if (!text || document_parse(name, text, strlen(text), &document, NULL) != STATUS_OK)
+    return STATUS_MISSING;
+  document_node *root = document_root(document), *sources = document_key(root, "sources"), *found = NULL;
+  char key[FIELD_TEXT_SIZE];
+  field_copy_text(key, path);
+  for (char *dot = key; dot && sources && !found; dot = strrchr(key, '.')) { /* the value, or its section */
+    if (dot != key)
+      *dot = '\0';
+    found = document_key(sources, key);
+    if (!found && !strchr(key, '.'))
+      break;
+  }
+  if (!found)
+    found = document_key(root, "source");
+  field_copy_text(source, found ? document_scalar(found) : NULL);
+  document_free(document);
+  return source[0] ? STATUS_OK : STATUS_MISSING;
 }
 
 status sph_materials_load(const char *name, struct sph_material *out, struct error *error) {

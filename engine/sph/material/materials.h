@@ -19,4 +19,10 @@ status sph_materials_load(const char *name, struct sph_material *out, struct err
 /* The same of a document at hand. */
 status sph_materials_parse(const char *name, const char *text, struct sph_material *out, struct error *error);
 
+/* The same of a file; *text, malloc'd, is what it holds. What document_open returns, too. */
+status sph_materials_open(const char *path, struct sph_material *out, char **text, struct error *error);
+/* Where a value of a named material comes from, by the document's `sources` (the value's or its section's), else its
+ * `source`. STATUS_MISSING: the document does not say. */
+status sph_materials_source(const char *name, const char *path, char source[FIELD_TEXT_SIZE]);
+
 #endif

@@ -121,6 +121,9 @@ extern const struct field_table sph_inputs;
 
 /* inputs_complete.c: sets inputs that were not given and follow from others (engine_kind.complete). */
 void sph_inputs_complete(struct sph_inputs *inputs, const bool *given);
+/* inputs_check.c: values of a material of the user's own that must be given (engine_kind.check_given). STATUS_CONTENT.
+ */
+status sph_inputs_check_given(const struct sph_inputs *inputs, const bool *given, struct error *error);
 /* inputs_check.c: conditions across fields. STATUS_CONTENT with a remedy. */
 status sph_inputs_check(const struct sph_inputs *inputs, struct error *error);
 /* How to have fewer particles: "lower fidelity.particles". */

@@ -99,6 +99,25 @@ static status check_material(const char *body_name, const struct sph_body_inputs
   return STATUS_OK;
 }
 
+/* Values that may be off must be said to be off: without a yield stress a body is elastic at any stress. */
+status sph_inputs_check_given(const struct sph_inputs *in, const bool *given, struct error *error) {
+  static const char *const must[] = {"yield_stress", "melt_energy", "tension_limit", "weibull.m", "weibull.k"};
+  for (int b = 0; b < 2; b++) {
+    const char *body = b ? "projectile" : "target";
+    const struct sph_body_inputs *inputs = b ? &in->projectile : &in->target;
+    if ((size_t)inputs->material_name < sph_materials_count())
+      continue; /* a named one has its own values */
+    for (size_t i = 0; i < sizeof must / sizeof must[0]; i++) {
+      char path[128];
+      snprintf(path, sizeof path, "%s.material.%s", body, must[i]);
+      const struct field *row = field_find(&sph_inputs, path, NULL);
+      if (row && !given[row - sph_inputs.rows] && field_is_active(&sph_inputs, row, in))
+        REFUSE("%s is not given, and the material is of your own: give it, or `off` (%s)", path, row->doc);
+    }
+  }
+  return STATUS_OK;
+}
+
 /* ---- sizes ---- */
 
 static status check_shape(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape,

@@ -1,0 +1,89 @@
+/* Finds the sections and replaces them. */
+#include "engine/scene_materials.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATH_SIZE = 256 };
+
+const char *const scene_materials_words[] = {"material", "source", "sources", NULL};
+
+static bool is_file(const char *word) {
+  const char *dot = strrchr(word, '.');
+  return strchr(word, '/') || (dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml") || !strcmp(dot, ".json")));
+}
+
+static bool has_row(const struct field_table *inputs, const char *section, const char *key) {
+  char path[PATH_SIZE + 64];
+  snprintf(path, sizeof path, "%s.%s", section, key);
+  for (size_t i = 0; i < inputs->count; i++)
+    if (strcmp(inputs->rows[i].path, path) == 0)
+      return inputs->rows[i].kind == FIELD_CHOICE;
+  return false;
+}
+
+/* `place`: where errors about the file are reported. */
+static void include(document_node *section, document_node *place, const char *path, const char *file,
+                    const char *folder) {
+  struct document *other = NULL;
+  struct error error;
+  const bool absolute = file[0] == '/' || !folder || !*folder;
+  const size_t size = strlen(file) + (absolute ? 0 : strlen(folder)) + 2;
+  char *whole = malloc(size);
+  if (!whole) {
+    document_report(place, path, "no memory for the name of a file");
+    return;
+  }
+  snprintf(whole, size, "%s%s%s", absolute ? "" : folder, absolute ? "" : "/", file);
+  if (document_open(whole, &other, &error) != STATUS_OK)
+    document_report(place, path, "%s", error.message);
+  else if (!document_graft(section, other, scene_materials_words) || !document_graft_word(section, "name", "custom"))
+    document_report(place, path, "no memory for %s", file);
+  (void)document_graft_word(section, "name", "custom"); /* after an error: nothing more is said about the section */
+  free(whole);
+}
+
+static void take(document_node *node, const char *path, const char *folder) {
+  if (document_kind(node) == DOCUMENT_MAPPING) {
+    document_node *file = document_key(node, "file");
+    const char *word = file ? document_scalar(file) : NULL;
+    if (!file)
+      return;
+    if (!word || !*word) {
+      document_report(file, path, "expected the name of a material's file, such as ./my-rock.yaml");
+      return;
+    }
+    document_graft_drop(node, "file");
+    include(node, file, path, word, folder);
+    return;
+  }
+  const char *text = document_scalar(node);
+  if (!text || !*text)
+    return; /* the reader says what is wrong */
+  char word[4096];
+  snprintf(word, sizeof word, "%s", text);
+  if (is_file(word))
+    include(node, node, path, word, folder);
+  else if (!document_graft_word(node, "name", word))
+    document_report(node, path, "no memory to read it");
+}
+
+/* `section`: its path, empty at the root. */
+static void walk(document_node *mapping, const struct field_table *inputs, const char *section, const char *folder) {
+  for (size_t i = 0; i < document_count(mapping); i++) {
+    const char *key = NULL;
+    document_node *node = document_item(mapping, i, &key);
+    char path[PATH_SIZE];
+    if (!key || (size_t)snprintf(path, sizeof path, "%s%s%s", section, *section ? "." : "", key) >= sizeof path)
+      continue;
+    if (has_row(inputs, path, "name"))
+      take(node, path, folder);
+    else if (document_kind(node) == DOCUMENT_MAPPING)
+      walk(node, inputs, path, folder);
+  }
+}
+
+void scene_materials_take(document_node *root, const struct field_table *inputs, const char *folder) {
+  if (document_kind(root) == DOCUMENT_MAPPING)
+    walk(root, inputs, "", folder);
+}
