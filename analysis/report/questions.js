@@ -40,6 +40,7 @@ export const resolution = `SELECT point_id, half_width, verdict FROM resolution
 
 export const modes = `SELECT point_id, p, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes
   WHERE quantity = :quantity`;
+export const goodness = 'SELECT point_id, p FROM goodness WHERE point_id = :point';
 export const quantiles = 'SELECT share, value, low, high FROM quantile WHERE quantity = :quantity AND point_id = :point';
 
 export const spectrum = `SELECT results_version, n, lower, upper, count, count_mean, count_sd, count_hw95 FROM spectra

@@ -42,6 +42,12 @@ function curves() {
   return spectra.length ? [{name: `${plural(spectra.length, 'point')} together`, from: store(), points, bins: pool(spectra)}] : [];
 }
 
+// p of the power law, where clast has judged it.
+function goodnessOf(from, point) {
+  const p = has(from, 'goodness') ? ask(from, questions.goodness, {point})[0]?.p ?? null : null;
+  return p === null ? '' : `, p ${p < 0.001 ? '< 0.001' : `= ${number(p, 2)}`}${p < 0.1 ? ' (a power law does not fit)' : ''}`;
+}
+
 // The line of m^-beta that holds as many fragments per run in its window as the fit was made from.
 function fitOf(curve) {
   if (curve.points.length !== 1) return null;
@@ -51,7 +57,7 @@ function fitOf(curve) {
   const power = 1 - fit.mean;
   const integral = Math.abs(power) < 1e-9 ? Math.log(upper / fit.lower) : (upper ** power - fit.lower ** power) / power;
   const factor = fit.n / curve.points[0].n / integral;
-  return {text: `β = ${withError(fit.mean, fit.hw95)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
+  return {text: `β = ${withError(fit.mean, fit.hw95)}${goodnessOf(curve.from, fit.point_id)}`, ends: [fit.lower, upper].map((mass) => ({mass, density: factor * mass ** -fit.mean, name: curve.name}))};
 }
 
 function bandOf(curve) {
@@ -96,7 +102,7 @@ export async function showSpectrum() {
   const told = drawn.map((curve, i) => `${curve.name}${fits[i] ? `: ${fits[i].text}` : ''}`).join('; ');
   await draw(figure, {data: {values: rows}, height: 340, layer}, {
     name: 'spectrum', description: `Fragment mass spectrum of ${told}`,
-    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
+    caption: `${told}. Bands: 95 % intervals over ${drawn[0].points.length > 1 ? 'points' : 'seeds'}. Lines: F(m) ~ m^-β by maximum likelihood; p (clast exponents): below 0.1 a power law does not fit.${complete ? ` Pale marks: below ${number(complete, 2)} kg fragments are missing (too few particles or grains).` : ''}`,
     command: commandOf(drawn),
     columns: ['point', 'lower_kg', 'upper_kg', 'fragments', 'density', 'density_hw95'],
     rows: rows.map((row) => [row.name, row.lower, row.upper, row.count, row.density, row.hw95]),

@@ -159,6 +159,8 @@ static status fill(struct ask_page *page, struct store *store, struct error *err
     code = ask_page_runs(page, store, error);
   if (code == STATUS_OK)
     code = ask_page_scatter(page, store, error);
+  if (code == STATUS_OK)
+    code = ask_page_goodness(page, store, error);
   if (code == STATUS_OK) /* the ready questions know the table by the store's name, too */
     code = sql_execute(page->db, "CREATE VIEW run AS SELECT * FROM runs", doing, error);
   return code ? code : add_questions(page, error);

@@ -12,6 +12,8 @@ enum {
   ASK_PAGE_MEANS = 40000,    /* rows of the table means */
   ASK_PAGE_SPECTRUM = 12000, /* rows of the table spectra */
   ASK_PAGE_QUANTILES = 200,  /* points with quantiles */
+  ASK_PAGE_JUDGED = 20000,   /* fragments of points whose fit is judged: some 5 s of a core */
+  ASK_PAGE_DRAWS = 1000,     /* samples for that; they give p within 0.016 */
   ASK_PAGE_ATTEMPTS = 500,   /* failed attempts, and failed runs */
 };
 
@@ -30,5 +32,8 @@ status ask_page_runs(struct ask_page *page, struct store *store, struct error *e
 
 /* Fills in `quantile` and `modes`. */
 status ask_page_scatter(struct ask_page *page, struct store *store, struct error *error);
+
+/* Fills in `goodness`. */
+status ask_page_goodness(struct ask_page *page, struct store *store, struct error *error);
 
 #endif

@@ -26,6 +26,23 @@ cp "$clast" alone/
 expect 66 alone/clast report small.db
 says "apt-get install nodejs npm"
 
+# The goodness of fits is that of clast exponents.
+tiny fits
+sed -i 's/per_point: 3/per_point: 20/' fits.yaml
+expect 0 "$clast" run fits.yaml -j 2 --quiet
+expect 0 "$clast" report fits.db
+expect 0 "$clast" exponents fits.db --draws 1000 --json
+python - <<'PY'
+import base64, gzip, json, re, sqlite3
+(text,) = re.findall(r'class="store">([^<]*)<', open('fits.html').read())
+db = sqlite3.connect(':memory:')
+db.deserialize(gzip.decompress(base64.b64decode(text)))
+page = dict(db.execute('select point_id, p from goodness'))
+table = {row['point_id']: row['p'] for row in json.load(open('out')) if row['p'] is not None}
+assert table and {point: p for point, p in page.items() if p is not None} == table, (page, table)
+PY
+ok "the goodness of fits"
+
 # A page that is made again while a campaign runs, and a last time when it ends.
 slow watched
 "$clast" run watched.yaml -j 1 --quiet >/dev/null 2>&1 &
@@ -74,7 +91,7 @@ if [ "$sanitized" -eq 0 ]; then
   expect 0 "$clast" run other.yaml -j 2 --quiet
   python "$source/tests/cli/report.py" "$source/tests/support" "$clast" small.html small.db other.db || fail "the page in a browser"
   ok "the page in a browser"
-  done_after 17
+  done_after 21
 else
-  done_after 15
+  done_after 19
 fi
