@@ -159,6 +159,21 @@ status picture_scatter(const struct picture_page *page, const struct picture_wor
 /* A histogram as text: edge, count, a bar. columns: width of the terminal. */
 void text_histogram_print(FILE *out, int columns, bool unicode, const struct scatter_histogram *histogram);
 
+/* Safe, warned and refused runs at a value of an input, or in a range of values. */
+struct picture_margin_tile {
+  char text[32];
+  double runs[3]; /* safe, warned, refused */
+};
+struct picture_margin {
+  const char *heading; /* above the row; NULL: none */
+  const char *label;   /* the input */
+  size_t count;        /* tiles, 1 at least */
+  const struct picture_margin_tile *tile;
+};
+/* A row of tiles per input, each divided by the shares of its runs. Drawn with cairo. */
+status picture_margins(const char *path, double width, const char *title, size_t count,
+                       const struct picture_margin *row, struct error *error);
+
 /* A heat map from points (x, y, value) in any order: every distinct x is a column, every distinct y a row. The tile of
  * a NaN, or of a place without a point, is crossed. Of two points at one place the later one counts. At most 10 000
  * tiles (STATUS_USAGE). quantity: beside the colours. */

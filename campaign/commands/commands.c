@@ -26,6 +26,7 @@ static const struct command *const all[] = {
     &query_command,
     &plot_command,
     &map_command,
+    &extremes_command,
     &picture_command,
     &report_command,
     /* the store */ &check_command,

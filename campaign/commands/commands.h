@@ -11,6 +11,7 @@ extern const struct command status_command, stats_command, estimates_command, sp
 extern const struct command check_command, export_command, merge_command, replay_command, retry_command;
 extern const struct command map_command, plot_command, compare_command, scatter_command, sensitivity_command,
     exponents_command;
+extern const struct command extremes_command;
 extern const struct command help_command, version_command, completion_command;
 
 size_t commands_count(void);

@@ -21,6 +21,27 @@ same "$(number verdict.db "select count(*) from runs where state = 'invalid' and
 expect 1 "$clast" run verdict.yaml --quiet
 same "$(number verdict.db "select count(*) from run")" 6 "a verdict is not computed again"
 
+# doubts: said before the run by simulate, plan and run, kept in the result, and counted
+expect 0 "$clast" simulate disc-explosion "${small[@]}" --set charge.energy=3MJ/m --set fidelity.time_step=0.2us --json
+says "warning: passing: grains meet at about"; says "warnings of this run: passing"; prints '"warnings": "passing"'
+expect 0 "$clast" simulate disc-explosion "${small[@]}" --set charge.energy=3MJ/m --set fidelity.time_step=0.2us --quiet
+silent err
+expect 0 "$clast" simulate disc-explosion "${small[@]}"
+if grep -q warning err; then fail "a warning of a safe run"; fi
+tiny doubt
+sed -i 's/^vary:/vary: {fidelity.time_step: [1 us, 5 us]}/; /threshold/d; s/stop.end_time: 1 ms/stop.end_time: 0.1 ms, threshold.breaking: false, fidelity.energy_bound: off/' doubt.yaml
+expect 0 "$clast" plan doubt.yaml --no-trial
+prints "warning   1 of 2 points: step: fidelity.time_step 5e-06 s"
+expect 0 "$clast" run doubt.yaml -j 2
+says "warning: 1 of 2 points: step:"
+same "$(number doubt.db "select group_concat((time_step * 1e6) || ':' || replace(warnings, ', ', '+'), ' ') from (select distinct time_step, warnings from run order by 1)")" "1.0: 5.0:drift+step" "words in the store"
+expect 0 "$clast" extremes doubt.db --json
+prints '"warned": 3'
+expect 0 "$clast" extremes doubt.db
+prints "step"
+expect 64 "$clast" extremes doubt.db --picture map.bmp
+expect 66 "$clast" extremes nosuch.db
+
 # over its time
 slow time; sed -i 's/14 cm/40 cm/; s/per_point: [0-9]*/per_point: 1/' time.yaml
 echo 'limits: {time: 0.05 s, attempts: 2, failures: 0}' >>time.yaml
@@ -57,4 +78,4 @@ expect 1 "$clast" run failures.yaml -j 2
 says "20"
 [ "$(number failures.db "select count(*) from run")" -lt 60 ] || fail "it did not stop"
 ok "stopped after $(number failures.db "select count(*) from run") runs of 200"
-done_after 23
+done_after 33

@@ -1,0 +1,66 @@
+/* `clast extremes STORE`: which runs of a store are safe, warned or refused, and why. */
+#include "db/ask/extremes.h"
+#include "campaign/charts/extremes_map.h"
+#include "campaign/commands/commands.h"
+#include "campaign/terminal/rows.h"
+
+enum { PICTURE_WIDTH = 1200 };
+
+struct options {
+  const char *picture;
+  bool why;
+  struct table_options table;
+};
+
+typedef status (*question)(struct store *store, const struct query_sink *sink, struct error *error);
+
+static status print(struct store *store, question ask, enum table_format format, struct error *error) {
+  struct rows rows;
+  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  return rows_end(&rows, ask(store, &sink, error), error);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  enum table_format format = TABLE_TEXT;
+  struct store *store = NULL;
+  status code = table_choose(&options->table, &format, error);
+  if (code == STATUS_OK)
+    code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  const bool both = format == TABLE_TEXT; /* programs get one table */
+  if (both || !options->why)
+    code = print(store, ask_extremes_campaigns, format, error);
+  if (both && code == STATUS_OK)
+    putchar('\n');
+  if (code == STATUS_OK && (both || options->why))
+    code = print(store, ask_extremes_reasons, format, error);
+  if (code == STATUS_OK && options->picture)
+    code = extremes_map_draw(store, options->picture, PICTURE_WIDTH, error);
+  store_close(store, NULL);
+  return code;
+}
+
+static const struct option_row rows[] = {
+    OPTION_ROW_TEXT("picture", 'p', "FILE.png", struct options, picture, NULL,
+                    "Draw the map: a row of tiles for each varied input, divided into safe, warned and refused runs."),
+    OPTION_ROW_FLAG("why", 0, struct options, why, "With --json or --csv: the reasons instead of the campaigns."),
+    TABLE_OPTIONS(struct options, table),
+};
+
+const struct command extremes_command = {
+    .name = "extremes",
+    .group = "results",
+    .arguments = "STORE",
+    .summary = "which runs are safe, warned or refused, and why",
+    .doc =
+        "Prints one row per campaign: runs that are safe, runs with words in the result `warnings`, and runs refused\n"
+        "by their state; the largest drift of energy of usable runs, and how many of those drift by more than 1 %\n"
+        "without a word. Then one row per reason, with a message. Made for campaigns over extreme inputs.",
+    .examples = "clast extremes out.db\nclast extremes out.db --picture map.png",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    COMMAND_OPTIONS(struct options, rows),
+    .run = run,
+};
