@@ -11,13 +11,13 @@
   X(PASSING, "passing",                                                                                                \
     "grains that no beam joins closed in faster than the speed at which they pass through each other (dem)")           \
   X(STEP, "step",                                                                                                      \
-    "the time step is above 0.3 of the longest stable one (dem), or fidelity.cfl above 0.5, or "                       \
+    "the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or "                      \
     "above 0.2 with viscosity.alpha below 0.5 (sph)")                                                                  \
-  X(DAMPING, "damping", "damping over a time step is above 0.1: the integrator does not resolve it (dem)")             \
+  X(DAMPING, "damping", "damping over a time step is above 0.05: the integrator does not resolve it (dem)")            \
   X(CLAMPED, "clamped", "cold matter held at u = 0 was given more than 1 % of the energy put in (sph)")                \
   X(HELD, "held", "the density was held at its lower limit in more than 1 % of all particle steps (sph)")              \
   X(CONTRAST, "contrast",                                                                                              \
-    "the densities of target and projectile differ by more than a factor of 4 without method.volume_weights (sph)")    \
+    "the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph)")    \
   X(PISTON, "piston", "matter of the plate went through the piston (sph)")
 
 #define WARNINGS_BIT(name_, word_, doc_) WARNINGS_PLACE_##name_,
