@@ -9,6 +9,7 @@ static const struct command *const all[] = {
     &simulate_command,
     &converge_command,
     &fit_command,
+    &serve_command,
     &retry_command,
     /* scenes and inputs */ &scenes_command,
     &materials_command,

@@ -4,7 +4,7 @@
 
 #include "campaign/terminal/option.h"
 
-extern const struct command run_command, plan_command, simulate_command, converge_command, fit_command;
+extern const struct command run_command, plan_command, simulate_command, converge_command, fit_command, serve_command;
 extern const struct command explain_command, scenes_command, materials_command, schema_command, cite_command;
 extern const struct command status_command, stats_command, estimates_command, spectrum_command, query_command,
     picture_command, report_command;

@@ -330,7 +330,11 @@ static status run_rounds(struct rounds *rounds, struct farm *farm, struct error 
       return code;
   }
   learn(rounds);
-  const struct farm_manager manager = {rounds, next_task, take_report, tick, stopping};
+  const struct farm_manager manager = {.context = rounds,
+                                       .next = next_task,
+                                       .report = take_report,
+                                       .tick = tick,
+                                       .stopping = stopping};
   status code = farm_run(farm, &manager, error);
   if (code == STATUS_OK && rounds->error.status != STATUS_OK) {
     *error = rounds->error;

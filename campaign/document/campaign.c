@@ -107,7 +107,7 @@ static const struct field design_rows[] = {
      .offset = offsetof(struct campaign_design_keys, file),
      .text = "",
      .doc = "CSV file of the points, relative to this document's folder: a header of input paths, a line for each "
-            "point. \"threshold.angle [deg]\" gives a column's unit; without it, numbers are in SI. Instead of vary."},
+            "point. \"threshold.angle [deg]\" gives the unit of bare numbers. Instead of vary."},
 };
 const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
                                                              "How points are made from the varied inputs.");
@@ -459,7 +459,12 @@ int64_t campaign_replicates_most(const struct campaign *campaign) {
 
 struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values,
                                    struct error *error) {
-  struct scene *scene = scene_copy(campaign->scene);
+  return campaign_point_scene_from(campaign->scene, campaign, values, error);
+}
+
+struct scene *campaign_point_scene_from(const struct scene *base, const struct campaign *campaign,
+                                        const struct field_value *values, struct error *error) {
+  struct scene *scene = scene_copy(base);
   if (!scene) {
     status_fail(error, STATUS_MEMORY, "no memory for a point");
     return NULL;

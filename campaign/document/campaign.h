@@ -90,6 +90,9 @@ int64_t campaign_replicates_most(const struct campaign *campaign);
  * together (cross-field check). Owned by the caller. */
 struct scene *campaign_point_scene(const struct campaign *campaign, const struct field_value *values,
                                    struct error *error);
+/* The same from another scene of the campaign's engine than its own (a level of a knob). */
+struct scene *campaign_point_scene_from(const struct scene *base, const struct campaign *campaign,
+                                        const struct field_value *values, struct error *error);
 /* Seed of replicate r: first_seed + r, the same for every point; with independent seeds derived from the point's
  * inputs. */
 uint64_t campaign_seed(const struct campaign *campaign, const struct scene *point, int64_t replicate);

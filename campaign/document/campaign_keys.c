@@ -33,7 +33,7 @@ const struct campaign_key campaign_keys[] = {
          "    {kind: sobol, points: 64, seed: 1}                 of laws; or kind random, latin_hypercube\n"
          "    {file: points.csv}                                 from another program: a header of input paths, a\n"
          "                                                       line for each point. A column \"threshold.angle\n"
-         "                                                       [deg]\" is in degrees; without a unit, in SI\n",
+         "                                                       [deg]\" is in degrees, \"[1]\" in fractions\n",
      .table = &campaign_design_table},
     {.name = "keep",
      .words = "fields none all extremes first",

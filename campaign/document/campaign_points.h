@@ -1,7 +1,7 @@
 /* `design: {file: points.csv}`: the points of a campaign from another program. For campaign.c only.
  *
  * CSV (RFC 4180) with a header of input paths, or unique endings of one. "threshold.angle [deg]" gives the unit of the
- * column's bare numbers; without it they are in SI. A cell may carry its own unit ("3 deg"). Line i makes point i. */
+ * column's bare numbers, "[1]" fractions. A cell may carry its own unit ("3 deg"). Line i makes point i. */
 #ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_POINTS_H
 #define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_POINTS_H
 

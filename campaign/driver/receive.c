@@ -3,7 +3,17 @@
 #include <string.h>
 
 #include "campaign/driver/private.h"
-#include "campaign/driver/run.h"
+#include "campaign/driver/record.h"
+
+static struct record record_of(const struct driver *driver, const struct flight *flight) {
+  struct record record = {.point_id = flight->point->id,
+                          .session_id = driver->summary.session_id,
+                          .replicate = flight->replicate,
+                          .seed = flight->seed,
+                          .attempt = flight->attempt};
+  memcpy(record.identity, flight->identity, sizeof record.identity);
+  return record;
+}
 
 static status store_result(struct driver *driver, const struct flight *flight, const struct farm_report *report,
                            const struct run_result *result, struct error *error) {
@@ -16,60 +26,17 @@ static status store_result(struct driver *driver, const struct flight *flight, c
   replicate->fields = path[0] != '\0' || result->outcome.state == OUTCOME_INVALID;
   driver->summary.fields_written += path[0] != '\0';
   driver->summary.runs_surplus += replicate->surplus;
-  struct store_run run = {
-      .point_id = point->id,
-      .session_id = driver->summary.session_id,
-      .replicate = flight->replicate,
-      .seed = flight->seed,
-      .surplus = replicate->surplus,
-      .kind = point->scene->kind,
-      .outcome = &result->outcome,
-      .result = result->result,
-      .fragments = result->fragments,
-      .fragment_count = result->fragment_count,
-      .estimates = result->estimate_count ? result->estimates : NULL,
-      .estimate_count = result->estimate_count,
-      .wall_s = report->wall_s,
-      .cpu_s = report->cpu_s,
-      .peak_memory = report->peak_memory,
-      .attempt = flight->attempt,
-      .host = report->host,
-      .rank = report->rank,
-      .fields_path = path[0] ? path : NULL,
-  };
-  memcpy(run.identity, flight->identity, sizeof run.identity);
-  return store_add_run(driver->store, &run, error);
+  struct record record = record_of(driver, flight);
+  record.surplus = replicate->surplus;
+  record.fields_path = path[0] ? path : NULL;
+  return record_run(driver->store, &record, point->scene->kind, report, result, error);
 }
 
 static status store_failure(struct driver *driver, const struct flight *flight, const struct farm_report *report,
                             struct error *error) {
-  static const char *const reasons[] = {[FARM_DONE] = "exit",
-                                        [FARM_FAILED] = "exit",
-                                        [FARM_TIME_LIMIT] = "time_limit",
-                                        [FARM_MEMORY_LIMIT] = "memory_limit",
-                                        [FARM_CRASHED] = "crash",
-                                        [FARM_LOST] = "lost"};
-  const double limits[] =
-      {[FARM_LOST] = 0, [FARM_TIME_LIMIT] = driver->time_limit, [FARM_MEMORY_LIMIT] = driver->memory_limit};
-  struct store_attempt attempt = {
-      .point_id = flight->point->id,
-      .replicate = flight->replicate,
-      .session_id = driver->summary.session_id,
-      .seed = flight->seed,
-      .attempt = flight->attempt,
-      .reason = reasons[report->ending],
-      .exit_code = report->exit_code,
-      .signal = report->signal,
-      .wall_s = report->wall_s,
-      .peak_memory = report->peak_memory,
-      .limit = limits[report->ending],
-      .message = report->message,
-      .host = report->host,
-      .rank = report->rank,
-  };
-  memcpy(attempt.identity, flight->identity, sizeof attempt.identity);
+  const struct record record = record_of(driver, flight);
   driver->summary.attempts_failed++;
-  return store_add_attempt(driver->store, &attempt, error);
+  return record_attempt(driver->store, &record, report, driver->time_limit, driver->memory_limit, error);
 }
 
 /* Many failures among the first runs mean that something is wrong with the campaign, not with chance. */

@@ -90,7 +90,11 @@ static void stopping(void *context, int signal_number) {
 }
 
 static status run_all(struct running *running, struct farm *farm, struct error *error) {
-  const struct farm_manager manager = {running, next_task, take_report, tick, stopping};
+  const struct farm_manager manager = {.context = running,
+                                       .next = next_task,
+                                       .report = take_report,
+                                       .tick = tick,
+                                       .stopping = stopping};
   status code = farm_run(farm, &manager, error);
   if (code == STATUS_OK && running->error.status != STATUS_OK) {
     *error = running->error;

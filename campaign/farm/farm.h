@@ -96,6 +96,10 @@ struct farm_manager {
   /* The first stop signal has come, or the launcher or a rank has died. Commit at once: mpirun may kill in a second.
    * Reports of tasks that still finish in time follow. May be NULL. */
   void (*stopping)(void *context, int signal_number);
+  /* For a manager that takes orders from outside: a file that is readable when there may be some. Then tick() is called
+   * at once, and next() is asked again. The farm goes on while there is no task, until a signal or a status ends it.
+   * 0: there are no orders, and the farm ends when next() gives nothing and no task is out. */
+  int orders;
 };
 
 /* Runs until next() gives nothing and no task is out. Rank 0 manages; the others serve until it ends them, and return

@@ -1,8 +1,11 @@
 /* Rank 0: takes tasks from the caller, spreads them over the ranks and reports their results. It never computes, and
  * never blocks but in poll(). */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
+#include <unistd.h>
 
 #include "campaign/farm/private.h"
 #include "schemas/clock.h"
@@ -29,6 +32,7 @@ struct manager {
   int64_t signal_ns;         /* the first stop signal; 0: none came */
   int64_t first_ns, last_ns; /* of tasks sent and results taken */
   int64_t ticked_ns, looped_ns, sleep_ns;
+  int watched; /* readable when a signal or an order has come */
   struct farm_usage usage;
 };
 
@@ -423,7 +427,7 @@ static bool finished(const struct manager *m) {
     if (!peer->lost && (peer->out > 0 || peer->recalling))
       return false;
   }
-  return !m->returned.first && (m->draining || m->dry);
+  return !m->returned.first && (m->draining || (m->dry && !m->calls->orders));
 }
 
 /* Ends the own pool with all that it computes. Its jobs are its own to free. */
@@ -478,7 +482,20 @@ static void end_ranks(struct manager *m) {
   }
 }
 
+/* With orders, one file stands for the signals and for them. */
+static void watch(struct manager *m) {
+  m->watched = m->farm->signals;
+  if (!m->calls->orders)
+    return;
+  m->watched = epoll_create1(EPOLL_CLOEXEC);
+  struct epoll_event event = {.events = EPOLLIN};
+  if (m->watched < 0 || epoll_ctl(m->watched, EPOLL_CTL_ADD, m->farm->signals, &event) != 0 ||
+      epoll_ctl(m->watched, EPOLL_CTL_ADD, m->calls->orders, &event) != 0)
+    fail(m, status_fail(m->error, STATUS_MEMORY, "cannot watch for orders: %s", strerror(errno)));
+}
+
 static void begin(struct manager *m) {
+  watch(m);
   m->ticked_ns = m->looped_ns = clock_ns();
   m->sleep_ns = FARM_SLEEP_LEAST_NS;
   for (int rank = 0; rank < m->farm->ranks; rank++) {
@@ -507,10 +524,12 @@ static void receive_all(struct manager *m) {
   int64_t timeout_ns = m->ticked_ns + TICK_NS - clock_ns();
   if (farm->ranks > 1 && m->sleep_ns < timeout_ns)
     timeout_ns = m->sleep_ns;
-  const bool heard = farm_pool_listen(farm->pool, farm->signals, timeout_ns < 0 ? 0 : timeout_ns);
+  const bool heard = farm_pool_listen(farm->pool, m->watched, timeout_ns < 0 ? 0 : timeout_ns);
   int count = 0;
   if (farm->ranks > 1)
     fail(m, farm_link_drain(farm->link, take, m, &count, error_of(m)));
+  if (heard && m->calls->orders)
+    m->ticked_ns -= TICK_NS; /* the orders may be what was heard */
   m->sleep_ns = heard || count > 0 ? FARM_SLEEP_LEAST_NS : farm_sleep_longer(m->sleep_ns);
 }
 
@@ -547,6 +566,8 @@ status farm_manage(struct farm *farm, const struct farm_manager *calls, struct e
   if (m.dropping)
     drop_pool(&m);
   end_ranks(&m);
+  if (m.watched != farm->signals && m.watched >= 0)
+    close(m.watched);
 
   m.usage.wall_s = 1e-9 * (double)(m.last_ns - m.first_ns);
   m.usage.manager_cpu_s = clock_cpu_s() - cpu;

@@ -257,7 +257,7 @@ static double stored_per_s(bool in_process, size_t fragments) {
     fixture_fill(s.run, &s.scene, point, session, 0, fragments);
     s.run->run.estimate_count = 0;
     const int64_t start = clock_ns();
-    struct farm_manager manager = {&s, store_next, store_report, store_ticking, NULL};
+    struct farm_manager manager = {.context = &s, .next = store_next, .report = store_report, .tick = store_ticking};
     const struct farm_usage usage = farm_over(NULL, NOTHINGS, in_process, &manager).usage;
     if (store_flush(s.store, &error) == STATUS_OK && usage.tasks == NOTHINGS)
       rate = NOTHINGS / (since(start) - usage.start_up_s); /* to the last commit */

@@ -99,7 +99,7 @@ expect 65 "$clast" plan in/design.yaml --no-trial
 says "no plain file"
 
 # ---- the guide: blocks of yaml and csv whose first line is "# FILE" become files, blocks of sh and python run in order
-mkdir guide bin
+mkdir -p guide bin
 ln -s "$clast" bin/clast
 export PATH=$work/bin:$PATH PYTHONPATH=$source/python PYTHONDONTWRITEBYTECODE=1
 cd guide

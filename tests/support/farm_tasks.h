@@ -233,7 +233,11 @@ static inline void task_list_stopping(void *context, int signal_number) {
 }
 
 static inline struct farm_manager task_list_manager(struct task_list *list) {
-  return (struct farm_manager){list, task_list_next, task_list_report, task_list_tick, task_list_stopping};
+  return (struct farm_manager){.context = list,
+                               .next = task_list_next,
+                               .report = task_list_report,
+                               .tick = task_list_tick,
+                               .stopping = task_list_stopping};
 }
 
 #endif

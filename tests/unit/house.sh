@@ -54,6 +54,7 @@ check_libraries() {
   only 'gsl' 'analysis|campaign/design'
   only 'mpi\.h' campaign/farm
   only 'libqhull' tests
+  only 'microhttpd|jansson' campaign/serve
 }
 
 # Nothing below the commands prints to the terminal or ends the process.

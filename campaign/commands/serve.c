@@ -1,0 +1,112 @@
+/* `clast serve CAMPAIGN`: the campaign as a model that UQ packages evaluate over HTTP (UM-Bridge). */
+#include "campaign/serve/serve.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+
+#include "campaign/commands/commands.h"
+#include "campaign/commands/launch.h"
+#include "campaign/driver/driver.h"
+#include "campaign/driver/provenance.h"
+#include "campaign/driver/run.h"
+
+struct options {
+  const char *store, *address, *quantity, *knob;
+  int64_t port, slots, wait;
+  bool in_process, quiet;
+};
+
+struct telling {
+  const char *store;
+  int slots;
+};
+
+static void tell(void *context, const struct serve_http *http) {
+  const struct telling *telling = context;
+  fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(http),
+          telling->slots, telling->slots == 1 ? "" : "s", telling->store);
+  if (!serve_http_loopback(http))
+    fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
+}
+
+static status serve_campaign(const struct serve_model *model, const struct options *options,
+                             const struct command_line *line, struct error *error) {
+  struct farm_options farm_options = {.slots = (int)options->slots,
+                                      .in_process = options->in_process,
+                                      .use_mpi = farm_under_mpi()};
+  struct farm *farm = NULL;
+  struct serve_jobs_counts counts;
+  driver_farm_options(model->campaign, &farm_options);
+  status code = farm_start(&farm_options, run_work, &farm, error);
+  if (code)
+    return code;
+  char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
+  struct telling telling = {options->store ? options->store : model->campaign->store, farm_slots_total(farm)};
+  const struct serve_options serving = {.store = telling.store,
+                                        .facts = facts,
+                                        .address = options->address,
+                                        .port = (int)options->port,
+                                        .wait_s = (double)options->wait,
+                                        .ready = tell,
+                                        .context = &telling};
+  code = facts ? serve_run(model, farm, &serving, &counts, error) : status_fail(error, STATUS_MEMORY, "out of memory");
+  if (!code && !options->quiet && farm_rank(farm) == 0)
+    fprintf(stderr,
+            "clast: %" PRId64 " evaluations: %" PRId64 " runs computed, %" PRId64 " found in the store, %" PRId64
+            " given up\n",
+            counts.evaluations, counts.computed, counts.found, counts.failed);
+  free(facts);
+  const status stopped = farm_stop(farm, code ? NULL : error);
+  return code ? code : stopped;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  struct campaign *campaign = NULL;
+  struct serve_model model = {0};
+  status code = campaign_load(line->arguments[0], &campaign, error);
+  if (!code)
+    code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
+  if (!code)
+    code = serve_campaign(&model, options, line, error);
+  serve_model_clear(&model);
+  campaign_free(campaign);
+  return launch_quiet_ranks(code, error);
+}
+
+static const struct option_row rows[] = {
+    OPTION_ROW_INTEGER("port", 'p', "N", struct options, port, 0, 65535, "4242", "Port to listen at; 0: any free one."),
+    OPTION_ROW_TEXT("listen", 0, "ADDRESS", struct options, address, "127.0.0.1",
+                    "Address to listen at. The default is for this machine alone; 0.0.0.0 is for all others, too."),
+    OPTION_ROW_TEXT(
+        "quantity", 'q', "NAMES", struct options, quantity, NULL,
+        "Results to give, comma-separated. Default: the campaign's main quantity. A request may name others."),
+    OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL,
+                    "Levels for requests with a level, coarse to fine, such as grains=1.2cm,0.9cm (`clast converge "
+                    "--list` has the knobs)."),
+    OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600",
+                       "Answer a request after so many seconds with an error; its runs go on. 0: never."),
+    OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
+    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 4096, "0",
+                       "Runs at a time. 0: one per core, or under mpirun or srun one per rank."),
+    OPTION_ROW_FLAG("in-process", 0, struct options, in_process,
+                    "Compute runs in the slot's own process. Faster for runs of a few milliseconds."),
+    OPTION_ROW_FLAG("quiet", 0, struct options, quiet, "No summary at the end."),
+};
+
+const struct command serve_command = {
+    .name = "serve",
+    .group = "running",
+    .arguments = "CAMPAIGN.yaml",
+    .summary = "the campaign as a model for UQ packages (UM-Bridge, HTTP)",
+    .doc =
+        "Answers requests of the UM-Bridge protocol 1.0: the varied inputs in, in SI units and in the order of "
+        "`vary`;\n"
+        "means over seeds out. Runs that the store has are not computed again, new ones are kept. Requests at a time\n"
+        "share the slots. GET / tells names and units. It ends with Ctrl-C or SIGTERM (exit 0).",
+    .examples = "clast serve campaign.yaml --port 4242\nclast serve campaign.yaml -q largest_fraction,fragment_count",
+    .minimum_arguments = 1,
+    .maximum_arguments = 1,
+    COMMAND_OPTIONS(struct options, rows),
+    .run = run,
+};

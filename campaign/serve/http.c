@@ -1,0 +1,236 @@
+/* Connections of libmicrohttpd. An evaluation under way suspends its connection. */
+#include "campaign/serve/http.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <microhttpd.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schemas/clock.h"
+
+struct serve_http {
+  struct MHD_Daemon *daemon;
+  const struct serve_model *model;
+  struct serve_jobs *jobs;
+  size_t exchanges; /* requests that are not sent back whole */
+  uint64_t events;  /* pieces of requests that came, answers that went */
+  bool loopback;
+};
+
+struct exchange { /* one request */
+  struct serve_http *http;
+  struct MHD_Connection *connection;
+  char *body;
+  size_t size, capacity;
+  struct serve_answer answer;
+  bool suspended;
+};
+
+static enum MHD_Result send_answer(struct exchange *exchange) {
+  struct serve_answer *answer = &exchange->answer;
+  if (!answer->body)
+    return MHD_NO; /* no memory: the connection is closed */
+  struct MHD_Response *response = MHD_create_response_from_buffer(strlen(answer->body), answer->body,
+                                                                  MHD_RESPMEM_MUST_FREE);
+  if (!response)
+    return MHD_NO;
+  answer->body = NULL;
+  MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "application/json");
+  if (answer->http == 405)
+    MHD_add_response_header(response, MHD_HTTP_HEADER_ALLOW, "GET, HEAD, POST");
+  const enum MHD_Result queued = MHD_queue_response(exchange->connection, answer->http, response);
+  MHD_destroy_response(response);
+  return queued;
+}
+
+static enum MHD_Result refuse(struct exchange *exchange, unsigned http, const char *why) {
+  exchange->answer = serve_request_error(http, "InvalidInput", "%s", why);
+  return send_answer(exchange);
+}
+
+/* A web page in a browser of this machine could send requests to a loopback port, too: browsers say where a page is
+ * from, and other clients do not. */
+static const char *refused_at_once(struct MHD_Connection *connection, unsigned *http) {
+  const char *length = MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONTENT_LENGTH);
+  if (MHD_lookup_connection_value(connection, MHD_HEADER_KIND, MHD_HTTP_HEADER_ORIGIN)) {
+    *http = MHD_HTTP_FORBIDDEN;
+    return "requests of web pages (with an Origin) are refused";
+  }
+  if (length && strtoull(length, NULL, 10) > SERVE_HTTP_BODY) {
+    *http = MHD_HTTP_CONTENT_TOO_LARGE;
+    return "the body is larger than 1 MiB";
+  }
+  return NULL;
+}
+
+static bool take_body(struct exchange *exchange, const char *bytes, size_t size) {
+  if (exchange->size + size > exchange->capacity) {
+    const size_t capacity = 2 * exchange->capacity + size;
+    char *body = realloc(exchange->body, capacity);
+    if (!body)
+      return false;
+    exchange->body = body;
+    exchange->capacity = capacity;
+  }
+  memcpy(exchange->body + exchange->size, bytes, size);
+  exchange->size += size;
+  return true;
+}
+
+static enum MHD_Result begin(struct serve_http *http, struct MHD_Connection *connection, void **context) {
+  struct exchange *exchange = *context = calloc(1, sizeof *exchange);
+  if (!exchange)
+    return MHD_NO;
+  *exchange = (struct exchange){.http = http, .connection = connection};
+  http->exchanges++;
+  unsigned code = 0;
+  const char *why = refused_at_once(connection, &code);
+  return why ? refuse(exchange, code, why) : MHD_YES;
+}
+
+/* The request is whole: answers it, or suspends the connection. */
+static enum MHD_Result judge(struct exchange *exchange, const char *method, const char *url) {
+  struct serve_request request;
+  if (serve_request_read(exchange->http->model, method, url, exchange->body ? exchange->body : "", exchange->size,
+                         &request, &exchange->answer))
+    exchange->answer = serve_jobs_submit(exchange->http->jobs, &request, exchange);
+  if (exchange->answer.http)
+    return send_answer(exchange);
+  exchange->suspended = true;
+  MHD_suspend_connection(exchange->connection);
+  return MHD_YES;
+}
+
+static enum MHD_Result handle(void *context, struct MHD_Connection *connection, const char *url, const char *method,
+                              const char *version, const char *upload, size_t *upload_size, void **own) {
+  struct exchange *exchange = *own;
+  (void)version;
+  ((struct serve_http *)context)->events++;
+  if (!exchange)
+    return begin(context, connection, own);
+  if (*upload_size > 0) {
+    const size_t size = *upload_size;
+    *upload_size = 0;
+    if (exchange->size + size > SERVE_HTTP_BODY) /* sent without a length: the rest is read, and forgotten */
+      exchange->answer.http = MHD_HTTP_CONTENT_TOO_LARGE;
+    return exchange->answer.http || take_body(exchange, upload, size) ? MHD_YES : MHD_NO;
+  }
+  if (exchange->answer.http == MHD_HTTP_CONTENT_TOO_LARGE && !exchange->answer.body)
+    return refuse(exchange, MHD_HTTP_CONTENT_TOO_LARGE, "the body is larger than 1 MiB");
+  return exchange->answer.http ? send_answer(exchange) : judge(exchange, method, url);
+}
+
+static void completed(void *context, struct MHD_Connection *connection, void **own,
+                      enum MHD_RequestTerminationCode code) {
+  struct serve_http *http = context;
+  struct exchange *exchange = *own;
+  (void)connection, (void)code;
+  if (!exchange)
+    return;
+  http->exchanges--;
+  http->events++;
+  free(exchange->body);
+  free(exchange->answer.body);
+  free(exchange);
+  *own = NULL;
+}
+
+void serve_http_answered(void *context, void *ticket, struct serve_answer answer) {
+  struct exchange *exchange = ticket;
+  (void)context;
+  exchange->answer = answer;
+  exchange->suspended = false;
+  MHD_resume_connection(exchange->connection);
+}
+
+/* ---- the port ---- */
+
+static bool read_address(const char *text, int port, struct sockaddr_storage *address, bool *loopback) {
+  struct sockaddr_in *four = (struct sockaddr_in *)address;
+  struct sockaddr_in6 *six = (struct sockaddr_in6 *)address;
+  memset(address, 0, sizeof *address);
+  if (inet_pton(AF_INET, text, &four->sin_addr) == 1) {
+    four->sin_family = AF_INET;
+    four->sin_port = htons((uint16_t)port);
+    *loopback = ntohl(four->sin_addr.s_addr) >> 24 == 127;
+    return true;
+  }
+  if (inet_pton(AF_INET6, text, &six->sin6_addr) != 1)
+    return false;
+  six->sin6_family = AF_INET6;
+  six->sin6_port = htons((uint16_t)port);
+  *loopback = IN6_IS_ADDR_LOOPBACK(&six->sin6_addr);
+  return true;
+}
+
+status serve_http_open(const struct serve_model *model, const char *address, int port, struct serve_http **out,
+                       struct error *error) {
+  struct sockaddr_storage place;
+  struct serve_http *http = *out = calloc(1, sizeof *http);
+  if (!http)
+    return status_fail(error, STATUS_MEMORY, "no memory for the server");
+  http->model = model;
+  if (!read_address(address, port, &place, &http->loopback)) {
+    serve_http_close(http);
+    *out = NULL;
+    return status_fail(error, STATUS_USAGE,
+                       "--listen expects an address such as 127.0.0.1, ::1 or 0.0.0.0, got \"%.64s\"", address);
+  }
+  const unsigned flags = MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | (place.ss_family == AF_INET6 ? MHD_USE_IPv6 : 0);
+  errno = 0;
+  http->daemon = MHD_start_daemon(flags, (uint16_t)port, NULL, NULL, handle, http, MHD_OPTION_SOCK_ADDR, &place,
+                                  MHD_OPTION_CONNECTION_LIMIT, (unsigned)SERVE_HTTP_CONNECTIONS,
+                                  MHD_OPTION_CONNECTION_TIMEOUT, (unsigned)SERVE_HTTP_IDLE_S,
+                                  MHD_OPTION_NOTIFY_COMPLETED, completed, http, MHD_OPTION_END);
+  if (http->daemon)
+    return STATUS_OK;
+  const int why = errno;
+  serve_http_close(http);
+  *out = NULL;
+  return status_fail(error, STATUS_IO, "cannot listen at %s, port %d: %s", address, port,
+                     why ? strerror(why) : "it may be in use; name another --port");
+}
+
+void serve_http_jobs(struct serve_http *http, struct serve_jobs *jobs) {
+  http->jobs = jobs;
+}
+
+int serve_http_port(const struct serve_http *http) {
+  return MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_BIND_PORT)->port;
+}
+
+int serve_http_file(const struct serve_http *http) {
+  return MHD_get_daemon_info(http->daemon, MHD_DAEMON_INFO_EPOLL_FD)->epoll_fd;
+}
+
+bool serve_http_loopback(const struct serve_http *http) {
+  return http->loopback;
+}
+
+/* Goes on as long as something happens: the library takes a body in pieces, and its file is readable for the first one
+ * only. */
+void serve_http_run(struct serve_http *http) {
+  enum { MOST = 256 }; /* the farm has its turn, too */
+  for (int i = 0; i < MOST; i++) {
+    const uint64_t before = http->events;
+    MHD_run(http->daemon);
+    if (http->events == before)
+      return;
+  }
+}
+
+void serve_http_close(struct serve_http *http) {
+  if (!http)
+    return;
+  const int64_t until = clock_ns() + CLOCK_S;
+  while (http->daemon && http->exchanges > 0 && clock_ns() < until) {
+    struct pollfd file = {.fd = serve_http_file(http), .events = POLLIN};
+    MHD_run(http->daemon);
+    poll(&file, 1, 10);
+  }
+  if (http->daemon)
+    MHD_stop_daemon(http->daemon);
+  free(http);
+}

@@ -1,0 +1,139 @@
+/* Checks that a campaign can be served, and makes scenes from vectors of numbers. */
+#include "campaign/serve/model.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+static bool is_number(const struct field *row) {
+  return row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
+}
+
+static status take_inputs(struct serve_model *model, struct error *error) {
+  const struct campaign *campaign = model->campaign;
+  if (campaign->axis_count == 0)
+    return status_fail(error, STATUS_CONTENT,
+                       "the campaign varies nothing, so a server would have no inputs; give `vary`");
+  model->inputs = calloc(campaign->axis_count, sizeof *model->inputs);
+  if (!model->inputs)
+    return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
+  for (size_t i = 0; i < campaign->axis_count; i++) {
+    const struct design_axis *axis = &campaign->axes[i];
+    if (!is_number(axis->row))
+      return status_fail(error, STATUS_CONTENT, "vary.%s: inputs of a server are numbers; put this one into `set`",
+                         axis->row->path);
+    if (axis->kind == DESIGN_AXIS_LINKED && axis->level_count)
+      return status_fail(error, STATUS_CONTENT,
+                         "vary.%s: linked by `values`, which an input of a server has not; link it by `factor`",
+                         axis->row->path);
+    if (axis->kind != DESIGN_AXIS_LINKED)
+      model->inputs[model->input_count++] = i;
+  }
+  return STATUS_OK;
+}
+
+status serve_model_result(const struct serve_model *model, const char *name, struct serve_result *result,
+                          struct error *error) {
+  result->row = campaign_quantity(model->campaign->scene->kind, name, &result->of_outcome, error);
+  return result->row ? STATUS_OK : STATUS_USAGE;
+}
+
+static status take_results(struct serve_model *model, const char *names, struct error *error) {
+  char name[FIELD_TEXT_SIZE];
+  for (const char *at = names; *at; at += strcspn(at, ","), at += *at == ',') {
+    at += strspn(at, " ");
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(at, ", "), at);
+    if (model->result_count == SERVE_MODEL_RESULTS)
+      return status_fail(error, STATUS_USAGE, "--quantity: more than %d results", SERVE_MODEL_RESULTS);
+    const status code = serve_model_result(model, name, &model->results[model->result_count], error);
+    if (code)
+      return code;
+    model->result_count++;
+  }
+  return model->result_count ? STATUS_OK : status_fail(error, STATUS_USAGE, "--quantity names no result");
+}
+
+static status take_levels(struct serve_model *model, const char *text, struct error *error) {
+  const struct campaign *campaign = model->campaign;
+  char name[64];
+  const size_t length = strcspn(text, "=");
+  snprintf(name, sizeof name, "%.*s", (int)length, text);
+  const struct knob *knob = knob_find(campaign->scene->kind->name, name, error);
+  if (!knob)
+    return STATUS_USAGE;
+  for (size_t k = 0; k < KNOB_INPUTS && knob->inputs[k].path; k++)
+    for (size_t i = 0; i < campaign->axis_count; i++)
+      if (strcmp(campaign->axes[i].row->path, knob->inputs[k].path) == 0)
+        return status_fail(error, STATUS_USAGE, "--knob %s sets %s, which the campaign varies", name,
+                           knob->inputs[k].path);
+  char *notes = NULL;
+  const status code = ladder_make(knob, campaign->scene, text[length] ? text + length + 1 : NULL, &model->ladder,
+                                  &notes, error);
+  if (notes)
+    fputs(notes, stderr);
+  free(notes);
+  return code;
+}
+
+status serve_model_make(const struct campaign *campaign, const char *results, const char *knob,
+                        struct serve_model *model, struct error *error) {
+  *model = (struct serve_model){.campaign = campaign};
+  status code = take_inputs(model, error);
+  if (!code)
+    code = take_results(model, results ? results : campaign->quantity, error);
+  if (!code && knob)
+    code = take_levels(model, knob, error);
+  if (code)
+    serve_model_clear(model);
+  return code;
+}
+
+void serve_model_clear(struct serve_model *model) {
+  free(model->inputs);
+  ladder_clear(&model->ladder);
+  *model = (struct serve_model){0};
+}
+
+struct scene *serve_model_scene(const struct serve_model *model, const double *inputs, size_t level,
+                                struct error *error) {
+  const struct campaign *campaign = model->campaign;
+  struct field_value *values = calloc(campaign->axis_count, sizeof *values);
+  if (!values) {
+    status_fail(error, STATUS_MEMORY, "no memory for a point");
+    return NULL;
+  }
+  status code = STATUS_OK;
+  for (size_t i = 0; !code && i < model->input_count; i++) {
+    const struct field_value given = {.kind = FIELD_REAL, .number = inputs[i]};
+    code = field_set_value(campaign->axes[model->inputs[i]].row, &given, &values[model->inputs[i]], error);
+  }
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (campaign->axes[i].kind == DESIGN_AXIS_LINKED)
+      design_axis_follow(&campaign->axes[i], &values[campaign->axes[i].linked], 0, &values[i]);
+  const struct scene *base = level == SERVE_MODEL_OWN_LEVEL ? campaign->scene : model->ladder.level[level].scene;
+  struct scene *scene = code ? NULL : campaign_point_scene_from(base, campaign, values, error);
+  free(values);
+  return scene;
+}
+
+static json_t *describe_row(const struct field *row) {
+  return json_pack("{s:s, s:s, s:s}", "name", row->path, "unit", row->unit ? row->unit : "1", "meaning", row->doc);
+}
+
+char *serve_model_describe(const struct serve_model *model) {
+  json_t *inputs = json_array(), *results = json_array(), *levels = json_array();
+  for (size_t i = 0; i < model->input_count; i++)
+    json_array_append_new(inputs, describe_row(model->campaign->axes[model->inputs[i]].row));
+  for (size_t i = 0; i < model->result_count; i++)
+    json_array_append_new(results, describe_row(model->results[i].row));
+  for (size_t i = 0; i < model->ladder.count; i++)
+    json_array_append_new(levels, json_string(model->ladder.level[i].setting));
+  json_t *whole = json_pack("{s:s, s:s, s:o, s:o, s:s?, s:o}", "model", model->campaign->name, "scene",
+                            model->campaign->scene->name, "inputs", inputs, "results", results, "knob",
+                            model->ladder.count ? model->ladder.knob->name : NULL, "levels", levels);
+  char *text = whole ? json_dumps(whole, JSON_INDENT(1)) : NULL;
+  json_decref(whole);
+  return text;
+}

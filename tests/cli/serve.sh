@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# `clast serve`: the UM-Bridge protocol 1.0, request by request and error by error (serve.py), limits, the store, the end.
+. "$(dirname "$0")/lib.bash"
+
+# served NAME ARGUMENT...: starts a server at a free port; sets pid and url.
+served() {
+  local name=$1
+  shift
+  rm -f serve.err # else the port of the server before may be read
+  "$clast" serve "$name.yaml" --port 0 -j 2 "$@" >out 2>serve.err </dev/null &
+  pid=$!
+  for _ in $(seq 200); do
+    port=$(sed -nE 's/^clast: serving at port ([0-9]+) .*/\1/p' serve.err 2>/dev/null || true)
+    [ -z "$port" ] || break
+    kill -0 $pid 2>/dev/null || { cat serve.err; fail "the server did not start"; }
+    sleep 0.05
+  done
+  [ -n "$port" ] || fail "no port: $(cat serve.err)"
+  url=http://127.0.0.1:$port
+}
+ended() { # ended EXIT TEXT: SIGTERM ends the server, and it says so
+  local got=0
+  kill -TERM $pid
+  wait $pid || got=$?
+  [ $got -eq "$1" ] || { cat serve.err; fail "the server ended with $got"; }
+  grep -qF "$2" serve.err || { cat serve.err; fail "the server did not say: $2"; }
+  ok "server ended: $2"
+}
+client() { # client WHAT...: what the server said stands beside what the client said
+  timeout 300 python "$source/tests/cli/serve.py" "$url" "$@" >out 2>err || { cat serve.err; fail "serve.py $1"; }
+  ok "serve.py $1"
+}
+
+cat >disc.yaml <<'YAML'
+name: disc
+scene: disc-explosion
+set: {body.diameter: 8 cm, charge.energy: 2 kJ/m, stop.end_time: 1 ms}
+vary:
+  threshold.strain: [2 %, 5 %]
+  threshold.angle: [2 deg, 6 deg]
+  beam.young_modulus: {linked: grain.young_modulus, factor: 0.5}
+  grain.young_modulus: [1 GPa, 2 GPa]
+seeds: {per_point: 3}
+store: disc.db
+YAML
+sed 's/^store: .*/store: grid.db/' disc.yaml >grid.yaml
+expect 0 "$clast" run grid.yaml -j 2 --quiet
+"$clast" export grid.db points.jsonl --per point --jsonl 2>/dev/null
+
+# ---- every request, every error; answers are those of `clast run`, to the last bit
+served disc --knob grains=1.2cm,1.07cm
+client protocol points.jsonl
+same "$(number disc.db "select count(*) > 0 from runs where counts")" 1 "runs are kept while it serves"
+ended 0 "evaluations:"
+expect 0 "$clast" check disc.db
+same "$(number disc.db "select last_outcome from (select outcome as last_outcome from session order by session_id desc limit 1)")" finished "session"
+same "$(number disc.db "select count(*) from estimates where run_id is null and point_id = 1 and headline")" 1 "exponents of a point"
+runs=$(number disc.db "select count(*) from runs")
+
+# ---- a second server answers from the store
+served disc --knob grains=1.2cm,1.07cm
+client again points.jsonl
+ended 0 "0 runs computed"
+same "$(number disc.db "select count(*) from runs")" "$runs" "runs after the second server"
+expect 0 "$clast" run disc.yaml -j 2 # a campaign goes on from what was served
+says "0 runs computed"
+
+# ---- limits: time of an answer, a run's own limit, the end of a server under load
+cat >long.yaml <<'YAML'
+name: long
+scene: disc-explosion
+vary: {threshold.strain: [2 %, 5 %]}
+seeds: {per_point: 1}
+limits: {time: 100 s}
+store: long.db
+YAML
+served long --wait 1
+client slow
+ended 0 "evaluations:"
+sed -i 's/100 s/50 ms/; s/long.db/short.db/' long.yaml
+served long
+client hopeless
+ended 0 "1 given up"
+same "$(number short.db "select count(*) from attempt where reason = 'time_limit'")" 2 "attempts at a hopeless run"
+
+# ---- what cannot be served
+served disc --listen 127.0.0.1
+expect 74 "$clast" serve disc.yaml --port "$port"
+says "cannot listen at 127.0.0.1, port $port"
+expect 74 "$clast" serve disc.yaml --port 0
+says "disc.db"
+ended 0 "0 evaluations"
+expect 64 "$clast" serve disc.yaml --port 0 --listen localhost
+expect 64 "$clast" serve disc.yaml --port 0 -q no_such
+expect 64 "$clast" serve disc.yaml --port 0 --knob no_such
+expect 64 "$clast" serve disc.yaml --port 70000
+sed '/^vary/,/GPa\]/d' disc.yaml >still.yaml
+expect 65 "$clast" serve still.yaml --port 0
+says "varies nothing"
+sed 's/threshold.angle: \[2 deg, 6 deg\]/contact.law: [conservative, printed]/' disc.yaml >law.yaml
+expect 65 "$clast" serve law.yaml --port 0
+done_after 25
