@@ -3,18 +3,24 @@
 
 #include "campaign/charts/cinema.h"
 #include "campaign/commands/commands.h"
+#include "campaign/commands/export_crate.h"
 #include "campaign/commands/export_files.h"
 
 struct options {
-  const char *per;
-  bool csv, lines, bits, cinema;
+  const char *per, *license, *author;
+  bool csv, lines, bits, cinema, crate;
 };
 
 static status check(const struct options *options, const char *target, struct error *error) {
-  if (options->csv + options->lines + options->bits + options->cinema > 1)
-    return status_fail(error, STATUS_USAGE, "--csv, --jsonl, --bits and --cinema exclude each other");
-  if (options->per && (options->bits || options->cinema))
-    return status_fail(error, STATUS_USAGE, "--per and --%s exclude each other", options->bits ? "bits" : "cinema");
+  if (options->csv + options->lines + options->bits + options->cinema + options->crate > 1)
+    return status_fail(error, STATUS_USAGE, "--csv, --jsonl, --bits, --cinema and --crate exclude each other");
+  if (options->per && (options->bits || options->cinema || options->crate))
+    return status_fail(error, STATUS_USAGE, "--per and --%s exclude each other",
+                       options->bits     ? "bits"
+                       : options->cinema ? "cinema"
+                                         : "crate");
+  if ((options->license || options->author) && !options->crate)
+    return status_fail(error, STATUS_USAGE, "--license and --author belong to --crate");
   if (options->per && strcmp(options->per, "run") != 0 && strcmp(options->per, "point") != 0)
     return status_fail(error, STATUS_USAGE, "--per expects run or point, got \"%.64s\"", options->per);
   if (options->lines && !options->per)
@@ -42,6 +48,12 @@ static status export_cinema(struct store *store, const char *folder, struct erro
   return code;
 }
 
+static status export_as_crate(struct store *store, const char *path, const struct options *options, const char *folder,
+                              struct error *error) {
+  const struct export_crate_options crate = {.folder = folder, .license = options->license, .author = options->author};
+  return export_crate(store, path, &crate, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *target = line->count > 1 ? line->arguments[1] : NULL;
@@ -54,6 +66,7 @@ static status run(const struct command_line *line, struct error *error) {
   code = options->per      ? export_rows(store, options, target, error)
          : options->csv    ? export_files_folder(store, target, error)
          : options->cinema ? export_cinema(store, target, error)
+         : options->crate  ? export_as_crate(store, line->arguments[0], options, target, error)
          : options->bits   ? export_files_write(store, target, NULL, TABLE_CSV, error)
                            : store_export(store, target, error);
   if (!code && target)
@@ -76,6 +89,12 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("cinema", 0, struct options, cinema,
                     "Write a Cinema database for ParaView and Cinema viewers: a folder with data.csv, and pictures of "
                     "all runs whose fields are kept and of their points' spectra."),
+    OPTION_ROW_FLAG("crate", 0, struct options, crate,
+                    "Write an RO-Crate (Process Run Crate) for an archive: a folder with the store, the campaigns, "
+                    "tables as CSV, and metadata that tell which program made them, and when."),
+    OPTION_ROW_TEXT("license", 0, "URL", struct options, license, NULL,
+                    "Of the crate, such as https://creativecommons.org/licenses/by/4.0/."),
+    OPTION_ROW_TEXT("author", 0, "NAME", struct options, author, NULL, "Of the crate."),
 };
 
 const struct command export_command = {

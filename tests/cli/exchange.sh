@@ -98,6 +98,20 @@ mkdir in/points.csv
 expect 65 "$clast" plan in/design.yaml --no-trial
 says "no plain file"
 
+# ---- a crate for an archive
+expect 0 "$clast" export design.db --crate crate --author 'A. "Nother" Person' --license https://creativecommons.org/licenses/by/4.0/
+expect 0 python "$source/tests/cli/crate.py" crate
+expect 0 "$clast" check crate/store.db
+same "$(grep -c . crate/runs.csv)" 16 "lines of the crate's runs.csv"
+cmp -s crate/campaign-1.yaml <("$clast" query design.db "select document from campaign where campaign_id = 1" --json |
+  python -c "import json, sys; print(json.load(sys.stdin)[0]['document'], end='')") || fail "the campaign in the crate"
+expect 0 "$clast" export rows.db plain --crate # neither author nor licence
+expect 0 python "$source/tests/cli/crate.py" plain
+expect 74 "$clast" export design.db --crate crate
+says "is not empty"
+expect 64 "$clast" export design.db --crate
+expect 64 "$clast" export design.db other --csv --license x
+
 # ---- the guide: blocks of yaml and csv whose first line is "# FILE" become files, blocks of sh and python run in order
 mkdir -p guide bin
 ln -s "$clast" bin/clast
@@ -114,4 +128,4 @@ done
 cd ..
 [ "$(ls guide/block-*.sh | wc -l)" -ge 2 ] && [ "$(ls guide/block-*.python | wc -l)" -ge 2 ] || fail "too few blocks in the guide"
 ok "blocks of the guide"
-done_after 31
+done_after 40
