@@ -1,21 +1,31 @@
-/* `clast completion bash`: the script that lets bash complete commands and options. */
+/* `clast completion SHELL`: the script that lets bash, zsh or fish complete commands and options. */
 #include <string.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/terminal/shells.h"
 
 static status run(const struct command_line *line, struct error *error) {
-  if (strcmp(line->arguments[0], "bash") != 0)
-    return status_fail(error, STATUS_USAGE, "completion is made for bash only, not for \"%.64s\"", line->arguments[0]);
-  option_completion(commands_count(), commands_all(), stdout);
-  return STATUS_OK;
+  static const struct {
+    const char *name;
+    void (*print)(size_t count, const struct command *const *commands, FILE *out);
+  } shells[] = {{"bash", option_completion}, {"zsh", shells_zsh}, {"fish", shells_fish}};
+  for (size_t i = 0; i < sizeof shells / sizeof shells[0]; i++)
+    if (strcmp(line->arguments[0], shells[i].name) == 0) {
+      shells[i].print(commands_count(), commands_all(), stdout);
+      return STATUS_OK;
+    }
+  return status_fail(error, STATUS_USAGE, "completion is made for bash, zsh and fish, not for \"%.64s\"",
+                     line->arguments[0]);
 }
 
 const struct command completion_command = {
     .name = "completion",
     .group = "about clast",
-    .arguments = "bash",
-    .summary = "print the bash completion script",
-    .doc = "Prints a script that lets bash complete commands, options and file names with the Tab key.",
+    .arguments = "SHELL",
+    .summary = "print the completion script of bash, zsh or fish",
+    .doc = "Prints a script that lets a shell complete commands, options and file names with the Tab key. `cmake "
+           "--install`\n"
+           "puts the scripts of all three where the shells look for them.",
     .examples =
         "source <(clast completion bash)\nclast completion bash > ~/.local/share/bash-completion/completions/clast",
     .minimum_arguments = 1,

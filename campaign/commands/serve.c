@@ -2,73 +2,65 @@
 #include "campaign/serve/serve.h"
 
 #include <inttypes.h>
-#include <stdlib.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/launch.h"
-#include "campaign/driver/driver.h"
-#include "campaign/driver/provenance.h"
-#include "campaign/driver/run.h"
+#include "campaign/launch/launch.h"
 
 struct options {
+  struct launch_options launch;
   const char *store, *address, *quantity, *knob;
-  int64_t port, slots, wait;
-  bool in_process, quiet;
+  int64_t port, wait;
 };
 
-struct telling {
+struct serving { /* context of the farm's body */
+  const struct serve_model *model;
+  const struct options *options;
   const char *store;
   int slots;
 };
 
 static void tell(void *context, const struct serve_http *http) {
-  const struct telling *telling = context;
+  const struct serving *serving = context;
   fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(http),
-          telling->slots, telling->slots == 1 ? "" : "s", telling->store);
+          serving->slots, serving->slots == 1 ? "" : "s", serving->store);
   if (!serve_http_loopback(http))
     fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
 }
 
-static status serve_campaign(const struct serve_model *model, const struct options *options,
-                             const struct command_line *line, struct error *error) {
-  struct farm_options farm_options = {.slots = (int)options->slots,
-                                      .in_process = options->in_process,
-                                      .use_mpi = farm_under_mpi()};
-  struct farm *farm = NULL;
+static status serve_all(void *context, struct launch *launch, struct error *error) {
+  struct serving *serving = context;
   struct serve_jobs_counts counts;
-  driver_farm_options(model->campaign, &farm_options);
-  status code = farm_start(&farm_options, run_work, &farm, error);
-  if (code)
-    return code;
-  char *facts = provenance_json(farm_ranks(farm), farm_slots_total(farm), line->argc, line->argv);
-  struct telling telling = {options->store ? options->store : model->campaign->store, farm_slots_total(farm)};
-  const struct serve_options serving = {.store = telling.store,
-                                        .facts = facts,
-                                        .address = options->address,
-                                        .port = (int)options->port,
-                                        .wait_s = (double)options->wait,
+  serving->slots = farm_slots_total(launch->farm);
+  const struct serve_options options = {.store = serving->store,
+                                        .facts = launch->driver.facts,
+                                        .address = serving->options->address,
+                                        .port = (int)serving->options->port,
+                                        .wait_s = (double)serving->options->wait,
                                         .ready = tell,
-                                        .context = &telling};
-  code = facts ? serve_run(model, farm, &serving, &counts, error) : status_fail(error, STATUS_MEMORY, "out of memory");
-  if (!code && !options->quiet && farm_rank(farm) == 0)
+                                        .context = serving};
+  const status code = serve_run(serving->model, launch->farm, &options, &counts, error);
+  if (!code && launch->manager)
     fprintf(stderr,
             "clast: %" PRId64 " evaluations: %" PRId64 " runs computed, %" PRId64 " found in the store, %" PRId64
             " given up\n",
             counts.evaluations, counts.computed, counts.found, counts.failed);
-  free(facts);
-  const status stopped = farm_stop(farm, code ? NULL : error);
-  return code ? code : stopped;
+  return code;
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
+  struct launch_options launch = options->launch;
   struct campaign *campaign = NULL;
   struct serve_model model = {0};
+  launch.quiet = true; /* there is no progress to show */
   status code = campaign_load(line->arguments[0], &campaign, error);
   if (!code)
     code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
-  if (!code)
-    code = serve_campaign(&model, options, line, error);
+  if (!code) {
+    struct serving serving = {.model = &model, .options = options};
+    serving.store = options->store ? options->store : campaign->store;
+    code = launch_farm(campaign, &launch, line, serve_all, &serving, error);
+  }
   serve_model_clear(&model);
   campaign_free(campaign);
   return launch_quiet_ranks(code, error);
@@ -87,11 +79,10 @@ static const struct option_row rows[] = {
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600",
                        "Answer a request after so many seconds with an error; its runs go on. 0: never."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
-    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, slots, 0, 4096, "0",
+    OPTION_ROW_INTEGER("slots", 'j', "N", struct options, launch.slots, 0, 4096, "0",
                        "Runs at a time. 0: one per core, or under mpirun or srun one per rank."),
-    OPTION_ROW_FLAG("in-process", 0, struct options, in_process,
+    OPTION_ROW_FLAG("in-process", 0, struct options, launch.in_process,
                     "Compute runs in the slot's own process. Faster for runs of a few milliseconds."),
-    OPTION_ROW_FLAG("quiet", 0, struct options, quiet, "No summary at the end."),
 };
 
 const struct command serve_command = {

@@ -35,7 +35,7 @@ expect 64 env CLAST_CPU=v9 "$clast" scenes # a class misspelt would be another c
 says "baseline, v3 or v4"
 expect 0 env CLAST_CPU=v3 "$clast" scenes
 expect 64 "$clast" query
-expect 64 "$clast" completion zsh
+expect 64 "$clast" completion tcsh
 expect 64 "$clast" simulate
 expect 64 "$clast" simulate disc-explosion --seed -1
 expect 64 "$clast" simulate disc-explosion --seed 1e3
