@@ -33,7 +33,8 @@ static status run(const struct command_line *line, struct error *error) {
     return explain_path_list(format, error);
 
   const char *name = line->arguments[0];
-  if (!is_file_name(name) && !scene_builtin_text(name) && options->set.count == 0) {
+  const bool is_scene = is_file_name(name) || strchr(name, '@') || scene_builtin_text(name) || options->set.count;
+  if (!is_scene) {
     code = table_text_only(&options->table, "the explanation of a path", error);
     return code ? code : explain_path(name, error);
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "campaign/terminal/results.h"
+#include "engine/scene_settings.h"
 #include "schemas/text.h"
 
 static void explain_inputs(const struct scene *scene, FILE *out) {
@@ -43,6 +44,22 @@ static status list_inputs(const struct scene *scene, enum table_format format, s
   return table_end(table, error);
 }
 
+/* "basalt-sphere@draft: particles 10000, precision float" */
+static void list_settings(const struct scene *scene) {
+  for (size_t i = 0; i < scene->settings_count; i++) {
+    const struct scene_settings *settings = &scene->settings[i];
+    printf("  %s@%s:", scene->name, settings->name);
+    for (size_t j = 0; j < settings->count; j++) {
+      const struct field *row = &scene->kind->inputs->rows[settings->item[j].row];
+      printf("%s %s ", j ? "," : "", row->path);
+      field_json_value(row, &settings->item[j].value, stdout);
+      if (row->unit && strcmp(row->unit, "1") != 0)
+        printf(" %s", row->unit);
+    }
+    putchar('\n');
+  }
+}
+
 status explain_scene(const struct scene *scene, enum table_format format, struct error *error) {
   if (format != TABLE_TEXT)
     return list_inputs(scene, format, error);
@@ -53,5 +70,8 @@ status explain_scene(const struct scene *scene, enum table_format format, struct
          *description && description[strlen(description) - 1] == '\n' ? "" : "\n");
   free(description);
   explain_inputs(scene, stdout);
+  if (scene->settings_count > 0)
+    puts("\nnamed settings (campaign/accuracy.md):");
+  list_settings(scene);
   return STATUS_OK;
 }
