@@ -29,10 +29,11 @@ status page_empty(unsigned char **html, size_t *size, struct error *error) {
     if (access(path, F_OK) == 0)
       return atomic_file_read(path, "page", html, size, error);
   }
-  return status_fail(error, STATUS_MISSING,
-                     "%sshare/clast/report.html: the empty page is missing. clast was built without npm, which fetches "
-                     "the programs of the page: `apt-get install nodejs npm`, then build all of clast again",
-                     program);
+  return status_fail(
+      error, STATUS_MISSING,
+      "%sshare/clast/report.html: the empty page is missing. npm makes it (`apt-get install nodejs npm`) when "
+      "all of clast is built: `./setup.sh build`",
+      program);
 }
 
 /* gzip at its best level, without a time: the same data gives the same bytes. */
