@@ -34,9 +34,9 @@ expect 0 bash "$examples/slurm-scratch.sh" net.yaml net/results.db
 same "$(number net/results.db 'select count(*) from run') $(number net/results.db 'select count(*) from session')" "12 2" "runs and sessions after the second job"
 expect 0 "$clast" check net/results.db
 # a copy in the middle is whole, and the last one wins
-sed -i 's/per_point: 3/per_point: 30/' net.yaml
-STAGE_OUT_EVERY=0.1 expect 0 bash "$examples/slurm-scratch.sh" net.yaml net/results.db
-same "$(number net/results.db 'select count(*) from run')" 120 "runs after many copies"
+sed -i 's/per_point: 3/per_point: 10/' net.yaml
+STAGE_OUT_EVERY=0.03 expect 0 bash "$examples/slurm-scratch.sh" net.yaml net/results.db
+same "$(number net/results.db 'select count(*) from run')" 40 "runs after many copies"
 [ ! -e net/results.db.part ] || fail "a part of a copy is left"
 # what cannot be copied stays where it is, and the job says where
 expect 74 bash "$examples/slurm-scratch.sh" net.yaml none/results.db
