@@ -20,20 +20,21 @@ static const struct field rows[] = {
                        "the hard end came first: fragments may still be breaking\n"
                        "NaN or infinity appeared\n"
                        "the stable time step collapsed\n"
-                       "the energy ledger drifted out of its declared bound\n"
+                       "errors of the computation made or lost more energy than the scene allows\n"
                        "the inputs cannot be run together",
-        .doc = "The run's own verdict: a result, not a lost attempt."),
-    ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "Diagnostics for a person; empty when all is well."),
+        .doc = "How the run ended: with a usable result (completed, end-time), or without one."),
+    ROW(message, FIELD_TEXT, NULL, .text = "", .doc = "What went wrong, in words; empty when nothing did."),
     ROW(warnings, FIELD_TEXT, NULL, .text = "",
-        .doc = "Words of doubts about a run that is usable, empty when there are none." WARNINGS(WARNING_DOC)),
+        .doc = "Doubts about a usable run, as words; empty when there are none." WARNINGS(WARNING_DOC)),
     COUNT(steps, .label = "time steps", .doc = "Time steps taken."),
     REAL(time, "s", 0, .label = "simulated time", .doc = "Simulated time at the end."),
     REAL(time_step, "s", 0, .doc = "The smallest time step used."),
     REAL(total_mass, "kg", 0, .doc = "Mass of the body at the end (two dimensions: per metre of thickness)."),
     REAL(energy_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
-         .doc = "Drift of the closed energy ledger over the energy put in."),
+         .doc = "Energy that errors of the computation made or lost, as a share of the energy put in."),
     REAL(momentum_error, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,
-         .doc = "Change of total momentum not explained by outer forces, over the sum of the members' momenta."),
+         .doc = "Change of total momentum that no outer force explains, as a share of the sum of the momenta of all "
+                "grains or particles."),
     COUNT(fragment_count, .main_rank = 3, .label = "number of fragments",
           .doc = "Fragments of any size, single grains (dust) included."),
     COUNT(single_count, .label = "number of single grains or particles",
@@ -51,7 +52,7 @@ static const struct field rows[] = {
         .label = "mass share of the second largest fragment M₂/M",
         .doc = "Mass of the second largest fragment over the total mass, M_2/M."),
     REAL(mean_fragment_mass, "kg", 0, .main_rank = 5, .label = "mean fragment mass (second over first moment)",
-         .doc = "Second moment over first of all fragment masses (not M_2/M_1)."),
+         .doc = "Sum of the squared fragment masses over the sum of the masses (not M_2/M_1)."),
     REAL(mean_fragment_mass_rest, "kg", 0, .label = "mean fragment mass without the largest",
          .doc = "The same without the largest fragment."),
     REAL(kinetic_energy_share, "1", 0, .flags = FIELD_MAY_BE_OFF, .number = NAN,

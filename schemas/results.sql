@@ -81,22 +81,22 @@ CREATE TABLE run ( -- Runs: one simulation of a point with a seed, and what ever
   fields_path TEXT, -- HDF5 file with its fields, relative to the store's folder; NULL when none was kept
   counts INTEGER NOT NULL CHECK (counts = (surplus = 0 AND state IN ('completed', 'end-time') AND largest_fraction IS NOT NULL AND second_fraction IS NOT NULL AND fragment_count IS NOT NULL AND dust_fraction IS NOT NULL AND mean_fragment_mass IS NOT NULL)), -- 1: part of the statistics (not surplus, completed or ended at its time, the main results are numbers)
   digest BLOB CHECK (length(digest) = 16), -- changes when any bit changes of what the run determined: results, masses, estimates, seed, identity
-  state TEXT, -- The run's own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid
-  message TEXT, -- Diagnostics for a person; empty when all is well.
-  warnings TEXT, -- Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).
+  state TEXT, -- How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid
+  message TEXT, -- What went wrong, in words; empty when nothing did.
+  warnings TEXT, -- Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene's fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).
   steps INTEGER, -- [1] Time steps taken.
   time REAL, -- [s] Simulated time at the end.
   time_step REAL, -- [s] The smallest time step used.
   total_mass REAL, -- [kg] Mass of the body at the end (two dimensions: per metre of thickness).
-  energy_error REAL, -- [1] Drift of the closed energy ledger over the energy put in.
-  momentum_error REAL, -- [1] Change of total momentum not explained by outer forces, over the sum of the members' momenta.
+  energy_error REAL, -- [1] Energy that errors of the computation made or lost, as a share of the energy put in.
+  momentum_error REAL, -- [1] Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.
   fragment_count INTEGER, -- [1] Fragments of any size, single grains (dust) included.
   single_count INTEGER, -- [1] Fragments of one grain or particle: below the model's resolution.
   dust_fraction REAL, -- [1] Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).
   complete_mass REAL, -- [kg] Mass from which the spectrum of fragments is complete: 10 particles (sph: 9.5 mean ones) or 2 grains (dem: 1.5 mean ones). Exponents use heavier fragments only.
   largest_fraction REAL, -- [1] Mass of the largest fragment over the total mass, M_1/M.
   second_fraction REAL, -- [1] Mass of the second largest fragment over the total mass, M_2/M.
-  mean_fragment_mass REAL, -- [kg] Second moment over first of all fragment masses (not M_2/M_1).
+  mean_fragment_mass REAL, -- [kg] Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).
   mean_fragment_mass_rest REAL, -- [kg] The same without the largest fragment.
   kinetic_energy_share REAL -- [1] Translation energy of the fragments over the energy put in.
 ) STRICT;
@@ -961,17 +961,17 @@ INSERT INTO column_doc VALUES ('points', 'largest_fraction_sd', '1', 'standard d
 
 INSERT INTO column_doc VALUES ('points', 'largest_fraction_se', '1', 'standard error of the mean: Mass of the largest fragment over the total mass, M_1/M.', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean (Student): Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_hw95', 'kg', 'half width of the 95 % confidence interval of the mean (Student): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_mean', 'kg', 'mean over runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution', 'kg', 'how far finer settings may move the mean (view resolution): Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, at least, diverges, or not studied: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_resolution_verdict', 'kg', 'known, at least, diverges, or not studied: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_sd', 'kg', 'standard deviation between runs: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
-INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('points', 'mean_fragment_mass_se', 'kg', 'standard error of the mean: Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('points', 'n', '1', 'runs that count: completed, or ended at their time, and not surplus', 0);
 
@@ -1221,7 +1221,7 @@ INSERT INTO column_doc VALUES ('run', 'digest', NULL, 'changes when any bit chan
 
 INSERT INTO column_doc VALUES ('run', 'dust_fraction', '1', 'Mass share of dust: fragments lighter than a mass that the scene gives (sph: fragments.dust_mass), or single grains (dem).', 1);
 
-INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Drift of the closed energy ledger over the energy put in.', 1);
+INSERT INTO column_doc VALUES ('run', 'energy_error', '1', 'Energy that errors of the computation made or lost, as a share of the energy put in.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'fields_path', NULL, 'HDF5 file with its fields, relative to the store''s folder; NULL when none was kept', 0);
 
@@ -1237,13 +1237,13 @@ INSERT INTO column_doc VALUES ('run', 'kinetic_energy_share', '1', 'Translation 
 
 INSERT INTO column_doc VALUES ('run', 'largest_fraction', '1', 'Mass of the largest fragment over the total mass, M_1/M.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 1);
+INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 1);
 
 INSERT INTO column_doc VALUES ('run', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'message', NULL, 'Diagnostics for a person; empty when all is well.', 1);
+INSERT INTO column_doc VALUES ('run', 'message', NULL, 'What went wrong, in words; empty when nothing did.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'momentum_error', '1', 'Change of total momentum not explained by outer forces, over the sum of the members'' momenta.', 1);
+INSERT INTO column_doc VALUES ('run', 'momentum_error', '1', 'Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.', 1);
 
 INSERT INTO column_doc VALUES ('run', 'peak_memory', 'B', 'largest resident memory of the successful attempt', 0);
 
@@ -1265,7 +1265,7 @@ INSERT INTO column_doc VALUES ('run', 'session_id', NULL, 'the session that comp
 
 INSERT INTO column_doc VALUES ('run', 'single_count', '1', 'Fragments of one grain or particle: below the model''s resolution.', 1);
 
-INSERT INTO column_doc VALUES ('run', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 1);
+INSERT INTO column_doc VALUES ('run', 'state', NULL, 'How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid', 1);
 
 INSERT INTO column_doc VALUES ('run', 'steps', '1', 'Time steps taken.', 1);
 
@@ -1279,7 +1279,7 @@ INSERT INTO column_doc VALUES ('run', 'total_mass', 'kg', 'Mass of the body at t
 
 INSERT INTO column_doc VALUES ('run', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
+INSERT INTO column_doc VALUES ('run', 'warnings', NULL, 'Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 1);
 
 INSERT INTO column_doc VALUES ('runs', 'angular_momentum_error', '1', 'Relative change of angular momentum; off with grips or damped sides. The scale is the larger of the angular momentum at the start and the sum of momenta (the larger of start and end) times the target''s extent. Only axes count across which nothing is periodic.', 0);
 
@@ -1345,7 +1345,7 @@ INSERT INTO column_doc VALUES ('runs', 'energy_damped', 'J', 'Energy that damped
 
 INSERT INTO column_doc VALUES ('runs', 'energy_damping', 'J/m', 'Energy taken by damping.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Drift of the closed energy ledger over the energy put in.', 0);
+INSERT INTO column_doc VALUES ('runs', 'energy_error', '1', 'Energy that errors of the computation made or lost, as a share of the energy put in.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'energy_external_work', 'J/m', 'Work done by moving boundaries.', 0);
 
@@ -1423,13 +1423,13 @@ INSERT INTO column_doc VALUES ('runs', 'mean_damage', '1', 'Mean damage D of the
 
 INSERT INTO column_doc VALUES ('runs', 'mean_distention', '1', 'Mean distention of the target at the end, weighted by mass, at zero pressure. 1 is solid; off without pores.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Second moment over first of all fragment masses (not M_2/M_1).', 0);
+INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass', 'kg', 'Sum of the squared fragment masses over the sum of the masses (not M_2/M_1).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'mean_fragment_mass_rest', 'kg', 'The same without the largest fragment.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'message', NULL, 'Diagnostics for a person; empty when all is well.', 0);
+INSERT INTO column_doc VALUES ('runs', 'message', NULL, 'What went wrong, in words; empty when nothing did.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum not explained by outer forces, over the sum of the members'' momenta.', 0);
+INSERT INTO column_doc VALUES ('runs', 'momentum_error', '1', 'Change of total momentum that no outer force explains, as a share of the sum of the momenta of all grains or particles.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'neighbours', '1', 'Mean number of neighbours within 2h at the end.', 0);
 
@@ -1527,7 +1527,7 @@ INSERT INTO column_doc VALUES ('runs', 'specific_energy', 'J/kg', 'Q: kinetic en
 
 INSERT INTO column_doc VALUES ('runs', 'stable_time_step', 's', 'Longest stable time step of the body as it starts: 2/omega_max for `verlet`, 0.54/omega_max for `gear`.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'The run''s own verdict: a result, not a lost attempt. One of: completed, end-time, not-finite, time-step, energy, invalid', 0);
+INSERT INTO column_doc VALUES ('runs', 'state', NULL, 'How the run ended: with a usable result (completed, end-time), or without one. One of: completed, end-time, not-finite, time-step, energy, invalid', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'steps', '1', 'Time steps taken.', 0);
 
@@ -1551,7 +1551,7 @@ INSERT INTO column_doc VALUES ('runs', 'upright_share', '1', 'Compression: broke
 
 INSERT INTO column_doc VALUES ('runs', 'wall_time', 's', 'elapsed time of the successful attempt', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Words of doubts about a run that is usable, empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
+INSERT INTO column_doc VALUES ('runs', 'warnings', NULL, 'Doubts about a usable run, as words; empty when there are none. drift: the energy ledger drifted by more than 1 %, which the scene''s fidelity.energy_bound allows. passing: grains that no beam joins closed in faster than the speed at which they pass through each other (dem). step: the time step is above 0.25 of the longest stable one (dem), or fidelity.cfl above 0.5, or above 0.2 with viscosity.alpha below 0.5 (sph). damping: damping over a time step is above 0.05: the integrator does not resolve it (dem). clamped: cold matter held at u = 0 was given more than 1 % of the energy put in (sph). held: the density was held at its lower limit in more than 1 % of all particle steps (sph). contrast: the densities of target and projectile differ by more than a factor of 3 without method.volume_weights (sph). piston: matter of the plate went through the piston (sph).', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'young_modulus', 'Pa', 'K: slope of stress against strain under uniaxial load.', 0);
 

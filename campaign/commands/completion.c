@@ -3,12 +3,35 @@
 
 #include "campaign/commands/commands.h"
 #include "campaign/terminal/shells.h"
+#include "engine/engine.h"
+
+/* Paths of all inputs, each once: what may follow --set. */
+static void write_inputs(FILE *out) {
+  fputs("_clast_inputs=\"", out);
+  for (size_t e = 0; e < engine_count(); e++) {
+    const struct field_table *inputs = engine_at(e)->inputs;
+    for (size_t i = 0; i < inputs->count; i++) {
+      bool seen = false;
+      for (size_t before = 0; before < e && !seen; before++)
+        for (size_t k = 0; k < engine_at(before)->inputs->count && !seen; k++)
+          seen = strcmp(engine_at(before)->inputs->rows[k].path, inputs->rows[i].path) == 0;
+      if (!seen)
+        fprintf(out, "%s ", inputs->rows[i].path);
+    }
+  }
+  fputs("\"\n", out);
+}
+
+static void bash(size_t count, const struct command *const *commands, FILE *out) {
+  write_inputs(out);
+  option_completion(count, commands, out);
+}
 
 static status run(const struct command_line *line, struct error *error) {
   static const struct {
     const char *name;
     void (*print)(size_t count, const struct command *const *commands, FILE *out);
-  } shells[] = {{"bash", option_completion}, {"zsh", shells_zsh}, {"fish", shells_fish}};
+  } shells[] = {{"bash", bash}, {"zsh", shells_zsh}, {"fish", shells_fish}};
   for (size_t i = 0; i < sizeof shells / sizeof shells[0]; i++)
     if (strcmp(line->arguments[0], shells[i].name) == 0) {
       shells[i].print(commands_count(), commands_all(), stdout);

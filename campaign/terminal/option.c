@@ -214,7 +214,7 @@ void option_completion(size_t count, const struct command *const *commands, FILE
   fputs("# bash completion for clast; made by `clast completion bash` from its option tables.\n"
         "# Use: source <(clast completion bash)\n"
         "_clast() {\n"
-        "  local word=${COMP_WORDS[COMP_CWORD]} options=\n"
+        "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} options=\n"
         "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
         "    COMPREPLY=($(compgen -W \"",
         out);
@@ -232,7 +232,12 @@ void option_completion(size_t count, const struct command *const *commands, FILE
     fputs("--help\" ;;\n", out);
   }
   fputs("  esac\n"
-        "  if [[ $word == -* ]]; then\n"
+        "  if [[ $before == --set || $before == -s ]]; then\n"
+        "    COMPREPLY=($(compgen -W \"$_clast_inputs\" -S = -- \"$word\"))\n"
+        "    compopt -o nospace 2>/dev/null\n"
+        "  elif [[ $word != -* && ${COMP_WORDS[1]} == explain && $word != */* ]]; then\n"
+        "    COMPREPLY=($(compgen -W \"$_clast_inputs\" -- \"$word\"))\n"
+        "  elif [[ $word == -* ]]; then\n"
         "    COMPREPLY=($(compgen -W \"$options\" -- \"$word\"))\n"
         "  else\n"
         "    COMPREPLY=($(compgen -f -- \"$word\"))\n"

@@ -95,7 +95,7 @@ void option_lines(const char *lines, FILE *out);
 
 void option_help(const struct command *command, FILE *out);
 
-/* The bash completion script of all commands. */
+/* The bash completion script of all commands. It takes the paths of inputs from the variable _clast_inputs. */
 void option_completion(size_t count, const struct command *const *commands, FILE *out);
 
 /* The nearest of `count` names to what was typed, or NULL when none is near (schemas/text.h). */

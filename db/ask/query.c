@@ -124,8 +124,8 @@ static status bind(sqlite3_stmt *statement, size_t count, const struct query_par
         found = true;
       }
     if (!found)
-      return status_fail(error, STATUS_USAGE, "The query needs a value for %s: give %s=VALUE.", name ? name : "?",
-                         name ? name + 1 : "NAME");
+      return status_fail(error, STATUS_USAGE, "The query needs a value for %s: give --with %s=VALUE.",
+                         name ? name : "?", name ? name + 1 : "NAME");
   }
   for (size_t k = 0; k < count; k++) {
     bool used = false;

@@ -200,6 +200,7 @@ says "threshold.strain"
 expect 64 "$clast" stats tiny.db --quantity largest_fraction,beta
 says "clast estimates tiny.db"
 expect 64 "$clast" query tiny.db "select :x"
+says "give --with x=VALUE"
 expect 0 "$clast" query tiny.db "select :x as x" --with x=3 --csv
 expect 75 "$clast" query tiny.db --seconds 1 "with recursive c(x) as (select 1 union all select x + 1 from c) select max(x) from c"
 done_after 61

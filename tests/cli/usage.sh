@@ -60,6 +60,10 @@ bash -c '. ./completion.bash; COMP_WORDS=(clast stat); COMP_CWORD=1; _clast; ech
 prints "status stats"
 bash -c '. ./completion.bash; COMP_WORDS=(clast run --dry); COMP_CWORD=2; _clast; echo "${COMPREPLY[*]}"' >out
 prints "--dry-run"
+bash -c '. ./completion.bash; COMP_WORDS=(clast run a.yaml --set contact.fri); COMP_CWORD=4; _clast; echo "${COMPREPLY[*]}"' >out
+prints "contact.friction="
+bash -c '. ./completion.bash; COMP_WORDS=(clast explain target.material.wei); COMP_CWORD=2; _clast; echo "${COMPREPLY[*]}"' >out
+prints "target.material.weibull.m target.material.weibull.k"
 ok "bash completion completes"
 
 # stdout: a reader that goes away is no error, a full disk is 74
