@@ -17,7 +17,7 @@
 #define FINALIZE_NS (60 * CLOCK_S)
 
 bool farm_under_mpi(void) {
-  return getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || getenv("PMI_RANK");
+  return getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMIX_RANK") || (getenv("PMI_RANK") && farm_link_knows_pmi());
 }
 
 int farm_launched(void) {

@@ -1,10 +1,13 @@
 /* Non-blocking messages between ranks: collects frames, sends, receives, finalizes MPI. */
 #include "campaign/farm/link.h"
 
+#include <dlfcn.h>
+#include <glob.h>
 #include <mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define TAG             1
 #define LARGEST_MESSAGE ((size_t)1 << 24) /* frames are collected up to this; a larger frame goes alone */
@@ -22,6 +25,40 @@ struct farm_link {
   struct message *sending;                   /* in flight, any order */
   struct message *arriving, **arriving_last; /* in the order of arrival */
 };
+
+#ifdef OPEN_MPI
+/* Has a folder parts of Open MPI that speak PMIx, and none for PMI-1 (s1) or PMI-2 (s2)? */
+static bool lacks_pmi(const char *folder) {
+  char pmix[4096], s1[4200], s2[4200];
+  glob_t found;
+  snprintf(pmix, sizeof pmix, "%s/mca_pmix_*.so", folder);
+  snprintf(s1, sizeof s1, "%s/mca_pmix_s1.so", folder);
+  snprintf(s2, sizeof s2, "%s/mca_pmix_s2.so", folder);
+  const bool any = glob(pmix, 0, NULL, &found) == 0;
+  if (any)
+    globfree(&found);
+  return any && access(s1, F_OK) != 0 && access(s2, F_OK) != 0;
+}
+
+bool farm_link_knows_pmi(void) {
+  static const char *const folders[] = {"openmpi", "openmpi3", "openmpi/lib/openmpi3"}; /* beside the library */
+  char folder[4000];
+  Dl_info library;
+  if (!dladdr((void *)MPI_Init_thread, &library) || !strchr(library.dli_fname, '/'))
+    return true;
+  for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+    snprintf(folder, sizeof folder, "%.*s/%s", (int)(strrchr(library.dli_fname, '/') - library.dli_fname),
+             library.dli_fname, folders[i]);
+    if (lacks_pmi(folder))
+      return false;
+  }
+  return true; /* or its parts are in one file: not known */
+}
+#else
+bool farm_link_knows_pmi(void) {
+  return true;
+}
+#endif
 
 status farm_link_open(struct farm_link **out, struct error *error) {
   int provided, initialised = 0;

@@ -7,11 +7,16 @@
 #ifndef CLAST_CAMPAIGN_FARM_LINK_H
 #define CLAST_CAMPAIGN_FARM_LINK_H
 
+#include <stdbool.h>
+
 #include "campaign/farm/frame.h"
 #include "schemas/status.h"
 
 struct farm_link;
 
+/* Can this MPI library talk to a launcher that has the older PMI-1 or PMI-2 alone (srun --mpi=pmi2)? Debian's Open MPI
+ * cannot, and its MPI_Init would end the process with a page of advice. */
+bool farm_link_knows_pmi(void);
 /* MPI_Init. Signals must be blocked before, as MPI starts threads. */
 status farm_link_open(struct farm_link **out, struct error *error);
 int farm_link_rank(const struct farm_link *link);
