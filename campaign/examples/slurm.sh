@@ -12,8 +12,8 @@
 # running ones (two minutes at most), commits all results and ends with 75: "stopped, the same command resumes". The job
 # queues itself again, and the next one goes on from the store. `clast status` shows how far it is. --time must be well
 # above these 300 s. Slurm starts a requeued job after two minutes at the earliest.
-# Tried with Slurm of Debian 12 on one node (slurmctld, slurmd, munge), through drain, requeue and finish; not on a larger
-# cluster. Debian's Open MPI 4.1 knows --mpi=pmix only: with --mpi=none and pmi2 the ranks do not find each other, and
+# Tried with Slurm of Debian 12 on one node (tests/extremes/slurm.sh): requeue after SIGUSR1 and after SIGKILL, finish;
+# not on a larger cluster. Debian's Open MPI 4.1 knows --mpi=pmix only: with --mpi=none and pmi2 the ranks do not find each other, and
 # clast ends with 64. Sites differ in whether srun passes 75 on after a signal. A rank that a signal killed shows as 128
 # + its number; the script requeues then, too.
 campaign=${1:?usage: sbatch slurm.sh campaign.yaml}

@@ -7,6 +7,7 @@
  * (schedstat); and `ideal` is the same work in equal halves in two bare processes.
  *
  *     bench_farm [rounds [farm]]     best of so many (default 1); `farm`: without the other drivers
+ *     bench_farm slots               only the 1024 slots below
  */
 #include <math.h>
 #include <sys/resource.h>
@@ -198,6 +199,66 @@ static int rank_main(char **argv) {
   return (int)result;
 }
 
+static void best(double *so_far, double now) {
+  if (isnan(*so_far) || now > *so_far)
+    *so_far = now;
+}
+
+/* ---- thousands of slots: ranks whose slots sleep, so that two cores do for 1024 of them ---- */
+
+#define MANY_RANKS 64
+#define MANY_SLOTS 16 /* of each rank */
+#define MANY_TASKS 10 /* of 1 s for each slot */
+
+/* Under mpirun: this program again as `bench_farm sleepers slots tasks seconds`. Threads, as 1024 processes are the
+ * kernel's business and not the manager's. */
+static int sleepers_main(char **argv) {
+  struct task_list list;
+  struct error error = {0};
+  struct farm *farm = NULL;
+  const int count = atoi(argv[3]);
+  if (farm_start(&(struct farm_options){.slots = atoi(argv[2]), .in_process = true, .use_mpi = farm_under_mpi()},
+                 task_work, &farm, &error) != STATUS_OK)
+    return 1;
+  task_list_new(&list, (size_t)count);
+  for (int i = 0; i < count; i++)
+    list.tasks[i] = (struct task){.id = (uint64_t)i, .kind = TASK_SLEEP, .amount = atof(argv[4])};
+  const struct farm_manager manager = task_list_manager(&list);
+  const status result = farm_run(farm, &manager, &error);
+  if (farm_rank(farm) == 0) {
+    const struct farm_usage usage = farm_usage(farm);
+    printf("%g %g\n", usage.wall_s, usage.manager_cpu_s);
+  }
+  farm_stop(farm, NULL);
+  task_list_free(&list);
+  return (int)result;
+}
+
+/* Share of the slots that were busy, and processor time of rank 0 for one task. */
+static void many_slots(const char *self, double *utilisation, double *manager_us) {
+  char command[512];
+  double wall, cpu;
+  const int slots = MANY_RANKS * MANY_SLOTS, tasks = slots * MANY_TASKS;
+  snprintf(command, sizeof command, "mpirun --oversubscribe --bind-to none -n %d %s sleepers %d %d 1 2>/dev/null",
+           MANY_RANKS, self, MANY_SLOTS, tasks);
+  FILE *pipe = popen(command, "r");
+  const bool read = pipe && fscanf(pipe, "%lf %lf", &wall, &cpu) == 2;
+  if (pipe)
+    pclose(pipe);
+  if (!read)
+    return;
+  best(utilisation, tasks / (slots * wall));
+  best(manager_us, -1e6 * cpu / tasks);
+}
+
+static void print_many_slots(const char *self, int rounds) {
+  double utilisation = NAN, manager = NAN;
+  for (int round = 0; round < rounds; round++)
+    many_slots(self, &utilisation, &manager);
+  print("farm_slots_1024_utilisation", utilisation, "1");
+  print("farm_slots_1024_manager_us_per_task", -manager, "us");
+}
+
 struct ranks_usage {
   double sum, wall, manager, waiting, start_up;
 };
@@ -270,20 +331,21 @@ static double stored_per_s(bool in_process, size_t fragments) {
   return rate;
 }
 
-static void best(double *so_far, double now) {
-  if (isnan(*so_far) || now > *so_far)
-    *so_far = now;
-}
-
 int main(int argc, char **argv) {
   if (argc == 4 && strcmp(argv[1], "rank") == 0)
     return rank_main(argv);
+  if (argc == 5 && strcmp(argv[1], "sleepers") == 0)
+    return sleepers_main(argv);
   const int rounds = argc > 1 && atoi(argv[1]) > 0 ? atoi(argv[1]) : 1;
   char command[1024], self[512] = "";
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
   if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
     return 1;
+  if (argc > 1 && strcmp(argv[1], "slots") == 0) {
+    print_many_slots(self, 1);
+    return 0;
+  }
   cost_sum = fill(costs, TASKS, 0.05, 1);
   long_sum = fill(long_costs, LONG_TASKS, 1, 2);
   qsort(long_costs, LONG_TASKS, sizeof *long_costs, costliest_first);
@@ -375,6 +437,7 @@ int main(int argc, char **argv) {
   if (!isnan(xargs_rate))
     print("xargs_runs_per_s", xargs_rate, "1/s (no store)"),
         print("farm_isolated_over_xargs_runs", stored_isolated / xargs_rate, "1");
+  print_many_slots(self, rounds);
   unlink(burn_program);
   return 0;
 }
