@@ -71,7 +71,9 @@ LANES_INLINE lanes_d lanes_gather(const double *array, const uint32_t *index) {
 /* The same value, hidden from the compiler: it cannot be contracted into the next operation, so that two places with
  * the same formula give the same bits. */
 LANES_INLINE lanes_d lanes_rounded(lanes_d value) {
-#ifdef __x86_64__
+#ifdef __clang__
+  __asm__("" : "+m"(value)); /* clang ignores the target of a kernel's file and has no registers of this width */
+#elif defined __x86_64__
   __asm__("" : "+v"(value));
 #endif
   return value;
