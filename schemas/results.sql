@@ -326,7 +326,7 @@ CREATE TABLE result_sph ( -- What this engine reports beyond the columns of tabl
   crater_depth REAL, -- [m] Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.
   crater_radius REAL, -- [m] Impact: radius of a circle whose area is that of the crater at the surface.
   crater_volume REAL, -- [m^3] Impact: volume of the crater, between the surface at the start and the surface of the retained matter.
-  crater_compaction_share REAL, -- [1] Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
+  crater_compaction_share REAL, -- [1] Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.
   energy_kinetic REAL, -- [J] Kinetic energy at the end.
   energy_internal REAL, -- [J] Internal energy at the end, elastic energy included.
   energy_damped REAL, -- [J] Energy that damped sides removed.
@@ -1089,7 +1089,7 @@ INSERT INTO column_doc VALUES ('result_sph', 'compaction_volume', 'm^3', 'Impact
 
 INSERT INTO column_doc VALUES ('result_sph', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 1);
 
-INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 1);
+INSERT INTO column_doc VALUES ('result_sph', 'crater_compaction_share', '1', 'Impact: volume lost by compaction over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 1);
 
 INSERT INTO column_doc VALUES ('result_sph', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 1);
 
@@ -1315,7 +1315,7 @@ INSERT INTO column_doc VALUES ('runs', 'cpu_time', 's', 'processor time of the s
 
 INSERT INTO column_doc VALUES ('runs', 'cracks', '1', 'Stretch: number of parts of more than 1 % of the rod''s mass, minus one. Parts are found without static strength and without damaged layers. Overlapping cracks joined by broken rock do not count, even if the rod no longer carries load.', 0);
 
-INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume of closed pores over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 0);
+INSERT INTO column_doc VALUES ('runs', 'crater_compaction_share', '1', 'Impact: volume lost by compaction over the sum of that volume and the ejecta''s volume at the start. 1 is a crater made by compaction alone. Off when both volumes are 0.', 0);
 
 INSERT INTO column_doc VALUES ('runs', 'crater_depth', 'm', 'Impact: largest depth of the crater below the surface at the start. 0 when it is less than the spacing of the particles.', 0);
 

@@ -202,10 +202,6 @@ double kriging_predict(struct kriging *k, const double *x, double *variance) {
   return k->middle + k->scale * mean;
 }
 
-double kriging_length(const struct kriging *kriging, size_t input) {
-  return kriging->length[input];
-}
-
 void kriging_left_out(const struct kriging *kriging, double *errors) {
   for (size_t i = 0; i < kriging->points; i++)
     errors[i] = kriging->weights[i] / sqrt(kriging->inverse[i * kriging->points + i]);

@@ -26,8 +26,6 @@ void kriging_free(struct kriging *kriging); /* NULL is fine */
 
 /* Mean and variance of the model's mean over seeds at x. variance may be NULL. Not for two threads at a time. */
 double kriging_predict(struct kriging *kriging, const double *x, double *variance);
-/* Correlation length along an input, in units of x. */
-double kriging_length(const struct kriging *kriging, size_t input);
 
 /* Errors of predicting each point from the others, over what the prediction says of them: points values, in closed form
  * (Dubrule 1983). About 1 in the root mean square when the surface knows its errors. */

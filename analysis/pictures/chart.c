@@ -18,20 +18,7 @@ struct chart {
   FILE *variables, *data;
 };
 
-struct chart *chart_new(const char *template) {
-  struct chart *chart = calloc(1, sizeof *chart);
-  if (!chart)
-    return NULL;
-  chart->template = template;
-  chart->variables = open_memstream(&chart->variables_text, &chart->variables_size);
-  chart->data = open_memstream(&chart->data_text, &chart->data_size);
-  if (chart->variables && chart->data)
-    return chart;
-  chart_free(chart);
-  return NULL;
-}
-
-void chart_free(struct chart *chart) {
+static void release(struct chart *chart) {
   if (!chart)
     return;
   if (chart->variables)
@@ -41,6 +28,19 @@ void chart_free(struct chart *chart) {
   free(chart->variables_text);
   free(chart->data_text);
   free(chart);
+}
+
+struct chart *chart_new(const char *template) {
+  struct chart *chart = calloc(1, sizeof *chart);
+  if (!chart)
+    return NULL;
+  chart->template = template;
+  chart->variables = open_memstream(&chart->variables_text, &chart->variables_size);
+  chart->data = open_memstream(&chart->data_text, &chart->data_size);
+  if (chart->variables && chart->data)
+    return chart;
+  release(chart);
+  return NULL;
 }
 
 /* In single quotes gnuplot interprets no escapes and no `commands`, but a macro such as @x: the text is cut behind an
@@ -261,6 +261,6 @@ status chart_draw(struct chart *chart, const struct picture_page *page, double h
   if (code == STATUS_OK)
     code = chart_run(page, &(struct chart_run_files){script, chart->data_text, size, chart->data_size}, error);
   free(script);
-  chart_free(chart);
+  release(chart);
   return code;
 }

@@ -42,7 +42,6 @@ void chart_block_end(struct chart *chart);
  * STATUS_MISSING: no gnuplot on this machine, or no such template in page->templates. STATUS_USAGE: the ending.
  * STATUS_CONTENT: gnuplot refuses a template of page->templates. STATUS_IO. */
 status chart_draw(struct chart *chart, const struct picture_page *page, double height, struct error *error);
-void chart_free(struct chart *chart); /* NULL is fine */
 
 /* The templates that are compiled in, closed by NULL (generated at build time). */
 struct chart_template {

@@ -102,7 +102,8 @@ void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum p
   cairo_show_text(cairo, text);
 }
 
-void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text) {
+/* Text centred at (x, y) that reads upwards. */
+static void text_upright(cairo_t *cairo, double x, double y, double size, const char *text) {
   cairo_save(cairo);
   cairo_translate(cairo, x, y);
   cairo_rotate(cairo, -M_PI / 2);
@@ -147,7 +148,8 @@ void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, doub
                         companded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), alpha);
 }
 
-double picture_canvas_round_length(double length) {
+/* The largest of 1, 2, 5 x 10^n that is at most `length`. */
+static double round_length(double length) {
   double decade = pow(10, floor(log10(length)));
   double part = length / decade;
   if (part >= 5)
@@ -199,7 +201,7 @@ void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x,
   cairo_set_line_width(cairo, 0.07 * font);
   cairo_rectangle(cairo, x, y, width, height);
   cairo_stroke(cairo);
-  double step = high > low ? picture_canvas_round_length((high - low) / 3) : 1;
+  double step = high > low ? round_length((high - low) / 3) : 1;
   for (double tick = ceil(low / step) * step; tick <= high + 1e-9 * step; tick += step) {
     char text[32];
     double place = high > low ? y + height * (high - tick) / (high - low) : y + height / 2;
@@ -209,13 +211,13 @@ void picture_canvas_colour_bar(cairo_t *cairo, enum picture_ramp ramp, double x,
     cairo_stroke(cairo);
     picture_canvas_text(cairo, x + width + 0.6 * font, place + 0.35 * font, 0.9 * font, PICTURE_LEFT, false, text);
   }
-  picture_canvas_text_upright(cairo, x + width + 5 * font, y + height / 2, 1.05 * font, quantity);
+  text_upright(cairo, x + width + 5 * font, y + height / 2, 1.05 * font, quantity);
 }
 
 void picture_canvas_scale_bar(cairo_t *cairo, double x, double y, double points_per_metre, double available,
                               double font) {
   char text[32];
-  double metres = picture_canvas_round_length(0.24 * available / points_per_metre), length = metres * points_per_metre;
+  double metres = round_length(0.24 * available / points_per_metre), length = metres * points_per_metre;
   length_text(metres, text, sizeof text);
   cairo_set_source_rgb(cairo, 0.15, 0.15, 0.15);
   cairo_rectangle(cairo, x, y - 0.28 * font, length, 0.28 * font);

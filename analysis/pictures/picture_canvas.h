@@ -25,16 +25,12 @@ status picture_canvas_close(struct picture_canvas *canvas, status code, struct e
 enum picture_align { PICTURE_LEFT, PICTURE_CENTRE, PICTURE_RIGHT };
 void picture_canvas_text(cairo_t *cairo, double x, double y, double size, enum picture_align align, bool bold,
                          const char *text);
-/* Text centred at (x, y) that reads upwards. */
-void picture_canvas_text_upright(cairo_t *cairo, double x, double y, double size, const char *text);
 /* Title and subtitle at the head of a picture of a body; NULL: none. */
 void picture_canvas_head(cairo_t *cairo, double x, double width, double font, const char *title, double small,
                          const char *subtitle);
 double picture_canvas_text_width(cairo_t *cairo, double size, bool bold, const char *text);
 /* Perceptual colours (OKLCH, Ottosson 2020): lightness 0..1, chroma 0..0.2, hue in degrees. */
 void picture_canvas_colour(cairo_t *cairo, double lightness, double chroma, double hue, double alpha);
-/* The largest of 1, 2, 5 x 10^n that is at most `length`. */
-double picture_canvas_round_length(double length);
 
 /* Ramps that read in grey and for the colour-blind: lightness changes evenly from one end to the other, in a signed
  * ramp from the middle to both ends. */

@@ -98,7 +98,7 @@ double convergence_gain(double correlation, double w) {
 
 /* ---- order and limit ---- */
 
-const char *const convergence_verdict_names[] = {"too-few", "unchanged", "order", "no-order", "unsure", NULL};
+static const char *const verdict_names[] = {"too-few", "unchanged", "order", "no-order", "unsure", NULL};
 
 /* (h0^p - h1^p)/(h1^p - h2^p), less the ratio of the differences. With logarithms of h relative to h1; expm1 keeps
  * small p exact. */
@@ -324,7 +324,7 @@ static const char *const verdict_docs = "fewer than three levels with a step, or
 static const struct field limit_rows[] = {
     LIMIT_TEXT(knob, .doc = "What was made coarser or finer."),
     LIMIT_TEXT(quantity, .doc = "Result, as a column of the view runs. Its unit is that of the limit."),
-    ROW(struct convergence_limit_row, verdict, FIELD_CHOICE, NULL, .choices = convergence_verdict_names,
+    ROW(struct convergence_limit_row, verdict, FIELD_CHOICE, NULL, .choices = verdict_names,
         .choice_docs = verdict_docs, .maximum = CONVERGENCE_VERDICTS - 1, .doc = "What the three finest levels tell."),
     LIMIT_AS("measured_order", order, 0, .doc = "p of limit + a step^p through the three finest levels."),
     LIMIT_AS("measured_order_low", order_low, 0, .doc = "Lower end of the 95 % interval of the order."),

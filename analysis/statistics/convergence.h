@@ -51,7 +51,6 @@ enum convergence_verdict {
   CONVERGENCE_UNSURE,    /* between: more seeds are needed to tell */
   CONVERGENCE_VERDICTS
 };
-extern const char *const convergence_verdict_names[]; /* NULL-terminated */
 
 struct convergence_limit {
   enum convergence_verdict verdict;

@@ -27,7 +27,9 @@ struct exponent_window exponent_window_from(enum exponent_method method, double 
   return (struct exponent_window){lower, method == EXPONENT_LEAST_SQUARES ? 10 * lower : largest};
 }
 
-double exponent_lower_cutoff(size_t n, const double *masses) {
+/* The lower cut-off of a power law by the Kolmogorov-Smirnov distance (Clauset, Shalizi & Newman 2009): the mass above
+ * which plfit fits best, kg. masses: any order, all above the resolution limit. NaN when plfit finds none. */
+static double lower_cutoff(size_t n, const double *masses) {
   plfit_continuous_options_t options;
   if (n < EXPONENT_LEAST_FRAGMENTS || plfit_continuous_options_init(&options) != 0)
     return NAN;
@@ -209,7 +211,7 @@ status exponent_fit(enum exponent_method method, size_t n, const double *masses,
   if (!inside)
     return status_fail(error, STATUS_MEMORY, "exponent: no memory for %zu masses", n);
   if (method == EXPONENT_KS && count >= EXPONENT_LEAST_FRAGMENTS) {
-    double lower = exponent_lower_cutoff(count, inside);
+    double lower = lower_cutoff(count, inside);
     if (isfinite(lower))
       out->lower = lower;
     while (count > 0 && inside[count - 1] < out->lower)

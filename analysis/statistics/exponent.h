@@ -21,8 +21,8 @@ enum exponent_method {
   EXPONENT_LEAST_SQUARES, /* unweighted least squares of log density on non-empty log bins (Kun & Herrmann 1999) */
   EXPONENT_BINNED,        /* maximum likelihood on the stored bins (Virkar & Clauset 2014) */
   EXPONENT_MASSES,        /* maximum likelihood on masses in a bounded window (Hanel et al. 2017), any beta */
-  EXPONENT_KS,            /* the same above exponent_lower_cutoff() */
-  EXPONENT_UPPER_CUTOFF,  /* power law times exp(-m/m_c), maximum likelihood; cutoff_mass = HUGE_VAL for none */
+  EXPONENT_KS, /* the same above the lower cut-off by the Kolmogorov-Smirnov distance; call analysis_init() first */
+  EXPONENT_UPPER_CUTOFF, /* power law times exp(-m/m_c), maximum likelihood; cutoff_mass = HUGE_VAL for none */
   EXPONENT_METHODS,
 };
 /* "least_squares"..., NULL-terminated; as stored and printed, where EXPONENT_UPPER_CUTOFF is "cutoff". */
@@ -71,10 +71,5 @@ status exponent_fit_bins(enum exponent_method method, size_t n, const struct spe
 
 /* The bins wholly inside a window: first <= bin < end; *end = INT32_MAX for an open window. */
 void exponent_bins_inside(struct exponent_window window, int *first, int *end);
-
-/* The lower cut-off of a power law by the Kolmogorov-Smirnov distance (Clauset, Shalizi & Newman 2009): the mass above
- * which plfit fits best, kg. masses: any order, all above the resolution limit. NaN when plfit finds none. Call
- * analysis_init() first: it silences plfit's own error messages. */
-double exponent_lower_cutoff(size_t n, const double *masses);
 
 #endif

@@ -30,14 +30,11 @@ static status run(const struct command_line *line, struct error *error) {
   struct subject *subject = calloc(1, sizeof *subject);
   if (!subject)
     return status_fail(error, STATUS_MEMORY, "out of memory");
-  const struct study_launch launch = {.slots = (int)options->launch.slots,
-                                      .in_process = options->launch.in_process,
-                                      .quiet = options->launch.quiet,
+  const struct study_launch launch = {.options = &options->launch,
+                                      .line = line,
                                       .format = format,
                                       .picture = options->picture,
-                                      .frontier = options->frontier,
-                                      .argc = line->argc,
-                                      .argv = line->argv};
+                                      .frontier = options->frontier};
   code = request_read(&request, line->arguments[0], subject, error);
   if (code == STATUS_OK)
     code = study_launch(&subject->study, &launch, error);

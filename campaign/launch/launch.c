@@ -25,8 +25,11 @@ void launch_tell_runs(const char *store, int64_t computed, int64_t found, double
   char wall[64], cpu[64];
   progress_duration(wall_s, wall, sizeof wall);
   progress_duration(cpu_s, cpu, sizeof cpu);
-  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time), %" PRId64 " found in the store\n",
-          store, computed, computed == 1 ? "" : "s", wall, cpu, found);
+  fprintf(stderr, "%s: %" PRId64 " run%s computed in %s (%s of processor time)", store, computed,
+          computed == 1 ? "" : "s", wall, cpu);
+  if (found >= 0)
+    fprintf(stderr, ", %" PRId64 " found in the store", found);
+  fputc('\n', stderr);
 }
 
 status launch_farm(const struct campaign *limits, const struct launch_options *options, const struct command_line *line,

@@ -47,7 +47,7 @@ status launch_farm(const struct campaign *limits, const struct launch_options *o
                    status (*body)(void *context, struct launch *launch, struct error *error), void *context,
                    struct error *error);
 
-/* A line on stderr: how many runs were computed and found. */
+/* A line on stderr: how many runs were computed and found (-1: nothing is said of it). */
 void launch_tell_runs(const char *store, int64_t computed, int64_t found, double cpu_s, double wall_s);
 
 /* Is this a rank other than 0? Before MPI_Init only the launcher's environment tells. */

@@ -127,29 +127,6 @@ status ask_points_rows(struct store *store, const struct ask_points_choice *choi
   return run_written(store, out, &sql, &sink, error);
 }
 
-struct numbers {
-  int64_t *points;
-  size_t most, total;
-};
-
-static status take_number(void *context, size_t count, const struct query_value *values, struct error *error) {
-  (void)count, (void)error;
-  struct numbers *numbers = context;
-  if (numbers->total < numbers->most)
-    numbers->points[numbers->total] = values[0].integer;
-  numbers->total++;
-  return STATUS_OK;
-}
-
-status ask_points_with_runs(struct store *store, size_t most, int64_t *points, size_t *total, struct error *error) {
-  struct numbers numbers = {.points = points, .most = most};
-  const struct query_sink sink = {.context = &numbers, .row = take_number};
-  status code = query_run(store, "SELECT point_id FROM point_total WHERE runs > 0 GROUP BY point_id ORDER BY point_id",
-                          0, NULL, 0, &sink, error);
-  *total = numbers.total;
-  return code;
-}
-
 struct label {
   char *text;
   size_t size, used;

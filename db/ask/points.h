@@ -38,9 +38,6 @@ status ask_points_known(struct store *store, int64_t point, struct error *error)
 status ask_points_rows(struct store *store, const struct ask_points_choice *choice, bool newest, size_t input_count,
                        const char *const *inputs, ask_points_each each, void *context, struct error *error);
 
-/* Numbers of the points with runs that count: the first `most` of them. *total is the number of all of them. */
-status ask_points_with_runs(struct store *store, size_t most, int64_t *points, size_t *total, struct error *error);
-
 /* The varied inputs of a point by the last words of their paths, last path first: "strain 3 %, angle 4 deg".
  * Inputs that do not fit are left out. "point 7" when nothing was varied. */
 status ask_points_label(struct store *store, int64_t point_id, char *label, size_t size, struct error *error);

@@ -73,11 +73,12 @@ static const struct field rows[] = {
     REAL(crater.volume, "m^3", 0,
          .doc =
              "Impact: volume of the crater, between the surface at the start and the surface of the retained matter."),
-    SHARE(crater.compaction_share,
-          .doc =
-              "Impact: volume of closed pores over the sum of that volume and the ejecta's volume at the start. 1 is a "
-              "crater made by compaction alone. Off when both volumes are 0.",
-          .source = "Jutzi & Benz, section 3.1"),
+    SHARE(
+        crater.compaction_share,
+        .doc =
+            "Impact: volume lost by compaction over the sum of that volume and the ejecta's volume at the start. 1 is "
+            "a crater made by compaction alone. Off when both volumes are 0.",
+        .source = "Jutzi & Benz, section 3.1"),
     REAL(energy.kinetic, "J", 0, .doc = "Kinetic energy at the end."),
     REAL(energy.internal, "J", 0, .doc = "Internal energy at the end, elastic energy included."),
     REAL(energy.damped, "J", -HUGE_VAL, .doc = "Energy that damped sides removed."),
