@@ -61,10 +61,17 @@ static void find_information(const struct posterior_model *model, const struct p
   }
 }
 
-static void find_directions(const struct posterior_model *model, const double *covariance, struct identify *out) {
+/* From the mean information over nodes: the slopes of a surface at one place may be those of a wiggle. */
+static void find_directions(const struct posterior_model *model, const struct posterior *posterior,
+                            const double *covariance, struct identify *out) {
   const size_t p = model->inputs;
-  double h[POSTERIOR_INPUTS * POSTERIOR_INPUTS], vectors[POSTERIOR_INPUTS * POSTERIOR_INPUTS], eigen[POSTERIOR_INPUTS];
-  information_at(model, out->centre, h);
+  double h[POSTERIOR_INPUTS * POSTERIOR_INPUTS] = {0}, here[POSTERIOR_INPUTS * POSTERIOR_INPUTS],
+                              vectors[POSTERIOR_INPUTS * POSTERIOR_INPUTS], eigen[POSTERIOR_INPUTS];
+  for (size_t n = 0; n < NODES; n++) {
+    information_at(model, posterior->z + posterior_node(posterior, ((double)n + 0.5) / NODES) * p, here);
+    for (size_t i = 0; i < p * p; i++)
+      h[i] += here[i] / NODES;
+  }
   covariance_eigen(p, h, eigen, vectors);
   for (size_t i = 0; i < p; i++) {
     const double *v = vectors + i * p;
@@ -92,7 +99,7 @@ void identify_find(const struct posterior_model *model, const struct posterior *
     out->kept[i] = (gsl_cdf_ugaussian_P(high) - gsl_cdf_ugaussian_P(low)) / 0.9;
   }
   find_information(model, posterior, out);
-  find_directions(model, covariance, out);
+  find_directions(model, posterior, covariance, out);
 }
 
 bool identify_mixed(const struct identify *found, size_t direction, size_t input) {

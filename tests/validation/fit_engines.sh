@@ -2,7 +2,7 @@
 # Twins with the engines (fit_twins.md): inputs drawn from the priors, one specimen computed with them and a seed of its own,
 # and `clast fit` on what it shows. CLAST_FULL=1: 100 cases of each engine (CLAST_SEEDS=n: n); quick form: 2 discs.
 set -euo pipefail
-clast=$1/clast
+clast=$(realpath "$1")/clast
 work=$(mktemp -d "$1/fit-engines-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
