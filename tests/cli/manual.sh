@@ -10,9 +10,8 @@ expect 64 "$clast" help --man run
 one_error
 cmp clast.1 "$build/man/man1/clast.1" || fail "the page the build made is another: build all first"
 DESTDIR=$work/image cmake --install "$build" --prefix /usr >out 2>err || fail "cmake --install with DESTDIR"
-templates=$(cd "$source/analysis/pictures/templates" && printf './usr/share/clast/templates/%s ' *.gp)
-same "$(cd image && find . -type f | sort | xargs)" "./usr/bin/clast ./usr/share/clast/report.html $templates./usr/share/man/man1/clast.1" \
-  "installed files"
+[ -x image/usr/bin/clast ] || fail "the program is not installed" # cli.install checks the other files
+ok "installed files"
 cmp clast.1 image/usr/share/man/man1/clast.1 || fail "the installed page is another"
 
 # Read back without a formatter: undo the escapes, and look for what the tables say in the part of each command.
