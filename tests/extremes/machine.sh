@@ -143,12 +143,12 @@ expect 0 env SLURM_STEP_NUM_TASKS=4 SLURM_PROCID=0 mpirun --oversubscribe -n 2 "
 segment() { echo "/dev/shm/vader_segment.$(hostname).$(id -u).test$$.$1"; }
 for kind in dead used young; do head -c 4096 /dev/zero >"$(segment $kind)"; done
 touch -d '5 minutes ago' "$(segment dead)" "$(segment used)"
-python -c "
+command python3 -c "
 import mmap, sys, time
 with open(sys.argv[1], 'r+b') as file:
     kept = mmap.mmap(file.fileno(), 0)
 print('mapped', flush=True)
-time.sleep(300)" "$(segment used)" >mapped &
+time.sleep(60)" "$(segment used)" >mapped 2>/dev/null &
 user=$!
 until [ -s mapped ]; do sleep 0.05; done
 expect 0 mpirun --oversubscribe -n 2 "$clast" run slow.yaml --quiet
