@@ -14,13 +14,15 @@
  *
  * Quick: a coarse cube, m = 3 and 9. CLAST_FULL=1: 45 000 particles, m = 6, and the paper's 80 000 evenly spaced on a
  * lattice, with c_p halfway between floor and sound rock at 4.8 to 5.6 cm (the paper: "centered around r = 4 cm").
- * CLAST_PARTICLES=n changes the number of the graded ones, CLAST_EVEN=n that of the evenly spaced ones. */
+ * CLAST_PARTICLES=n changes the number of the graded ones, CLAST_EVEN=n that of the evenly spaced ones, CLAST_SEEDS=n
+ * takes the mean of n seeds for m = 3 in the half-space. */
 #include "tests/support/run_case.h"
 
+#include "analysis/statistics/sample.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 
-enum { SHELLS = 14, FIRST = 5, LAST = 9 };
+enum { SHELLS = 14, FIRST = 5, LAST = 9, MOST_SEEDS = 1000 };
 static const double shell = 0.01;
 
 struct cratered {
@@ -28,8 +30,10 @@ struct cratered {
   double exponent;                            /* of D ~ r^-exponent from 5 to 10 cm */
   double exponent_3_8;                        /* from 3 to 8 cm, where D is 1 to begin with */
   double halfway;                             /* m: where the speed lies halfway between floor and sound rock */
+  size_t particles;
 };
 
+static const double sound_rock = 6503;    /* m/s */
 static const double floor_speed = 0.7557; /* sqrt(K/(K + 4 mu/3)), K 71, mu 40 GPa: no shear modulus is left */
 
 static double falls_as(const double *damage, int first, int last) {
@@ -49,70 +53,100 @@ static double halfway(const double *speed) {
   return NAN;
 }
 
-static struct cratered crater(const char *m, const char *k, const char *far, const char *even) {
+/* `even`: number of particles on an even lattice; NULL: graded ones. */
+struct rock {
+  const char *m, *k, *far, *even;
+};
+
+static struct sph_inputs inputs_of(const struct rock *rock) {
   char options[6][64];
   const char *asked = getenv("CLAST_PARTICLES");
-  snprintf(options[0], sizeof options[0], "target.material.weibull.m=%s", m);
-  snprintf(options[1], sizeof options[1], "target.material.weibull.k=%s 1/m^3", k);
-  snprintf(options[2], sizeof options[2], "sides.far=%s", far);
+  snprintf(options[0], sizeof options[0], "target.material.weibull.m=%s", rock->m);
+  snprintf(options[1], sizeof options[1], "target.material.weibull.k=%s 1/m^3", rock->k);
+  snprintf(options[2], sizeof options[2], "sides.far=%s", rock->far);
   snprintf(options[3], sizeof options[3], "fidelity.particles=%s",
-           even              ? even
+           rock->even        ? rock->even
            : asked           ? asked
            : run_case_full() ? "45000"
                              : "8000");
   snprintf(options[4], sizeof options[4], "fidelity.%s",
-           even              ? "graded=false"
+           rock->even        ? "graded=false"
            : run_case_full() ? "fine_spacing=1 mm"
                              : "fine_spacing=2 mm");
-  snprintf(options[5], sizeof options[5], "target.lattice=%s", even ? "hexagonal" : "irregular");
-  struct sph_inputs inputs = SPH_CASE("gabbro-crater", options[0], options[1], options[2], options[3], options[4],
-                                      options[5], "stop.end_time=50 us");
+  snprintf(options[5], sizeof options[5], "target.lattice=%s", rock->even ? "hexagonal" : "irregular");
+  return SPH_CASE("gabbro-crater", options[0], options[1], options[2], options[3], options[4], options[5],
+                  "stop.end_time=50 us");
+}
+
+/* Adds this run's shells, over `seeds`, to `c`; returns where its own speed is halfway. */
+static double add_run(const struct sph_inputs *inputs, uint64_t seed, size_t seeds, struct cratered *c) {
   struct sph_run *run;
   struct error error = {0};
-  if (sph_run_create(&inputs, 1, &run, &error))
+  if (sph_run_create(inputs, seed, &run, &error))
     fail_msg("%s", error.message);
   while (!run->state.finished)
     sph_run_advance(run, 1000);
   assert_int_equal(run->state.outcome_state, OUTCOME_END_TIME); /* damage grew within the last two crossings */
 
   const struct sph_particles *now = sph_run_read(run), *start = run->start;
-  const double K = sph_derived_bulk_modulus(&inputs.target.material), mu = inputs.target.material.shear_modulus;
-  struct cratered c = {.mean = sph_system_damage(run->system, NULL)};
-  double mass[SHELLS] = {0};
+  const double K = sph_derived_bulk_modulus(&inputs->target.material), mu = inputs->target.material.shear_modulus;
+  double mass[SHELLS] = {0}, damage[SHELLS] = {0}, speed[SHELLS] = {0};
   for (size_t i = 0; i < run->targets; i++) {
-    const double up = inputs.target.height / 2 - start->z[i];
+    const double up = inputs->target.height / 2 - start->z[i];
     const double r = sqrt(start->x[i] * start->x[i] + start->y[i] * start->y[i] + up * up),
                  d = pow(now->damage_cbrt[i], 3);
     if (r >= SHELLS * shell)
       continue;
     const int s = (int)(r / shell);
     mass[s] += now->mass[i];
-    c.damage[s] += now->mass[i] * d;
-    c.speed[s] += now->mass[i] * sqrt((K + 4 * mu * (1 - d) / 3) / (K + 4 * mu / 3));
+    damage[s] += now->mass[i] * d;
+    speed[s] += now->mass[i] * sqrt((K + 4 * mu * (1 - d) / 3) / (K + 4 * mu / 3));
   }
-  print_message("m %s, k %s /m^3, sides %s, %zu particles, %s: mean damage %.3f\n  r, cm   ", m, k, far, run->targets,
-                even ? "even" : "graded", c.mean);
+  for (int s = 0; s < SHELLS; s++) {
+    speed[s] /= mass[s];
+    c->damage[s] += damage[s] / mass[s] / (double)seeds;
+    c->speed[s] += speed[s] / (double)seeds;
+  }
+  c->mean += sph_system_damage(run->system, NULL) / (double)seeds;
+  c->particles = run->targets;
+  sph_run_free(run);
+  return halfway(speed);
+}
+
+/* The mean of `seeds` runs. */
+static struct cratered crater(struct rock rock, size_t seeds) {
+  const struct sph_inputs inputs = inputs_of(&rock);
+  struct cratered c = {0};
+  double half[MOST_SEEDS];
+  for (size_t seed = 1; seed <= seeds; seed++)
+    half[seed - 1] = add_run(&inputs, seed, seeds, &c);
+  print_message("m %s, k %s /m^3, sides %s, %zu particles, %s, seeds 1 to %zu: mean damage %.3f\n  r, cm   ", rock.m,
+                rock.k, rock.far, c.particles, rock.even ? "even" : "graded", seeds, c.mean);
   for (int s = 0; s < SHELLS; s++)
-    c.damage[s] /= mass[s], c.speed[s] /= mass[s], print_message(" %5.1f", 100 * (s + 0.5) * shell);
+    print_message(" %5.1f", 100 * (s + 0.5) * shell);
   print_message("\n  damage  ");
   for (int s = 0; s < SHELLS; s++)
     print_message(" %5.3f", c.damage[s]);
-  print_message("\n  c_p/c_p0");
+  print_message("\n  c_p, m/s");
   for (int s = 0; s < SHELLS; s++)
-    print_message(" %5.3f", c.speed[s]);
+    print_message(" %5.0f", sound_rock * c.speed[s]);
   c.exponent = falls_as(c.damage, FIRST, LAST);
   c.exponent_3_8 = falls_as(c.damage, 3, 7);
-  c.halfway = halfway(c.speed);
-  print_message("\n  damage falls as r^-%.2f from 5 to 10 cm, r^-%.2f from 3 to 8 cm; c_p is halfway at %.2f cm\n",
+  const struct sample_summary place = sample_summarise(seeds, half, 0.95);
+  c.halfway = place.mean;
+  print_message("\n  damage falls as r^-%.2f from 5 to 10 cm, r^-%.2f from 3 to 8 cm; c_p is halfway at %.2f cm",
                 c.exponent, c.exponent_3_8, 100 * c.halfway);
-  sph_run_free(run);
+  if (seeds > 1)
+    print_message(" +- %.2f (95 %%)", 100 * place.half_width);
+  print_message("\n");
   return c;
 }
 
 static void speed_of_waves(void **state) {
   (void)state;
-  const struct cratered three = crater("3", "1.39e18", "damped", NULL);
-  const struct cratered nine = crater("9", run_case_full() ? "7e40" : "2e41", "damped", NULL);
+  const size_t seeds = run_case_seeds(1, 1);
+  const struct cratered three = crater((struct rock){"3", "1.39e18", "damped", NULL}, seeds);
+  const struct cratered nine = crater((struct rock){"9", run_case_full() ? "7e40" : "2e41", "damped", NULL}, 1);
   for (int s = 0; s < 3; s++)
     assert_true(fabs(three.speed[s] / floor_speed - 1) < 0.01); /* "severely damaged" */
   for (int s = FIRST; s < LAST; s++)
@@ -124,9 +158,8 @@ static void speed_of_waves(void **state) {
   assert_true(three.exponent > 1 && three.exponent < 2.5);
   assert_true(nine.exponent > three.exponent + 1);
   if (run_case_full())
-    assert_true(crater("6", "3e29", "damped", NULL).exponent > three.exponent + 0.5);
-
-  const struct cratered cube = crater("3", "1.39e18", "free", NULL);
+    assert_true(crater((struct rock){"6", "3e29", "damped", NULL}, 1).exponent > three.exponent + 0.5);
+  const struct cratered cube = crater((struct rock){"3", "1.39e18", "free", NULL}, 1);
   for (int s = 0; s < 7; s++) /* a wave to the nearest side and back to there goes 23 cm; its tension is weak by then */
     assert_true(fabs(three.damage[s] - cube.damage[s]) < 0.05);
   assert_true(cube.mean >
@@ -134,8 +167,8 @@ static void speed_of_waves(void **state) {
 
   if (!run_case_full())
     return; /* with fewer particles there would be none in the projectile: it is one here */
-  const char *asked = getenv("CLAST_EVEN");
-  const struct cratered even = crater("3", "1.39e18", "damped", asked ? asked : "80000");
+  const char *asked = getenv("CLAST_EVEN"), *number = asked ? asked : "80000";
+  const struct cratered even = crater((struct rock){"3", "1.39e18", "damped", number}, seeds);
   assert_true(asked || (even.halfway > 0.048 && even.halfway < 0.056)); /* of 80 000: 5.2 cm; seeds within 0.1 */
   assert_true(even.damage[2] > 0.98 && even.speed[9] > 0.97);
 }

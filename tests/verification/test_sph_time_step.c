@@ -25,11 +25,16 @@ static void quantities(const struct ran *ran, struct quantity out[QUANTITIES]) {
   memcpy(out, all, sizeof all);
 }
 
-static struct ran run_at(const char *scene, const char *particles, double cfl, uint64_t seed) {
-  char number[40], step[40];
-  snprintf(number, sizeof number, "fidelity.particles=%s", particles);
+/* A scene, and what is changed in it. */
+struct small_scene {
+  const char *name, *changes[5];
+};
+
+static struct ran run_at(const struct small_scene *scene, double cfl, uint64_t seed) {
+  char step[40];
   snprintf(step, sizeof step, "fidelity.cfl=%g", cfl);
-  const struct sph_inputs inputs = SPH_CASE(scene, number, step);
+  const char *const *change = scene->changes;
+  const struct sph_inputs inputs = SPH_CASE(scene->name, step, change[0], change[1], change[2], change[3]);
   struct ran ran = run_case_run(&sph_engine, &inputs, seed);
   free(ran.fragments);
   assert_true(ran.outcome.state == OUTCOME_COMPLETED || ran.outcome.state == OUTCOME_END_TIME);
@@ -60,7 +65,7 @@ static struct bias compare(size_t seeds, const struct quantity fine[][QUANTITIES
 }
 
 /* Number of biases at the default step that are neither within 2 % nor have an interval that holds 0. */
-static int scene_at_default(const char *scene, const char *particles, size_t seeds) {
+static int scene_at_default(const struct small_scene *scene, size_t seeds) {
   static const double ladder[] = {0.03, 0.3, 0.15, 0.075};
   const size_t levels = run_case_full() ? 4 : 2;
   static struct quantity value[4][MOST_SEEDS][QUANTITIES];
@@ -68,11 +73,12 @@ static int scene_at_default(const char *scene, const char *particles, size_t see
   for (size_t level = 0; level < levels; level++) {
     double steps = 0;
     for (size_t k = 0; k < seeds; k++) {
-      const struct ran ran = run_at(scene, particles, ladder[level], k + 1);
+      const struct ran ran = run_at(scene, ladder[level], k + 1);
       steps += (double)ran.outcome.steps / (double)seeds;
       quantities(&ran, value[level][k]);
     }
-    print_message("%s, %s particles, %zu seeds, cfl %g: %.0f steps\n", scene, particles, seeds, ladder[level], steps);
+    print_message("%s, %s, %zu seeds, cfl %g: %.0f steps\n", scene->name, scene->changes[0], seeds, ladder[level],
+                  steps);
     if (level == 0)
       continue;
     const struct bias bias = compare(seeds, value[0], value[level]);
@@ -91,16 +97,21 @@ static void default_step_is_fine_enough(void **state) {
   (void)state;
   const size_t seeds = run_case_seeds(4, 8);
   assert_true(seeds >= 2 && seeds <= MOST_SEEDS);
+  static const struct small_scene quick[] = {{"solid-ice", {"fidelity.particles=1500"}},
+                                             {"porous-ice", {"fidelity.particles=600"}}};
+  static const struct small_scene full[] = {{"basalt-sphere", {"fidelity.particles=2500"}},
+                                            {"solid-ice", {"fidelity.particles=2500"}},
+                                            {"porous-ice", {"fidelity.particles=2500"}},
+                                            {"pumice-sphere", {"fidelity.particles=2500"}},
+                                            {"disruption", {"fidelity.particles=2500"}},
+                                            {"gabbro-crater",
+                                             {"fidelity.particles=4500", "fidelity.fine_spacing=3 mm",
+                                              "fidelity.fine_radius=4 mm", "stop.end_time=30 us"}}};
+  const struct small_scene *scenes = run_case_full() ? full : quick;
+  const size_t count = run_case_full() ? sizeof full / sizeof *full : sizeof quick / sizeof *quick;
   int failures = 0;
-  if (run_case_full()) {
-    static const char *const scenes[] = {"basalt-sphere", "solid-ice", "porous-ice", "pumice-sphere", "disruption"};
-    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++)
-      failures += scene_at_default(scenes[k], "2500", seeds);
-    failures += scene_at_default("gabbro-crater", "15000", seeds);
-  } else {
-    failures += scene_at_default("solid-ice", "1500", seeds);
-    failures += scene_at_default("porous-ice", "600", seeds);
-  }
+  for (size_t k = 0; k < count; k++)
+    failures += scene_at_default(&scenes[k], seeds);
   assert_int_equal(failures, 0);
 }
 
