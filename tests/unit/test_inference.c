@@ -267,6 +267,36 @@ static void ridges_are_seen(void **state) {
   case_clear(&fit);
 }
 
+/* Slopes 3 and 1, and where `wiggle` is not 0 a steep part in the middle of the ridge that ends soon. */
+static double wiggle;
+static double steep_and_flat(const double *u, size_t k, uint64_t seed) {
+  (void)k;
+  const double z0 = gsl_cdf_ugaussian_Pinv(u[0]), z1 = gsl_cdf_ugaussian_Pinv(u[1]), s = 0.35;
+  return 3 * z0 + z1 + wiggle * z1 * exp(-z1 * z1 / (2 * s * s)) +
+         0.1 * case_normal(seed, (uint64_t)(u[0] * 0x1p52), (uint64_t)(u[1] * 0x1p52));
+}
+
+/* Along a ridge of 3 z0 + z1 the inputs change as -1 to 3, wherever its middle is steeper. */
+static void ridges_follow_unequal_slopes(void **state) {
+  (void)state;
+  static struct case_fit fit;
+  struct identify found;
+  struct error error;
+  const bool bounded[2] = {false, false};
+  const struct posterior_datum sum = {.value = 0, .error = 0.1, .specimens = 1};
+  for (wiggle = 0; wiggle < 4; wiggle += 3) {
+    fit = (struct case_fit){.inputs = 2, .outputs = 1};
+    assert_int_equal(case_solve(&fit, steep_and_flat, &sum, bounded, 6, &error), STATUS_OK);
+    identify_find(&fit.surfaces.model, &fit.posterior, &found);
+    const double *along = found.direction[1].along, off = wiggle > 0 ? 0.2 : 0.02; /* the middle alone: -0.8, 0.6 */
+    assert_int_equal(found.determined, 1);
+    assert_near(along[0], -1 / sqrt(10), off);
+    assert_near(along[1], 3 / sqrt(10), off);
+    assert_near(found.direction[1].deviation, 1, 0.1); /* that of the prior: the data say nothing along it */
+    case_clear(&fit);
+  }
+}
+
 static double five(const double *u, size_t k, uint64_t seed) {
   double sum = 0;
   for (size_t i = 0; i < 5; i++)
@@ -341,6 +371,7 @@ int main(void) {
       cmocka_unit_test(kriging_knows_what_seeds_leave),
       cmocka_unit_test(posterior_is_that_of_a_linear_model),
       cmocka_unit_test(ridges_are_seen),
+      cmocka_unit_test(ridges_follow_unequal_slopes),
       cmocka_unit_test(five_inputs_are_sampled),
       cmocka_unit_test(approximation_finds_two_modes),
   };
