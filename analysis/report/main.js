@@ -11,7 +11,15 @@ import {openEmbedded, openFile} from './stores.js';
 
 const tell = (text) => (document.getElementById('status').textContent = text);
 
+let showing = 0; // calls of show() that are not over
+
 async function show(what) {
+  document.body.ariaBusy = String(++showing > 0);
+  await showParts(what).finally(() => (document.body.ariaBusy = String(--showing > 0)));
+  document.body.dataset.shown = String(Number(document.body.dataset.shown ?? 0) + 1); // for tests and for those who print
+}
+
+async function showParts(what) {
   complete();
   if (what === 'store') {
     showAsked(state.stores);
@@ -26,7 +34,6 @@ async function show(what) {
   showChosen();
   showRuns();
   await Promise.all([showSpectrum(), showSeeds()]);
-  document.body.dataset.shown = String(Number(document.body.dataset.shown ?? 0) + 1); // for tests and for those who print
 }
 
 async function add(file) {

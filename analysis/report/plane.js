@@ -1,7 +1,8 @@
-// The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click or a brush, or
-// in the table of points without a mouse.
+// The plane of two inputs, coloured by a quantity; or a line over one input. Cells are chosen by a click, a brush or keys,
+// or in the table of points.
 import {body, element, fill, select, table} from './elements.js';
 import {COLOURS, draw, nothing, scale} from './chart.js';
+import {listenToKeys, placesOf} from './keys.js';
 import * as questions from './questions.js';
 import {changed, chosenPoints, state, store} from './state.js';
 import {halfWidth} from './statistics.js';
@@ -24,10 +25,11 @@ export function cells(from, quantity) {
   const studied = has(from, 'resolution')
     ? new Map(ask(from, questions.resolution, {quantity}).map((row) => [row.point_id, row])) : new Map();
   const modes = has(from, 'modes') ? new Map(ask(from, questions.modes, {quantity}).map((row) => [row.point_id, row])) : new Map();
+  const judged = has(from, 'modes') && quantity !== 'beta'; // not on whole stores, and an exponent belongs to all runs
   return from.points.map((point) => {
     const {mean = null, hw95 = null} = known.get(point.point_id) ?? {};
     const {half_width: resolution = null, verdict = null} = studied.get(point.point_id) ?? {};
-    return {...point, mean, hw95, resolution, verdict, modes: modes.get(point.point_id) ?? null};
+    return {...point, mean, hw95, resolution, verdict, modes: modes.get(point.point_id) ?? null, judged};
   });
 }
 
@@ -44,6 +46,16 @@ function axisOf(column, rows, title) {
   return {discrete: true, encoding: {field: column, type: 'ordinal', sort: order, title, axis: {labelAngle: 0, labelExpr: "isNumber(datum.value) ? format(datum.value, '.4~g') : datum.value"}}};
 }
 
+// Where a row stands on an axis, as a number: the place of its value, or how far along the scale it is.
+function alongAxis(column, rows) {
+  if (!column) return () => 0;
+  const axis = axisOf(column, rows, '');
+  if (axis.discrete) return (row) => axis.encoding.sort.indexOf(row[column]);
+  const of = axis.encoding.scale.type === 'log' ? Math.log : Number, places = rows.map((row) => of(row[column]));
+  const low = Math.min(...places), range = Math.max(...places) - low || 1;
+  return (row) => (of(row[column]) - low) / range;
+}
+
 function tooltip(columns, title) {
   return [{field: 'point_id', title: 'point'}, ...columns.map(([field, name]) => ({field, title: name})),
     {field: 'shown', title}, {field: 'n', title: 'runs'}, {field: 'resolutionText', title: 'resolution'}, {field: 'modesText', title: 'modes'}];
@@ -57,8 +69,8 @@ function resolutionText({resolution, verdict}) {
 }
 
 // Two modes mean that a mean tells little: some runs do one thing, the others another.
-export const modesText = (modes) => (modes ? `two: ${number(modes.lower_mode, 3)} and ${number(modes.upper_mode, 3)}, the upper one in ` +
-  `${number(100 * modes.upper_share, 2)} % of the runs (${number(100 * modes.upper_low, 2)} to ${number(100 * modes.upper_high, 2)} %)` : 'not two');
+export const modesText = ({modes, judged}) => (modes ? `two: ${number(modes.lower_mode, 3)} and ${number(modes.upper_mode, 3)}, the upper one in ` +
+  `${number(100 * modes.upper_share, 2)} % of the runs (${number(100 * modes.upper_low, 2)} to ${number(100 * modes.upper_high, 2)} %)` : judged ? 'not two' : 'not judged');
 
 function data(quantity) {
   return cells(store(), quantity).map((cell) => ({
@@ -70,13 +82,21 @@ function data(quantity) {
     low: cell.mean - cell.hw95,
     high: cell.mean + cell.hw95,
     resolutionText: resolutionText(cell),
-    modesText: modesText(cell.modes),
+    modesText: modesText(cell),
     twoModes: cell.modes !== null,
   }));
 }
 
-const CHOSEN = {name: 'chosen', value: []};
-const isChosen = 'indexof(chosen, datum.point_id) >= 0';
+const PARAMETERS = [{name: 'chosen', value: []}, {name: 'framed', value: []}]; // points; those under the keys' frame
+const isChosen = 'indexof(chosen, datum.point_id) >= 0', isFramed = 'indexof(framed, datum.point_id) >= 0';
+
+// Dark on light, so that it is seen on any colour.
+function frame(place, grid) {
+  const mark = grid ? {type: 'rect', filled: false} : {type: 'point', filled: false, size: 420};
+  const line = (stroke, strokeWidth, strokeDash) => ({transform: [{filter: isFramed}],
+    mark: {...mark, stroke, strokeWidth, strokeDash, tooltip: null}, encoding: place});
+  return [line('white', 5, [1, 0]), line('black', 3, [6, 3])];
+}
 
 function planeSpec(rows, title) {
   const x = axisOf(state.x, rows, label(state.stores, state.x)), y = axisOf(state.y, rows, label(state.stores, state.y));
@@ -106,8 +126,9 @@ function planeSpec(rows, title) {
   if (rows.some((row) => row.twoModes))
     layers.push({transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: room >= 90 ? '◆ two modes' : '◆', dy: 15, fontSize: 12, tooltip: null},
       encoding: {...place, color: {condition: {test: `datum.mean > ${half}`, value: 'black'}, value: 'white'}}});
+  layers.push(...frame(place, grid));
   const height = y.discrete ? Math.min(560, Math.max(300, 130 + 40 * new Set(rows.map((row) => row[state.y])).size)) : 420;
-  return {params: [CHOSEN], data: {values: rows}, height, layer: layers};
+  return {params: PARAMETERS, data: {values: rows}, height, layer: layers};
 }
 
 function lineSpec(rows, title) {
@@ -115,14 +136,15 @@ function lineSpec(rows, title) {
   const numeric = rows.every((row) => typeof row[state.x] === 'number');
   const place = numeric ? {field: state.x, type: 'quantitative', title: x.encoding.title, scale: scale(rows.map((row) => row[state.x]))} : x.encoding;
   const y = {field: 'mean', type: 'quantitative', title, scale: {zero: false}};
-  return {params: [CHOSEN], data: {values: rows}, height: 340, layer: [
+  return {params: PARAMETERS, data: {values: rows}, height: 340, layer: [
     {mark: {type: 'rule', strokeWidth: 1.5}, encoding: {x: place, y: {...y, field: 'low'}, y2: {field: 'high'}}},
     {params: [{name: 'brush', select: {type: 'interval', encodings: ['x']}}],
       mark: {type: 'point', filled: true, size: 110, cursor: 'pointer', color: COLOURS[0]},
       encoding: {x: place, y, stroke: {condition: {test: isChosen, value: '#D40000'}, value: 'white'},
         strokeWidth: {condition: {test: isChosen, value: 4}, value: 1},
         tooltip: tooltip([[state.x, label(state.stores, state.x)]], title)}},
-    {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}}]};
+    {transform: [{filter: 'datum.twoModes'}], mark: {type: 'text', text: '◆ two modes', dy: -14, tooltip: null}, encoding: {x: place, y}},
+    ...frame({x: place, y}, false)]};
 }
 
 // A brush over cells lists values, one over a scale has two ends.
@@ -160,6 +182,27 @@ function listen(view) {
   });
 }
 
+// What stands under the frame of the keys, in words.
+function tellFramed(place) {
+  plane.view?.signal('framed', place?.ids ?? []).run();
+  const rows = place ? plane.rows.filter((row) => place.ids.includes(row.point_id)) : [], [row] = rows;
+  const inputs = [state.x, state.y].filter(Boolean).map((input) => row && `${label(state.stores, input)} ${number(row[input])}`);
+  document.getElementById('framed').textContent = !row ? '' : `${inputs.join(', ')}: ${rows.length > 1 ? plural(rows.length, 'point')
+    : `${row.shown} (${plural(row.n ?? 0, 'run')})${row.twoModes ? '; two modes' : ''}`}${rows.every(({point_id}) => state.chosen.has(point_id)) ? '; chosen' : ''}`;
+}
+
+function takeKeys(figure, rows) {
+  const places = placesOf(rows, alongAxis(state.x, rows), alongAxis(state.y, rows));
+  listenToKeys(figure.querySelector('.chart'), places, {
+    chosen: () => state.chosen,
+    choose: (ids) => {
+      choose(ids);
+      tellFramed(places.find((place) => place.ids.includes(plane.view.signal('framed')[0])));
+    },
+    show: tellFramed,
+  });
+}
+
 function commandOf() {
   const quantity = state.quantity === 'beta' ? 'beta' : state.quantity;
   const from = shellFile(store().name);
@@ -181,19 +224,21 @@ export async function showPlane() {
   const rows = (plane.rows = data(state.quantity));
   const known = rows.filter((row) => row.mean !== null);
   if (known.length === 0) return nothing(figure, 'No point has a value of this quantity.');
-  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}`;
+  const caption = `${title}: mean over the runs of each point. ${resolutionSentence(rows)} Click a cell, or drag over several, to choose points. With keys: arrows move a frame, the space bar chooses, Shift with arrows chooses all on the way.${rows.some((row) => row.twoModes) ? ' ◆: the runs have two modes, so that a mean tells little.' : ''}`;
   if (!state.x) {
     nothing(figure, `No input was varied. ${title}: ${known.map((row) => `${row.shown} (${plural(row.n, 'run')})`).join('; ')}. ${resolutionSentence(rows)}`);
     return;
   }
   const inputs = [state.x, state.y].filter(Boolean);
   const view = await draw(figure, state.y ? planeSpec(rows, title) : lineSpec(known, title), {
-    name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}; the table of points below has the numbers`,
+    name: 'plane', description: `${title} over ${inputs.map((input) => label(state.stores, input)).join(' and ')}. Arrow keys move, the space bar chooses; the table of points below has the numbers`,
+    keys: true,
     caption, command: commandOf(), columns: ['point_id', ...inputs, 'n', 'mean', 'hw95', 'resolution'],
     rows: rows.map((row) => [row.point_id, ...inputs.map((input) => row[input]), row.n, row.mean, row.hw95, row.resolution]),
   });
   plane.view = view;
   listen(view);
+  takeKeys(figure, state.y ? rows : known);
   showChosen();
 }
 
@@ -213,7 +258,7 @@ export function showPoints() {
     change: () => choose([...body('points').querySelectorAll('input:checked')].map((box) => Number(box.value)))});
   fill(body('points'), table(`Points of ${store().name}${plane.rows.length > rows.length ? `: the first ${rows.length}` : ''}`,
     ['chosen', 'point', ...axes.map((axis) => label(state.stores, axis)), 'runs', 'failed', label(state.stores, state.quantity), 'resolution', 'modes'],
-    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.twoModes ? row.modesText : '-'])));
+    rows.map((row) => [boxes(row), row.point_id, ...axes.map((axis) => (axis === state.x || axis === state.y ? number(row[axis]) : number(inUnit(state.stores, axis, row[axis])))), row.n ?? 0, row.failed ?? 0, withError(row.mean, row.hw95), row.resolutionText, row.modesText])));
 }
 
 export function showChoices() {

@@ -38,7 +38,7 @@ export const exponents = `SELECT point_id, results_version, n, beta AS mean, hw9
 export const resolution = `SELECT point_id, half_width, verdict FROM resolution
   WHERE quantity = :quantity ORDER BY results_version`;
 
-export const modes = `SELECT point_id, p, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes
+export const modes = `SELECT point_id, lower_mode, upper_mode, upper_share, upper_low, upper_high FROM modes
   WHERE quantity = :quantity`;
 export const goodness = 'SELECT point_id, p FROM goodness WHERE point_id = :point';
 export const quantiles = 'SELECT share, value, low, high FROM quantile WHERE quantity = :quantity AND point_id = :point';

@@ -71,7 +71,7 @@ export async function showSeeds() {
   };
   const lines = [['mean', mean], ['median', quantileOf(0.5, 'median')], ['quarter', quantileOf(0.25, 'quarter')], ['three quarters', quantileOf(0.75, 'threeQuarters')],
     ['standard deviation of the runs here', (row) => number(row.sd)], ['least here', (row) => number(row.least)], ['largest here', (row) => number(row.largest)], ['runs here', (row) => row.n]];
-  if (means.some((row) => row.all?.modes)) lines.splice(1, 0, ['modes', (row) => modesText(row.all?.modes ?? null)]);
+  if (means.some((row) => row.all?.modes)) lines.splice(1, 0, ['modes', (row) => (row.all ? modesText(row.all) : '-')]);
   fill(below, table(`${title}: mean and quantiles with their 95 % intervals over seeds`,
     ['', ...names], lines.map(([word, value]) => [word, ...means.map(value)])));
 }

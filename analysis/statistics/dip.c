@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "analysis/statistics/sample.h"
 #include "engine/random.h"
 
 /* The distribution function of n values, times n, jumps at value j from j to j + 1. Its greatest convex minorant runs
@@ -102,22 +103,48 @@ double dip_of(size_t n, const double *values) {
   return dip;
 }
 
+/* Sums of exponential steps are an ordered uniform sample, but for a scale. */
+static double drawn_dip(size_t size, uint64_t draw, double *sample) {
+  double sum = 0;
+  for (size_t i = 0; i < size; i++)
+    sample[i] = sum -= log1p(-random_draw(size, RANDOM_RESAMPLE, draw, i));
+  return dip_of(size, sample);
+}
+
+static size_t drawn_size(size_t n) {
+  return n < DIP_MOST ? n : DIP_MOST;
+}
+
 double dip_share(size_t n, double dip) {
   enum { ENOUGH = 200 }; /* samples with a larger dip: the share is then known to a tenth */
   if (n < 4 || !isfinite(dip))
     return NAN;
-  const size_t size = n < DIP_MOST ? n : DIP_MOST;
+  const size_t size = drawn_size(n);
   const double limit = dip * sqrt((double)n / (double)size);
   double *sample = malloc(size * sizeof *sample);
   size_t larger = 0, drawn = 0;
   if (!sample)
     return NAN;
-  for (; drawn < DIP_DRAWS && larger < ENOUGH; drawn++) {
-    double sum = 0; /* sums of exponential steps are an ordered uniform sample, but for a scale */
-    for (size_t i = 0; i < size; i++)
-      sample[i] = sum -= log1p(-random_draw(size, RANDOM_RESAMPLE, drawn, i));
-    larger += dip_of(size, sample) >= limit;
-  }
+  for (; drawn < DIP_DRAWS && larger < ENOUGH; drawn++)
+    larger += drawn_dip(size, drawn, sample) >= limit;
   free(sample);
   return ((double)larger + 1) / ((double)drawn + 1);
+}
+
+double dip_limit(size_t n) {
+  /* dip_share() is below 0.05 while fewer than this many of the drawn dips are larger. */
+  const size_t fewer = (size_t)(0.05 * (DIP_DRAWS + 1));
+  if (n < 4)
+    return NAN;
+  const size_t size = drawn_size(n);
+  double *sample = malloc(size * sizeof *sample), *dip = malloc(DIP_DRAWS * sizeof *dip), limit = NAN;
+  for (size_t d = 0; sample && dip && d < DIP_DRAWS; d++)
+    dip[d] = drawn_dip(size, d, sample);
+  if (sample && dip) {
+    qsort(dip, DIP_DRAWS, sizeof *dip, sample_descending);
+    limit = dip[fewer - 1] * sqrt((double)size / (double)n);
+  }
+  free(sample);
+  free(dip);
+  return limit;
 }

@@ -14,5 +14,8 @@ double dip_of(size_t n, const double *values);
  * fewer when the share is certainly above 0.05. Beyond DIP_MOST values the dip is known to shrink with 1/sqrt(n). */
 enum { DIP_DRAWS = 2000, DIP_MOST = 1000 };
 double dip_share(size_t n, double dip);
+/* The dip above which that share is below 0.05. For many samples of one size: all DIP_DRAWS samples are drawn once.
+ * NaN: so few values cannot tell. */
+double dip_limit(size_t n);
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef CLAST_ANALYSIS_STATISTICS_SCATTER_H
 #define CLAST_ANALYSIS_STATISTICS_SCATTER_H
 
+#include <stdbool.h>
+
 #include "analysis/statistics/sample.h"
 #include "schemas/status.h"
 
@@ -18,7 +20,7 @@ struct scatter {
   struct sample_summary mean;                 /* with the half width of its 95 % interval */
   struct sample_interval deviation, skewness; /* by the jackknife */
   struct scatter_quantile quantile[SCATTER_QUANTILES];
-  double dip, dip_share; /* dip.h. Below 0.05 the values have two modes at least */
+  double dip, dip_share; /* dip.h. Below 0.05 the values have two modes at least. NaN: cannot be told */
   /* The two classes with the least scatter in them (Fisher 1958), told only if dip_share is below 0.05: their means,
    * the value between them, and the share of the upper one with its 95 % interval (Wilson 1927). Else NaN. */
   double lower_mode, upper_mode, between;
@@ -27,6 +29,12 @@ struct scatter {
 /* STATUS_MEMORY. */
 status scatter_make(size_t n, const double *values, struct scatter *out, struct error *error);
 void scatter_release(struct scatter *scatter); /* a zeroed one is fine */
+
+/* Whole numbers in so few steps that the steps themselves look like modes: a dip tells nothing then. sorted: ascending.
+ */
+bool scatter_in_steps(size_t n, const double *sorted);
+/* Fills in the two modes of scatter->sorted, two values at least that are not all equal. */
+void scatter_find_modes(struct scatter *scatter);
 
 /* Runs that a 95 % interval of the mean of at most this half width needs, with this standard deviation. 0: cannot be
  * told. The deviation itself is uncertain: ask with both ends of its interval. */

@@ -5,7 +5,7 @@
  *   estimates               those of points
  *   means                   n, mean, sd and hw95 of the results that are not in `points`, a row for each point
  *   quantile                of the first main result: value and 95 % interval, of up to 200 points
- *   modes                   of the first main result, at the points whose runs have two modes
+ *   modes                   of all results, at the points whose runs have two modes
  *   goodness                p of the power law at each point, of the first points until it would take too long
  *   resolution              of the store's view: what finer settings may change, where `clast converge` was used
  *   campaign, session, attempt, axis, column_doc   of the store's tables

@@ -7,14 +7,15 @@
 
 /* What a page holds at most, so that it stays small: with 10 000 runs it has to stay below 3 MB. */
 enum {
-  ASK_PAGE_RUNS = 10000,     /* single runs */
-  ASK_PAGE_VALUES = 120000,  /* results of single runs */
-  ASK_PAGE_MEANS = 40000,    /* rows of the table means */
-  ASK_PAGE_SPECTRUM = 12000, /* rows of the table spectra */
-  ASK_PAGE_QUANTILES = 200,  /* points with quantiles */
-  ASK_PAGE_JUDGED = 20000,   /* fragments of points whose fit is judged: some 5 s of a core */
-  ASK_PAGE_DRAWS = 1000,     /* samples for that; they give p within 0.016 */
-  ASK_PAGE_ATTEMPTS = 500,   /* failed attempts, and failed runs */
+  ASK_PAGE_RUNS = 10000,         /* single runs */
+  ASK_PAGE_VALUES = 120000,      /* results of single runs */
+  ASK_PAGE_MEANS = 40000,        /* rows of the table means */
+  ASK_PAGE_SPECTRUM = 12000,     /* rows of the table spectra */
+  ASK_PAGE_QUANTILES = 200,      /* points with quantiles */
+  ASK_PAGE_JUDGED_RUNS = 100000, /* of a point, by which two modes are told: its first ones */
+  ASK_PAGE_JUDGED = 20000,       /* fragments of points whose fit is judged: some 5 s of a core */
+  ASK_PAGE_DRAWS = 1000,         /* samples for that; they give p within 0.016 */
+  ASK_PAGE_ATTEMPTS = 500,       /* failed attempts, and failed runs */
 };
 
 struct ask_page {
@@ -30,7 +31,18 @@ status ask_page_copy(struct ask_page *page, struct store *store, const char *tab
 /* Fills in `runs` and `means`. */
 status ask_page_runs(struct ask_page *page, struct store *store, struct error *error);
 
-/* Fills in `quantile` and `modes`. */
+/* Makes and fills in `modes`, point by point. */
+struct ask_page_modes {
+  sqlite3_stmt *insert;
+  size_t n;     /* values of the sample before, */
+  double limit; /* and the dip above which so many have two modes */
+};
+status ask_page_modes_begin(struct ask_page *page, struct ask_page_modes *modes, struct error *error);
+/* One result of the counted runs of a point; sorts the values. */
+status ask_page_modes_add(struct ask_page_modes *modes, int64_t point, const char *quantity, size_t n, double *values,
+                          struct error *error);
+
+/* Fills in `quantile`. */
 status ask_page_scatter(struct ask_page *page, struct store *store, struct error *error);
 
 /* Fills in `goodness`. */

@@ -19,11 +19,14 @@ struct column {
   bool main, number, varies; /* of the view points; has a value; has two values */
   double first;
   struct sample_moments moments; /* of the current point */
+  double *values;                /* of the current point; owned */
+  size_t values_count, values_room;
 };
 
 struct reading {
   struct ask_page *page;
   sqlite3_stmt *insert; /* into means */
+  struct ask_page_modes modes;
   size_t count;
   struct column column[COLUMNS];
   bool begun;
@@ -50,49 +53,72 @@ static status take_name(void *context, size_t count, const struct query_value *v
   return STATUS_OK;
 }
 
-/* The statistics of the current point, a row for each result that the view points lacks. */
-static status end_point(struct reading *reading, struct error *error) {
+static status add_mean(struct reading *reading, const struct column *column, const struct sample_summary *summary,
+                       struct error *error) {
+  sqlite3_bind_int64(reading->insert, 1, reading->point_id);
+  sqlite3_bind_int64(reading->insert, 2, reading->results_version);
+  sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
+  sqlite3_bind_int64(reading->insert, 4, (int64_t)summary->n);
+  sqlite3_bind_double(reading->insert, 5, (double)(float)summary->mean); /* NaN is NULL */
+  sqlite3_bind_double(reading->insert, 6, (double)(float)summary->standard_deviation);
+  sqlite3_bind_double(reading->insert, 7, (double)(float)summary->half_width);
+  return sql_run(reading->insert, doing, error);
+}
+
+/* The statistics of the current point: means of the results that the view points lacks, modes of all of them. `newest`:
+ * the point has no newer version of results. */
+static status end_point(struct reading *reading, bool newest, struct error *error) {
   status code = STATUS_OK;
   for (size_t i = 0; code == STATUS_OK && reading->begun && i < reading->count; i++) {
     struct column *column = &reading->column[i];
     const struct sample_summary summary = sample_summarise_moments(&column->moments, 0.95);
+    if (summary.n > 0 && !column->main)
+      code = add_mean(reading, column, &summary, error);
+    if (code == STATUS_OK && newest)
+      code = ask_page_modes_add(&reading->modes, reading->point_id, column->name, column->values_count, column->values,
+                                error);
     column->moments = (struct sample_moments){.n = 0};
-    if (summary.n == 0 || column->main)
-      continue;
-    sqlite3_bind_int64(reading->insert, 1, reading->point_id);
-    sqlite3_bind_int64(reading->insert, 2, reading->results_version);
-    sqlite3_bind_text(reading->insert, 3, column->name, -1, SQLITE_STATIC);
-    sqlite3_bind_int64(reading->insert, 4, (int64_t)summary.n);
-    sqlite3_bind_double(reading->insert, 5, (double)(float)summary.mean); /* NaN is NULL */
-    sqlite3_bind_double(reading->insert, 6, (double)(float)summary.standard_deviation);
-    sqlite3_bind_double(reading->insert, 7, (double)(float)summary.half_width);
-    code = sql_run(reading->insert, doing, error);
+    column->values_count = 0;
   }
   return code;
+}
+
+static status add_value(struct column *column, double value, struct error *error) {
+  if (!column->number)
+    column->first = value;
+  column->number = true;
+  column->varies = column->varies || value != column->first;
+  sample_add(&column->moments, value);
+  if (column->values_count == ASK_PAGE_JUDGED_RUNS)
+    return STATUS_OK;
+  if (column->values_count == column->values_room) {
+    const size_t room = 2 * column->values_room + 16;
+    double *values = realloc(column->values, room * sizeof *values);
+    if (!values)
+      return status_fail(error, STATUS_MEMORY, "no memory for the page");
+    column->values = values;
+    column->values_room = room;
+  }
+  column->values[column->values_count++] = value;
+  return STATUS_OK;
 }
 
 static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct reading *reading = context;
   const int64_t point = values[0].integer, version = values[1].integer;
   if (!reading->begun || point != reading->point_id || version != reading->results_version) {
-    const status code = end_point(reading, error);
+    const status code = end_point(reading, point != reading->point_id, error);
     if (code)
       return code;
     reading->begun = true;
     reading->point_id = point;
     reading->results_version = version;
   }
-  for (size_t i = 2; i < count; i++) {
-    struct column *column = &reading->column[i - 2];
-    if (!isfinite(values[i].real))
-      continue;
-    if (!column->number)
-      column->first = values[i].real;
-    column->number = true;
-    column->varies = column->varies || values[i].real != column->first;
-    sample_add(&column->moments, values[i].real);
-  }
-  return STATUS_OK;
+  status code = STATUS_OK;
+  for (size_t i = 2; code == STATUS_OK && i < count; i++)
+    if (isfinite(values[i].real))
+      code = add_value(&reading->column[i - 2], values[i].real, error);
+  return code;
 }
 
 static void write_columns(const struct reading *reading, FILE *out) {
@@ -117,7 +143,7 @@ static status read_results(struct reading *reading, struct store *store, struct 
     return status_fail(error, STATUS_MEMORY, "no memory for the page");
   status code = query_run(store, sql, 0, NULL, 0, &sink, error);
   free(sql);
-  return code ? code : end_point(reading, error);
+  return code ? code : end_point(reading, true, error);
 }
 
 /* Results with one value everywhere tell nothing on a page, and the last of very many rows do not fit. */
@@ -243,14 +269,19 @@ status ask_page_runs(struct ask_page *page, struct store *store, struct error *e
     code = sql_prepare(page->db, "INSERT INTO means VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)", &reading->insert, doing,
                        error);
   if (code == STATUS_OK)
+    code = ask_page_modes_begin(page, &reading->modes, error);
+  if (code == STATUS_OK)
     code = ask_group_quantities(store, &names, error);
   if (code == STATUS_OK)
     code = read_results(reading, store, error);
   sqlite3_finalize(reading->insert);
+  sqlite3_finalize(reading->modes.insert);
   if (code == STATUS_OK)
     code = thin_means(reading, error);
   if (code == STATUS_OK)
     code = copy_runs(reading, store, error);
+  for (size_t i = 0; i < reading->count; i++)
+    free(reading->column[i].values);
   free(reading);
   return code;
 }

@@ -9,6 +9,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -26,6 +27,16 @@ def done(text):
 
 def wait_shown(browser, count):
     browser.until(f"Number(document.body?.dataset.shown) >= {count}")
+
+
+def chosen(browser):
+    points = browser.js("new URLSearchParams(location.hash.slice(1)).get('points')")
+    return [int(point) for point in points.split(".")] if points else []
+
+
+def wait_chosen(browser, count):
+    """Until so many points are chosen, and all of the page shows them."""
+    browser.until(f"(new URLSearchParams(location.hash.slice(1)).get('points') ?? '').split('.').length === {count} && document.body.ariaBusy !== 'true'")
 
 
 def shown(browser):
@@ -78,17 +89,14 @@ def look_at_start(browser):
 def brush(browser):
     cells = places(browser)
     assert len(cells) == 4, cells
-    before, count = text(browser, "#spectrum figcaption"), shown(browser)
+    before = text(browser, "#spectrum figcaption")
     (x, y), (x2, y2) = cells[0], cells[1]
     browser.drag((x - 30, y - 8), (x2 + 30, y2 + 8))
-    wait_shown(browser, count + 1)
-    browser.wait(0.3)
+    wait_chosen(browser, 2)
     after = text(browser, "#spectrum figcaption")
     assert after != before and "Chosen: point" in text(browser, "#chosen"), (before, after)
-    chosen = browser.js("new URLSearchParams(location.hash.slice(1)).get('points')").split(".")
-    assert len(chosen) == 2, chosen
     drawn = list(csv.DictReader(io.StringIO(taken(browser, "#spectrum", "CSV"))))
-    table = [row for row in rows_of(["spectrum", store, "--csv"]) if row["point_id"] in chosen]
+    table = [row for row in rows_of(["spectrum", store, "--csv"]) if int(row["point_id"]) in chosen(browser)]
     got = sorted((float(r["lower_kg"]), float(r["density"]), float(r["density_hw95"])) for r in drawn)
     want = sorted((float(r["lower"]), float(r["density"]), float(r["density_hw95"])) for r in table)
     assert len(got) == len(want) > 10, (len(got), len(want))
@@ -99,20 +107,45 @@ def brush(browser):
 
 
 def keyboard(browser):
-    count = shown(browser)
+    """Only keys: from the last choice above it to the plane, over its cells, into the table, to a run."""
+    browser.js("document.querySelector('#choices [name=y]').focus()")
+    browser.key("Tab")
+    assert browser.js("document.activeElement.matches('#plane-chart .chart')"), "the plane takes no focus"
+    for key in ("ArrowLeft", "ArrowUp", "ArrowUp", "ArrowLeft"): # at an end it stays
+        browser.key(key)
+    corner = text(browser, "#framed")
+    with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as db:
+        where = "from points where threshold_angle < 0.05 and threshold_strain > 0.03"
+        (mean, point) = db.execute(f"select largest_fraction_mean, point_id {where}").fetchone()
+    assert " 2, " in corner and " 5:" in corner and f"{mean:.4g}" in corner, (corner, mean)
+    browser.key(" ")
+    assert (point in chosen(browser)) == ("chosen" in text(browser, "#framed")), text(browser, "#framed")
+    browser.key(" ")
+    before = point in chosen(browser)
+    browser.key("Enter")
+    assert (point in chosen(browser)) != before, "Enter does what the space bar does"
+    browser.key("ArrowRight", shift=True)
+    wait_chosen(browser, 2)
+    assert point in chosen(browser) and "angle 2 deg, strain 5 %" in text(browser, "#spectrum figcaption")
+    browser.key("ArrowDown", shift=True)
+    wait_chosen(browser, 4)
+    browser.key("ArrowUp", shift=True)
+    wait_chosen(browser, 2)
+    done("keys move over the plane, choose a cell and a block of cells, and say what is there")
     browser.js("document.querySelector('#points').open = true; document.querySelector('#points input:not(:checked)').focus()")
-    for kind in ("keyDown", "keyUp"):
-        browser.call("Input.dispatchKeyEvent", type=kind, key=" ", code="Space", text=" ", windowsVirtualKeyCode=32)
-    wait_shown(browser, count + 1)
-    assert len(browser.js("new URLSearchParams(location.hash.slice(1)).get('points')").split(".")) == 3
-    done("the space bar chooses a point")
+    browser.key(" ")
+    wait_chosen(browser, 3)
+    browser.js("document.querySelector('#runs tbody button').focus()")
+    browser.key("Enter")
+    assert browser.js("document.activeElement.id") == "run-title" and "clast replay" in text(browser, "#run code")
+    done("the space bar chooses a point in the table, Enter shows a run")
 
 
 def seeds(browser):
     rows = list(csv.DictReader(io.StringIO(taken(browser, "#seeds", "CSV"))))
-    points = browser.js("new URLSearchParams(location.hash.slice(1)).get('points')")
+    points = ",".join(map(str, chosen(browser)))
     with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as db:
-        want = [v for (v,) in db.execute(f"select largest_fraction from run where counts and point_id in ({points.replace('.', ',')})")]
+        want = [v for (v,) in db.execute(f"select largest_fraction from run where counts and point_id in ({points})")]
     got = sorted(float(row["largest_fraction"]) for row in rows)
     assert len(got) == len(want) == 9 and all(abs(a - b) < 1e-6 for a, b in zip(got, sorted(want))), (got, want)
     done("the histogram holds the runs of the points")
@@ -136,6 +169,16 @@ def sql(browser):
     with sqlite3.connect(f"file:{store}?mode=ro", uri=True) as db:
         want = [[str(v) for v in row] for row in db.execute(question.replace("runs GROUP", "run GROUP"))]
     assert got == want and len(got) == 4, (got, want)
+    browser.js("document.querySelector('#answer summary').click()")
+    browser.until("document.querySelectorAll('#answer figure svg .mark-symbol path').length === 4")
+    browser.js("const up = document.querySelector('#answer [name=up]'); up.value = 'm'; up.dispatchEvent(new Event('change')); 0")
+    browser.until("document.querySelector('#answer figcaption').textContent.startsWith('m against')")
+    drawn = list(csv.reader(io.StringIO(taken(browser, "#answer figure", "CSV"))))
+    assert drawn[0] == ["point_id", "m"] and drawn[1:] == [[row[0], row[2]] for row in want], (drawn, want)
+    heights = browser.js("[...document.querySelectorAll('#answer figure svg .mark-symbol path')].map((p) => p.getBoundingClientRect()).map((r) => [r.x, r.y])")
+    order = [y for _, y in sorted(heights)]
+    assert sorted(range(4), key=lambda i: -order[i]) == sorted(range(4), key=lambda i: float(want[i][2])), (heights, want)
+    done("an answer is drawn as a chart, with its CSV")
     count = browser.js("document.querySelectorAll('#query [role=group] button').length")
     assert count > 8, count
     for i in range(count):
@@ -160,6 +203,7 @@ def drop(browser):
         (mean,) = db.execute("select avg(largest_fraction) from run where counts and point_id = 1").fetchone()
     assert f"mean{mean:.4g}" in text(browser, "#seeds .body"), (mean, text(browser, "#seeds .body"))
     whole_store(browser)
+    written_store(browser)
     with open("no-store.db", "w") as file:
         file.write("this is no store")
     browser.choose_file("#file", "no-store.db")
@@ -192,22 +236,42 @@ def whole_store(browser):
     done("of a dropped store, pooled spectra and means are those of clast")
 
 
+def written_store(browser):
+    """The file of a store that is being written: what is newest is in its -wal file only, which a reader does not drop."""
+    shutil.copy(other, "writing.db")
+    with sqlite3.connect("writing.db") as db:
+        assert db.execute("pragma journal_mode = wal").fetchone() == ("wal",)
+        db.execute("pragma wal_autocheckpoint = 0")
+        db.execute("update campaign set name = 'later'")
+        db.commit()
+        assert os.path.getsize("writing.db-wal") > 0
+        browser.choose_file("#file", "writing.db")
+        browser.until("document.querySelector('#status').textContent.startsWith('writing.db is added')")
+    asked = text(browser, "#asked")
+    assert asked.count("24 runs in statistics") == 2 and "later" not in asked, asked
+    assert "without its -wal file the last runs may be missing" in asked, asked
+    done("the file of a store that is being written is read, and the page says what may be missing")
+
+
 def loads_again(browser):
-    """As a page of --watch: it loads itself again after a second, with what was chosen."""
+    """As a page of --watch: it loads itself again after a second, with what was chosen. Two modes of any result are marked."""
     html = open(page, encoding="utf-8").read()
     (data,) = re.findall(r'class="store">([^<]*)<', html)
     with sqlite3.connect(":memory:") as db:
         db.deserialize(gzip.decompress(base64.b64decode(data)))
         db.execute("UPDATE fact SET value = '1' WHERE name = 'refresh'")
+        db.execute("INSERT INTO modes VALUES (3, 'broken', 20, 60, 40, 0.25, 0.1, 0.5)")
         db.commit()
         changed = base64.b64encode(gzip.compress(db.serialize())).decode()
     with open("again.html", "w", encoding="utf-8") as file:
         file.write(html.replace(data, changed))
-    browser.open("again.html", "#points=3")
+    browser.open("again.html", "#points=3&quantity=broken")
     wait_shown(browser, 1)
     start = browser.js("performance.timeOrigin")
     browser.until(f"performance.timeOrigin !== {start} && document.body?.dataset.shown >= 1")
     assert "point 3" in text(browser, "#chosen")
+    assert text(browser, "#plane-chart svg").count("◆") == 1 and "two: 20 and 60" in text(browser, "#points"), text(browser, "#points")
+    done("two modes of a result that is no main one are marked")
     done("a page of a running campaign loads itself again, and keeps what was chosen")
 
 

@@ -108,6 +108,18 @@ static void false_and_true_alarms(void **state) {
   assert_true(alarms[2] >= 76);
 }
 
+/* The limit is where the share passes 0.05, for small and for large samples. */
+static void limits(void **state) {
+  (void)state;
+  static const size_t sizes[] = {4, 20, 63, 3000};
+  for (int k = 0; k < 4; k++) {
+    const double limit = dip_limit(sizes[k]);
+    assert_true(dip_share(sizes[k], limit * (1 + 1e-9)) < 0.05);
+    assert_true(dip_share(sizes[k], limit * (1 - 1e-9)) >= 0.05);
+  }
+  assert_true(isnan(dip_limit(3)));
+}
+
 static void large_samples(void **state) {
   (void)state;
   /* Maechler's diptest documents p = 0.087 for the 63 values of its data set statfaculty, whose dip is 0.0595. */
@@ -119,6 +131,7 @@ static void large_samples(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(known_dips), cmocka_unit_test(as_defined),
-                                     cmocka_unit_test(false_and_true_alarms), cmocka_unit_test(large_samples)};
+                                     cmocka_unit_test(false_and_true_alarms), cmocka_unit_test(limits),
+                                     cmocka_unit_test(large_samples)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -136,7 +136,8 @@ static void test_a_large_store_is_thinned(void **state) {
   store_close(store, NULL);
 }
 
-/* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: all of them, evenly. */
+/* Point 1: a third of the runs near 0.8, the others near 0.2. Point 2: all of them, evenly; half of the runs have
+ * another hardness, which is no main result. */
 static void test_two_modes_are_told(void **state) {
   (void)state;
   char path[64];
@@ -152,6 +153,7 @@ static void test_two_modes_are_told(void **state) {
     for (int r = 0; r < 60; r++) {
       fixture_fill(f, &scene, point, 0, r, FIXTURE_FRAGMENTS);
       f->outcome.largest_fraction = 0.2 + 0.1 * (r * 7 % 60) / 60.0 + (p == 1 && r % 3 == 0 ? 0.6 : 0);
+      f->result.hardest = 10.5 + r / 60.0 + (p == 2 && r % 2 ? 5 : 0);
       OK(store_add_run(store, &f->run, &error));
     }
   }
@@ -160,10 +162,12 @@ static void test_two_modes_are_told(void **state) {
   struct ask_page *page = NULL;
   OK(ask_page_make(store, &page, &error));
   sqlite3 *db = opened(page);
-  assert_near(asked(db, "SELECT count(*) FROM modes"), 1, 0);
-  assert_near(asked(db, "SELECT point_id FROM modes"), 1, 0);
-  assert_near(asked(db, "SELECT upper_share FROM modes"), 1.0 / 3, 1e-12);
-  assert_near(asked(db, "SELECT upper_mode - lower_mode FROM modes"), 0.6, 0.05);
+  assert_near(asked(db, "SELECT count(*) FROM modes"), 2, 0);
+  assert_near(asked(db, "SELECT point_id FROM modes WHERE quantity = 'largest_fraction'"), 1, 0);
+  assert_near(asked(db, "SELECT upper_share FROM modes WHERE quantity = 'largest_fraction'"), 1.0 / 3, 1e-12);
+  assert_near(asked(db, "SELECT upper_mode - lower_mode FROM modes WHERE quantity = 'largest_fraction'"), 0.6, 0.05);
+  assert_near(asked(db, "SELECT point_id FROM modes WHERE quantity = 'hardest'"), 2, 0);
+  assert_near(asked(db, "SELECT upper_mode - lower_mode FROM modes WHERE quantity = 'hardest'"), 5, 0.1);
   const double median = asked(db, "SELECT value FROM quantile WHERE point_id = 2 AND share = 0.5");
   assert_true(median > 0.22 && median < 0.28);
   sqlite3_close(db);

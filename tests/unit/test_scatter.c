@@ -9,6 +9,7 @@
 #include <stdlib.h>
 
 #include "analysis/analysis.h"
+#include "analysis/statistics/dip.h"
 #include "analysis/statistics/scatter.h"
 #include "engine/random.h"
 
@@ -61,6 +62,24 @@ static void two_modes(void **state) {
   assert_true(fabs(s.lower_mode - 0.3) < 0.01 && fabs(s.upper_mode - 0.8) < 0.02);
   assert_true(s.between > 0.4 && s.between < 0.75 && s.upper_share == 0.25);
   assert_true(fabs(s.upper_low - 0.1578) < 1e-4 && fabs(s.upper_high - 0.3723) < 1e-4); /* Wilson, 15 of 60 */
+  scatter_release(&s);
+}
+
+/* Counts around 7 +- 2 look like a comb: no modes are told. Counts of thousands may have two. */
+static void counts_in_few_steps(void **state) {
+  (void)state;
+  double x[200];
+  struct scatter s;
+  for (uint64_t i = 0; i < 200; i++)
+    x[i] = round(7 + 2 * normal(7, 1, i));
+  assert_int_equal(scatter_make(200, x, &s, NULL), STATUS_OK);
+  assert_true(s.dip > dip_limit(200)); /* what a dip would say */
+  assert_true(isnan(s.dip_share) && isnan(s.between));
+  scatter_release(&s);
+  for (uint64_t i = 0; i < 200; i++)
+    x[i] = round((i % 2 ? 3000 : 5000) + 100 * normal(7, 2, i));
+  assert_int_equal(scatter_make(200, x, &s, NULL), STATUS_OK);
+  assert_true(s.dip_share < 0.05 && fabs(s.upper_mode - 5000) < 40);
   scatter_release(&s);
 }
 
@@ -149,8 +168,11 @@ static void split_of_a_variance(void **state) {
 
 int main(void) {
   analysis_init();
-  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples), cmocka_unit_test(two_modes),
-                                     cmocka_unit_test(runs_for_an_interval), cmocka_unit_test(coverage),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(known_samples),
+                                     cmocka_unit_test(two_modes),
+                                     cmocka_unit_test(counts_in_few_steps),
+                                     cmocka_unit_test(runs_for_an_interval),
+                                     cmocka_unit_test(coverage),
                                      cmocka_unit_test(split_of_a_variance)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
