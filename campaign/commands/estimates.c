@@ -1,6 +1,6 @@
 /* `clast estimates STORE`: the share of the largest fragment and the exponents of every point, pooled over seeds.
  * Made from the masses in the store each time, so that they are of the runs that are there now. */
-#include "campaign/terminal/estimates_table.h"
+#include "campaign/print/estimates_table.h"
 
 #include "campaign/commands/commands.h"
 

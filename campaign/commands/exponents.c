@@ -2,7 +2,7 @@
 #include <stdio.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/exponents_print.h"
+#include "campaign/print/exponents_print.h"
 #include "db/ask/points.h"
 
 struct options {

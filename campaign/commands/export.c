@@ -1,10 +1,10 @@
 /* `clast export STORE [TARGET]`: one compact file for hand-over, rows for other programs, or a folder of CSV files. */
 #include <string.h>
 
-#include "campaign/charts/cinema.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/export_crate.h"
-#include "campaign/commands/export_files.h"
+#include "campaign/export/cinema.h"
+#include "campaign/export/export_crate.h"
+#include "campaign/export/export_files.h"
 
 struct options {
   const char *per, *license, *author;

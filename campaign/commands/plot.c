@@ -1,6 +1,6 @@
 /* `clast plot STORE PICTURE`: a result or an exponent over one varied input, a line for each value of another. */
+#include "campaign/charts/plot_lines.h"
 #include "campaign/commands/commands.h"
-#include "campaign/commands/plot_lines.h"
 
 struct options {
   const char *x, *by, *quantity;

@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/report_make.h"
+#include "campaign/report/report_make.h"
 
 enum { EVERY_MOST = 86400 };
 

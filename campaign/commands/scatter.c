@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/scatter_print.h"
+#include "campaign/print/scatter_print.h"
 #include "campaign/terminal/chart_option.h"
 #include "db/ask/points.h"
 #include "engine/outcome.h"

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
-#include "campaign/commands/sensitivity_design.h"
-#include "campaign/commands/sensitivity_print.h"
+#include "campaign/document/sensitivity_design.h"
+#include "campaign/print/sensitivity_print.h"
 #include "engine/outcome.h"
 
 struct options {

@@ -1,6 +1,6 @@
 /* `clast spectrum STORE`: fragment spectra, pooled over seeds or inputs, beside what was measured. */
 #include "campaign/commands/commands.h"
-#include "campaign/commands/spectrum_curves.h"
+#include "campaign/print/spectrum_table.h"
 #include "campaign/terminal/chart_option.h"
 #include "db/ask/points.h"
 #include "schemas/unit.h"

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "campaign/terminal/estimates_table.h"
+#include "campaign/print/estimates_table.h"
 #include "schemas/clock.h"
 
 enum { MANY_POINTS = 64 }; /* above this number the table at the end is printed only with --json or --csv */

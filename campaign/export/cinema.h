@@ -1,7 +1,7 @@
 /* A Cinema database: a folder with pictures and a table of them (data.csv, Cinema specification D), which ParaView and
  * the Cinema viewers open. */
-#ifndef CLAST_CAMPAIGN_CHARTS_CINEMA_H
-#define CLAST_CAMPAIGN_CHARTS_CINEMA_H
+#ifndef CLAST_CAMPAIGN_EXPORT_CINEMA_H
+#define CLAST_CAMPAIGN_EXPORT_CINEMA_H
 
 #include "db/store/store.h"
 

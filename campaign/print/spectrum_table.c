@@ -1,9 +1,10 @@
-/* Spectra as rows, and their distances from what was measured. */
+/* Writes spectra and their distances as rows. */
+#include "campaign/print/spectrum_table.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
-#include "campaign/commands/spectrum_curves.h"
 #include "campaign/terminal/rows.h"
 
 struct printing {

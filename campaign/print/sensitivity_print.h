@@ -1,6 +1,6 @@
 /* Sensitivity indices of a result from a store. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_PRINT_H
-#define CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_PRINT_H
+#ifndef CLAST_CAMPAIGN_PRINT_SENSITIVITY_PRINT_H
+#define CLAST_CAMPAIGN_PRINT_SENSITIVITY_PRINT_H
 
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"

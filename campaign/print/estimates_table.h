@@ -1,6 +1,6 @@
 /* What a campaign found, read from its store: the table `clast run` ends with and `clast estimates` prints again. */
-#ifndef CLAST_CAMPAIGN_TERMINAL_ESTIMATES_TABLE_H
-#define CLAST_CAMPAIGN_TERMINAL_ESTIMATES_TABLE_H
+#ifndef CLAST_CAMPAIGN_PRINT_ESTIMATES_TABLE_H
+#define CLAST_CAMPAIGN_PRINT_ESTIMATES_TABLE_H
 
 #include "campaign/terminal/table.h"
 #include "db/ask/points.h"

@@ -1,6 +1,6 @@
 /* A point's exponent under its four names, with the goodness of its fit, as a row. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_EXPONENTS_PRINT_H
-#define CLAST_CAMPAIGN_COMMANDS_EXPONENTS_PRINT_H
+#ifndef CLAST_CAMPAIGN_PRINT_EXPONENTS_PRINT_H
+#define CLAST_CAMPAIGN_PRINT_EXPONENTS_PRINT_H
 
 #include "campaign/terminal/table.h"
 #include "db/ask/pool.h"

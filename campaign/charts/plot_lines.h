@@ -1,6 +1,6 @@
 /* The lines of `clast plot`: means of a quantity over one input, a line for each value of another. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_PLOT_LINES_H
-#define CLAST_CAMPAIGN_COMMANDS_PLOT_LINES_H
+#ifndef CLAST_CAMPAIGN_CHARTS_PLOT_LINES_H
+#define CLAST_CAMPAIGN_CHARTS_PLOT_LINES_H
 
 #include "campaign/charts/quantity.h"
 #include "campaign/terminal/chart_option.h"

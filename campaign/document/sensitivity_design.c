@@ -1,5 +1,5 @@
 /* Writes designs for sensitivity indices, and finds them again. */
-#include "campaign/commands/sensitivity_design.h"
+#include "campaign/document/sensitivity_design.h"
 
 #include <errno.h>
 #include <stdio.h>

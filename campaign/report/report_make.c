@@ -1,5 +1,5 @@
 /* What goes into a page: the stores' data, the names of their columns, and pictures of runs whose fields are kept. */
-#include "campaign/commands/report_make.h"
+#include "campaign/report/report_make.h"
 
 #include <math.h>
 #include <stdio.h>

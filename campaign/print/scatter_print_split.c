@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "campaign/commands/run_cells.h"
-#include "campaign/commands/scatter_print.h"
+#include "campaign/print/run_cells.h"
+#include "campaign/print/scatter_print.h"
 #include "db/ask/columns.h"
 
 /* Numbers the values of each axis in the order of their first points. */

@@ -1,6 +1,6 @@
 /* How the runs of pools scatter, as rows, text and a picture, and the split of a variance. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_SCATTER_PRINT_H
-#define CLAST_CAMPAIGN_COMMANDS_SCATTER_PRINT_H
+#ifndef CLAST_CAMPAIGN_PRINT_SCATTER_PRINT_H
+#define CLAST_CAMPAIGN_PRINT_SCATTER_PRINT_H
 
 #include "analysis/pictures/picture.h"
 #include "campaign/terminal/table.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "campaign/charts/quantity.h"
-#include "campaign/terminal/estimates_table.h"
+#include "campaign/print/estimates_table.h"
 #include "campaign/terminal/rows.h"
 #include "campaign/terminal/uncertainty.h"
 #include "db/ask/columns.h"

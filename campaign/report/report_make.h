@@ -1,6 +1,6 @@
 /* Makes the page of `clast report` from stores. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_REPORT_MAKE_H
-#define CLAST_CAMPAIGN_COMMANDS_REPORT_MAKE_H
+#ifndef CLAST_CAMPAIGN_REPORT_REPORT_MAKE_H
+#define CLAST_CAMPAIGN_REPORT_REPORT_MAKE_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
-/* The spectra that `clast spectrum` prints and draws, and what was measured beside them. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_SPECTRUM_CURVES_H
-#define CLAST_CAMPAIGN_COMMANDS_SPECTRUM_CURVES_H
+/* The curves of spectra that `clast spectrum` draws and prints, with their fits and what was measured beside them. */
+#ifndef CLAST_CAMPAIGN_CHARTS_SPECTRUM_CURVES_H
+#define CLAST_CAMPAIGN_CHARTS_SPECTRUM_CURVES_H
 
 #include "analysis/pictures/picture.h"
 #include "analysis/statistics/measured.h"
@@ -17,13 +17,6 @@ struct spectrum_choice {
 /* Reads a measured spectrum for the choice; sizes by the choice's density, in the dimensions of the store. */
 status spectrum_curves_measured(struct store *store, const char *path, struct spectrum_choice *choice,
                                 struct measured *measured, struct error *error);
-
-/* One row per bin of each pool (or of each run). */
-status spectrum_table_print(struct store *store, const struct spectrum_choice *choice, enum table_format format,
-                            struct error *error);
-/* One row per pool: how far it is from what was measured. */
-status spectrum_table_match(struct store *store, const struct spectrum_choice *choice, enum table_format format,
-                            struct error *error);
 
 /* A pool's spectrum with its headline fit, which only a pool of one point has. */
 struct spectrum_curve {

@@ -1,5 +1,5 @@
 /* Collects the lines of a plot and draws them. */
-#include "campaign/commands/plot_lines.h"
+#include "campaign/charts/plot_lines.h"
 
 #include <stdio.h>
 #include <stdlib.h>

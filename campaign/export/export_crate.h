@@ -1,6 +1,6 @@
 /* A store as an RO-Crate 1.1 of the profile Process Run Crate 0.5, for an archive: `clast export STORE --crate DIR`. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_EXPORT_CRATE_H
-#define CLAST_CAMPAIGN_COMMANDS_EXPORT_CRATE_H
+#ifndef CLAST_CAMPAIGN_EXPORT_EXPORT_CRATE_H
+#define CLAST_CAMPAIGN_EXPORT_EXPORT_CRATE_H
 
 #include "db/store/store.h"
 

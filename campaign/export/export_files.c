@@ -1,5 +1,5 @@
 /* Writes views and bits of a store as text. */
-#include "campaign/commands/export_files.h"
+#include "campaign/export/export_files.h"
 
 #include <errno.h>
 #include <string.h>

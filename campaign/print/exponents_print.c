@@ -1,5 +1,5 @@
 /* The rows of `clast exponents`. */
-#include "campaign/commands/exponents_print.h"
+#include "campaign/print/exponents_print.h"
 
 #include "db/ask/pool.h"
 #include "engine/outcome.h"

@@ -1,7 +1,7 @@
 /* The values of a result in cells, one for each set of varied inputs, with the seeds that the cells share: what the
  * split of a variance and sensitivity indices are made from. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_RUN_CELLS_H
-#define CLAST_CAMPAIGN_COMMANDS_RUN_CELLS_H
+#ifndef CLAST_CAMPAIGN_PRINT_RUN_CELLS_H
+#define CLAST_CAMPAIGN_PRINT_RUN_CELLS_H
 
 #include <stdbool.h>
 

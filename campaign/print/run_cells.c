@@ -1,5 +1,5 @@
 /* Collects the runs of cells and leaves the seeds that all of them have. */
-#include "campaign/commands/run_cells.h"
+#include "campaign/print/run_cells.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
 /* Reads the runs of a design block by block, and prints its indices. */
-#include "campaign/commands/sensitivity_print.h"
+#include "campaign/print/sensitivity_print.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "analysis/statistics/sensitivity.h"
-#include "campaign/commands/run_cells.h"
-#include "campaign/commands/sensitivity_design.h"
+#include "campaign/document/sensitivity_design.h"
+#include "campaign/print/run_cells.h"
 
 struct reading {
   const struct campaign *campaign;

@@ -1,5 +1,5 @@
 /* Prints and draws how runs scatter. */
-#include "campaign/commands/scatter_print.h"
+#include "campaign/print/scatter_print.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 /* Text files of a store, for `clast export`. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_EXPORT_FILES_H
-#define CLAST_CAMPAIGN_COMMANDS_EXPORT_FILES_H
+#ifndef CLAST_CAMPAIGN_EXPORT_EXPORT_FILES_H
+#define CLAST_CAMPAIGN_EXPORT_EXPORT_FILES_H
 
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"

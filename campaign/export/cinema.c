@@ -1,5 +1,5 @@
 /* Draws the pictures of a Cinema database and writes its table. */
-#include "campaign/charts/cinema.h"
+#include "campaign/export/cinema.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 
 #include "campaign/charts/picture_draw.h"
-#include "campaign/commands/spectrum_curves.h"
+#include "campaign/charts/spectrum_curves.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/kept.h"
 

@@ -1,6 +1,6 @@
 /* Designs for sensitivity indices, written as a campaign with a file of points, and found again in such a campaign. */
-#ifndef CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_DESIGN_H
-#define CLAST_CAMPAIGN_COMMANDS_SENSITIVITY_DESIGN_H
+#ifndef CLAST_CAMPAIGN_DOCUMENT_SENSITIVITY_DESIGN_H
+#define CLAST_CAMPAIGN_DOCUMENT_SENSITIVITY_DESIGN_H
 
 #include "campaign/design/design_sensitivity.h"
 #include "campaign/document/campaign.h"
