@@ -10,20 +10,20 @@ static void print_problem(void *context, const char *text) {
   puts(text);
 }
 
-static status run(const struct command_line *line, struct error *error) {
-  struct store *store = NULL;
-  status code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   size_t problems = 0;
-  code = store_check(store, print_problem, &problems, error);
-  store_close(store, NULL);
+  const status code = store_check(store, print_problem, &problems, error);
+  (void)format;
   if (code == STATUS_CONTENT)
     return status_fail(error, code, "%s has %zu problem%s, listed on standard output", line->arguments[0], problems,
                        problems == 1 ? "" : "s");
   if (code == STATUS_OK)
     fprintf(stderr, "%s: no problems\n", line->arguments[0]);
   return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  return commands_ask(line, NULL, ask, error);
 }
 
 const struct command check_command = {

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "db/store/store.h"
+
 static const struct command *const all[] = {
     /* running */ &run_command,
     &plan_command,
@@ -58,4 +60,19 @@ const struct command *commands_find(const char *name, struct error *error) {
   status_fail(error, STATUS_USAGE, "there is no command \"%.64s\"%s%s%s `clast help` lists all", name,
               nearest ? "; did you mean `clast " : ";", nearest ? nearest : "", nearest ? "`?" : "");
   return NULL;
+}
+
+status commands_ask(const struct command_line *line, const struct table_options *table, commands_question *question,
+                    struct error *error) {
+  enum table_format format = TABLE_TEXT;
+  struct store *store = NULL;
+  status code = table ? table_choose(table, &format, error) : STATUS_OK;
+  if (code)
+    return code;
+  code = store_open_reader(line->arguments[0], &store, error);
+  if (code)
+    return code;
+  code = question(store, line, format, error);
+  store_close(store, NULL);
+  return code;
 }

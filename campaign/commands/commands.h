@@ -3,6 +3,7 @@
 #define CLAST_CAMPAIGN_COMMANDS_COMMANDS_H
 
 #include "campaign/terminal/option.h"
+#include "campaign/terminal/table.h"
 
 extern const struct command run_command, plan_command, simulate_command, converge_command, fit_command, serve_command;
 extern const struct command explain_command, scenes_command, materials_command, schema_command, cite_command;
@@ -19,7 +20,18 @@ const struct command *const *commands_all(void);
 /* NULL: *error says so (STATUS_USAGE) with the nearest known name. */
 const struct command *commands_find(const char *name, struct error *error);
 
-/* ---- what a command lends to another ---- */
+/* ---- what commands share ---- */
+
+struct store;
+
+/* What a command asks of an open store, and how it prints the answer. `format` is that of the command's table. */
+typedef status commands_question(struct store *store, const struct command_line *line, enum table_format format,
+                                 struct error *error);
+
+/* Opens the store that the first argument names as a reader, calls `question` and closes the store. `table` has the
+ * command's table options; NULL: it has none, and `format` is TABLE_TEXT. */
+status commands_ask(const struct command_line *line, const struct table_options *table, commands_question *question,
+                    struct error *error);
 
 void commands_help(FILE *out); /* what `clast help` prints */
 

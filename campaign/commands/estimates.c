@@ -9,23 +9,20 @@ struct options {
   struct table_options table;
 };
 
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
+  status code = ask_points_known(store, options->point, error);
+  if (code == STATUS_OK)
+    code = estimates_table_print(store, &choice, format, stdout, error);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    estimates_table_explain(store);
+  return code;
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (!code)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  code = ask_points_known(store, options->point, error);
-  const struct ask_points_choice choice = {.campaign = options->campaign, .point = options->point};
-  if (!code)
-    code = estimates_table_print(store, &choice, format, stdout, error);
-  if (!code && format == TABLE_TEXT)
-    estimates_table_explain(store);
-  store_close(store, NULL);
-  return code;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {

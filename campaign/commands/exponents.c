@@ -11,32 +11,29 @@ struct options {
   struct table_options table;
 };
 
-static status run(const struct command_line *line, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
   const struct ask_pool_choice choice = {.point = options->point, .where = options->where};
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
   struct exponents_print printing = {table_new(format, stdout), (size_t)options->draws};
   exponents_print_headings(printing.table);
-  code = ask_points_known(store, options->point, error);
+  status code = ask_points_known(store, options->point, error);
   if (code == STATUS_OK)
     code = ask_pools(store, &choice, exponents_print_pool, &printing, error);
   if (code && !table_broken(printing.table)) {
     table_drop(printing.table);
-  } else {
-    code = table_end(printing.table, error);
-    if (code == STATUS_OK && format == TABLE_TEXT)
-      fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
-            "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
-            stderr);
+    return code;
   }
-  store_close(store, NULL);
+  code = table_end(printing.table, error);
+  if (code == STATUS_OK && format == TABLE_TEXT)
+    fputs("clast: exponents by maximum likelihood on masses, from `from` on, which is never below the complete mass. "
+          "p below 0.1: a power law does not fit; cutoff_p, lognormal_p below 0.05: these fit better\n",
+          stderr);
   return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {

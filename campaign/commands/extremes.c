@@ -12,24 +12,18 @@ struct options {
   struct table_options table;
 };
 
-typedef status (*question)(struct store *store, const struct query_sink *sink, struct error *error);
+typedef status (*rows_question)(struct store *store, const struct query_sink *sink, struct error *error);
 
-static status print(struct store *store, question ask, enum table_format format, struct error *error) {
+static status print(struct store *store, rows_question question, enum table_format format, struct error *error) {
   struct rows rows;
   const struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  return rows_end(&rows, ask(store, &sink, error), error);
+  return rows_end(&rows, question(store, &sink, error), error);
 }
 
-static status run(const struct command_line *line, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
   const bool both = format == TABLE_TEXT; /* programs get one table */
+  status code = STATUS_OK;
   if (both || !options->why)
     code = print(store, ask_extremes_campaigns, format, error);
   if (both && code == STATUS_OK)
@@ -38,8 +32,12 @@ static status run(const struct command_line *line, struct error *error) {
     code = print(store, ask_extremes_reasons, format, error);
   if (code == STATUS_OK && options->picture)
     code = extremes_map_draw(store, options->picture, PICTURE_WIDTH, error);
-  store_close(store, NULL);
   return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row rows[] = {

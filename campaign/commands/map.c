@@ -7,19 +7,18 @@ struct options {
   struct chart_options chart;
 };
 
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
+  (void)format;
+  return map_tiles_draw(store, options->x, options->y, options->quantity, &page, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   if (!options->x || !options->y)
     return status_fail(error, STATUS_USAGE, "a map needs --x and --y, two inputs that the campaign varied");
-
-  struct store *store = NULL;
-  status code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  const struct picture_page page = chart_option_page(line->arguments[1], &options->chart);
-  code = map_tiles_draw(store, options->x, options->y, options->quantity, &page, error);
-  store_close(store, NULL);
-  return code;
+  return commands_ask(line, NULL, ask, error);
 }
 
 static const struct option_row rows[] = {

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "campaign/commands/commands.h"
+#include "campaign/print/canned_table.h"
 #include "campaign/terminal/rows.h"
 
 enum { PARAMETERS_MAXIMUM = 64 };
@@ -14,62 +15,54 @@ struct options {
   struct table_options table;
 };
 
-static status list_canned(enum table_format format, struct error *error) {
-  struct table *table = table_new(format, stdout);
-  table_columns(table, (const char *const[]){"name", "with", "answers", NULL});
-  if (format != TABLE_TEXT)
-    table_column(table, "sql", NULL);
-  for (size_t i = 0; i < ask_canned_count(); i++) {
-    const struct query_canned *canned = ask_canned_at(i);
-    table_text(table, canned->name);
-    table_text(table, canned->parameters);
-    table_text(table, canned->doc);
-    if (format != TABLE_TEXT)
-      table_text(table, canned->sql);
+struct parameters {
+  struct query_parameter all[PARAMETERS_MAXIMUM];
+  char names[PARAMETERS_MAXIMUM][64];
+};
+
+/* NAME=VALUE of each --with. */
+static status read_parameters(const struct options *options, struct parameters *parameters, struct error *error) {
+  for (size_t i = 0; i < options->with.count; i++) {
+    const char *text = options->with.items[i], *equals = strchr(text, '=');
+    if (!equals || equals == text || (size_t)(equals - text) >= sizeof parameters->names[i])
+      return status_fail(error, STATUS_USAGE, "--with expects NAME=VALUE, got \"%.64s\"", text);
+    snprintf(parameters->names[i], sizeof parameters->names[i], "%.*s", (int)(equals - text), text);
+    parameters->all[i] = (struct query_parameter){parameters->names[i], equals + 1};
   }
-  return table_end(table, error);
+  return STATUS_OK;
+}
+
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  const struct query_canned *canned = options->named ? ask_canned_find(options->named, error) : NULL;
+  struct parameters parameters;
+  if (options->named && !canned)
+    return STATUS_USAGE;
+  status code = read_parameters(options, &parameters, error);
+  if (code == STATUS_OK)
+    code = ask_register_functions(store, error);
+  if (code)
+    return code;
+  struct rows rows;
+  struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  code = query_run(store, canned ? canned->sql : line->arguments[1], options->with.count, parameters.all,
+                   (double)options->seconds, &sink, error);
+  return rows_end(&rows, code, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->table, &format, error);
+  const status code = table_choose(&options->table, &format, error);
   if (code)
     return code;
   if (options->list)
-    return list_canned(format, error);
-  if (line->count == 0)
-    return status_fail(error, STATUS_USAGE, "clast query needs a store; usage: clast query STORE [SQL]");
-  if ((line->count == 2) == (options->named != NULL))
+    return canned_table_print(format, error);
+  if (line->count == 0 || (line->count == 2) == (options->named != NULL))
     return status_fail(error, STATUS_USAGE,
-                       "give either an SQL statement or --named NAME; `clast query --list` shows the names");
-  const struct query_canned *canned = options->named ? ask_canned_find(options->named, error) : NULL;
-  if (options->named && !canned)
-    return STATUS_USAGE;
-
-  struct query_parameter parameters[PARAMETERS_MAXIMUM];
-  char names[PARAMETERS_MAXIMUM][64];
-  for (size_t i = 0; i < options->with.count; i++) {
-    const char *text = options->with.items[i], *equals = strchr(text, '=');
-    if (!equals || equals == text || (size_t)(equals - text) >= sizeof names[i])
-      return status_fail(error, STATUS_USAGE, "--with expects NAME=VALUE, got \"%.64s\"", text);
-    snprintf(names[i], sizeof names[i], "%.*s", (int)(equals - text), text);
-    parameters[i] = (struct query_parameter){names[i], equals + 1};
-  }
-  struct store *store = NULL;
-  code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  code = ask_register_functions(store, error);
-  if (!code) {
-    struct rows rows;
-    struct query_sink sink = rows_sink(&rows, store, format, stdout);
-    code = query_run(store, canned ? canned->sql : line->arguments[1], options->with.count, parameters,
-                     (double)options->seconds, &sink, error);
-    code = rows_end(&rows, code, error);
-  }
-  store_close(store, NULL);
-  return code;
+                       "clast query needs a store, and either an SQL statement or --named NAME; `clast query --list` "
+                       "shows the names");
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row rows_of_options[] = {

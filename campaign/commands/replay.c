@@ -44,8 +44,9 @@ static void tell(int64_t run_id, const struct ask_run *stored, const struct repl
             comparison->compared - 1, fragments);
 }
 
-static status replay(struct store *store, int64_t run_id, const struct options *options, enum table_format format,
-                     struct error *error) {
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  const int64_t run_id = strtoll(line->arguments[1], NULL, 10);
   struct ask_run stored;
   struct scene *scene = NULL;
   struct run_result result = {0};
@@ -70,20 +71,9 @@ static status replay(struct store *store, int64_t run_id, const struct options *
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
   const char *number = line->arguments[1];
-  enum table_format format = TABLE_TEXT;
-  status code = table_choose(&options->table, &format, error);
-  if (code)
-    return code;
   if (strspn(number, "0123456789") != strlen(number))
     return status_fail(error, STATUS_USAGE, "RUN is a number (run_id in the store), got \"%.64s\"", number);
-
-  struct store *store = NULL;
-  code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  code = replay(store, strtoll(number, NULL, 10), options, format, error);
-  store_close(store, NULL);
-  return code;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row rows[] = {

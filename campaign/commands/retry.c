@@ -65,9 +65,7 @@ static status run(const struct command_line *line, struct error *error) {
     code = status_fail(error, STATUS_USAGE,
                        "--status knows \"failed\" only: a run that ended with a verdict of its own "
                        "(NaN, time step, energy) would end the same way again");
-  if (code == STATUS_OK)
-    code = retry(line, format, error);
-  return launch_quiet_ranks(code, error);
+  return launch_quiet_ranks(code ? code : retry(line, format, error), error);
 }
 
 static const struct option_row rows[] = {

@@ -16,40 +16,39 @@ struct options {
   struct chart_options chart;
 };
 
-static status ask(struct store *store, const struct options *options, const struct scatter_choice *choice,
-                  enum table_format format, struct error *error) {
-  const struct picture_page page = chart_option_page(options->picture, &options->chart);
-  status code = ask_points_known(store, options->point, error);
+/* `half_width` as the user wrote it; NULL: NaN. */
+static status read_half_width(const char *text, double *half_width, struct error *error) {
+  *half_width = NAN;
+  if (!text)
+    return STATUS_OK;
+  char *end;
+  *half_width = strtod(text, &end);
+  if (*end || !(*half_width > 0) || isinf(*half_width))
+    return status_fail(error, STATUS_USAGE, "--half-width is a number above 0 in SI units, not '%s'", text);
+  return STATUS_OK;
+}
+
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
+  status code = read_half_width(options->half_width, &choice.half_width, error);
+  if (code == STATUS_OK)
+    code = ask_points_known(store, options->point, error);
   if (code)
     return code;
   if (options->split)
-    return scatter_print_split(store, choice, format, error);
-  code = options->plot ? scatter_print_plots(store, choice, options->ascii, error)
-                       : scatter_print_rows(store, choice, format, error);
-  if (code == STATUS_OK && options->picture)
-    code = scatter_print_picture(store, choice, &page, error);
-  return code;
+    return scatter_print_split(store, &choice, format, error);
+  code = options->plot ? scatter_print_plots(store, &choice, options->ascii, error)
+                       : scatter_print_rows(store, &choice, format, error);
+  if (code || !options->picture)
+    return code;
+  const struct picture_page page = chart_option_page(options->picture, &options->chart);
+  return scatter_print_picture(store, &choice, &page, error);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  struct scatter_choice choice = {{options->point, options->where, options->by}, options->quantity, NAN};
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK && options->half_width) {
-    char *end;
-    choice.half_width = strtod(options->half_width, &end);
-    if (*end || !(choice.half_width > 0) || isinf(choice.half_width))
-      code = status_fail(error, STATUS_USAGE, "--half-width is a number above 0 in SI units, not '%s'",
-                         options->half_width);
-  }
-  if (code == STATUS_OK)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code == STATUS_OK)
-    code = ask(store, options, &choice, format, error);
-  store_close(store, NULL);
-  return code;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {

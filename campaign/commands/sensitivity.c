@@ -27,19 +27,14 @@ static status write_design(const struct command_line *line, struct error *error)
   return code;
 }
 
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  const struct options *options = line->options;
+  return sensitivity_print(store, line->arguments[1], options->quantity, format, error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  if (options->design)
-    return write_design(line, error);
-  status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code == STATUS_OK)
-    code = sensitivity_print(store, line->arguments[1], options->quantity, format, error);
-  store_close(store, NULL);
-  return code;
+  return options->design ? write_design(line, error) : commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {

@@ -14,15 +14,14 @@ struct options {
 
 struct serving { /* context of the farm's body */
   const struct serve_model *model;
-  const struct options *options;
-  const char *store;
+  struct serve_options options;
   int slots;
 };
 
 static void tell(void *context, const struct serve_http *http) {
   const struct serving *serving = context;
   fprintf(stderr, "clast: serving at port %d with %d slot%s, store %s; Ctrl-C ends\n", serve_http_port(http),
-          serving->slots, serving->slots == 1 ? "" : "s", serving->store);
+          serving->slots, serving->slots == 1 ? "" : "s", serving->options.store);
   if (!serve_http_loopback(http))
     fputs("clast: warning: other machines can reach this port, and nobody is asked for a password\n", stderr);
 }
@@ -31,14 +30,8 @@ static status serve_all(void *context, struct launch *launch, struct error *erro
   struct serving *serving = context;
   struct serve_jobs_counts counts;
   serving->slots = farm_slots_total(launch->farm);
-  const struct serve_options options = {.store = serving->store,
-                                        .facts = launch->driver.facts,
-                                        .address = serving->options->address,
-                                        .port = (int)serving->options->port,
-                                        .wait_s = (double)serving->options->wait,
-                                        .ready = tell,
-                                        .context = serving};
-  const status code = serve_run(serving->model, launch->farm, &options, &counts, error);
+  serving->options.facts = launch->driver.facts;
+  const status code = serve_run(serving->model, launch->farm, &serving->options, &counts, error);
   if (!code && launch->manager)
     fprintf(stderr,
             "clast: %" PRId64 " evaluations: %" PRId64 " runs computed, %" PRId64 " found in the store, %" PRId64
@@ -57,8 +50,13 @@ static status run(const struct command_line *line, struct error *error) {
   if (!code)
     code = serve_model_make(campaign, options->quantity, options->knob, &model, error);
   if (!code) {
-    struct serving serving = {.model = &model, .options = options};
-    serving.store = options->store ? options->store : campaign->store;
+    struct serving serving = {.model = &model,
+                              .options = {.store = options->store ? options->store : campaign->store,
+                                          .address = options->address,
+                                          .port = (int)options->port,
+                                          .wait_s = (double)options->wait,
+                                          .ready = tell}};
+    serving.options.context = &serving;
     code = launch_farm(campaign, &launch, line, serve_all, &serving, error);
   }
   serve_model_clear(&model);
@@ -73,9 +71,9 @@ static const struct option_row rows[] = {
     OPTION_ROW_TEXT(
         "quantity", 'q', "NAMES", struct options, quantity, NULL,
         "Results to give, comma-separated. Default: the campaign's main quantity. A request may name others."),
-    OPTION_ROW_TEXT("knob", 'k', "NAME[=VALUES]", struct options, knob, NULL,
-                    "Levels for requests with a level, coarse to fine, such as grains=1.2cm,0.9cm (`clast converge "
-                    "--list` has the knobs)."),
+    OPTION_ROW_TEXT(
+        "knob", 'k', "NAME[=VALUES]", struct options, knob, NULL,
+        "Levels for requests with a level, coarse to fine: grains=1.2cm,0.9cm (see `clast converge --list`)."),
     OPTION_ROW_INTEGER("wait", 0, "S", struct options, wait, 0, 1000000, "3600",
                        "Answer a request after so many seconds with an error; its runs go on. 0: never."),
     OPTION_ROW_TEXT("store", 0, "FILE", struct options, store, NULL, "Write this store instead of the campaign's."),
@@ -91,10 +89,10 @@ const struct command serve_command = {
     .arguments = "CAMPAIGN.yaml",
     .summary = "the campaign as a model for UQ packages (UM-Bridge, HTTP)",
     .doc =
-        "Answers requests of the UM-Bridge protocol 1.0: the varied inputs in, in SI units and in the order of "
-        "`vary`;\n"
-        "means over seeds out. Runs that the store has are not computed again, new ones are kept. Requests at a time\n"
-        "share the slots. GET / tells names and units. It ends with Ctrl-C or SIGTERM (exit 0).",
+        "Answers requests of the UM-Bridge protocol 1.0. A request gives the varied inputs, in SI units and in the\n"
+        "order of `vary`; the answer is means over seeds. Runs of the store are not computed again, new ones are "
+        "kept.\n"
+        "Requests at the same time share the slots. GET / tells names and units. Ctrl-C or SIGTERM ends it (exit 0).",
     .examples = "clast serve campaign.yaml --port 4242\nclast serve campaign.yaml -q largest_fraction,fragment_count",
     .minimum_arguments = 1,
     .maximum_arguments = 1,

@@ -13,8 +13,8 @@ struct options {
   struct chart_options chart;
 };
 
-static status ask(struct store *store, const struct options *options, const struct spectrum_choice *choice,
-                  enum table_format format, struct error *error) {
+static status print(struct store *store, const struct options *options, const struct spectrum_choice *choice,
+                    enum table_format format, struct error *error) {
   const struct picture_page page = chart_option_page(options->picture, &options->chart);
   const struct spectrum_drawing drawing = {options->picture ? &page : NULL, options->plot, options->ascii};
   status code = ask_points_known(store, options->point, error);
@@ -27,29 +27,26 @@ static status ask(struct store *store, const struct options *options, const stru
   return code;
 }
 
-static status run(const struct command_line *line, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
-  struct spectrum_choice choice = {{options->point, options->where, options->by},
-                                   options->cumulative,
-                                   options->runs,
-                                   0,
-                                   NULL};
-  enum table_format format = TABLE_TEXT;
+  struct spectrum_choice choice = {.pool = {options->point, options->where, options->by},
+                                   .cumulative = options->cumulative,
+                                   .runs = options->runs};
   struct measured measured = {0};
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (code == STATUS_OK && options->size &&
-      (unit_read(options->size, "kg/m^3", &choice.density, error) || !(choice.density > 0)))
-    code = status_fail(error, STATUS_USAGE, "--size is a density such as 2700 kg/m^3, not '%s'", options->size);
-  if (code == STATUS_OK)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code == STATUS_OK && options->with)
+  if (options->size && (unit_read(options->size, "kg/m^3", &choice.density, error) || !(choice.density > 0)))
+    return status_fail(error, STATUS_USAGE, "--size is a density such as 2700 kg/m^3, not '%s'", options->size);
+  status code = STATUS_OK;
+  if (options->with)
     code = spectrum_curves_measured(store, options->with, &choice, &measured, error);
   if (code == STATUS_OK)
-    code = ask(store, options, &choice, format, error);
-  store_close(store, NULL);
+    code = print(store, options, &choice, format, error);
   measured_release(&measured);
   return code;
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {

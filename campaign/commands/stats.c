@@ -46,31 +46,27 @@ static status warn_of_twins(struct store *store, struct error *error) {
   return code;
 }
 
-static status run(const struct command_line *line, struct error *error) {
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  if (!code)
-    code = refuse_exponents(options->quantity, line->arguments[0], error);
-  if (!code)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
+  const char *quantity = strcmp(options->quantity, "main") == 0 ? NULL : options->quantity;
   struct rows rows;
   char pooled[ASK_GROUP_POOLED] = "";
   struct query_sink sink = rows_sink_written(&rows, store, format, stdout);
-  code = ask_group(store, options->by, strcmp(options->quantity, "main") == 0 ? NULL : options->quantity, &sink, pooled,
-                   error);
+  status code = ask_group(store, options->by, quantity, &sink, pooled, error);
   code = rows_end(&rows, code, error);
-  if (code == STATUS_OK && *pooled)
+  if (code)
+    return code;
+  if (*pooled)
     fprintf(stderr, "clast: pooled over %s: points are the units of mean, scatter and interval\n", pooled);
-  if (code == STATUS_OK && format == TABLE_TEXT)
+  if (format == TABLE_TEXT)
     quantity_tell_resolutions(store, options->quantity, pooled);
-  if (!code)
-    code = warn_of_twins(store, error);
-  store_close(store, NULL);
-  return code;
+  return warn_of_twins(store, error);
+}
+
+static status run(const struct command_line *line, struct error *error) {
+  const struct options *options = line->options;
+  const status code = refuse_exponents(options->quantity, line->arguments[0], error);
+  return code ? code : commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row rows_of_options[] = {

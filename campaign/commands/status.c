@@ -7,21 +7,16 @@ struct options {
   struct table_options table;
 };
 
+static status ask(struct store *store, const struct command_line *line, enum table_format format, struct error *error) {
+  struct rows rows;
+  const bool writing = store_is_being_written(line->arguments[0]);
+  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
+  return rows_end(&rows, ask_campaign_progress(store, writing, &sink, error), error);
+}
+
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
-  enum table_format format = TABLE_TEXT;
-  struct store *store = NULL;
-  status code = table_choose(&options->table, &format, error);
-  const bool writing = !code && store_is_being_written(line->arguments[0]);
-  if (!code)
-    code = store_open_reader(line->arguments[0], &store, error);
-  if (code)
-    return code;
-  struct rows rows;
-  const struct query_sink sink = rows_sink(&rows, store, format, stdout);
-  code = rows_end(&rows, ask_campaign_progress(store, writing, &sink, error), error);
-  store_close(store, NULL);
-  return code;
+  return commands_ask(line, &options->table, ask, error);
 }
 
 static const struct option_row option_rows[] = {TABLE_OPTIONS(struct options, table)};

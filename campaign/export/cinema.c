@@ -74,7 +74,7 @@ static status take_run(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
-status cinema_write(struct store *store, const char *folder, size_t *rows, size_t *not_drawn, struct error *error) {
+status cinema_write(struct store *store, const char *folder, struct error *error) {
   char path[PATH], part[PATH + 8];
   if (mkdir(folder, 0777) && errno != EEXIST)
     return status_fail(error, STATUS_IO, "cannot make the folder %s: %s", folder, strerror(errno));
@@ -99,7 +99,8 @@ status cinema_write(struct store *store, const char *folder, size_t *rows, size_
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
   if (code)
     remove(part);
-  *rows = cinema.rows;
-  *not_drawn = cinema.not_drawn;
+  if (!code && cinema.not_drawn > 0)
+    fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n",
+            cinema.not_drawn, cinema.rows);
   return code;
 }

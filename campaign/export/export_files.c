@@ -9,9 +9,11 @@
 
 static const char *const exported[] = {"runs", "points", "spectra", "estimates", "column_doc"};
 
-status export_files_view(struct store *store, const char *view, enum table_format format, FILE *out,
+static status write_rows(struct store *store, const char *view, enum table_format format, FILE *out,
                          struct error *error) {
   struct rows rows;
+  if (!view)
+    return store_dump(store, out, error);
   const struct query_sink sink = rows_sink(&rows, store, format, out);
   return rows_end(&rows, ask_columns_view(store, view, &sink, error), error);
 }
@@ -19,6 +21,8 @@ status export_files_view(struct store *store, const char *view, enum table_forma
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error) {
   struct stat there;
+  if (!path)
+    return write_rows(store, view, format, stdout, error);
   const bool in_place = stat(path, &there) == 0 && !S_ISREG(there.st_mode) && !S_ISDIR(there.st_mode);
   char temporary[4096];
   if (snprintf(temporary, sizeof temporary, "%s%s", path, in_place ? "" : ".part") >= (int)sizeof temporary)
@@ -26,7 +30,7 @@ status export_files_write(struct store *store, const char *path, const char *vie
   FILE *out = fopen(temporary, "w");
   if (!out)
     return status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
-  status code = view ? export_files_view(store, view, format, out, error) : store_dump(store, out, error);
+  status code = write_rows(store, view, format, out, error);
   if (fclose(out) && !code)
     code = status_fail(error, STATUS_IO, "cannot write %s: %s", temporary, strerror(errno));
   if (in_place)

@@ -5,12 +5,9 @@
 #include "campaign/terminal/table.h"
 #include "db/store/store.h"
 
-/* The rows of a view (runs, points, ...) to the open stream `out`. */
-status export_files_view(struct store *store, const char *view, enum table_format format, FILE *out,
-                         struct error *error);
-
-/* The same into a file; view NULL: the bits. It is written under a temporary name and renamed: a file with its final
- * name is whole. A pipe or a device (/dev/stdout) is written itself. */
+/* Writes the rows of a view (runs, points, ...; NULL: the bits) into a file; path NULL: to standard output. The file is
+ * written under a temporary name and renamed: a file with its final name is whole. A pipe or a device (/dev/stdout) is
+ * written itself. */
 status export_files_write(struct store *store, const char *path, const char *view, enum table_format format,
                           struct error *error);
 
