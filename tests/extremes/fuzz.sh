@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# The fuzz targets for documents, units, stores and fields files. Short form: many variations of the seed corpus, in this build. Long form
-# (CLAST_FULL=1): libFuzzer with sanitizers, a minute each, in a build of its own.
+# The fuzz targets: documents, units, stores, fields files, measured spectra, measurements of a fit. Short form: many
+# variations of the seed corpus, in this build. Long form (CLAST_FULL=1): libFuzzer with sanitizers, a minute each, in a build of its own.
 set -euo pipefail
 build=$1 source=$2
-declare -A variations=([document]=1000 [unit]=1000 [store]=60 [fields]=1000)
-for name in document unit store fields; do
+declare -A variations=([document]=1000 [unit]=1000 [store]=60 [fields]=1000 [measured]=2000 [observed]=1000)
+names=("${!variations[@]}")
+for name in "${names[@]}"; do
   [ -n "$(ls "$source/tests/fuzz/corpus/$name")" ]
   "$build/tests/fuzz/fuzz_$name" "${variations[$name]}" "$source/tests/fuzz/corpus/$name"
 done
@@ -14,9 +15,9 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake -S "$source" -B "$work/build" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_C_FLAGS_DEBUG="-g -O1" -DCMAKE_C_COMPILER=clang \
   -DCLAST_FUZZ=ON -DCLAST_SANITIZE=address,undefined >"$work/log" || { cat "$work/log"; exit 1; }
-cmake --build "$work/build" --target fuzz_document fuzz_unit fuzz_store fuzz_fields -j2 >"$work/log" || { tail -50 "$work/log"; exit 1; }
+cmake --build "$work/build" --target "${names[@]/#/fuzz_}" -j2 >"$work/log" || { tail -50 "$work/log"; exit 1; }
 cd "$work"
-for name in document unit store fields; do
+for name in "${names[@]}"; do
   mkdir "$name"
   LSAN_OPTIONS=print_suppressions=0 "$work/build/tests/fuzz/fuzz_$name" -max_total_time=60 -max_len=2000 -timeout=10 \
     "$name" "$source/tests/fuzz/corpus/$name" >"$name.log" 2>&1 || {
