@@ -90,11 +90,10 @@ export async function openEmbedded() {
   return stores;
 }
 
-// A store in WAL mode without its -wal file can be read once its header says otherwise (bytes 18 and 19).
+// The header of a store in WAL mode has a 2 in byte 18. What its -wal file holds is not here then.
 export async function openFile(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   const partial = bytes[18] === 2;
-  if (partial) bytes[18] = bytes[19] = 1;
   const store = {db: new SQL.Database(bytes), whole: true, partial, name: file.name};
   try {
     return describe(store);
