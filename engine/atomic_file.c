@@ -11,6 +11,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "engine/grow.h"
+
+enum { BLOCK = 1 << 16 }; /* bytes read at a time, at least */
+
 /* A pipe or a device, such as /dev/stdout: it is written itself, and never replaced. */
 static bool is_special(const char *path) {
   struct stat there;
@@ -95,14 +99,9 @@ status atomic_file_read(const char *path, const char *what, unsigned char **byte
   size_t capacity = 0, used = 0, got = 1;
   unsigned char *buffer = NULL;
   while (got > 0) {
-    if (used == capacity) {
-      capacity = capacity ? 2 * capacity : 1 << 16;
-      unsigned char *larger = realloc(buffer, capacity);
-      if (!larger) {
-        code = status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
-        goto cleanup;
-      }
-      buffer = larger;
+    if (!grow_room(&buffer, &capacity, used + BLOCK, 1)) {
+      code = status_fail(error, STATUS_MEMORY, "no memory to read '%s'", path);
+      goto cleanup;
     }
     got = fread(buffer + used, 1, capacity - used, file);
     used += got;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "analysis/statistics/measured.h"
+#include "engine/grow.h"
 #include "schemas/unit.h"
 
 enum { LINE = 4096, CELL = 128, MOST_ROWS = 10000000 };
@@ -128,14 +129,8 @@ static status take_row(struct reading *r, int count, char *const cells[], struct
   }
   if (r->count == MOST_ROWS)
     return status_fail(error, STATUS_CONTENT, "%s: more than %d rows", r->path, MOST_ROWS);
-  if (r->count == r->room) {
-    const size_t room = r->room ? 2 * r->room : 256;
-    struct row *rows = realloc(r->rows, room * sizeof *rows);
-    if (!rows)
-      return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
-    r->rows = rows;
-    r->room = room;
-  }
+  if (!grow_room(&r->rows, &r->room, r->count + 1, sizeof *r->rows))
+    return status_fail(error, STATUS_MEMORY, "%s: no memory for its rows", r->path);
   r->rows[r->count++] = row;
   return STATUS_OK;
 }

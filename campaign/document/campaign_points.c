@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "campaign/document/csv.h"
+#include "engine/grow.h"
 #include "schemas/sha256.h"
 
 enum { LARGEST = 16 << 20, MOST_COLUMNS = 1000, MOST_REPORTS = 10 };
@@ -132,16 +133,11 @@ static bool reserve(struct reading *r) {
   if ((size_t)campaign->design.points < r->capacity)
     return true;
   const size_t capacity = r->capacity ? 2 * r->capacity : 64;
-  int64_t *lines = realloc(campaign->point_lines, capacity * sizeof *lines);
-  if (!lines)
+  if (!grow_block(&campaign->point_lines, capacity * sizeof *campaign->point_lines))
     return false;
-  campaign->point_lines = lines;
-  for (size_t i = 0; i < campaign->axis_count; i++) {
-    struct field_value *levels = realloc(campaign->axes[i].levels, capacity * sizeof *levels);
-    if (!levels)
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (!grow_block(&campaign->axes[i].levels, capacity * sizeof *campaign->axes[i].levels))
       return false;
-    campaign->axes[i].levels = levels;
-  }
   r->capacity = capacity;
   return true;
 }

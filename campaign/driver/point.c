@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "engine/grow.h"
+
 struct point *point_create(const struct campaign *campaign, struct scene *scene) {
   struct point *point = calloc(1, sizeof *point);
   if (!point) {
@@ -41,17 +43,12 @@ bool point_reserve(struct point *point, int64_t replicate) {
   int64_t capacity = point->capacity ? point->capacity : 16;
   while (capacity <= replicate)
     capacity *= 2;
-  struct point_replicate *replicates = realloc(point->replicates, (size_t)capacity * sizeof *replicates);
-  if (replicates)
-    point->replicates = replicates;
-  double *values = realloc(point->values, (size_t)capacity * sizeof *values);
-  if (values)
-    point->values = values;
-  if (!replicates || !values)
+  if (!grow_block(&point->replicates, (size_t)capacity * sizeof *point->replicates) ||
+      !grow_block(&point->values, (size_t)capacity * sizeof *point->values))
     return false;
   for (int64_t r = point->capacity; r < capacity; r++) {
-    replicates[r] = (struct point_replicate){.state = POINT_WANTED};
-    values[r] = NAN;
+    point->replicates[r] = (struct point_replicate){.state = POINT_WANTED};
+    point->values[r] = NAN;
   }
   point->capacity = capacity;
   return true;

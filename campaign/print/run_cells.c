@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/grow.h"
+
 static int by_seed(const void *a, const void *b) {
   const int64_t p = ((const struct run_cells_run *)a)->seed, q = ((const struct run_cells_run *)b)->seed;
   return p < q ? -1 : p > q;
@@ -17,14 +19,8 @@ static status no_memory(struct error *error) {
 
 status run_cells_take(void *context, const struct ask_pool *pool, struct error *error) {
   struct run_cells *cells = context;
-  if (cells->count == cells->room) {
-    const size_t room = cells->room ? 2 * cells->room : 64;
-    struct run_cell *grown = realloc(cells->cell, room * sizeof *grown);
-    if (!grown)
-      return no_memory(error);
-    cells->cell = grown;
-    cells->room = room;
-  }
+  if (!grow_room(&cells->cell, &cells->room, cells->count + 1, sizeof *cells->cell))
+    return no_memory(error);
   struct run_cell *cell = &cells->cell[cells->count++];
   *cell = (struct run_cell){.run = malloc((pool->data.runs.count + 1) * sizeof *cell->run)};
   cells->axes = pool->axes;

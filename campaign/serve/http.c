@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/grow.h"
 #include "schemas/clock.h"
 
 struct serve_http {
@@ -66,14 +67,8 @@ static const char *refused_at_once(struct MHD_Connection *connection, unsigned *
 }
 
 static bool take_body(struct exchange *exchange, const char *bytes, size_t size) {
-  if (exchange->size + size > exchange->capacity) {
-    const size_t capacity = 2 * exchange->capacity + size;
-    char *body = realloc(exchange->body, capacity);
-    if (!body)
-      return false;
-    exchange->body = body;
-    exchange->capacity = capacity;
-  }
+  if (!grow_room(&exchange->body, &exchange->capacity, exchange->size + size, sizeof *exchange->body))
+    return false;
   memcpy(exchange->body + exchange->size, bytes, size);
   exchange->size += size;
   return true;

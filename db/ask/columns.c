@@ -7,6 +7,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "engine/grow.h"
 #include "schemas/unit.h"
 
 struct list {
@@ -21,16 +22,10 @@ static status take_column(void *context, size_t count, const struct query_value 
   if (count != 2 || values[0].kind != QUERY_TEXT)
     return STATUS_OK;
 
-  if (list->count == list->capacity) {
-    if (!list->grows)
-      return STATUS_OK;
-    size_t capacity = list->capacity ? 2 * list->capacity : 64;
-    struct ask_column *grown = realloc(list->columns, capacity * sizeof *grown);
-    if (!grown)
-      return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
-    list->columns = grown;
-    list->capacity = capacity;
-  }
+  if (list->count == list->capacity && !list->grows)
+    return STATUS_OK;
+  if (!grow_room(&list->columns, &list->capacity, list->count + 1, sizeof *list->columns))
+    return status_fail(error, STATUS_MEMORY, "no memory for the units of the columns");
 
   struct ask_column *column = &list->columns[list->count++];
   column->factor = 1;

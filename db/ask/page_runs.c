@@ -8,6 +8,7 @@
 #include "db/ask/columns.h"
 #include "db/ask/page_private.h"
 #include "db/store/views.h"
+#include "engine/grow.h"
 #include "schemas/text.h"
 
 static const char doing[] = "making the page";
@@ -91,14 +92,8 @@ static status add_value(struct column *column, double value, struct error *error
   sample_add(&column->moments, value);
   if (column->values_count == ASK_PAGE_JUDGED_RUNS)
     return STATUS_OK;
-  if (column->values_count == column->values_room) {
-    const size_t room = 2 * column->values_room + 16;
-    double *values = realloc(column->values, room * sizeof *values);
-    if (!values)
-      return status_fail(error, STATUS_MEMORY, "no memory for the page");
-    column->values = values;
-    column->values_room = room;
-  }
+  if (!grow_room(&column->values, &column->values_room, column->values_count + 1, sizeof *column->values))
+    return status_fail(error, STATUS_MEMORY, "no memory for the page");
   column->values[column->values_count++] = value;
   return STATUS_OK;
 }

@@ -9,6 +9,7 @@
 
 #include "db/ask/points.h"
 #include "db/ask/values.h"
+#include "engine/grow.h"
 
 struct group { /* the runs of one point */
   char *inputs;
@@ -25,31 +26,19 @@ struct ask_pairs {
   struct side side[2];
 };
 
-static bool grow(void **array, size_t *room, size_t count, size_t size) {
-  if (count < *room)
-    return true;
-  const size_t wanted = *room ? 2 * *room : 64;
-  void *grown = realloc(*array, wanted * size);
-  if (!grown)
-    return false;
-  *array = grown;
-  *room = wanted;
-  return true;
-}
-
 static status take(void *context, const struct ask_values_row *row, struct error *error) {
   struct side *side = context;
   if (isnan(row->value))
     return STATUS_OK;
   if (side->group_count == 0 || side->groups[side->group_count - 1].point != row->point_id) {
     char *inputs = strdup(side->one_point ? "" : row->inputs);
-    if (!inputs || !grow((void **)&side->groups, &side->group_room, side->group_count, sizeof *side->groups)) {
+    if (!inputs || !grow_room(&side->groups, &side->group_room, side->group_count + 1, sizeof *side->groups)) {
       free(inputs);
       return status_fail(error, STATUS_MEMORY, "no memory for the points");
     }
     side->groups[side->group_count++] = (struct group){inputs, row->point_id, side->value_count, 0};
   }
-  if (!grow((void **)&side->values, &side->value_room, side->value_count, sizeof *side->values))
+  if (!grow_room(&side->values, &side->value_room, side->value_count + 1, sizeof *side->values))
     return status_fail(error, STATUS_MEMORY, "no memory for the runs");
   side->values[side->value_count++] = (struct difference_value){row->seed, row->value};
   side->groups[side->group_count - 1].count++;

@@ -8,6 +8,7 @@
 
 #include "db/ask/query.h"
 #include "engine/engine.h"
+#include "engine/grow.h"
 #include "schemas/text.h"
 
 struct growing {
@@ -18,22 +19,15 @@ struct growing {
 static status make_room(struct growing *growing, size_t masses) {
   struct point_data *point = growing->point;
   if (masses > growing->mass_capacity) {
-    double *grown = realloc(point->masses, 2 * masses * sizeof *grown);
-    if (!grown)
+    if (!grow_block(&point->masses, 2 * masses * sizeof *point->masses))
       return STATUS_MEMORY;
-    point->masses = grown;
     growing->mass_capacity = 2 * masses;
   }
   if (point->runs.count + 2 <= growing->run_capacity)
     return STATUS_OK;
   const size_t capacity = growing->run_capacity ? 2 * growing->run_capacity : 32;
-  size_t *first = realloc(point->first, capacity * sizeof *first);
-  if (first)
-    point->first = first;
-  int64_t *run_id = realloc(point->run_id, capacity * sizeof *run_id);
-  if (run_id)
-    point->run_id = run_id;
-  if (!first || !run_id)
+  if (!grow_block(&point->first, capacity * sizeof *point->first) ||
+      !grow_block(&point->run_id, capacity * sizeof *point->run_id))
     return STATUS_MEMORY;
   growing->run_capacity = capacity;
   return STATUS_OK;

@@ -9,6 +9,7 @@
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "engine/grow.h"
 
 /* Condition for the points of a choice, on any table with a column point_id. */
 static void write_choice(FILE *sql, const struct ask_points_choice *choice) {
@@ -182,14 +183,8 @@ struct versions {
 static status take_version(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count;
   struct versions *versions = context;
-  if (versions->count == versions->capacity) {
-    size_t capacity = versions->capacity ? 2 * versions->capacity : 64;
-    struct ask_points_version *list = realloc(versions->list, capacity * sizeof *list);
-    if (!list)
-      return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
-    versions->list = list;
-    versions->capacity = capacity;
-  }
+  if (!grow_room(&versions->list, &versions->capacity, versions->count + 1, sizeof *versions->list))
+    return status_fail(error, STATUS_MEMORY, "no memory for the list of points");
   versions->list[versions->count++] = (struct ask_points_version){values[0].integer, (int)values[1].integer};
   return STATUS_OK;
 }

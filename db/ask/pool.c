@@ -10,6 +10,7 @@
 #include "db/ask/points.h"
 #include "db/sql.h"
 #include "engine/engine.h"
+#include "engine/grow.h"
 #include "schemas/text.h"
 
 struct member { /* a point, in the order of the pools */
@@ -34,14 +35,8 @@ static status no_memory(struct error *error) {
 static status take_member(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct members *members = context;
   (void)count;
-  if (members->count == members->room) {
-    const size_t room = members->room ? 2 * members->room : 64;
-    struct member *list = realloc(members->list, room * sizeof *list);
-    if (!list)
-      return no_memory(error);
-    members->list = list;
-    members->room = room;
-  }
+  if (!grow_room(&members->list, &members->room, members->count + 1, sizeof *members->list))
+    return no_memory(error);
   struct member *member = &members->list[members->count++];
   *member = (struct member){.point = values[0].integer, .version = values[1].integer};
   for (size_t a = 0; a < members->axes; a++) {
@@ -123,16 +118,9 @@ static status take_value(void *context, size_t count, const struct query_value *
   (void)count;
   if (point->runs.count == values->room) {
     const size_t room = values->room ? 2 * values->room : 32;
-    int64_t *run_id = realloc(point->run_id, room * sizeof *run_id);
-    if (run_id)
-      point->run_id = run_id;
-    double *value = realloc(values->value, room * sizeof *value);
-    if (value)
-      values->value = value;
-    int64_t *seed = realloc(values->seed, room * sizeof *seed);
-    if (seed)
-      values->seed = seed;
-    if (!run_id || !value || !seed)
+    if (!grow_block(&point->run_id, room * sizeof *point->run_id) ||
+        !grow_block(&values->value, room * sizeof *values->value) ||
+        !grow_block(&values->seed, room * sizeof *values->seed))
       return no_memory(error);
     values->room = room;
   }
@@ -186,11 +174,9 @@ static void release(struct growing *growing) {
 static bool append(void **array, size_t have, const void *more, size_t count, size_t size) {
   if (count == 0)
     return true;
-  char *grown = realloc(*array, (have + count) * size);
-  if (!grown)
+  if (!grow_block(array, (have + count) * size))
     return false;
-  memcpy(grown + have * size, more, count * size);
-  *array = grown;
+  memcpy((char *)*array + have * size, more, count * size);
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "analysis/statistics/spectrum.h"
 #include "db/ask/query.h"
 #include "db/store/internal.h"
+#include "engine/grow.h"
 
 static void stdev_step(sqlite3_context *context, int count, sqlite3_value **values) {
   (void)count;
@@ -39,15 +40,9 @@ static void median_step(sqlite3_context *context, int count, sqlite3_value **val
   struct sample *s = sqlite3_aggregate_context(context, sizeof *s);
   if (!s || sqlite3_value_type(values[0]) == SQLITE_NULL)
     return;
-  if (s->n == s->capacity) {
-    size_t capacity = s->capacity ? 2 * s->capacity : 64;
-    double *grown = realloc(s->values, capacity * sizeof *grown);
-    if (!grown) {
-      sqlite3_result_error_nomem(context);
-      return;
-    }
-    s->values = grown;
-    s->capacity = capacity;
+  if (!grow_room(&s->values, &s->capacity, s->n + 1, sizeof *s->values)) {
+    sqlite3_result_error_nomem(context);
+    return;
   }
   s->values[s->n++] = sqlite3_value_double(values[0]);
 }

@@ -10,6 +10,7 @@
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 #include "db/store/schema.h"
+#include "engine/grow.h"
 #include "engine/scene.h"
 
 static const char checking[] = "checking";
@@ -190,10 +191,8 @@ static status read_masses(struct mass_list *list, sqlite3_stmt *run, struct erro
   const unsigned char *bytes = sqlite3_column_blob(run, 1);
   const size_t size = (size_t)sqlite3_column_bytes(run, 1);
   if (size + sizeof(double) > list->capacity) {
-    double *grown = realloc(list->masses, 2 * size + sizeof(double));
-    if (!grown)
+    if (!grow_block(&list->masses, 2 * size + sizeof(double)))
       return status_fail(error, STATUS_MEMORY, "checking: memory ran out");
-    list->masses = grown;
     list->capacity = 2 * size + sizeof(double);
   }
   list->count = size / sizeof(double);

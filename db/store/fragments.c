@@ -3,18 +3,12 @@
 #include <string.h>
 
 #include "db/store/internal.h"
+#include "engine/grow.h"
 
 static const char adding_run[] = "adding a run";
 
 static bool reserve_blob(struct store *store, size_t size) {
-  if (size <= store->blob_capacity)
-    return true;
-  uint8_t *grown = realloc(store->blob, 2 * size);
-  if (!grown)
-    return false;
-  store->blob = grown;
-  store->blob_capacity = 2 * size;
-  return true;
+  return grow_room(&store->blob, &store->blob_capacity, size, sizeof *store->blob);
 }
 
 static void put_little_endian(uint8_t *place, uint64_t bits) {

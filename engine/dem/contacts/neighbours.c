@@ -8,6 +8,7 @@
 #include "engine/dem/beams/breaking.h"
 #include "engine/dem/lattice/assemble.h"
 #include "engine/dem/step/kernels.h"
+#include "engine/grow.h"
 
 static const double horizon_steps = 150.0; /* a skin lasts about this many steps at the grain's present speed */
 static const double smallest_skin = 0.25;  /* in mean diameters */
@@ -108,16 +109,9 @@ static void repack_bonds(struct dem_system *s) {
 
 static bool grow_cells(struct dem_system *s) {
   const size_t capacity = s->cell_capacity * 2;
-  uint32_t *grain = realloc(s->cell_grain, capacity * sizeof *grain);
-  if (grain)
-    s->cell_grain = grain;
-  uint32_t *next = realloc(s->cell_next, capacity * sizeof *next);
-  if (next)
-    s->cell_next = next;
-  dem_cell *key = realloc(s->cell_key, capacity * sizeof *key);
-  if (key)
-    s->cell_key = key;
-  if (!grain || !next || !key)
+  if (!grow_block(&s->cell_grain, capacity * sizeof *s->cell_grain) ||
+      !grow_block(&s->cell_next, capacity * sizeof *s->cell_next) ||
+      !grow_block(&s->cell_key, capacity * sizeof *s->cell_key))
     return false;
   s->cell_capacity = capacity;
   return true;

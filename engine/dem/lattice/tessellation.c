@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "engine/dem/lattice/lattice.h"
+#include "engine/grow.h"
 
 /* Corners nearer than this (in spacings) are one. Rounding puts the same corner at most some 1e-14 apart at coordinates
  * below 100; a true side is this short in one of 1e10 pairs. */
@@ -39,13 +40,8 @@ static uint32_t corner_find(struct corners *corners, struct dem_point p) {
   }
   if (corners->count == corners->capacity) {
     size_t capacity = 2 * corners->capacity + 64;
-    struct dem_point *at = realloc(corners->at, capacity * sizeof *at);
-    if (at)
-      corners->at = at;
-    uint32_t *next = realloc(corners->next, capacity * sizeof *next);
-    if (next)
-      corners->next = next;
-    if (!at || !next)
+    if (!grow_block(&corners->at, capacity * sizeof *corners->at) ||
+        !grow_block(&corners->next, capacity * sizeof *corners->next))
       return UINT32_MAX;
     corners->capacity = capacity;
   }
@@ -93,19 +89,6 @@ static struct dem_point world(const struct builder *b, struct dem_point p) {
                             b->lattice->origin.y + b->lattice->spacing * (p.y - b->oy)};
 }
 
-/* Grow *array (of *capacity items) to hold at least `need`. */
-static bool grow(void **array, size_t *capacity, size_t need, size_t item) {
-  if (need <= *capacity)
-    return true;
-  size_t more = *capacity + *capacity / 2 + 1024;
-  void *larger = realloc(*array, (more > need ? more : need) * item);
-  if (!larger)
-    return false;
-  *array = larger;
-  *capacity = more > need ? more : need;
-  return true;
-}
-
 /* Cuts the cell of one lattice point and appends it if it belongs to the body. False: no memory. */
 static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   struct dem_tessellation *t = b->out;
@@ -129,8 +112,8 @@ static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
   }
   size_t start = t->first_vertex[t->cell_count], n = 0;
   size_t need = start + (size_t)cell.count, capacity = b->vertex_capacity;
-  if (!grow((void **)&t->vertex, &capacity, need, sizeof *t->vertex) ||
-      !grow((void **)&b->across, &b->vertex_capacity, need, sizeof *b->across))
+  if (!grow_room(&t->vertex, &capacity, need, sizeof *t->vertex) ||
+      !grow_room(&b->across, &b->vertex_capacity, need, sizeof *b->across))
     return false;
   for (int k = 0; k < cell.count; k++) /* leave out a side whose ends are the same corner */
     if (corner[k] != corner[k + 1 < cell.count ? k + 1 : 0]) {
@@ -169,8 +152,8 @@ static bool add_pairs(struct builder *b) {
       }
     qsort(found, count, sizeof found[0], by_second);
     size_t capacity = b->pair_capacity;
-    if (!grow((void **)&t->pair, &capacity, t->pair_count + count, sizeof *t->pair) ||
-        !grow((void **)&t->side, &b->pair_capacity, t->pair_count + count, sizeof *t->side))
+    if (!grow_room(&t->pair, &capacity, t->pair_count + count, sizeof *t->pair) ||
+        !grow_room(&t->side, &b->pair_capacity, t->pair_count + count, sizeof *t->side))
       return false;
     for (size_t f = 0; f < count; f++) {
       const struct dem_point *p = &t->vertex[found[f][1]];

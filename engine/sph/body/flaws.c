@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/grow.h"
 #include "engine/random.h"
 #include "engine/sph/body/kd_tree.h"
 
@@ -26,14 +27,8 @@ struct drawn {
 };
 
 static bool push(struct drawn *d, size_t particle, double rank) {
-  if (d->count == d->capacity) {
-    const size_t capacity = d->capacity ? 2 * d->capacity : 1024;
-    struct placed *grown = realloc(d->flaw, capacity * sizeof *grown);
-    if (!grown)
-      return false;
-    d->flaw = grown;
-    d->capacity = capacity;
-  }
+  if (!grow_room(&d->flaw, &d->capacity, d->count + 1, sizeof *d->flaw))
+    return false;
   d->flaw[d->count++] = (struct placed){particle, (log(rank) - d->log_kv) / d->law->weibull.m};
   return true;
 }
