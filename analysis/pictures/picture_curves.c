@@ -19,17 +19,26 @@ static bool range_of(size_t count, const struct picture_curve *curve, double ran
   return range[1] >= range[0];
 }
 
+/* A mean, its interval and, around that, what finer settings may change. */
+static void write_mean(struct chart *chart, const struct picture_mean *m) {
+  const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
+  const double low = bar ? m->low : m->y, high = bar ? m->high : m->y;
+  double row[6] = {m->x, m->y, none, none, none, none};
+  if (bar) {
+    row[2] = low;
+    row[3] = high;
+  }
+  if (m->resolution > 0) {
+    row[4] = low - m->resolution;
+    row[5] = high + m->resolution;
+  }
+  chart_row(chart, 6, row);
+}
+
 static void write_curve(struct chart *chart, const struct picture_curve *curve) {
   chart_columns(chart, "x mean low high thin_low thin_high");
-  for (size_t i = 0; i < curve->count; i++) {
-    const struct picture_mean *m = &curve->mean[i];
-    const bool bar = isfinite(m->low) && isfinite(m->high) && m->low < m->high;
-    const bool thin = m->resolution > 0;
-    chart_row(chart, 6,
-              (double[]){m->x, m->y, bar ? m->low : none, bar ? m->high : none,
-                         thin ? (bar ? m->low : m->y) - m->resolution : none,
-                         thin ? (bar ? m->high : m->y) + m->resolution : none});
-  }
+  for (size_t i = 0; i < curve->count; i++)
+    write_mean(chart, &curve->mean[i]);
   if (curve->count == 0)
     chart_row(chart, 6, (double[]){NAN, NAN, NAN, NAN, NAN, NAN});
   chart_block_end(chart);

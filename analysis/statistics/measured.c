@@ -103,22 +103,46 @@ static double measured_distance(const struct measured *m, size_t first, const st
   return d.most;
 }
 
-/* Measured fragments of at least mass[i], of single ones or thresholds. */
+/* A class of masses from low to high, and how many measured fragments it has. */
+struct mass_class {
+  double low, high, measured;
+};
+
+/* Class c of single masses: the bins of the spectrum, of which the first begins at `from`. The last has no upper end.
+ */
+static struct mass_class bin_class(const struct sorted *mine, int bin, double from, bool first, bool last) {
+  struct mass_class k = {first ? from : spectrum_edge(bin), last ? HUGE_VAL : spectrum_edge(bin + 1), 0};
+  k.measured = at_least(mine, k.low, false) - at_least(mine, k.high, false);
+  return k;
+}
+
+/* Class from threshold i to the next one. */
+static struct mass_class threshold_class(const struct measured *m, size_t i) {
+  if (i + 1 == m->n)
+    return (struct mass_class){m->mass[i], HUGE_VAL, m->above[i]};
+  return (struct mass_class){m->mass[i], m->mass[i + 1], m->above[i] - m->above[i + 1]};
+}
+
+/* What class k adds to the log-likelihood when the fragments are drawn from the pool. */
+static double class_likelihood(struct mass_class k, const struct sorted *pool, double whole) {
+  const double there = at_least(pool, k.low, false) - (isinf(k.high) ? 0 : at_least(pool, k.high, false));
+  return k.measured * log((there + 0.5) / whole);
+}
+
+/* Of the measured fragments of at least `from`, from number `first` on. */
 static double log_likelihood(const struct measured *m, size_t first, double from, const struct sorted *pool) {
-  const int last = m->single ? spectrum_bin(m->mass[m->n - 1]) : 0, begin = m->single ? spectrum_bin(from) : 0;
-  const size_t classes = m->single ? (size_t)(last - begin) + 1 : m->n - first;
-  const struct sorted mine = {m->n - first, m->mass + first};
-  const double whole = (double)pool->n + 0.5 * (double)classes;
   double sum = 0;
-  for (size_t c = 0; c < classes; c++) { /* the last class has no upper end */
-    const bool open = c + 1 == classes;
-    const double low = m->single ? (c ? spectrum_edge(begin + (int)c) : from) : m->mass[first + c];
-    const double high = open ? HUGE_VAL : m->single ? spectrum_edge(begin + (int)c + 1) : m->mass[first + c + 1];
-    const double here = m->single ? at_least(&mine, low, false) - at_least(&mine, high, false)
-                                  : m->above[first + c] - (open ? 0 : m->above[first + c + 1]);
-    const double there = at_least(pool, low, false) - (open ? 0 : at_least(pool, high, false));
-    sum += here * log((there + 0.5) / whole);
+  if (!m->single) {
+    const double whole = (double)pool->n + 0.5 * (double)(m->n - first);
+    for (size_t i = first; i < m->n; i++)
+      sum += class_likelihood(threshold_class(m, i), pool, whole);
+    return sum;
   }
+  const struct sorted mine = {m->n - first, m->mass + first};
+  const int begin = spectrum_bin(from), end = spectrum_bin(m->mass[m->n - 1]);
+  const double whole = (double)pool->n + 0.5 * (double)(end - begin + 1);
+  for (int bin = begin; bin <= end; bin++)
+    sum += class_likelihood(bin_class(&mine, bin, from, bin == begin, bin == end), pool, whole);
   return sum;
 }
 

@@ -214,6 +214,13 @@ static void add_reference_error(const struct study_ladder *ladders, size_t count
   }
 }
 
+/* own: the error of each knob at the scene's own setting. */
+static void add_other_errors(size_t count, const double *own, size_t of, struct study_found *found) {
+  for (size_t other = 0; other < count; other++)
+    for (size_t l = 0; other != of && l < found->count; l++)
+      found->rows[l].error += own[other];
+}
+
 /* Each level has the errors of all knobs: of the others, what they leave unknown at the scene's own setting. */
 static void combine(const struct study_ladder *ladders, size_t count, struct study_found *found) {
   double own[STUDY_KNOBS] = {0};
@@ -223,9 +230,8 @@ static void combine(const struct study_ladder *ladders, size_t count, struct stu
   for (size_t i = 0; i < count; i++)
     own[i] = found[i].adds ? error_at_base(&found[i]) : 0;
   for (size_t i = 0; i < count; i++)
-    for (size_t other = 0; other < count; other++)
-      for (size_t l = 0; other != i && ladders[i].levels.knob->group != KNOB_SETTINGS && l < found[i].count; l++)
-        found[i].rows[l].error += own[other];
+    if (ladders[i].levels.knob->group != KNOB_SETTINGS)
+      add_other_errors(count, own, i, &found[i]);
   mark_frontier(count, found);
 }
 

@@ -54,31 +54,42 @@ void run_cells_release(struct run_cells *cells) {
   *cells = (struct run_cells){0};
 }
 
+/* Runs of the first cell whose seed every cell has; *shared has room for them. */
+static size_t find_shared(size_t count, struct run_cell *const *cell, struct run_cells_run *shared) {
+  size_t common = 0;
+  for (size_t r = 0; r < cell[0]->runs; r++) {
+    size_t c = 1;
+    while (c < count && bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed))
+      c++;
+    if (c >= count)
+      shared[common++] = cell[0]->run[r];
+  }
+  return common;
+}
+
+/* Keeps the runs of a cell with these seeds; it has them all, and both ascend. */
+static void keep_shared(struct run_cell *cell, const struct run_cells_run *shared, size_t common) {
+  size_t from = 0;
+  for (size_t r = 0; r < common; r++, from++) {
+    while (cell->run[from].seed != shared[r].seed)
+      from++;
+    cell->run[r] = cell->run[from];
+  }
+  cell->runs = common;
+}
+
 size_t run_cells_balance(size_t count, struct run_cell *const *cell, bool *same_seeds) {
-  size_t least = SIZE_MAX, common = 0;
+  size_t least = SIZE_MAX;
   *same_seeds = false;
   for (size_t c = 0; c < count; c++)
     least = cell[c]->runs < least ? cell[c]->runs : least;
   if (count == 0 || least == 0)
     return 0;
   struct run_cells_run *shared = malloc(cell[0]->runs * sizeof *shared);
-  for (size_t r = 0; shared && r < cell[0]->runs; r++) {
-    bool everywhere = true;
-    for (size_t c = 1; everywhere && c < count; c++)
-      everywhere = bsearch(&cell[0]->run[r], cell[c]->run, cell[c]->runs, sizeof *shared, by_seed);
-    if (everywhere)
-      shared[common++] = cell[0]->run[r];
-  }
+  const size_t common = shared ? find_shared(count, cell, shared) : 0;
   *same_seeds = common >= 2 || (common == 1 && least == 1);
-  for (size_t c = 0; *same_seeds && c < count; c++) {
-    size_t from = 0;
-    for (size_t r = 0; r < common; r++, from++) { /* both ascend */
-      while (cell[c]->run[from].seed != shared[r].seed)
-        from++;
-      cell[c]->run[r] = cell[c]->run[from];
-    }
-    cell[c]->runs = common;
-  }
+  for (size_t c = 0; *same_seeds && c < count; c++)
+    keep_shared(cell[c], shared, common);
   free(shared);
   return *same_seeds ? common : least;
 }

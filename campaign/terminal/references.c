@@ -79,23 +79,31 @@ size_t references_count(void) {
   return sizeof papers / sizeof papers[0];
 }
 
-/* A year stands behind the names, perhaps after others of them: "Benz & Asphaug (1994, 1995)". Names are not the end of
- * longer ones: "Monaghan" is not "Gray, Monaghan & Swift". */
+/* Is what stands at `at` in the source the end or the beginning of a longer list of names? "Monaghan" is not "Gray,
+ * Monaghan & Swift". */
+static bool is_longer(const char *source, const char *at, size_t length) {
+  const char *behind = at + length;
+  const bool ends = at >= source + 2 && (strncmp(at - 2, ", ", 2) == 0 || strncmp(at - 2, "& ", 2) == 0);
+  return ends || ((behind[0] == ',' || behind[0] == ' ') && behind[1] == '&');
+}
+
+/* A year stands behind the names, perhaps after others of them: "Benz & Asphaug (1994, 1995)". */
+static bool year_follows(const char *rest, const char *year) {
+  static const char more_names[] = ", D'Addetta, Herrmann & Ramm";
+  if (strncmp(rest, more_names, sizeof more_names - 1) == 0)
+    rest += sizeof more_names - 1;
+  const char *found = strstr(rest, year);
+  return found && (size_t)(found - rest) < strspn(rest, " (),0123456789");
+}
+
 bool references_named(size_t index, const char *source) {
   const char *names = papers[index].names;
+  const size_t length = strlen(names);
   if (papers[index].also && strstr(source, papers[index].also))
     return true;
-  for (const char *at = strstr(source, names); at; at = strstr(at + 1, names)) {
-    const char *rest = at + strlen(names), *year;
-    const bool longer = at >= source + 2 && (strncmp(at - 2, ", ", 2) == 0 || strncmp(at - 2, "& ", 2) == 0);
-    if (longer || ((rest[0] == ',' || rest[0] == ' ') && rest[1] == '&'))
-      continue;
-    rest += strncmp(rest, ", D'Addetta, Herrmann & Ramm", 28) == 0 ? 28 : 0;
-    const size_t reach = strspn(rest, " (),0123456789");
-    year = strstr(rest, papers[index].year);
-    if (year && (size_t)(year - rest) < reach)
+  for (const char *at = strstr(source, names); at; at = strstr(at + 1, names))
+    if (!is_longer(source, at, length) && year_follows(at + length, papers[index].year))
       return true;
-  }
   return false;
 }
 

@@ -265,30 +265,38 @@ static void judge_view(struct guard *guard, const char *name, const char *sql) {
   stranger(guard, "view", name, NULL);
 }
 
+/* SQLite makes these itself: the index of a key, whose text is that of its table, and the tables of ANALYZE. */
+static bool is_of_sqlite(const char *type, const char *name, const char *sql) {
+  if (!sql)
+    return strcmp(type, "index") == 0 && strncmp(name, "sqlite_autoindex_", 17) == 0;
+  return strcmp(sql, "CREATE TABLE sqlite_stat1(tbl,idx,stat)") == 0 ||
+         strcmp(sql, "CREATE TABLE sqlite_stat4(tbl,idx,neq,nlt,ndlt,sample)") == 0;
+}
+
+static const struct schema_index *find_index(const char *name) {
+  for (size_t i = 0; i < schema_tables_indexes_count; i++)
+    if (strcmp(schema_tables_indexes[i].name, name) == 0)
+      return &schema_tables_indexes[i];
+  return NULL;
+}
+
 static void judge_row(struct guard *guard, const char *type, const char *name, const char *sql) {
-  static const char *const of_analyze[] = {"CREATE TABLE sqlite_stat1(tbl,idx,stat)",
-                                           "CREATE TABLE sqlite_stat4(tbl,idx,neq,nlt,ndlt,sample)"};
   struct schema_table table;
-  if (!type || !name)
+  if (!type || !name) {
     stranger(guard, "a row without a name in", "sqlite_schema", NULL);
-  else if (strcmp(type, "index") == 0 && !sql && strncmp(name, "sqlite_autoindex_", 17) == 0)
-    return; /* of a key, which is in the text of its table */
-  else if (!sql)
-    stranger(guard, type, name, NULL);
-  else if (strcmp(sql, of_analyze[0]) == 0 || strcmp(sql, of_analyze[1]) == 0)
     return;
-  else if (strcmp(type, "view") == 0)
-    judge_view(guard, name, sql);
-  else if (strcmp(type, "table") == 0 && find_table(name, &table))
-    judge_table(guard, &table, sql);
-  else {
-    for (size_t i = 0; strcmp(type, "index") == 0 && i < schema_tables_indexes_count; i++)
-      if (strcmp(schema_tables_indexes[i].name, name) == 0) {
-        judge_index(guard, &schema_tables_indexes[i], sql);
-        return;
-      }
-    stranger(guard, type, name, NULL);
   }
+  if (is_of_sqlite(type, name, sql))
+    return;
+  const struct schema_index *index = strcmp(type, "index") == 0 ? find_index(name) : NULL;
+  if (sql && index)
+    judge_index(guard, index, sql);
+  else if (sql && strcmp(type, "view") == 0)
+    judge_view(guard, name, sql);
+  else if (sql && strcmp(type, "table") == 0 && find_table(name, &table))
+    judge_table(guard, &table, sql);
+  else
+    stranger(guard, type, name, NULL);
 }
 
 static status judge_objects(struct guard *guard, struct error *error) {

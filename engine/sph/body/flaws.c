@@ -225,6 +225,24 @@ struct owners {
   struct sph_kd_tree *nearest;
 };
 
+/* The arrays of the owners; `unequal`: their shares differ. False: no memory. */
+static bool find_marks(const struct sph_particles *p, struct sph_range range, const struct sph_middle *middle,
+                       bool unequal, struct owners *o) {
+  if (middle) {
+    o->ends = find_ends(p, range, middle);
+    if (!o->ends)
+      return false;
+  }
+  if (middle && o->cells) {
+    o->ends_cells = exempt_cells(o->cells, o->ends);
+    if (!o->ends_cells)
+      return false;
+  }
+  if (unequal)
+    o->share = find_shares(p, range, o->cells);
+  return o->share || !unequal;
+}
+
 static status find_owners(const struct sph_flaw_law *law, const struct sph_particles *p, struct sph_range range,
                           const struct sph_middle *middle, struct owners *o, struct error *error) {
   if (law->cell_width > 0) {
@@ -232,11 +250,7 @@ static status find_owners(const struct sph_flaw_law *law, const struct sph_parti
     if (code)
       return code;
   }
-  const bool unequal = o->cells || is_graded(p, range);
-  o->ends = middle ? find_ends(p, range, middle) : NULL;
-  o->ends_cells = o->ends && o->cells ? exempt_cells(o->cells, o->ends) : NULL;
-  o->share = unequal ? find_shares(p, range, o->cells) : NULL;
-  if ((middle && !o->ends) || (o->ends && o->cells && !o->ends_cells) || (unequal && !o->share))
+  if (!find_marks(p, range, middle, o->cells || is_graded(p, range), o))
     return status_fail(error, STATUS_MEMORY, "no memory for the flaws of %zu particles", range.n);
   return sph_kd_tree_create(range.n, p->x + range.first, p->y + range.first, p->z + range.first, &o->nearest, error);
 }

@@ -115,27 +115,31 @@ static status refuse(struct error *error, const char *what, double value, const 
 static status check_curve(const struct sph_palpha *g, struct error *error) {
   if (g->curve != SPH_CRUSH_QUADRATIC && g->curve != SPH_CRUSH_TWO_POWER)
     return refuse(error, "curve", g->curve, "it must be quadratic or two-power");
-  if (!(g->distention > 1) || !isfinite(g->distention))
-    return refuse(error, "distention", g->distention, "it must be above 1 (1 is a solid: leave the porosity out)");
-  if (!(g->elastic_pressure >= 0) || !isfinite(g->elastic_pressure))
-    return refuse(error, "elastic_pressure", g->elastic_pressure, "it must be a pressure of 0 or more");
-  if (!(g->solid_pressure > g->elastic_pressure) || !isfinite(g->solid_pressure))
-    return refuse(error, "solid_pressure", g->solid_pressure, "it must be above elastic_pressure");
-  if (g->curve == SPH_CRUSH_QUADRATIC)
-    return STATUS_OK;
-  if (!(g->transition_pressure > g->elastic_pressure) || !(g->transition_pressure < g->solid_pressure))
-    return refuse(error, "transition_pressure", g->transition_pressure,
-                  "it must lie between elastic_pressure and solid_pressure");
-  if (!(g->transition_distention >= 1) || !isfinite(g->transition_distention))
-    return refuse(error, "transition_distention", g->transition_distention, "it must be 1 or more");
-  if (!(g->elastic_distention >= g->transition_distention) || !isfinite(g->elastic_distention) ||
-      g->elastic_distention <= 1)
-    return refuse(error, "elastic_distention", g->elastic_distention,
-                  "it must be above 1 and not below transition_distention");
-  if (!(g->exponent_low >= 1) || !isfinite(g->exponent_low))
-    return refuse(error, "exponent_low", g->exponent_low, "it must be 1 or more");
-  if (!(g->exponent_high >= 1) || !isfinite(g->exponent_high))
-    return refuse(error, "exponent_high", g->exponent_high, "it must be 1 or more");
+  const struct {
+    const char *name;
+    double value;
+    bool good;
+    const char *remedy;
+  } checks[] = {
+      {"distention", g->distention, g->distention > 1, "it must be above 1 (1 is a solid: leave the porosity out)"},
+      {"elastic_pressure", g->elastic_pressure, g->elastic_pressure >= 0, "it must be a pressure of 0 or more"},
+      {"solid_pressure", g->solid_pressure, g->solid_pressure > g->elastic_pressure,
+       "it must be above elastic_pressure"},
+      /* of two powers: */
+      {"transition_pressure", g->transition_pressure,
+       g->transition_pressure > g->elastic_pressure && g->transition_pressure < g->solid_pressure,
+       "it must lie between elastic_pressure and solid_pressure"},
+      {"transition_distention", g->transition_distention, g->transition_distention >= 1, "it must be 1 or more"},
+      {"elastic_distention", g->elastic_distention,
+       g->elastic_distention > 1 && g->elastic_distention >= g->transition_distention,
+       "it must be above 1 and not below transition_distention"},
+      {"exponent_low", g->exponent_low, g->exponent_low >= 1, "it must be 1 or more"},
+      {"exponent_high", g->exponent_high, g->exponent_high >= 1, "it must be 1 or more"},
+  };
+  const size_t count = g->curve == SPH_CRUSH_QUADRATIC ? 3 : sizeof checks / sizeof *checks;
+  for (size_t i = 0; i < count; i++)
+    if (!checks[i].good || !isfinite(checks[i].value))
+      return refuse(error, checks[i].name, checks[i].value, checks[i].remedy);
   return STATUS_OK;
 }
 

@@ -154,6 +154,15 @@ static void read_column(const struct sph_system *s, const double *column, double
     out[s->id[i]] = column ? column[i] : absent;
 }
 
+/* The sixth component follows: the deviator has no trace. */
+static void read_stress(const struct sph_system *s, double *const out[6]) {
+  for (size_t i = 0; i < s->n; i++) {
+    for (int k = 0; k < 5; k++)
+      out[k][s->id[i]] = s->c.stress[k][i];
+    out[5][s->id[i]] = -(s->c.stress[0][i] + s->c.stress[3][i]);
+  }
+}
+
 void sph_system_columns_read(const struct sph_system *s, struct sph_particles *out) {
   struct sph_columns columns = s->c;
   for (size_t k = 0; k < sizeof carried / sizeof *carried; k++) {
@@ -164,11 +173,8 @@ void sph_system_columns_read(const struct sph_system *s, struct sph_particles *o
     for (size_t i = 0; k < 3 && i < s->n; i++)
       to[i] = sph_system_columns_wrapped(to[i], s->domain.periodic[k]);
   }
-  for (size_t i = 0; out->stress[0] && s->c.stress[0] && i < s->n; i++) {
-    for (int k = 0; k < 5; k++)
-      out->stress[k][s->id[i]] = s->c.stress[k][i];
-    out->stress[5][s->id[i]] = -(s->c.stress[0][i] + s->c.stress[3][i]);
-  }
+  if (out->stress[0] && s->c.stress[0])
+    read_stress(s, out->stress);
   for (size_t i = 0; out->held && s->held && i < s->n; i++)
     out->held[s->id[i]] = s->held[i];
   for (size_t b = 0; b < s->body_count; b++)
