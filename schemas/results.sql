@@ -999,7 +999,7 @@ INSERT INTO column_doc VALUES ('resolution', 'half_width', NULL, 'how far finer 
 
 INSERT INTO column_doc VALUES ('resolution', 'point_id', NULL, 'the point: the scene of a study, or one of its levels', 0);
 
-INSERT INTO column_doc VALUES ('resolution', 'quantity', NULL, 'the result, as a column of the view runs', 0);
+INSERT INTO column_doc VALUES ('resolution', 'quantity', NULL, 'the result, as a column of the view runs; beta or beta_METHOD_WINDOW: an exponent of all runs of a point', 0);
 
 INSERT INTO column_doc VALUES ('resolution', 'results_version', NULL, 'version of the engine''s results that was studied', 0);
 

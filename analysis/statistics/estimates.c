@@ -176,3 +176,10 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
                      "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW, which is one of%s", name,
                      all + 1);
 }
+
+const char *estimates_short_name(const char *name) {
+  char headline[64];
+  snprintf(headline, sizeof headline, "beta_%s_%s", exponent_method_names[ESTIMATES_HEADLINE_METHOD],
+           estimates_window_names[ESTIMATES_HEADLINE_WINDOW]);
+  return strcmp(name, headline) == 0 ? "beta" : name;
+}

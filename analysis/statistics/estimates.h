@@ -48,5 +48,7 @@ status estimates_make(size_t n, const struct fragment *fragments, double complet
  * *is = false for other names; STATUS_USAGE for an unknown name that begins with beta. */
 status estimates_named(const char *name, bool *is, enum exponent_method *method, enum estimates_window *window,
                        struct error *error);
+/* The name under which studies keep it: the headline's long name becomes "beta", all else stays. */
+const char *estimates_short_name(const char *name);
 
 #endif

@@ -178,10 +178,8 @@ static void fit_groups(const struct prepared *p, struct exponent *fit) {
   fit->log_likelihood = plain.log_likelihood;
 }
 
-/* theta[g]: beta without the runs of group g. */
-static status leave_out(struct prepared *p, double theta[SAMPLE_GROUPS]) {
-  size_t each;
-  const size_t groups = sample_groups(p->runs, &each);
+/* theta[g]: beta without the g-th `each` runs; `groups` of them. */
+static status leave_out(struct prepared *p, size_t groups, size_t each, double *theta) {
   if (p->groups && !power_law_leave_out(p->runs, p->groups, p->bin_width, each, theta))
     return STATUS_MEMORY;
   const double weight = total_weight(p->groups ? p->runs : 0, p->groups);
@@ -226,25 +224,41 @@ static size_t count_runs(const struct prepared *p, const struct pooled_runs *run
   return count;
 }
 
+/* Fits all runs, then all but one group after another: theta, where there is a beta. */
+static status fit_all(struct prepared *p, const struct pooled_runs *runs, double lower, size_t groups, size_t each,
+                      struct exponent *fit, double *theta) {
+  const status code = prepare(p, runs, lower);
+  if (code)
+    return code;
+
+  if (p->groups)
+    fit_groups(p, fit);
+  else
+    fit_bins(p, 0, 0, fit);
+  return isfinite(fit->beta) ? leave_out(p, groups, each, theta) : STATUS_OK;
+}
+
+static status check_method(enum exponent_method method, struct error *error) {
+  if (method == EXPONENT_LEAST_SQUARES || method == EXPONENT_BINNED || method == EXPONENT_MASSES)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
+}
+
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error) {
   *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL}),
                                   .interval = {NAN, NAN, NAN}};
-  if (method != EXPONENT_LEAST_SQUARES && method != EXPONENT_BINNED && method != EXPONENT_MASSES)
-    return status_fail(error, STATUS_USAGE, "exponent: method number %d does not pool runs", (int)method);
-  status code = check(runs, lower, error);
+  status code = check_method(method, error);
+  if (!code)
+    code = check(runs, lower, error);
   if (code)
     return code;
 
   struct prepared p = {.method = method, .runs = runs->count};
   double theta[SAMPLE_GROUPS];
-  code = prepare(&p, runs, lower);
-  if (!code && p.groups)
-    fit_groups(&p, &out->fit);
-  else if (!code)
-    fit_bins(&p, 0, 0, &out->fit);
-  if (!code && isfinite(out->fit.beta))
-    code = leave_out(&p, theta);
+  size_t each;
+  const size_t groups = sample_groups(runs->count, &each);
+  code = fit_all(&p, runs, lower, groups, each, &out->fit, theta);
   if (code) {
     forget(&p);
     return status_fail(error, code, "exponent: no memory for %zu runs", runs->count);
@@ -256,6 +270,36 @@ status pooled_exponent(const struct pooled_runs *runs, enum exponent_method meth
   out->interval = sample_jackknife_of(runs->count, level, out->fit.beta, theta);
   forget(&p);
   return STATUS_OK;
+}
+
+/* The values of pooled.h from beta and theta, beta without each run; both arrays have n members. */
+static void values_of_runs(size_t n, double beta, const double *theta, double *values) {
+  double mean = 0;
+  for (size_t r = 0; r < n; r++)
+    mean += theta[r] / (double)n; /* NaN when one is NaN: so few runs cannot tell */
+  for (size_t r = 0; r < n; r++)
+    values[r] = isfinite(mean) && n > 1 ? beta + (double)(n - 1) * (mean - theta[r]) : (double)NAN;
+}
+
+status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
+                               double *values, struct error *error) {
+  status code = check_method(method, error);
+  if (!code)
+    code = check(runs, lower, error);
+  if (code)
+    return code;
+
+  struct prepared p = {.method = method, .runs = runs->count};
+  struct exponent fit = exponent_unknown(method, (struct exponent_window){lower, HUGE_VAL});
+  double *theta = malloc((runs->count + 1) * sizeof *theta);
+  for (size_t r = 0; theta && r < runs->count; r++)
+    theta[r] = NAN;
+  code = theta ? fit_all(&p, runs, lower, runs->count, 1, &fit, theta) : STATUS_MEMORY;
+  if (!code)
+    values_of_runs(runs->count, fit.beta, theta, values);
+  forget(&p);
+  free(theta);
+  return code ? status_fail(error, code, "exponent: no memory for %zu runs", runs->count) : STATUS_OK;
 }
 
 status pooled_rivals(const struct pooled_runs *runs, double lower, struct pooled_rivals *out, struct error *error) {

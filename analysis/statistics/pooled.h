@@ -62,6 +62,14 @@ struct pooled_exponent {
 status pooled_exponent(const struct pooled_runs *runs, enum exponent_method method, double lower, double level,
                        struct pooled_exponent *out, struct error *error);
 
+/* What each run adds to the exponent, so that points with the same seeds can be compared seed by seed: values[r] = beta
+ * + (n - 1) (mean of the others - beta without run r), with n the number of runs. Their mean is beta, and Student's
+ * interval of their mean is the interval of pooled_exponent (to SAMPLE_GROUPS runs; from there on that takes groups).
+ * The difference of two such values is the same of the difference of two exponents. All NaN where pooled_exponent has
+ * no interval. values: room for runs->count. */
+status pooled_exponent_of_runs(const struct pooled_runs *runs, enum exponent_method method, double lower,
+                               double *values, struct error *error);
+
 /* Does a power law fit at all (pooled_goodness.c)? With the window and the numbers of fragments of pooled_exponent by
  * masses, which it fits to every draw again. Fragments of one run are taken as independent. */
 struct pooled_goodness {

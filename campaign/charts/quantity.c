@@ -88,9 +88,17 @@ static status take_point(void *context, const struct ask_points_row *point, stru
                                reading->window, 0.95, &fit, error);
   if (code)
     return code;
+  struct ask_resolution resolution;
+  code = ask_resolution(reading->store, point->point_id, reading->choice->name, &resolution, error);
+  if (code)
+    return code;
   const double half_width = fit.interval.half_width;
-  struct quantity_row row =
-      {point->inputs, point->results_version, fit.fit.beta, fit.fit.beta - half_width, fit.fit.beta + half_width, NAN};
+  struct quantity_row row = {point->inputs,
+                             point->results_version,
+                             fit.fit.beta,
+                             fit.fit.beta - half_width,
+                             fit.fit.beta + half_width,
+                             resolution.half_width};
   return give(reading, &row, error);
 }
 

@@ -47,9 +47,10 @@ static const struct option_row rows[] = {
     OPTION_ROW_LIST("knob", 'k', "NAMES", struct options, request.knobs,
                     "What is made coarser and finer: names or groups, comma-separated, or NAME=LEVEL,LEVEL... with "
                     "levels of your own. May be given several times. Default: the groups resolution and settings."),
-    OPTION_ROW_TEXT("quantity", 'q', "NAMES", struct options, request.quantity, NULL,
-                    "Results to study, comma-separated. Default: the campaign's main quantity, or " OUTCOME_DEFAULT
-                    "."),
+    OPTION_ROW_TEXT(
+        "quantity", 'q', "NAMES", struct options, request.quantity, NULL,
+        "Results to study, comma-separated; beta or beta_METHOD_WINDOW is the exponent of all runs of a level "
+        "together. Default: the campaign's main quantity, or " OUTCOME_DEFAULT "."),
     SCENE_OPTION_SET(struct options, request.set),
     OPTION_ROW_TEXT("within", 0, "WIDTH", struct options, request.within, "5 %",
                     "Add seeds until the half width of every bias is below this: a number in the quantity's SI unit, a "

@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "campaign/converge/ladder.h"
+#include "campaign/converge/study_quantity.h"
 #include "campaign/document/campaign_walk.h"
 #include "db/ask/convergence.h"
 #include "engine/scene_settings.h"
@@ -135,19 +136,17 @@ static void choose(struct accuracy *accuracy) {
 
 /* Reads the study of this scene, if there is one. */
 static status read_study(struct finding *finding, struct store *store, const struct scene *scene, struct error *error) {
-  bool of_outcome;
-  char column[FIELD_TEXT_SIZE];
+  struct study_quantity quantity;
   int64_t point = 0;
-  const struct field *row = campaign_quantity(scene->kind, finding->campaign->accuracy_quantity, &of_outcome, error);
-  if (!row)
+  if (study_quantity_find(scene->kind, finding->campaign->accuracy_quantity, &quantity, error) != STATUS_OK)
     return STATUS_CONTENT;
-  field_column_name(row->path, column, sizeof column);
   status code = store_point_find(store, scene, &point, error);
   if (code != STATUS_OK || point == 0)
     return code;
-  code = ask_convergence_levels(store, point, scene->kind->results_version, column, take_open, finding, error);
+  code = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, take_open, finding, error);
   if (code == STATUS_OK)
-    code = ask_convergence_levels(store, point, scene->kind->results_version, column, take_option, finding, error);
+    code = ask_convergence_levels(store, point, scene->kind->results_version, quantity.column, take_option, finding,
+                                  error);
   return code;
 }
 

@@ -17,8 +17,7 @@ static status read_quantities(struct study *study, const char *names, const stru
     if (study->quantity_count == STUDY_QUANTITIES)
       return status_fail(error, STATUS_USAGE, "at most %d quantities in one study", STUDY_QUANTITIES);
     struct study_quantity *quantity = &study->quantity[study->quantity_count++];
-    quantity->row = campaign_quantity(kind, name, &quantity->of_outcome, error);
-    if (!quantity->row)
+    if (study_quantity_find(kind, name, quantity, error) != STATUS_OK)
       return STATUS_USAGE;
     from += length + (from[length] == ',');
   }

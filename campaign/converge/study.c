@@ -8,6 +8,7 @@
 
 #include "analysis/statistics/sample.h"
 #include "analysis/statistics/scatter.h"
+#include "db/ask/point.h"
 
 #define CONFIDENCE 0.95
 #define NOTHING    ((double)NAN)
@@ -27,8 +28,11 @@ status study_add(struct study *study, const struct scene *base, struct ladder *l
       for (size_t s = 0; ladder.values[q][l] && s < room; s++)
         ladder.values[q][l][s] = NAN;
     }
-  for (size_t l = 0; l < ladder.levels.count; l++)
+  for (size_t l = 0; l < ladder.levels.count; l++) {
     ladder.cpu[l] = ladder.wall[l] = NAN;
+    ladder.ran[l] = calloc(room, sizeof *ladder.ran[l]);
+    good = good && ladder.ran[l];
+  }
   if (grown)
     study->ladder[study->ladder_count++] = ladder;
   return good ? STATUS_OK : status_fail(error, STATUS_MEMORY, "no memory for a study");
@@ -40,6 +44,8 @@ void study_clear(struct study *study) {
     for (size_t q = 0; q < STUDY_QUANTITIES; q++)
       for (size_t l = 0; l < KNOB_LEVELS; l++)
         free(ladder->values[q][l]);
+    for (size_t l = 0; l < KNOB_LEVELS; l++)
+      free(ladder->ran[l]);
     ladder_clear(&ladder->levels);
   }
   free(study->ladder);
@@ -128,8 +134,7 @@ static void find_limit(const struct study_ladder *ladder, size_t quantity, size_
 
 void study_find(const struct study *study, const struct study_ladder *ladder, size_t quantity,
                 struct study_found *found) {
-  char column[FIELD_TEXT_SIZE];
-  field_column_name(study->quantity[quantity].row->path, column, sizeof column);
+  const char *column = study->quantity[quantity].column;
   const size_t n = (size_t)ladder->seeds;
   *found = (struct study_found){.count = ladder->levels.count, .adds = ladder->levels.knob->group == KNOB_RESOLUTION};
   for (size_t l = 0; l < found->count; l++) {
@@ -286,7 +291,8 @@ status study_store(const struct study *study, struct store *store, struct error 
 /* ---- values from the store ---- */
 
 struct reading {
-  double *values;
+  double *values; /* NULL: of no interest */
+  bool *ran;
   int64_t first, count;
   double cpu, wall;
   size_t runs;
@@ -297,24 +303,64 @@ static void take_run(void *context, const struct store_point_run *run) {
   const int64_t s = (int64_t)(run->seed - (uint64_t)reading->first);
   if (s < 0 || s >= reading->count)
     return;
-  reading->values[s] = outcome_is_usable(run->state) ? run->value : NOTHING;
+  if (reading->values)
+    reading->values[s] = outcome_is_usable(run->state) ? run->value : NOTHING;
+  reading->ran[s] = true;
   reading->cpu += run->cpu_s;
   reading->wall += run->wall_s;
   reading->runs++;
 }
 
+/* The values of a result of the runs; of an exponent only what the runs cost. */
+static status read_runs(const struct study *study, struct study_ladder *ladder, size_t l, size_t q, struct store *store,
+                        struct error *error) {
+  bool of_outcome = study->quantity[q].of_outcome;
+  const struct engine_kind *kind = ladder->base->kind;
+  const struct field *row = study->quantity[q].row;
+  struct reading reading = {.values = row ? ladder->values[q][l] : NULL,
+                            .ran = ladder->ran[l],
+                            .first = study->limits.first_seed,
+                            .count = study->rule.most_seeds};
+  if (!row)
+    row = campaign_quantity(kind, OUTCOME_DEFAULT, &of_outcome, error);
+  const status code = store_point_runs(store, ladder->point[l], kind, row, of_outcome, take_run, &reading, error);
+  ladder->cpu[l] = reading.runs ? reading.cpu / (double)reading.runs : NOTHING;
+  ladder->wall[l] = reading.runs ? reading.wall / (double)reading.runs : NOTHING;
+  return code;
+}
+
+/* What each run adds to an exponent of the first seeds: their number decides about all values. */
+static status read_exponent(const struct study *study, struct study_ladder *ladder, size_t l, size_t q,
+                            struct store *store, struct error *error) {
+  const struct study_quantity *quantity = &study->quantity[q];
+  const int64_t first = study->limits.first_seed;
+  double *values = ladder->values[q][l];
+  char where[80];
+  for (int64_t s = 0; s < study->rule.most_seeds; s++)
+    values[s] = NAN;
+  snprintf(where, sizeof where, "seed BETWEEN %lld AND %lld", (long long)first, (long long)(first + ladder->seeds - 1));
+  struct point_data point;
+  status code = point_read_where(store, ladder->point[l], ladder->base->kind->results_version, where, &point, error);
+  if (code != STATUS_OK)
+    return code;
+
+  double *of_runs = malloc((point.runs.count + 1) * sizeof *of_runs);
+  code = of_runs ? point_exponent_of_runs(&point, quantity->method, quantity->window, of_runs, error)
+                 : status_fail(error, STATUS_MEMORY, "no memory for an exponent");
+  for (size_t r = 0; code == STATUS_OK && r < point.runs.count; r++)
+    values[(int64_t)point.seed[r] - first] = of_runs[r];
+  free(of_runs);
+  point_release(&point);
+  return code;
+}
+
 static status read_level(const struct study *study, struct study_ladder *ladder, size_t l, struct store *store,
                          struct error *error) {
-  const struct scene *scene = ladder->levels.level[l].scene;
-  status code = store_add_point(store, 0, scene, 0, NULL, &ladder->point[l], error);
+  status code = store_add_point(store, 0, ladder->levels.level[l].scene, 0, NULL, &ladder->point[l], error);
   for (size_t q = 0; code == STATUS_OK && q < study->quantity_count; q++) {
-    struct reading reading = {.values = ladder->values[q][l],
-                              .first = study->limits.first_seed,
-                              .count = study->rule.most_seeds};
-    code = store_point_runs(store, ladder->point[l], scene->kind, study->quantity[q].row, study->quantity[q].of_outcome,
-                            take_run, &reading, error);
-    ladder->cpu[l] = reading.runs ? reading.cpu / (double)reading.runs : NOTHING;
-    ladder->wall[l] = reading.runs ? reading.wall / (double)reading.runs : NOTHING;
+    code = read_runs(study, ladder, l, q, store, error);
+    if (code == STATUS_OK && !study->quantity[q].row)
+      code = read_exponent(study, ladder, l, q, store, error);
   }
   return code;
 }

@@ -12,15 +12,11 @@
 
 #include "analysis/statistics/convergence.h"
 #include "campaign/converge/ladder.h"
+#include "campaign/converge/study_quantity.h"
 #include "campaign/document/campaign.h"
 #include "campaign/driver/driver.h"
 
 enum { STUDY_QUANTITIES = 8, STUDY_KNOBS = 32 /* of one scene */ };
-
-struct study_quantity {
-  const struct field *row;
-  bool of_outcome;
-};
 
 /* One knob of one scene, and the values of its runs. */
 struct study_ladder {
@@ -30,7 +26,9 @@ struct study_ladder {
   int64_t point[KNOB_LEVELS];
   bool left_out[KNOB_LEVELS];                    /* by the budget */
   int64_t seeds;                                 /* asked for, of every level that is not left out */
-  double *values[STUDY_QUANTITIES][KNOB_LEVELS]; /* of each seed; NaN: no usable run. Owned */
+  double *values[STUDY_QUANTITIES][KNOB_LEVELS]; /* of each seed; NaN: no usable run. Of an exponent: what the seed's
+                                                    run adds (pooled_exponent_of_runs), for the first `seeds`. Owned */
+  bool *ran[KNOB_LEVELS];                        /* of each seed: its run is in the store. Owned */
   double cpu[KNOB_LEVELS], wall[KNOB_LEVELS];    /* means of the runs, s; NaN: none */
   bool narrow;                                   /* every bias of every quantity is known to the wanted width */
   bool done;

@@ -74,7 +74,7 @@ status study_picture(const struct study *study, bool of_errors, const char *path
   add_knobs(drawing, CURVES, of_errors ? error_of : mean_of);
 
   char title[800], quantity[CHART_OPTION_LABEL], y[CHART_OPTION_LABEL + 16];
-  chart_option_label(study->quantity[0].row->path, quantity);
+  chart_option_label(study->quantity[0].name, quantity);
   snprintf(y, sizeof y, "%s%s", of_errors ? "error of " : "", quantity);
   snprintf(title, sizeof title, "%s: %s over the cost of a run", study->ladder[0].base->name, y);
   const struct picture_page page = chart_option_page(path, NULL);

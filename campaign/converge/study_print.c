@@ -98,11 +98,11 @@ static void print_gain(size_t count, const struct study_found *found) {
 
 static status print_quantity(const struct study *study, size_t from, size_t quantity, size_t count,
                              const struct study_found *found, struct error *error) {
-  const struct field *row = study->quantity[quantity].row;
-  printf("%s%s, quantity %s%s%s%s\n", from || quantity ? "\n" : "", study->ladder[from].base->name, row->path,
-         row->unit && strcmp(row->unit, "1") != 0 ? " (" : "",
-         row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "",
-         row->unit && strcmp(row->unit, "1") != 0 ? ")" : "");
+  const struct study_quantity *what = &study->quantity[quantity];
+  const char *unit = what->row ? what->row->unit : NULL;
+  const bool named = unit && strcmp(unit, "1") != 0;
+  printf("%s%s, quantity %s%s%s%s\n", from || quantity ? "\n" : "", study->ladder[from].base->name, what->name,
+         named ? " (" : "", named ? unit : "", named ? ")" : "");
   struct table *table = table_new(TABLE_TEXT, stdout);
   table_columns(table, (const char *const[]){"knob", "level", "n", "mean", "hw95", "sd", "skew", "upper_mode", "cpu_s",
                                              "bias", "bias_hw95", "corr", "corr_low", "corr_high", "break_even",

@@ -68,7 +68,7 @@ static bool is_narrow(const struct study *study, const struct study_ladder *ladd
 static double cost_of(const struct rounds *rounds, const struct study_ladder *ladder, size_t level, int64_t seeds) {
   int64_t missing = 0;
   for (int64_t s = 0; s < seeds; s++)
-    missing += isnan(ladder->values[0][level][s]);
+    missing += !ladder->ran[level][s];
   return missing ? (double)missing * predict(rounds, ladder, level) : 0;
 }
 
@@ -204,7 +204,8 @@ static status make_campaign(struct rounds *rounds, struct error *error) {
   *campaign = study->limits;
   campaign->design = (struct campaign_design_keys){.kind = CAMPAIGN_LIST};
   campaign->per_point = rounds->seeds;
-  snprintf(campaign->quantity, sizeof campaign->quantity, "%s", study->quantity[0].row->path);
+  const struct field *row = study->quantity[0].row;
+  snprintf(campaign->quantity, sizeof campaign->quantity, "%s", row ? row->path : OUTCOME_DEFAULT);
   snprintf(campaign->name, sizeof campaign->name, "%.200s %s", study->limits.name, rounds->ladder->levels.knob->name);
   campaign->scene = scene_copy(rounds->ladder->base);
   if (!campaign->scene)
@@ -244,7 +245,6 @@ static void judge(struct rounds *rounds) {
   struct study_ladder *ladder = rounds->ladder;
   if (rounds->probe)
     return;
-  ladder->seeds = rounds->seeds;
   ladder->narrow = is_narrow(study, ladder);
   if (ladder->narrow)
     end_ladder(ladder,
@@ -269,6 +269,10 @@ static status end_round(struct rounds *rounds, const char *outcome, struct error
   rounds->campaign = NULL;
   if (code == STATUS_OK)
     code = store_end_session(rounds->store, summary.session_id, outcome, error);
+  if (!rounds->probe)
+    rounds->ladder->seeds = rounds->seeds;
+  if (code == STATUS_OK)
+    code = store_flush(rounds->store, error); /* exponents are read by queries, which do not see an open batch */
   if (code == STATUS_OK)
     code = study_read(rounds->study, rounds->ladder, rounds->store, error);
   learn(rounds);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "analysis/statistics/estimates.h"
 #include "campaign/design/design.h"
 #include "campaign/document/campaign_points.h"
 #include "campaign/document/campaign_vary.h"
@@ -278,6 +279,18 @@ static void check_quantity(document_node *node, const char *path, const char *na
     document_report(node, path, "%s", error.message);
 }
 
+/* A study of convergence knows exponents, too: they belong to a point, and have no mean over runs. */
+static void check_accuracy_quantity(document_node *node, const struct campaign *campaign) {
+  struct error error;
+  bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
+  if (estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
+    document_report(node, "accuracy.quantity", "%s", error.message);
+  else if (!exponent)
+    check_quantity(node, "accuracy.quantity", campaign->accuracy_quantity, campaign);
+}
+
 /* The varied inputs, from `vary` or from a file. */
 static bool read_axes(document_node *root, const char *folder, struct campaign *campaign) {
   document_node *vary = document_key(root, "vary"), *file = key_of(document_key(root, "design"), "file");
@@ -343,7 +356,7 @@ static void read_all(document_node *root, const char *folder, struct campaign *c
   document_node *quantity = document_key(root, "quantity"), *until = key_of(key_of(root, "seeds"), "until");
   document_node *accuracy_quantity = key_of(document_key(root, "accuracy"), "quantity");
   if (accuracy_quantity)
-    check_quantity(accuracy_quantity, "accuracy.quantity", campaign->accuracy_quantity, campaign);
+    check_accuracy_quantity(accuracy_quantity, campaign);
   document_node *until_quantity = key_of(until, "quantity");
   check_quantity(quantity ? quantity : scene, "quantity", campaign->quantity, campaign);
   if (until_quantity)

@@ -15,6 +15,7 @@ struct printing {
   struct store *store;
   enum table_format format;
   struct table *table;
+  bool studied; /* some exponent has a study: else no point is asked for its own */
   size_t axes;
   struct ask_column axis[AXES_MAXIMUM];
   size_t shown;   /* axes that fit into a terminal */
@@ -43,11 +44,24 @@ static void columns_for_programs(struct printing *printing) {
     table_column(table, name, NULL);
     snprintf(name, sizeof name, "beta_%s_hw95", method);
     table_column(table, name, NULL);
+    snprintf(name, sizeof name, "beta_%s_resolution", method);
+    table_column(table, name, NULL);
+    snprintf(name, sizeof name, "beta_%s_resolution_verdict", method);
+    table_column(table, name, NULL);
   }
 }
 
-static void row_for_programs(struct printing *printing, const struct ask_points_row *row, int window,
-                             const struct point_estimate *fits) {
+/* What finer settings may move in the exponent of a method and window at a point. */
+static status read_resolution(const struct printing *printing, const struct ask_points_row *row, int method, int window,
+                              struct ask_resolution *resolution, struct error *error) {
+  char name[64];
+  snprintf(name, sizeof name, "beta_%s_%s", exponent_method_names[methods[method]], estimates_window_names[window]);
+  *resolution = (struct ask_resolution){.half_width = NAN};
+  return printing->studied ? ask_resolution(printing->store, row->point_id, name, resolution, error) : STATUS_OK;
+}
+
+static status row_for_programs(struct printing *printing, const struct ask_points_row *row, int window,
+                               const struct point_estimate *fits, struct error *error) {
   struct table *table = printing->table;
   table_integer(table, row->point_id);
   for (size_t i = 0; i < row->input_count; i++)
@@ -62,14 +76,21 @@ static void row_for_programs(struct printing *printing, const struct ask_points_
   table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
   for (int m = 0; m < METHODS; m++) {
     const struct pooled_exponent *fit = &fits[m * ESTIMATES_WINDOWS + window].exponent;
+    struct ask_resolution resolution;
+    const status code = read_resolution(printing, row, m, window, &resolution, error);
+    if (code)
+      return code;
     table_real(table, fit->fit.beta);
     table_real(table, fit->interval.half_width);
+    table_real(table, resolution.half_width);
+    table_text(table, ask_resolution_names[resolution.verdict]);
   }
+  return STATUS_OK;
 }
 
 /* ---- for people: values with their intervals, and no wider than a terminal ---- */
 
-enum { WIDTH = 100, FIXED = 46, METHOD = 11, GAP = 2 }; /* columns: of all but axes and methods; of a method */
+enum { WIDTH = 100, FIXED = 54, METHOD = 11, GAP = 2 }; /* columns: of all but axes and methods; of a method */
 
 /* A heading for the axis: the last word of its path where no other axis has it, else its whole name. */
 static const char *short_axis(const struct printing *printing, size_t axis) {
@@ -125,6 +146,7 @@ static void columns_for_people(struct printing *printing) {
   for (int m = 0; m < METHODS; m++)
     if (!printing->hidden[m])
       table_column(table, m && printing->hidden[0] ? "beta ML" : short_names[m], NULL);
+  table_column(table, "\xc2\xb1res", NULL);
 }
 
 /* "2.01 \u00b1 0.13" without the blanks; the value alone when it has no interval; "-" for none. */
@@ -140,17 +162,17 @@ static void with_interval(struct table *table, double value, double half_width, 
   }
 }
 
-static void resolution_cell(struct table *table, const struct ask_points_row *row) {
+static void resolution_cell(struct table *table, enum ask_resolution_verdict verdict, double half_width) {
   char text[UNCERTAINTY_TEXT];
-  if (row->resolution_verdict == ASK_RESOLUTION_NOT_STUDIED)
+  if (verdict == ASK_RESOLUTION_NOT_STUDIED)
     snprintf(text, sizeof text, "?");
   else
-    uncertainty_resolution_cell(row->resolution_verdict, row->resolution, text);
+    uncertainty_resolution_cell(verdict, half_width, text);
   table_text(table, text);
 }
 
-static void row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
-                           const struct point_estimate *fits) {
+static status row_for_people(struct printing *printing, const struct ask_points_row *row, int window,
+                             const struct point_estimate *fits, struct error *error) {
   struct table *table = printing->table;
   if (window > 0) { /* the point and its runs stand in its first row only */
     for (size_t i = 0; i < printing->shown + 4; i++)
@@ -165,7 +187,7 @@ static void row_for_people(struct printing *printing, const struct ask_points_ro
       snprintf(runs + used, sizeof runs - (size_t)used, "/%lld", (long long)(row->n + row->failed));
     table_text(table, runs);
     with_interval(table, row->mean, row->half_width, 3);
-    resolution_cell(table, row);
+    resolution_cell(table, row->resolution_verdict, row->resolution);
   }
   table_text(table, estimates_window_names[window]);
   table_integer(table, fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n);
@@ -174,6 +196,10 @@ static void row_for_people(struct printing *printing, const struct ask_points_ro
     if (!printing->hidden[m])
       with_interval(table, fit->fit.beta, fit->interval.half_width, 2);
   }
+  struct ask_resolution resolution;
+  const status code = read_resolution(printing, row, MASSES, window, &resolution, error);
+  resolution_cell(table, resolution.verdict, resolution.half_width);
+  return code;
 }
 
 static status print_point(void *context, const struct ask_points_row *row, struct error *error) {
@@ -188,19 +214,21 @@ static status print_point(void *context, const struct ask_points_row *row, struc
   if (code)
     return code;
 
-  for (int window = 0; window < ESTIMATES_WINDOWS; window++) {
+  for (int window = 0; window < ESTIMATES_WINDOWS && !code; window++) {
     if (printing->format != TABLE_TEXT)
-      row_for_programs(printing, row, window, fits);
+      code = row_for_programs(printing, row, window, fits, error);
     else if (window == 0 || fits[MASSES * ESTIMATES_WINDOWS + window].exponent.fit.n > 0)
-      row_for_people(printing, row, window, fits); /* an empty line tells people nothing */
+      code = row_for_people(printing, row, window, fits, error); /* an empty line tells people nothing */
   }
+  if (code)
+    return code;
   return table_broken(printing->table) ? STATUS_IO : STATUS_OK;
 }
 
 static const char *const estimates_legend =
     "runs: those that count; 19/20: one of 20 failed. M_1/M: mass share of the largest fragment.\n"
     "\xc2\xb1: half width of the 95 % interval over seeds (Student's t); one run has none. \xc2\xb1res: how far finer "
-    "settings\nmay move M_1/M (`clast converge` measures it; ?: not studied).\n"
+    "settings\nmay move M_1/M, and beta ML (`clast converge` measures it, with -q beta; ?: not studied).\n"
     "beta: exponent of F(m) ~ m^-beta (differential), of all runs of a point together. LSQ: least squares on\n"
     "logarithmic bins of one decade, as in the paper; it needs a fragment in every bin. binned, ML: maximum\n"
     "likelihood on bins and on masses, without the largest fragment of each run.\n"
@@ -216,6 +244,9 @@ status estimates_table_print(struct store *store, const struct ask_points_choice
                              FILE *out, struct error *error) {
   struct printing printing = {.store = store, .format = format};
   status code = ask_columns_axes(store, format == TABLE_TEXT, AXES_MAXIMUM, printing.axis, &printing.axes, error);
+  if (code)
+    return code;
+  code = ask_resolution_of_exponents(store, &printing.studied, error);
   if (code)
     return code;
   const char *inputs[AXES_MAXIMUM];

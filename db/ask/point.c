@@ -27,7 +27,8 @@ static status make_room(struct growing *growing, size_t masses) {
     return STATUS_OK;
   const size_t capacity = growing->run_capacity ? 2 * growing->run_capacity : 32;
   if (!grow_block(&point->first, capacity * sizeof *point->first) ||
-      !grow_block(&point->run_id, capacity * sizeof *point->run_id))
+      !grow_block(&point->run_id, capacity * sizeof *point->run_id) ||
+      !grow_block(&point->seed, capacity * sizeof *point->seed))
     return STATUS_MEMORY;
   growing->run_capacity = capacity;
   return STATUS_OK;
@@ -37,7 +38,7 @@ static status make_room(struct growing *growing, size_t masses) {
 static status take_run(void *context, size_t count, const struct query_value *values, struct error *error) {
   struct growing *growing = context;
   struct point_data *point = growing->point;
-  if (count != 2 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
+  if (count != 3 || values[0].kind != QUERY_BLOB || values[0].size % sizeof(double) != 0)
     return status_fail(error, STATUS_CONTENT,
                        "the fragment masses of a run of point %lld are damaged; `clast check` tells more",
                        (long long)point->point_id);
@@ -47,6 +48,7 @@ static status take_run(void *context, size_t count, const struct query_value *va
   if (n > 0)
     memcpy(point->masses + have, values[0].blob, n * sizeof(double));
   point->run_id[point->runs.count] = values[1].integer;
+  point->seed[point->runs.count] = (uint64_t)values[2].integer;
   point->first[++point->runs.count] = have + n;
   return STATUS_OK;
 }
@@ -107,7 +109,7 @@ static status read_runs(struct store *store, const struct query_parameter parame
     return status_fail(error, STATUS_MEMORY, "no memory for the runs of point %lld", (long long)out->point_id);
   }
   out->first[0] = 0;
-  fputs("SELECT masses, run_id FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
+  fputs("SELECT masses, run_id, seed FROM run JOIN fragment_mass USING (run_id) WHERE point_id = :point AND "
         "results_version = :version AND counts = 1",
         text);
   if (where)
@@ -162,8 +164,10 @@ void point_release(struct point_data *point) {
   free(point->first);
   free(point->masses);
   free(point->run_id);
+  free(point->seed);
   point->first = NULL;
   point->run_id = NULL;
+  point->seed = NULL;
   point->masses = NULL;
   point->runs = (struct pooled_runs){0};
 }
@@ -181,6 +185,14 @@ static status estimate(const struct point_data *point, enum exponent_method meth
   *out = (struct pooled_exponent){.fit = exponent_unknown(method, (struct exponent_window){NAN, NAN}),
                                   .interval = {NAN, NAN, NAN}};
   return STATUS_OK;
+}
+
+status point_exponent_of_runs(const struct point_data *point, enum exponent_method method, enum estimates_window window,
+                              double *values, struct error *error) {
+  const double lower = point_window(point, window);
+  for (size_t r = 0; r < point->runs.count; r++)
+    values[r] = NAN;
+  return lower > 0 ? pooled_exponent_of_runs(&point->runs, method, lower, values, error) : STATUS_OK;
 }
 
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,

@@ -15,6 +15,7 @@ struct point_data {
   size_t *first;           /* what `runs` borrows; owned */
   double *masses;
   int64_t *run_id; /* of every run; owned */
+  uint64_t *seed;  /* of every run; owned */
 };
 
 /* Only runs that count (completed or ended at their time, not surplus), of one results_version (0: the newest with such
@@ -37,6 +38,10 @@ enum { POINT_ESTIMATES = 3 * ESTIMATES_WINDOWS }; /* least_squares, binned, mass
 /* Pooled estimates with their intervals over runs. Same store, same numbers. */
 status point_estimates(const struct point_data *point, double level, struct point_estimate rows[POINT_ESTIMATES],
                        struct error *error);
+
+/* pooled_exponent_of_runs() in a standard window; values: room for point->runs.count. */
+status point_exponent_of_runs(const struct point_data *point, enum exponent_method method, enum estimates_window window,
+                              double *values, struct error *error);
 
 /* One of them, of a point that is read for it. No run, or too few fragments: its beta is NaN. */
 status point_exponent(struct store *store, int64_t point_id, int64_t results_version, enum exponent_method method,

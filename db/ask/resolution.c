@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "analysis/statistics/estimates.h"
+
 /* One scene: its name. Several: "SCENE" stays. */
 static status take_scene(void *context, size_t count, const struct query_value *values, struct error *error) {
   (void)count, (void)error;
@@ -57,7 +59,7 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
 
   char id[32];
   snprintf(id, sizeof id, "%lld", (long long)point_id);
-  const struct query_parameter parameters[] = {{"point", id}, {"quantity", quantity}};
+  const struct query_parameter parameters[] = {{"point", id}, {"quantity", estimates_short_name(quantity)}};
   const struct query_sink scene = {.context = out, .row = take_scene}, found = {.context = out, .row = take_found};
   status code = query_run(store,
                           "SELECT count(DISTINCT scene_name), min(scene_name) FROM point WHERE :point = 0 OR point_id "
@@ -67,4 +69,12 @@ status ask_resolution(struct store *store, int64_t point_id, const char *quantit
     return code;
 
   return code == STATUS_OK ? query_run(store, of_points, 2, parameters, 0, &found, error) : code;
+}
+
+status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error) {
+  double count = 0;
+  const status code = query_number(store, "SELECT count(*) FROM resolution WHERE quantity GLOB 'beta*'", 0, NULL,
+                                   &count, error);
+  *studied = count > 0;
+  return code;
 }

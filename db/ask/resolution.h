@@ -32,4 +32,7 @@ enum ask_resolution_verdict ask_resolution_verdict(const char *verdict);
 status ask_resolution(struct store *store, int64_t point_id, const char *quantity, struct ask_resolution *out,
                       struct error *error);
 
+/* Has any point a study of an exponent? */
+status ask_resolution_of_exponents(struct store *store, bool *studied, struct error *error);
+
 #endif

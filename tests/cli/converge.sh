@@ -41,6 +41,26 @@ assert len(rows) == 8 and {r['knob'] for r in rows} == {'time_step', 'grains'}, 
 assert all(r['bias'] == 0 for r in rows if r['reference'])"
 ok "the table as JSON"
 expect 0 "$clast" check disc.db
+# An exponent belongs to all runs of a level: its study finds the beta and the interval that `estimates` prints.
+expect 0 "$clast" estimates disc.db
+prints "?"
+expect 0 "$clast" converge "${disc[@]}" --knob time_step -q beta_masses_from_2 --seeds 8 --within off --store disc.db -j 2
+says "0 runs computed"; prints "quantity beta_masses_from_2"
+expect 0 "$clast" estimates disc.db --json
+python - <<'PY'
+import json, sqlite3
+db = sqlite3.connect('file:disc.db?mode=ro', uri=True)
+rows = {r['point_id']: r for r in json.load(open('out')) if r['window'] == 'from_2'}
+levels = db.execute("select point_id, mean, half_width, resolution from convergence where quantity = 'beta_masses_from_2'").fetchall()
+assert len(levels) == 5, levels
+for point, mean, half_width, resolution in levels:
+    row = rows[point]
+    assert abs(row['beta_masses'] - mean) < 1e-9 and abs(row['beta_masses_hw95'] - half_width) < 1e-9, (row, mean)
+    assert row['beta_masses_resolution'] >= resolution * (1 - 1e-9), row
+    assert row['beta_masses_resolution_verdict'] != 'not-studied', row
+    assert row['beta_binned_resolution_verdict'] == 'not-studied', row
+PY
+ok "exponents carry the error that their study found"
 # The rounds are campaigns that clast run can repeat: every run is found.
 python - <<'PY'
 import sqlite3
@@ -112,6 +132,12 @@ prints "chosen"
 expect 0 "$clast" run sharp.yaml -j 2 --quiet --csv
 same "$(number sharp.db "select value from campaign join campaign_point using (campaign_id) join point_input using (point_id) \
   where name = 'sharp' and path = 'fidelity.time_step'")" "$(cat setting)" "time step of the campaign's point"
+sed 's/{within: 0.05}/{quantity: beta_masses_from_2, within: 9}/' sharp.yaml >beta.yaml
+expect 65 "$clast" plan beta.yaml
+says "--quantity beta_masses_from_2"
+expect 0 "$clast" converge beta.yaml --knob time_step -q beta_masses_from_2 --seeds 8 --within off --store sharp.db -j 2
+expect 0 "$clast" plan beta.yaml
+prints "chosen"
 sed -i 's/0.05/1e-9/' sharp.yaml
 expect 65 "$clast" run sharp.yaml
 says "smallest error"
@@ -126,4 +152,4 @@ expect 64 "$clast" converge disc-explosion --set contact.friction
 expect 65 "$clast" converge block-impact --knob grains=1cm
 expect 66 "$clast" converge disc-explosoin
 [ ! -e block-impact-converge.db ] || fail "a refused study made a store"
-done_after 36
+done_after 43
