@@ -4,6 +4,7 @@
 #   ./setup.sh demo     install what is missing, build clast alone, run the demo campaign
 #   ./setup.sh test     install what is missing, build with warnings as errors, pass every test; again under sanitizers
 #   ./setup.sh build    install what is missing, build build/release/clast
+#   ./setup.sh deb DIR  install what is missing, put clast's Debian package into the folder DIR
 #   ./setup.sh packages only install what is missing
 set -eu
 cd "$(dirname "$0")"
@@ -21,7 +22,7 @@ test_packages="chromium"
 say() { printf '\n== %s\n' "$*" >&2; }
 
 usage() {
-  sed -n '2,8s/^# \{0,1\}//p' "$0"
+  sed -n '2,9s/^# \{0,1\}//p' "$0"
   exit "$1"
 }
 
@@ -82,6 +83,18 @@ case "${1:-}" in
   build)
     install_missing $packages $page_packages
     build release
+    ;;
+  deb) # a build folder of its own: build/ may have come along from a machine with other paths
+    [ -n "${2:-}" ] || usage 64 >&2
+    install_missing $packages $page_packages file git # cpack needs file; git: the program tells its commit, stores keep it
+    build=$(mktemp -d)
+    say "building the package in $build"
+    cmake --preset release -B "$build"
+    cmake --build "$build" --target clast clast_manual clast_completion clast_page
+    cpack -G DEB --config "$build/CPackConfig.cmake" -B "$build"
+    mkdir -p "$2"
+    mv "$build"/*.deb "$2"
+    rm -rf "$build"
     ;;
   demo)
     install_missing $packages

@@ -7,7 +7,6 @@
 
 /* Paths of all inputs, each once: what may follow --set. */
 static void write_inputs(FILE *out) {
-  fputs("_clast_inputs=\"", out);
   for (size_t e = 0; e < engine_count(); e++) {
     const struct field_table *inputs = engine_at(e)->inputs;
     for (size_t i = 0; i < inputs->count; i++) {
@@ -19,21 +18,22 @@ static void write_inputs(FILE *out) {
         fprintf(out, "%s ", inputs->rows[i].path);
     }
   }
-  fputs("\"\n", out);
-}
-
-static void bash(size_t count, const struct command *const *commands, FILE *out) {
-  write_inputs(out);
-  option_completion(count, commands, out);
 }
 
 static status run(const struct command_line *line, struct error *error) {
   static const struct {
-    const char *name;
+    const char *name, *before, *after; /* what stands around the list of inputs */
     void (*print)(size_t count, const struct command *const *commands, FILE *out);
-  } shells[] = {{"bash", bash}, {"zsh", shells_zsh}, {"fish", shells_fish}};
+  } shells[] = {
+      {"bash", "_clast_inputs=\"", "\"\n", option_completion},
+      {"zsh", "#compdef clast\nlocal -a inputs\ninputs=(", ")\n", shells_zsh},
+      {"fish", "set -g __clast_inputs ", "\n", shells_fish},
+  };
   for (size_t i = 0; i < sizeof shells / sizeof shells[0]; i++)
     if (strcmp(line->arguments[0], shells[i].name) == 0) {
+      fputs(shells[i].before, stdout);
+      write_inputs(stdout);
+      fputs(shells[i].after, stdout);
       shells[i].print(commands_count(), commands_all(), stdout);
       return STATUS_OK;
     }

@@ -1,9 +1,15 @@
 /* Completion scripts of zsh and fish. */
 #include "campaign/terminal/shells.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "schemas/text.h"
+
+/* Its value begins with the path of an input. */
+static bool takes_input(const struct option_row *row) {
+  return row->argument && strcmp(row->argument, "PATH=VALUE") == 0;
+}
 
 /* The first sentence of `doc` inside single quotes. zsh reads brackets and colons of it, so they are left out there. */
 static void quoted(const char *doc, const char *leave_out, FILE *out) {
@@ -16,22 +22,31 @@ static void quoted(const char *doc, const char *leave_out, FILE *out) {
       fputc(*c, out);
 }
 
-static void zsh_option(const struct option_row *row, FILE *out) {
+/* dashes, name, equals: "--", "set", "=" or "-", "s", "". */
+static void zsh_form(const struct option_row *row, const char *dashes, const char *name, const char *equals,
+                     FILE *out) {
   static const char marks[] = "[]:";
-  fprintf(out, " '%s--%s%s[", row->kind == OPTION_LIST ? "*" : "", row->name, row->kind == OPTION_FLAG ? "" : "=");
+  fprintf(out, " '%s%s%s%s[", row->kind == OPTION_LIST ? "*" : "", dashes, name,
+          row->kind == OPTION_FLAG ? "" : equals);
   quoted(row->doc, marks, out);
   fputc(']', out);
   if (row->kind != OPTION_FLAG) {
     fputc(':', out);
     quoted(row->argument, marks, out);
-    fputs(":_files", out);
+    fputs(takes_input(row) ? ":{compadd -S = -a inputs}" : ":_files", out);
   }
   fputc('\'', out);
 }
 
+static void zsh_option(const struct option_row *row, FILE *out) {
+  const char letter[] = {row->letter, '\0'};
+  zsh_form(row, "--", row->name, "=", out);
+  if (row->letter)
+    zsh_form(row, "-", letter, "", out);
+}
+
 void shells_zsh(size_t count, const struct command *const *commands, FILE *out) {
-  fputs("#compdef clast\n"
-        "# zsh completion for clast; made by `clast completion zsh` from its option tables.\n"
+  fputs("# zsh completion for clast; made by `clast completion zsh` from its option tables.\n"
         "# Use: put it as _clast into a folder of $fpath.\n"
         "local -a commands\n"
         "commands=(\n",
@@ -55,7 +70,8 @@ void shells_zsh(size_t count, const struct command *const *commands, FILE *out) 
     fprintf(out, "  %s) _arguments", commands[i]->name);
     for (size_t k = 0; k < commands[i]->option_count; k++)
       zsh_option(&commands[i]->options[k], out);
-    fputs(" '--help[Explain the command]' '*:file:_files' ;;\n", out);
+    fprintf(out, " '--help[Explain the command]' '*:file:{%s_files}' ;;\n",
+            strcmp(commands[i]->name, "explain") == 0 ? "compadd -a inputs; " : "");
   }
   fputs("esac\n", out);
 }
@@ -64,7 +80,8 @@ static void fish_option(const char *command, const struct option_row *row, FILE 
   fprintf(out, "complete -c clast -n '__fish_seen_subcommand_from %s' -l %s", command, row->name);
   if (row->letter)
     fprintf(out, " -s %c", row->letter);
-  fprintf(out, "%s -d '", row->kind == OPTION_FLAG ? "" : " -r");
+  const char *value = takes_input(row) ? " -x -a '$__clast_inputs='" : " -r";
+  fprintf(out, "%s -d '", row->kind == OPTION_FLAG ? "" : value);
   quoted(row->doc, "", out);
   fputs("'\n", out);
 }
@@ -81,4 +98,5 @@ void shells_fish(size_t count, const struct command *const *commands, FILE *out)
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < commands[i]->option_count; k++)
       fish_option(commands[i]->name, &commands[i]->options[k], out);
+  fputs("complete -c clast -n '__fish_seen_subcommand_from explain' -a '$__clast_inputs' -d Input\n", out);
 }

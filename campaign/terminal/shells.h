@@ -4,6 +4,7 @@
 
 #include "campaign/terminal/option.h"
 
+/* What they print follows the list of inputs: the array `inputs` of zsh, $__clast_inputs of fish. */
 void shells_zsh(size_t count, const struct command *const *commands, FILE *out);
 void shells_fish(size_t count, const struct command *const *commands, FILE *out);
 

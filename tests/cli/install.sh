@@ -28,7 +28,22 @@ for command in $("$clast" completion bash | sed -n 's/.*compgen -W "\(.*\) --hel
   done
 done
 expect 0 bash -n prefix/share/bash-completion/completions/clast
-! grep -nE "^[^#]*'[^']*'[^']*'$" prefix/share/fish/vendor_completions.d/clast.fish | grep -v -- " -d '" || fail "fish: quotes"
+# inputs after --set: zsh and fish have the list of bash
+inputs=$(sed -n 's/^_clast_inputs="\(.*\)"/\1/p' prefix/share/bash-completion/completions/clast)
+[ "$(echo "$inputs" | wc -w)" -gt 100 ] || fail "bash knows $(echo "$inputs" | wc -w) inputs"
+[ "$(sed -n 's/^inputs=(\(.*\))/\1/p' prefix/share/zsh/site-functions/_clast)" = "$inputs" ] || fail "inputs for zsh"
+[ "$(sed -n 's/^set -g __clast_inputs //p' prefix/share/fish/vendor_completions.d/clast.fish)" = "$inputs" ] || fail "inputs for fish"
+for command in run simulate; do
+  grep "^  $command) _arguments" prefix/share/zsh/site-functions/_clast | grep -qF "PATH=VALUE:{compadd -S = -a inputs}'" ||
+    fail "zsh: no inputs after $command --set"
+  grep -qF "from $command' -l set -s s -x -a '\$__clast_inputs='" prefix/share/fish/vendor_completions.d/clast.fish ||
+    fail "fish: no inputs after $command --set"
+done
+if command -v fish >/dev/null; then # no package of the tests
+  fish -c ". prefix/share/fish/vendor_completions.d/clast.fish; complete -C 'clast run x --set contact.fri'" | grep -q "^contact.friction=" ||
+    fail "fish does not complete contact.friction="
+fi
+! grep -nE "^[^#]*'[^']*'[^']*'$" prefix/share/fish/vendor_completions.d/clast.fish | grep -vE -- " -d ('|Input$)" || fail "fish: quotes"
 ok "completion of three shells"
 
 # ---- the Debian package; sanitizers' libraries are no part of Debian's packages
@@ -47,7 +62,21 @@ if [ "$sanitized" -eq 0 ]; then
     expect 0 debootstrap --variant=minbase bookworm "$work/debian"
     cp "$package" debian/tmp/clast.deb
     expect 0 chroot debian sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends /tmp/clast.deb'
-    expect 0 chroot debian sh -c 'cd /tmp && clast simulate disc-explosion --set body.diameter="8 cm" --json && man -w clast || test -s /usr/share/man/man1/clast.1'
+    cat >debian/tmp/try.sh <<'TRY'
+set -eu
+cd /tmp
+clast version
+for example in /usr/share/clast/examples/*.yaml; do clast plan "$example" --no-trial >/dev/null; done
+clast run /usr/share/clast/examples/demo.yaml --seeds 2 --quiet
+clast check demo.db
+clast schema campaign | cmp - /usr/share/clast/schemas/campaign.schema.json
+bash -c '. /usr/share/bash-completion/completions/clast; COMP_WORDS=(clast run x --set contact.fri); COMP_CWORD=4; _clast
+  [ "${COMPREPLY[*]}" = contact.friction= ]'
+grep -q "^.SH" /usr/share/man/man1/clast.1
+apt-get purge -y -q clast >/dev/null
+[ -z "$(find /usr -name "*clast*")" ] || { echo "left behind:"; find /usr -name "*clast*"; exit 1; }
+TRY
+    expect 0 chroot debian sh /tmp/try.sh
     checks=$((checks - 3))
   fi
 else
@@ -71,7 +100,7 @@ ast.parse(open(f"{folder}/spack/packages/plfit/package.py").read())
 for name in ("Dockerfile", "clast.def"):
     text = open(f"{folder}/{name}").read()
     code = "\n".join(line for line in text.splitlines() if not line.startswith("#"))
-    assert "setup.sh packages" in code and not re.search(r"\blib\w+-dev\b", code), name
+    assert "setup.sh deb /package" in code and not re.search(r"\blib\w+-dev\b", code), name
     installed = set(re.findall(r"gnuplot-nox|openmpi-bin", code))
     assert installed == {"gnuplot-nox", "openmpi-bin"} <= listed, (name, installed)
     assert not re.search(r"^\s*FROM (?!debian:12)|^From: (?!debian:12)", code, re.M), name
