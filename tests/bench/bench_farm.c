@@ -7,16 +7,13 @@
  * (schedstat); and `ideal` is the same work in equal halves in two bare processes.
  *
  *     bench_farm [rounds [farm]]     best of so many (default 1); `farm`: without the other drivers
- *     bench_farm slots               only the 1024 slots below
  */
 #include <math.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 
-#include "db/store/store.h"
 #include "schemas/clock.h"
-#include "tests/support/farm_tasks.h"
-#include "tests/support/store_fixture.h"
+#include "tests/bench/farm_store.h"
 
 #define SLOTS      2
 #define TASKS      400
@@ -204,59 +201,23 @@ static void best(double *so_far, double now) {
     *so_far = now;
 }
 
-/* ---- thousands of slots: ranks whose slots sleep, so that two cores do for 1024 of them ---- */
+/* ---- farm and store ---- */
 
-#define MANY_RANKS 64
-#define MANY_SLOTS 16 /* of each rank */
-#define MANY_TASKS 10 /* of 1 s for each slot */
-
-/* Under mpirun: this program again as `bench_farm sleepers slots tasks seconds`. Threads, as 1024 processes are the
- * kernel's business and not the manager's. */
-static int sleepers_main(char **argv) {
-  struct task_list list;
+static double stored_per_s(bool in_process, size_t fragments) {
   struct error error = {0};
-  struct farm *farm = NULL;
-  const int count = atoi(argv[3]);
-  if (farm_start(&(struct farm_options){.slots = atoi(argv[2]), .in_process = true, .use_mpi = farm_under_mpi()},
-                 task_work, &farm, &error) != STATUS_OK)
-    return 1;
-  task_list_new(&list, (size_t)count);
-  for (int i = 0; i < count; i++)
-    list.tasks[i] = (struct task){.id = (uint64_t)i, .kind = TASK_SLEEP, .amount = atof(argv[4])};
-  const struct farm_manager manager = task_list_manager(&list);
-  const status result = farm_run(farm, &manager, &error);
-  if (farm_rank(farm) == 0) {
-    const struct farm_usage usage = farm_usage(farm);
-    printf("%g %g\n", usage.wall_s, usage.manager_cpu_s);
+  struct storing s = {0};
+  double rate = NAN;
+  if (storing_begin(&s, fragments, &error) == STATUS_OK) {
+    const int64_t start = clock_ns();
+    struct farm_manager manager = {.context = &s, .next = store_next, .report = store_report, .tick = store_ticking};
+    const struct farm_usage usage = farm_over(NULL, NOTHINGS, in_process, &manager).usage;
+    if (store_flush(s.store, &error) == STATUS_OK && usage.tasks == NOTHINGS)
+      rate = NOTHINGS / (since(start) - usage.start_up_s); /* to the last commit */
   }
-  farm_stop(farm, NULL);
-  task_list_free(&list);
-  return (int)result;
-}
-
-/* Share of the slots that were busy, and processor time of rank 0 for one task. */
-static void many_slots(const char *self, double *utilisation, double *manager_us) {
-  char command[512];
-  double wall, cpu;
-  const int slots = MANY_RANKS * MANY_SLOTS, tasks = slots * MANY_TASKS;
-  snprintf(command, sizeof command, "mpirun --oversubscribe --bind-to none -n %d %s sleepers %d %d 1 2>/dev/null",
-           MANY_RANKS, self, MANY_SLOTS, tasks);
-  FILE *pipe = popen(command, "r");
-  const bool read = pipe && fscanf(pipe, "%lf %lf", &wall, &cpu) == 2;
-  if (pipe)
-    pclose(pipe);
-  if (!read)
-    return;
-  best(utilisation, tasks / (slots * wall));
-  best(manager_us, -1e6 * cpu / tasks);
-}
-
-static void print_many_slots(const char *self, int rounds) {
-  double utilisation = NAN, manager = NAN;
-  for (int round = 0; round < rounds; round++)
-    many_slots(self, &utilisation, &manager);
-  print("farm_slots_1024_utilisation", utilisation, "1");
-  print("farm_slots_1024_manager_us_per_task", -manager, "us");
+  if (isnan(rate))
+    fprintf(stderr, "bench_farm: %s\n", error.message);
+  storing_end(&s);
+  return rate;
 }
 
 struct ranks_usage {
@@ -276,76 +237,15 @@ static struct ranks_usage over_ranks(const char *self, int ranks, bool in_proces
   return u;
 }
 
-/* ---- farm and store ---- */
-
-struct storing {
-  struct task_list *list; /* first: set by farm_over */
-  struct store *store;
-  struct scene scene;
-  struct fixture_run *run;
-};
-
-static bool store_next(void *context, struct farm_task *task) {
-  return task_list_next(((struct storing *)context)->list, task);
-}
-
-static status store_report(void *context, const struct farm_report *report, struct error *error) {
-  struct storing *s = context;
-  s->run->run.replicate = (int64_t)report->id;
-  s->run->run.seed = report->id;
-  s->run->run.wall_s = report->wall_s;
-  scene_identity(&s->scene, report->id, s->run->run.identity);
-  return store_add_run(s->store, &s->run->run, error);
-}
-
-static status store_ticking(void *context, int running, struct error *error) {
-  (void)running;
-  return store_tick(((struct storing *)context)->store, error);
-}
-
-static double stored_per_s(bool in_process, size_t fragments) {
-  struct error error = {0};
-  struct fixture_inputs inputs;
-  struct storing s = {.run = malloc(sizeof *s.run)};
-  char path[64];
-  int64_t campaign = 0, session = 0, point = 0;
-  double rate = NAN;
-  s.scene = fixture_scene(&inputs, 6, 1e30);
-  if (s.run && store_open_writer(fixture_path(path, "bench-farm"), &s.store, NULL, 0, &error) == STATUS_OK &&
-      store_add_campaign(s.store, "bench", "", "{}", &campaign, &error) == STATUS_OK &&
-      store_begin_session(s.store, "{}", &session, &error) == STATUS_OK &&
-      store_add_point(s.store, campaign, &s.scene, 2, fixture_axes, &point, &error) == STATUS_OK) {
-    fixture_fill(s.run, &s.scene, point, session, 0, fragments);
-    s.run->run.estimate_count = 0;
-    const int64_t start = clock_ns();
-    struct farm_manager manager = {.context = &s, .next = store_next, .report = store_report, .tick = store_ticking};
-    const struct farm_usage usage = farm_over(NULL, NOTHINGS, in_process, &manager).usage;
-    if (store_flush(s.store, &error) == STATUS_OK && usage.tasks == NOTHINGS)
-      rate = NOTHINGS / (since(start) - usage.start_up_s); /* to the last commit */
-  }
-  if (isnan(rate))
-    fprintf(stderr, "bench_farm: %s\n", error.message);
-  store_close(s.store, NULL);
-  fixture_path(path, "bench-farm"); /* removes it */
-  free(s.run);
-  return rate;
-}
-
 int main(int argc, char **argv) {
   if (argc == 4 && strcmp(argv[1], "rank") == 0)
     return rank_main(argv);
-  if (argc == 5 && strcmp(argv[1], "sleepers") == 0)
-    return sleepers_main(argv);
   const int rounds = argc > 1 && atoi(argv[1]) > 0 ? atoi(argv[1]) : 1;
   char command[1024], self[512] = "";
   setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 0);
   setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 0);
   if (readlink("/proc/self/exe", self, sizeof self - 1) < 0)
     return 1;
-  if (argc > 1 && strcmp(argv[1], "slots") == 0) {
-    print_many_slots(self, 1);
-    return 0;
-  }
   cost_sum = fill(costs, TASKS, 0.05, 1);
   long_sum = fill(long_costs, LONG_TASKS, 1, 2);
   qsort(long_costs, LONG_TASKS, sizeof *long_costs, costliest_first);
@@ -437,7 +337,6 @@ int main(int argc, char **argv) {
   if (!isnan(xargs_rate))
     print("xargs_runs_per_s", xargs_rate, "1/s (no store)"),
         print("farm_isolated_over_xargs_runs", stored_isolated / xargs_rate, "1");
-  print_many_slots(self, rounds);
   unlink(burn_program);
   return 0;
 }
