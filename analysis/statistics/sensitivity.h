@@ -1,7 +1,7 @@
 /* Which input matters: Sobol indices from a Saltelli design, and Morris's elementary effects as the cheap form. The
  * seed of a run is one more input, with indices of its own.
  *
- * Indices (Sobol 1993, doi 10.1016/S0378-4754(00)00270-6) are shares of the variance V of y(inputs, seed). First order:
+ * Indices (Sobol 2001, doi 10.1016/S0378-4754(00)00270-6) are shares of the variance V of y(inputs, seed). First order:
  * variance of the mean of y that an input leaves when all others are averaged over. Total: the mean variance that it
  * makes when all others are kept; more than the first order, if it acts together with others. */
 #ifndef CLAST_ANALYSIS_STATISTICS_SENSITIVITY_H
