@@ -76,7 +76,7 @@ static const struct option_row rows_of_options[] = {
         "are one group."),
     OPTION_ROW_TEXT(
         "quantity", 'q', "NAMES", struct options, quantity, OUTCOME_DEFAULT,
-        "Results to average, comma-separated; main: the five main results, a wide table. `clast explain` lists all."),
+        "Results to average, comma-separated; main: the main results, a wide table. `clast explain` lists all."),
     TABLE_OPTIONS(struct options, table),
 };
 

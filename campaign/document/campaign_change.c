@@ -6,14 +6,21 @@
 
 static const char origin[] = "command line";
 
-static status change_input(struct document *document, const char *text, struct error *error) {
+status campaign_change_split(const char *text, char path[FIELD_TEXT_SIZE], const char **value, struct error *error) {
   const char *equals = strchr(text, '=');
-  char path[FIELD_TEXT_SIZE];
-  if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
+  if (!equals || equals == text || equals - text >= FIELD_TEXT_SIZE)
     return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
                        text);
-  snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
-  return document_change_put(document, (const char *const[]){"set", path}, equals + 1, origin, error);
+  snprintf(path, FIELD_TEXT_SIZE, "%.*s", (int)(equals - text), text);
+  *value = equals + 1;
+  return STATUS_OK;
+}
+
+static status change_input(struct document *document, const char *text, struct error *error) {
+  char path[FIELD_TEXT_SIZE];
+  const char *value = NULL;
+  const status code = campaign_change_split(text, path, &value, error);
+  return code ? code : document_change_put(document, (const char *const[]){"set", path}, value, origin, error);
 }
 
 status campaign_change(struct document *document, const struct campaign_changes *changes, struct error *error) {

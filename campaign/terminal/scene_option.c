@@ -1,16 +1,15 @@
 /* --set PATH=VALUE: a scene with other inputs. */
 #include "campaign/terminal/scene_option.h"
 
-#include <string.h>
+#include "campaign/document/campaign_change.h"
 
 static status set_input(struct scene *scene, const char *text, struct error *error) {
-  const char *equals = strchr(text, '=');
   char path[FIELD_TEXT_SIZE];
-  if (!equals || equals == text || (size_t)(equals - text) >= sizeof path)
-    return status_fail(error, STATUS_USAGE, "--set expects PATH=VALUE (--set contact.friction=0.3), got \"%.128s\"",
-                       text);
-  snprintf(path, sizeof path, "%.*s", (int)(equals - text), text);
-  const status code = scene_set_text(scene, path, equals + 1, error);
+  const char *value = NULL;
+  status code = campaign_change_split(text, path, &value, error);
+  if (code)
+    return code;
+  code = scene_set_text(scene, path, value, error);
   return code == STATUS_CONTENT ? STATUS_USAGE : code; /* the content is that of the command line */
 }
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "db/store/internal.h"
+
 /* An identity is a hash already, so that multiplying its words is enough. */
 #define HASH_FUNCTION(key, size, hash) ((hash) = hash_of(key))
 #define HASH_NONFATAL_OOM              1
@@ -56,4 +58,43 @@ void identities_clear(struct identities *set) {
     HASH_DEL(set->table, entry);
     free(entry);
   }
+}
+
+static status take_identity(struct store *store, sqlite3_stmt *row, struct error *error) {
+  if (sqlite3_column_bytes(row, 0) != 16)
+    return status_fail(error, STATUS_CONTENT, "%s: an identity is damaged; `clast check` tells more", store->path);
+  struct identities_state *state = identities_add(&store->identities, sqlite3_column_blob(row, 0));
+  if (!state)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out while reading the stored identities", store->path);
+  if (sqlite3_column_int(row, 1))
+    state->stored = true;
+  else
+    state->attempts++;
+  return STATUS_OK;
+}
+
+status identities_load(struct store *store, struct error *error) {
+  static const char doing[] = "reading the stored identities";
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(store->db, "SELECT identity, 1 FROM run UNION ALL SELECT identity, 0 FROM attempt",
+                              &statement, doing, error);
+  if (result != STATUS_OK)
+    return result;
+  int code = SQLITE_DONE;
+  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
+    result = take_identity(store, statement, error);
+  if (result == STATUS_OK && code != SQLITE_DONE)
+    result = sql_fail(store->db, code, doing, error);
+  sqlite3_finalize(statement);
+  if (result != STATUS_OK)
+    return result;
+
+  int64_t lowest = 1, highest = 0;
+  result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
+  if (result == STATUS_OK)
+    result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
+  store->lowest_bin = lowest;
+  store->highest_bin = highest;
+  store->identities_loaded = result == STATUS_OK;
+  return result;
 }

@@ -6,7 +6,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "schemas/status.h"
+
 struct identities_entry;
+struct store;
 
 struct identities { /* all zero: empty */
   struct identities_entry *table;
@@ -23,5 +26,8 @@ struct identities_state *identities_add(struct identities *set, const uint8_t id
 /* NULL when absent. */
 struct identities_state *identities_find(const struct identities *set, const uint8_t identity[16]);
 void identities_clear(struct identities *set);
+
+/* Reads those of the store, and the bins that it has. error may be NULL. */
+status identities_load(struct store *store, struct error *error);
 
 #endif

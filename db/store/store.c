@@ -11,7 +11,6 @@
 #include "db/store/internal.h"
 #include "db/store/lock.h"
 #include "db/store/migrate.h"
-#include "db/store/paths.h"
 #include "db/store/place.h"
 #include "db/store/schema.h"
 #include "db/store/views.h"
@@ -87,47 +86,8 @@ static status refuse_held(const char *path, struct error *error) {
       holder);
 }
 
-static status take_identity(struct store *store, sqlite3_stmt *row, struct error *error) {
-  if (sqlite3_column_bytes(row, 0) != 16)
-    return status_fail(error, STATUS_CONTENT, "%s: an identity is damaged; `clast check` tells more", store->path);
-  struct identities_state *state = identities_add(&store->identities, sqlite3_column_blob(row, 0));
-  if (!state)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out while reading the stored identities", store->path);
-  if (sqlite3_column_int(row, 1))
-    state->stored = true;
-  else
-    state->attempts++;
-  return STATUS_OK;
-}
-
 bool store_is_being_written(const char *path) {
   return lock_is_held(path);
-}
-
-static status load_identities(struct store *store, struct error *error) {
-  static const char doing[] = "reading the stored identities";
-  sqlite3_stmt *statement = NULL;
-  status result = sql_prepare(store->db, "SELECT identity, 1 FROM run UNION ALL SELECT identity, 0 FROM attempt",
-                              &statement, doing, error);
-  if (result != STATUS_OK)
-    return result;
-  int code = SQLITE_DONE;
-  while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW)
-    result = take_identity(store, statement, error);
-  if (result == STATUS_OK && code != SQLITE_DONE)
-    result = sql_fail(store->db, code, doing, error);
-  sqlite3_finalize(statement);
-  if (result != STATUS_OK)
-    return result;
-
-  int64_t lowest = 1, highest = 0;
-  result = sql_integer(store->db, "SELECT min(bin) FROM bin", 1, &lowest, error);
-  if (result == STATUS_OK)
-    result = sql_integer(store->db, "SELECT max(bin) FROM bin", 0, &highest, error);
-  store->lowest_bin = lowest;
-  store->highest_bin = highest;
-  store->identities_loaded = result == STATUS_OK;
-  return result;
 }
 
 static status write_holder(struct store *store, struct error *error) {
@@ -166,7 +126,7 @@ static status open_locked(struct store *store, struct error *error) {
   if (result != STATUS_OK)
     return result;
   result = write_holder(store, error);
-  return result == STATUS_OK ? load_identities(store, error) : result;
+  return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
@@ -380,14 +340,14 @@ status store_end_session(struct store *store, int64_t session_id, const char *ou
 }
 
 bool store_has_run(struct store *store, const uint8_t identity[16]) {
-  if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
+  if (!store->identities_loaded && identities_load(store, NULL) != STATUS_OK)
     return false;
   const struct identities_state *entry = identities_find(&store->identities, identity);
   return entry && entry->stored;
 }
 
 int store_attempts(struct store *store, const uint8_t identity[16], double time_limit, double memory_limit) {
-  if (!store->identities_loaded && load_identities(store, NULL) != STATUS_OK)
+  if (!store->identities_loaded && identities_load(store, NULL) != STATUS_OK)
     return 0;
   const struct identities_state *entry = identities_find(&store->identities, identity);
   if (!entry || entry->attempts == 0)
@@ -407,42 +367,4 @@ int store_attempts(struct store *store, const uint8_t identity[16], double time_
   }
   sqlite3_finalize(statement);
   return count;
-}
-
-/* Fields files stay where they are: the paths of the copy lead there from its own folder. */
-static status keep_paths(const struct store *store, const char *copy, struct error *error) {
-  sqlite3 *db = NULL;
-  char *way = paths_between(copy, store->path);
-  if (!way)
-    return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", copy);
-  status result = STATUS_OK;
-  int code = *way ? sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL) : SQLITE_OK;
-  if (code != SQLITE_OK)
-    result = sql_fail(db, code, "writing the hand-over file", error);
-  else if (db) {
-    guard_connection(db);
-    result = sql_executef(db, "writing the hand-over file", error,
-                          "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
-  }
-  sqlite3_close(db);
-  free(way);
-  return result;
-}
-
-status store_export(struct store *store, const char *path, struct error *error) {
-  if (access(path, F_OK) == 0)
-    return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
-  status result = store_flush(store, error);
-  if (result != STATUS_OK)
-    return result;
-  /* query_only refuses VACUUM INTO, although it writes another file. */
-  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
-  result = guard_vacuum_into(store->db, path, "writing the hand-over file", error);
-  if (!store->writer)
-    sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
-  if (result == STATUS_OK)
-    result = keep_paths(store, path, error);
-  if (result != STATUS_OK)
-    unlink(path);
-  return result;
 }

@@ -63,15 +63,16 @@ def help_of(command):
 
 @functools.cache
 def known_paths():
-    """Paths of inputs and results, the names of results as columns, and the sections that hold paths."""
+    """Paths of inputs and results, names that code may not write down, and the sections that hold paths."""
     table = subprocess.run([program, "explain", "--csv"], capture_output=True, text=True, check=True).stdout
     rows = list(csv.DictReader(io.StringIO(table)))
     paths = {row["path"] for row in rows}
     results = {row["path"].replace(".", "_") for row in rows if row["of"].endswith(("results", "outcome"))}
-    results = {name for name in results if "_" in name}
+    names = {name for name in results if "_" in name}
+    names |= {row["path"] for row in rows if "." in row["path"] and row["of"].endswith(("scene", "results"))}
     sections = {path[: match.start()] for path in paths for match in re.finditer(r"\.", path)}
-    check(len(paths) > 200 and len(results) > 50, f"only {len(paths)} paths and {len(results)} results found")
-    return paths, results, sections
+    check(len(paths) > 200 and len(names) > 250, f"only {len(paths)} paths and {len(names)} names found")
+    return paths, names, sections
 
 
 def unknown_paths(text):
@@ -162,14 +163,15 @@ def literals(path):
 
 
 def check_names():
-    """A path in any text exists. Outside of the engines no text but an example names a result: its row does."""
-    _, results, _ = known_paths()
+    """A path in any text exists. Outside of the engines no text is the name of an input, and none but an example has the
+    name of a result in it: their rows have them."""
+    _, names, _ = known_paths()
     for path in files(".c", ".h"):
         may_name = path.startswith("engine/") or "FIELD_TABLE(" in read(path)
         for number, text in literals(path):
             unknown = list(unknown_paths(text))
             check(not unknown, f"{path}:{number}: no input or result is called {', '.join(unknown)}")
-            named = set(re.findall(r"\w+", text)) & results
+            named = (set(re.findall(r"\w+", text)) | {text}) & names
             check(may_name or not named or "clast " in text,
                   f"{path}:{number}: {', '.join(sorted(named))}: named outside of its row; take the name from the table")
 

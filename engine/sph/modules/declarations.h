@@ -11,8 +11,9 @@
  *   INPUT_CHOICE(section, member, choices, ...)                         are fracture, viscosity, method and fidelity;
  *   INPUT_SWITCH(section, member, default, ...)                         `...` are more of struct field (.doc, .when)
  *
- *   COLUMN(member)                  of the moving system (struct sph_columns), an array of doubles; member[n]: n of
- * them PARTICLE_ARRAYS(FLAG, column)   the flag SPH_WITH_FLAG of struct sph_particles, set where the column exists
+ *   COLUMN(member)                     of the moving system (struct sph_columns): an array of doubles
+ *   COLUMN(member[n])                  n such arrays
+ *   PARTICLE_ARRAYS(FLAG, column)      the flag SPH_WITH_FLAG of struct sph_particles, set where the column exists
  *   PARTICLE_COLUMN(FLAG, member, absent, unit, doc)   a column that is read back and written into snapshots; `absent`
  *                                                      is its value in bodies without it
  *   PROFILE_COLUMN(member, of_impact, of_plate, absent, unit, doc)   mean in the layers of a profile, of these columns

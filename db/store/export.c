@@ -1,0 +1,45 @@
+/* The compact copy of a store for hand-over. */
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "db/store/guard.h"
+#include "db/store/internal.h"
+#include "db/store/paths.h"
+
+/* Fields files stay where they are: the paths of the copy lead there from its own folder. */
+static status keep_paths(const struct store *store, const char *copy, struct error *error) {
+  sqlite3 *db = NULL;
+  char *way = paths_between(copy, store->path);
+  if (!way)
+    return status_fail(error, STATUS_IO, "%s: its folder cannot be followed", copy);
+  status result = STATUS_OK;
+  int code = *way ? sqlite3_open_v2(copy, &db, SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE, NULL) : SQLITE_OK;
+  if (code != SQLITE_OK)
+    result = sql_fail(db, code, "writing the hand-over file", error);
+  else if (db) {
+    guard_connection(db);
+    result = sql_executef(db, "writing the hand-over file", error,
+                          "UPDATE run SET fields_path = %Q || fields_path WHERE fields_path NOT LIKE '/%%'", way);
+  }
+  sqlite3_close(db);
+  free(way);
+  return result;
+}
+
+status store_export(struct store *store, const char *path, struct error *error) {
+  if (access(path, F_OK) == 0)
+    return status_fail(error, STATUS_IO, "%s exists already: name another file, or remove it first.", path);
+  status result = store_flush(store, error);
+  if (result != STATUS_OK)
+    return result;
+  /* query_only refuses VACUUM INTO, although it writes another file. */
+  sqlite3_exec(store->db, "PRAGMA query_only = OFF", NULL, NULL, NULL);
+  result = guard_vacuum_into(store->db, path, "writing the hand-over file", error);
+  if (!store->writer)
+    sqlite3_exec(store->db, "PRAGMA query_only = ON", NULL, NULL, NULL);
+  if (result == STATUS_OK)
+    result = keep_paths(store, path, error);
+  if (result != STATUS_OK)
+    unlink(path);
+  return result;
+}
