@@ -108,9 +108,11 @@ static status read_mass(const struct reading *r, const char *text, const char *u
   double place;
   snprintf(quantity, sizeof quantity, "%.127s %s", text, unit);
   const status code = unit_read(quantity, r->by_size ? "m" : "kg", &place, error);
-  if (code || !(place > 0) || !isfinite(place))
+  if (code || !(place > 0))
     return refuse(r, error, r->by_size ? "expected a size above 0, not" : "expected a mass above 0, not", quantity);
   *mass = r->by_size ? spectrum_size_mass(&r->size, place) : place;
+  if (!(*mass > 0) || !isfinite(*mass)) /* the cube of a size leaves the range of numbers */
+    return refuse(r, error, "no fragment has the mass of", quantity);
   return STATUS_OK;
 }
 
@@ -189,8 +191,9 @@ static status take_rows(struct reading *r, struct error *error) {
     out->mass[i] = r->rows[i].mass;
     out->above[i] = above;
   }
-  if (!(above > 0))
-    return status_fail(error, STATUS_CONTENT, "%s: there is no fragment in it", r->path);
+  if (!(above > 0) || !isfinite(above))
+    return status_fail(error, STATUS_CONTENT, "%s: there %s in it", r->path,
+                       above > 0 ? "are more fragments than a number can hold" : "is no fragment");
   return STATUS_OK;
 }
 
