@@ -73,9 +73,10 @@ static const struct option_row option_rows[] = {
     OPTION_ROW_FLAG("bits", 0, struct options, bits,
                     "Write every value that does not depend on where and when a run was computed, as text in the order "
                     "of identities. Two stores of one campaign give the same file, however they were computed."),
-    OPTION_ROW_FLAG("cinema", 0, struct options, cinema,
-                    "Write a Cinema database for ParaView and Cinema viewers: a folder with data.csv, and pictures of "
-                    "all runs whose fields are kept and of their points' spectra."),
+    OPTION_ROW_FLAG(
+        "cinema", 0, struct options, cinema,
+        "Write a Cinema database (specification D) for its viewers: a folder with data.csv, and pictures of "
+        "all runs whose fields are kept and of their points' spectra."),
     OPTION_ROW_FLAG("crate", 0, struct options, crate,
                     "Write an RO-Crate (Process Run Crate) for an archive: a folder with the store, the campaigns, "
                     "tables as CSV, and metadata: which program made them, and when."),
