@@ -110,19 +110,19 @@ static struct sph_results run(int points, double piston) {
   return r;
 }
 
-/* Bounds at 400 points and more: Us 1 %, plateau 1 %, alpha 0.005, precursor 0.5 %. Of 200 points only 24 lie
- * between piston and weak shock, which viscosity spreads over about ten, and P follows rho with K/P = 38 times its
- * error. */
-static void check(const struct sph_results *r, int points) {
-  const bool coarse = points < 400;
+/* Us 1 %, plateau 1 %, alpha 0.005, precursor 0.5 % and its pressure 1 %. P behind a weak shock follows rho with K/P =
+ * 38 times its error. A shock of 1000 m/s is nearly as fast as the precursor: with 200 points what is flat between them
+ * is three layers long, and the foot of the shock has begun to close pores there. */
+static void check(const struct sph_results *r, double piston, int points) {
   near(r->shock.speed, r->shock.speed_exact, 0.01, "Us");
-  near(r->shock.density, r->shock.density_exact, coarse ? 0.005 : 0.001, "density behind the shock");
-  near(r->shock.pressure, r->shock.pressure_exact, coarse ? 0.03 : 0.01, "pressure behind the shock");
+  near(r->shock.density, r->shock.density_exact, points < 400 ? 0.002 : 0.001, "density behind the shock");
+  near(r->shock.pressure, r->shock.pressure_exact, 0.01, "pressure behind the shock");
   near(r->shock.distention, r->shock.distention_exact, 0.005 / r->shock.distention_exact, "alpha behind the shock");
   near(r->precursor.speed, r->precursor.speed_exact, 0.005, "precursor");
   near(r->precursor.pressure, r->precursor.pressure_exact, 0.01, "pressure of the precursor");
-  near(r->precursor.distention, r->precursor.distention_exact, 1e-4,
-       "alpha of the precursor"); /* of 1.1e-3 that it changes */
+  if (piston < 1000 || points >= 400)
+    near(r->precursor.distention, r->precursor.distention_exact, 1e-4,
+         "alpha of the precursor"); /* of 1.1e-3 that it changes */
 }
 
 /* Error of what only the curve decides: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
@@ -133,13 +133,17 @@ static double precursor_error(const struct sph_results *r) {
   return fabs(r->precursor.speed - r->precursor.speed_exact);
 }
 
-static void both_states(void **state) {
+static void all_speeds(void **state) {
   (void)state;
   struct sph_results coarse = run(100, 200);
   for (int points = 200; points <= (run_case_full() ? 800 : 200); points *= 2) {
-    struct sph_results strong = run(points, 458), weak = run(points, 200);
-    check(&strong, points);
-    check(&weak, points);
+    const struct sph_results weak = run(points, 200);
+    check(&weak, 200, points);
+    for (int k = 0; k < 3; k++) {
+      const double piston = (double[]){100, 458, 1000}[k];
+      const struct sph_results other = run(points, piston);
+      check(&other, piston, points);
+    }
     assert_true(weak_error(&weak) < 0.5 * weak_error(&coarse)); /* first order at least */
     assert_true(precursor_error(&weak) < 0.6 * precursor_error(&coarse));
     coarse = weak;
@@ -169,6 +173,6 @@ static void solid_and_elastic(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(exact_answers_agree), cmocka_unit_test(slow_and_fast_pistons),
-                                     cmocka_unit_test(both_states), cmocka_unit_test(solid_and_elastic)};
+                                     cmocka_unit_test(all_speeds), cmocka_unit_test(solid_and_elastic)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,7 @@
 
 /* A layer of matter that was one spacing thick at the start: sums over its particles. */
 struct sph_plate_layer {
-  double x, density, count;
+  double x, density, pressure, count;
 };
 
 status sph_plate_start(struct sph_run *run, struct error *error) {
@@ -30,6 +30,7 @@ static void fill_layers(const struct sph_run *run, const struct sph_particles *p
     struct sph_plate_layer *l = &run->layer[layer_of(run, i)];
     l->x += p->x[i];
     l->density += p->density[i];
+    l->pressure += p->pressure[i];
     l->count++;
   }
 }
@@ -55,10 +56,9 @@ size_t sph_plate_profile(const struct sph_run *run, struct sph_crater_layer *lay
   return count;
 }
 
-/* The place of a front: the first one, from the far side, where density reaches the mean of the values ahead of the
- * front and behind it. */
-static double front_place(const struct sph_run *run, double ahead, double behind) {
-  double level = (ahead + behind) / 2, before = NAN, at = NAN;
+/* The first place, from the far side, where density reaches a level. */
+static double place_of(const struct sph_run *run, double level) {
+  double before = NAN, at = NAN;
   for (size_t k = (size_t)run->inputs.fidelity.points; k-- > 0;) {
     const struct sph_plate_layer *l = &run->layer[k];
     if (!(l->count > 0))
@@ -70,6 +70,11 @@ static double front_place(const struct sph_run *run, double ahead, double behind
     at = x;
   }
   return NAN;
+}
+
+/* A front is where density reaches the mean of the values ahead of it and behind it. */
+static double front_place(const struct sph_run *run, double ahead, double behind) {
+  return place_of(run, (ahead + behind) / 2);
 }
 
 void sph_plate_look(const struct sph_run *run, const struct sph_particles *p, double *shock, double *precursor) {
@@ -97,16 +102,49 @@ static double speed(const struct sph_run *run, size_t offset) {
   return n > 2 ? (tx - t * x / n) / (tt - t * t / n) : (double)NAN;
 }
 
-/* Shock: the middle half from the piston to the front. Precursor: well ahead of the shock, which is some spacings wide,
- * and behind the precursor's own rise. */
+/* Width of the shock's rise, as if it were even: twice the distance from a quarter of it to three quarters. */
+static double shock_width(const struct sph_run *run) {
+  const struct sph_plane_shock *exact = &run->exact;
+  const double ahead = exact->has_precursor ? exact->precursor.density : exact->first_density;
+  const double rise = exact->shock.density - ahead;
+  return 2 * (place_of(run, ahead + rise / 4) - place_of(run, ahead + rise * 3 / 4));
+}
+
+/* Three layers between two places where pressure changes least: what is flat between two fronts. The precursor's rise
+ * takes most of its way to a shock that is nearly as fast. NaN: there are no three layers. */
+static void find_flat(const struct sph_run *run, double from, double to, double region[2]) {
+  double least = HUGE_VAL;
+  region[0] = region[1] = NAN;
+  for (size_t k = 2; k < (size_t)run->inputs.fidelity.points; k++) {
+    double x[3], pressure[3];
+    for (size_t i = 0; i < 3; i++) { /* a layer without particles has none of them: it fails the tests below */
+      const struct sph_plate_layer *l = &run->layer[k - 2 + i];
+      x[i] = l->x / l->count;
+      pressure[i] = l->pressure / l->count;
+    }
+    const double change = fabs(pressure[2] - pressure[0]);
+    if (!(x[0] > from && x[2] < to && change < least))
+      continue;
+    least = change;
+    region[0] = x[0] - (x[1] - x[0]) / 2;
+    region[1] = x[2] + (x[2] - x[1]) / 2;
+  }
+}
+
+/* Shock: the middle half from the piston to the front, without the front's own rise, which is tens of spacings wide in
+ * a weak shock; at least the second quarter. Precursor: where pressure is flat. */
 struct sph_plate_regions sph_plate_regions(const struct sph_run *run) {
   double shock, precursor, piston = run->inputs.piston.speed * sph_system_time(run->system);
   sph_plate_look(run, run->now, &shock, &precursor);
-  const double from = run->exact.has_shock ? shock : piston;
-  return (struct sph_plate_regions){
-      .shock = {piston + (shock - piston) / 4, piston + (shock - piston) * 3 / 4},
-      .precursor = {from + (precursor - from) * 0.4, from + (precursor - from) * 0.7},
-  };
+  struct sph_plate_regions regions = {{NAN, NAN}, {NAN, NAN}};
+  if (run->exact.has_shock) {
+    const double length = shock - piston, flat = fmax(length / 2, length - shock_width(run));
+    regions.shock[0] = piston + length / 4;
+    regions.shock[1] = piston + fmin(flat, length * 3 / 4);
+  }
+  const double begin = run->exact.has_shock ? shock : piston + (precursor - piston) / 4; /* it rings at the piston */
+  find_flat(run, begin, precursor, regions.precursor);
+  return regions;
 }
 
 double sph_plate_mean(const struct sph_run *run, const double *column, const double region[2]) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/sph/body/flaws.h"
+#include "engine/sph/material/plane_shock.h"
 #include "engine/sph/run/run.h"
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/step/system_layout.h"
@@ -132,6 +133,29 @@ static status grip(struct sph_run *run, struct error *error) {
                                       length, run->range[0].spacing);
 }
 
+/* The piston is held matter. Its layers stand as close as the shock leaves those of the plate: through layers at their
+ * distance at rest, compressed matter slips, and the piston drives it too slowly. Particles of a lattice move along x
+ * only, as a plane flow does: else rounding grows, and rows that a strong shock has pushed together buckle. */
+static status push(struct sph_run *run, struct error *error) {
+  const struct sph_inputs *in = &run->inputs;
+  struct sph_particles *p = run->start;
+  struct sph_plane_shock exact;
+  const status code = sph_plane_shock(&in->target.material, in->piston.speed, &exact, error);
+  if (code)
+    return code;
+
+  const double behind = exact.has_shock ? exact.shock.density : exact.precursor.density;
+  const double v[3] = {in->piston.speed, 0, 0};
+  sph_bodies_move(p, run->range[1], v);
+  for (size_t i = run->range[1].first; i < p->n; i++) {
+    p->x[i] *= exact.first_density / behind; /* its face is at x = 0 */
+    p->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
+  }
+  for (size_t i = 0; i < run->range[0].n && in->target.lattice != SPH_LATTICE_IRREGULAR; i++)
+    p->held[i] = SPH_HELD_Y | SPH_HELD_Z;
+  return STATUS_OK;
+}
+
 static status set_in_motion(struct sph_run *run, const double flight[3], struct error *error) {
   const struct sph_inputs *in = &run->inputs;
   const double origin[3] = {0, 0, 0}, axis[3] = {0, 0, 1}, spin[3] = {0, 0, in->target.spin};
@@ -155,12 +179,7 @@ static status set_in_motion(struct sph_run *run, const double flight[3], struct 
       sph_bodies_move(run->start, run->range[b], v);
     }
     break;
-  case SPH_PISTON:
-    v[0] = in->piston.speed;
-    sph_bodies_move(run->start, run->range[1], v);
-    for (size_t i = run->range[1].first; i < run->start->n; i++)
-      run->start->held[i] = SPH_HELD_X | SPH_HELD_Y | SPH_HELD_Z;
-    break;
+  case SPH_PISTON: return push(run, error);
   }
   return STATUS_OK;
 }
