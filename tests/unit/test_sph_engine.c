@@ -264,9 +264,27 @@ static void stop_rules(void **state) {
   free(ran.fragments);
 }
 
+/* The largest stress of a stretch is that of a step, not of one of the samples, which lie a share of the end time
+ * apart. */
+static void the_peak_does_not_hang_on_the_end_time(void **state) {
+  (void)state;
+  double peak[2];
+  static const char *const ends[] = {"stop.end_time=20 us", "stop.end_time=300 us"};
+  for (int k = 0; k < 2; k++) {
+    const struct sph_inputs rod = SPH_CASE("tensile-rod", "fidelity.particles=1000", "stretch.rate=360 1/s", ends[k]);
+    const struct ran ran = run_case_run(&sph_engine, &rod, 3);
+    free(ran.fragments);
+    peak[k] = ran.results.sph.peak.stress;
+  }
+  print_message("peak stress %.10g and %.10g Pa\n", peak[0], peak[1]);
+  assert_true(peak[0] > 1e7);
+  assert_true(peak[0] == peak[1]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(results_table_is_whole),
+      cmocka_unit_test(the_peak_does_not_hang_on_the_end_time),
       cmocka_unit_test(builtin_scenes_say_what_they_model),
       cmocka_unit_test(flaws_are_described),
       cmocka_unit_test(cost_follows_the_options),

@@ -57,27 +57,43 @@ static void note_crossing(struct sph_state *state, double value, double time) {
   state->mode_time = time;
 }
 
+static void note_peak(struct sph_state *state, const struct sph_sample *now) {
+  if (!(now->stress > state->peak_stress))
+    return;
+  state->peak_stress = now->stress;
+  state->peak_strain = now->strain;
+  state->peak_time = now->time;
+}
+
+/* Is the largest stress so far at most one interval old? Then every step looks for a larger one: between two samples of
+ * a fast stretch the stress moves by some per cent. The peak is over soon, and other steps cost nothing. */
+static bool is_at_peak(const struct sph_run *run, double time) {
+  return run->inputs.kind == SPH_STRETCH && run->state.peak_stress > 0 &&
+         time - run->state.peak_time <= run->sample_interval;
+}
+
 void sph_protocol_record(struct sph_run *run) {
   struct sph_state *state = &run->state;
-  double time = sph_system_time(run->system);
-  if (!run->sample || time < (double)state->samples * run->sample_interval || state->samples >= run->sample_capacity)
+  const double time = sph_system_time(run->system);
+  if (!run->sample)
+    return;
+
+  const bool due = time >= (double)state->samples * run->sample_interval && state->samples < run->sample_capacity;
+  if (!due && !is_at_peak(run, time))
     return;
 
   const struct sph_particles *p = sph_run_read(run);
-  struct sph_sample *sample = &run->sample[state->samples++];
-  *sample = (struct sph_sample){.time = time, .damage = sph_system_damage(run->system, NULL)};
+  struct sph_sample sample = {.time = time, .damage = sph_system_damage(run->system, NULL)};
   if (run->inputs.kind == SPH_STRETCH) {
-    sample->strain = run->inputs.stretch.rate * time;
-    sample->stress = axial_stress(run, p);
-    if (sample->stress > state->peak_stress) {
-      state->peak_stress = sample->stress;
-      state->peak_strain = sample->strain;
-      state->peak_time = time;
-    }
+    sample.strain = run->inputs.stretch.rate * time;
+    sample.stress = axial_stress(run, p);
+    note_peak(state, &sample);
   } else if (run->inputs.kind == SPH_PISTON) {
-    sph_plate_look(run, p, &sample->front, &sample->precursor);
+    sph_plate_look(run, p, &sample.front, &sample.precursor);
   } else {
-    sample->mode = mode(run, p);
-    note_crossing(state, sample->mode, time);
+    sample.mode = mode(run, p);
+    note_crossing(state, sample.mode, time);
   }
+  if (due)
+    run->sample[state->samples++] = sample;
 }
