@@ -121,41 +121,48 @@ static struct front run_crack(double particles, bool correction, int growth, boo
   return f;
 }
 
+enum { OFF = SPH_CRACK_FRONT_NONE, ON = SPH_CRACK_FRONT_PLANE };
+static const struct form {
+  const char *name;
+  double particles;
+  bool correction;
+  int growth;
+  bool support;
+  double ratio;
+  int front;
+} forms[] = {{"documented options", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
+             {"crack front, a quarter", 12000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, ON},
+             {"crack front", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, ON},
+             {"with gradient correction", 50000, true, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
+             {"half of the particles", 25000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
+             {"a quarter", 12000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
+             {"twice the particles", 100000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
+             {"thresholds 1.1 of the load", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.1, OFF},
+             {"thresholds 1.6 of the load", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.6, OFF},
+             {"R_s = support", 50000, false, SPH_GROWTH_CUBE_ROOT, true, 1.3, OFF}};
+enum { FORMS = sizeof forms / sizeof *forms, GATED = 4 }; /* the others are reported */
+
 static void crack_speed(void **state) {
   (void)state;
   const double cg = 0.4 * sqrt((2.67e10 + 4 * 2.27e10 / 3) / 2700);
   assert_true(fabs(cg - 1837) < 1);
-  enum { OFF = SPH_CRACK_FRONT_NONE, ON = SPH_CRACK_FRONT_PLANE };
-  static const struct {
-    const char *name;
-    double particles;
-    bool correction;
-    int growth;
-    bool support;
-    double ratio;
-    int front;
-  } forms[] = {{"documented options", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
-               {"crack front, a quarter", 12000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, ON},
-               {"crack front", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, ON},
-               {"with gradient correction", 50000, true, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
-               {"half of the particles", 25000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
-               {"a quarter", 12000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
-               {"twice the particles", 100000, false, SPH_GROWTH_CUBE_ROOT, false, 1.3, OFF},
-               {"thresholds 1.1 of the load", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.1, OFF},
-               {"thresholds 1.6 of the load", 50000, false, SPH_GROWTH_CUBE_ROOT, false, 1.6, OFF},
-               {"R_s = support", 50000, false, SPH_GROWTH_CUBE_ROOT, true, 1.3, OFF}};
-  for (size_t k = 0; k < (solid_full() ? sizeof forms / sizeof *forms : 2); k++) {
-    const struct front f = run_crack(SOLID_SLOW ? 3000 : forms[k].particles, forms[k].correction, forms[k].growth,
-                                     forms[k].support, forms[k].ratio, forms[k].front);
+  const size_t count = solid_full() ? FORMS : 2;
+  struct front front[FORMS];
+  for (size_t k = 0; k < count; k++) {
+    const struct form *form = &forms[k];
+    const struct front f = run_crack(SOLID_SLOW ? 3000 : form->particles, form->correction, form->growth, form->support,
+                                     form->ratio, form->front);
     print_message("%-28s %6zu particles: %.0f m/s (%+.1f %% of c_g), %.0f over the second half; tilted by %.2f "
                   "degrees, %.2f spacings thick\n",
-                  forms[k].name, f.n, f.speed, 100 * (f.speed / cg - 1), f.late, f.tilt, f.thickness);
-    if (k > 3 || SOLID_SLOW)
-      continue;                                 /* reported */
-    assert_true(fabs(f.speed / cg - 1) < 0.05); /* the criterion */
-    assert_true(f.late < 2650); /* the Rayleigh wave of basalt, nu = 0.169: 0.904 of 2900 m/s, which no crack outruns */
-    assert_true(f.tilt < 5);    /* across the load */
-    assert_true(f.thickness < 1.5); /* one layer, two or three particles thick */
+                  form->name, f.n, f.speed, 100 * (f.speed / cg - 1), f.late, f.tilt, f.thickness);
+    front[k] = f;
+  }
+  for (size_t k = 0; k < count && k < GATED && !SOLID_SLOW; k++) {
+    assert_true(fabs(front[k].speed / cg - 1) < 0.05); /* the criterion */
+    /* The Rayleigh wave of basalt, nu = 0.169: 0.904 of 2900 m/s, which no crack outruns. */
+    assert_true(front[k].late < 2650);
+    assert_true(front[k].tilt < 5);        /* across the load */
+    assert_true(front[k].thickness < 1.5); /* one layer, two or three particles thick */
   }
 }
 
