@@ -32,18 +32,6 @@ static status fill(const char *path, int64_t runs, struct error *e) {
   return result == STATUS_OK ? closing : result;
 }
 
-static char *dump(const char *path) {
-  struct store *store = NULL;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
-  OK(store_open_reader(path, &store, &error));
-  OK(store_dump(store, out, &error));
-  fclose(out);
-  store_close(store, NULL);
-  return text;
-}
-
 static void line(void *context, const char *text) {
   (void)context;
   print_error("%s\n", text);

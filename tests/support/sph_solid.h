@@ -242,4 +242,14 @@ UNUSED static unsigned char *solid_state(const struct sph_system *system, size_t
   return bytes;
 }
 
+/* Fails unless both systems have the same state, bit by bit. */
+UNUSED static void solid_same(const struct solid_case *a, const struct solid_case *b) {
+  size_t size, size_b;
+  unsigned char *state = solid_state(a->system, &size), *other = solid_state(b->system, &size_b);
+  assert_int_equal(size, size_b);
+  assert_memory_equal(state, other, size);
+  free(state);
+  free(other);
+}
+
 #endif

@@ -12,6 +12,19 @@ static struct error error;
       fail_msg("%s: %s", #call, error.message);                                                                        \
   } while (0)
 
+/* The store's bits as text, malloc'd. */
+__attribute__((unused)) static char *dump(const char *path) {
+  struct store *store = NULL;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *out = open_memstream(&text, &size);
+  OK(store_open_reader(path, &store, &error));
+  OK(store_dump(store, out, &error));
+  fclose(out);
+  OK(store_close(store, &error));
+  return text;
+}
+
 static inline double number(struct store *store, const char *sql) {
   double value = 0;
   OK(query_number(store, sql, 0, NULL, &value, &error));

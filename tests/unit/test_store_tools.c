@@ -23,18 +23,6 @@ static void populated(char path[64], const char *name, int m, int k, int64_t run
   OK(store_close(store, &error));
 }
 
-static char *dump(const char *path) {
-  struct store *store = NULL;
-  char *text = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
-  OK(store_open_reader(path, &store, &error));
-  OK(store_dump(store, out, &error));
-  fclose(out);
-  OK(store_close(store, &error));
-  return text;
-}
-
 static void line(void *context, const char *text) {
   size_t used = strlen(context);
   snprintf((char *)context + used, 4000 - used, "%s\n", text);

@@ -72,19 +72,6 @@ static inline struct dem_tessellation *fixture_squares(uint32_t columns, uint32_
   return t;
 }
 
-static inline void fixture_free(struct dem_tessellation *t) {
-  free(t->first_vertex);
-  free(t->vertex);
-  free(t->centroid);
-  free(t->area);
-  free(t->polar_moment);
-  free(t->grid_x);
-  free(t->grid_y);
-  free(t->pair);
-  free(t->side);
-  free(t);
-}
-
 static inline struct dem_tessellation *fixture_disc(double radius, double spacing, double disorder, uint64_t seed) {
   const struct dem_lattice lattice = {.outline = DEM_OUTLINE_DISC,
                                       .spacing = spacing,

@@ -74,7 +74,7 @@ static void stiffness_is_timoshenko(void **state) {
   gsl_eigen_symm_free(work);
   gsl_vector_free(values);
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* Force = -dU/du at large deformations, and momentum and angular momentum balance there. */
@@ -115,7 +115,7 @@ static void force_is_the_energys_gradient(void **state) {
     fixture_near(about, 0.0, 1e-14 * largest * h * 10.0, "angular momentum"); /* some roundings of l F */
   }
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* A beam turned as a whole, by any angle and several times round, feels nothing; swapping its ends swaps the forces. */
@@ -151,7 +151,7 @@ static void rotation_and_swap(void **state) {
   for (size_t a = 0; a < 6; a++)
     fixture_near(f[0][a], (a % 3 == 2 ? 1.0 : -1.0) * f[1][(a + 3) % 6],
                  1e-12 * in.beam.young_modulus * h * (a % 3 == 2 ? h : 1.0), "swap");
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* 20 beams of 1 cm, S = 1 cm, E 5e9 dyn/cm^2, clamped: P L^3 / 3EI + P L / GS = 6.408e-6 cm per dyn. */
@@ -185,7 +185,7 @@ static void cantilever(void **state) {
   gsl_matrix_free(m);
   free(k);
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* A square lattice of squares, pulled: only the beams along the pull act, and K_ext = E. */
@@ -210,7 +210,7 @@ static void square_lattice_modulus(void **state) {
   }
   fixture_near(-top / (n * h) / strain, in.beam.young_modulus, 1e-9 * in.beam.young_modulus, "K_ext");
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 int main(void) {

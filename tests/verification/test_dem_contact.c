@@ -33,7 +33,7 @@ static struct impact collide(struct dem_inputs in, double v) {
   fixture_near(s->c.vx[0] + s->c.vx[1], 0.0, 1e-14 * v * 10.0, "momentum");
   fixture_near(s->c.vy[0], 0.0, 1e-9 * v, "straight"); /* the sides coincide to rounding of the corners */
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
   return out;
 }
 
@@ -99,7 +99,7 @@ static void oblique_impact_conserves(void **state) {
   }
   print_message("          energy error %.1e at 0.1 us, %.1e at 0.025 us\n", error[0], error[1]);
   assert_true(error[0] < 3e-4 && error[1] < 3e-4);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* A square slides on another: Coulomb's force is mu times the normal force, against the slip, and what the ledger books
@@ -141,7 +141,7 @@ static void friction_takes_energy_out(void **state) {
     assert_true(error[1] < 2e-3 &&
                 error[1] < 0.6 * error[0]); /* powers are booked at predicted velocities: first order */
   }
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* Contact and damping of bonded pairs obey their switches. */
@@ -173,7 +173,7 @@ static void bonded_switches(void **state) {
     fixture_near(s->c.fx[1], 8.862e8 * 0.01 * h + (on ? reduced * 1e4 : 0.0), 0.0005e8 * 0.01 * h, "damping on bonded");
     dem_system_free(s);
   }
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 int main(void) {

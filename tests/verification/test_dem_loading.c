@@ -35,7 +35,7 @@ static void driven_grains_do_work(void **state) {
       /* trapezoids of a force that changes within (2/15 us)^-1: (0.2/15)^2/12 = 1.5e-5 of what goes to and fro */
       fixture_near(fixture_total(l), before, 1e-3 * l.external_work, "work");
       dem_system_free(s);
-      fixture_free(t);
+      dem_tessellation_free(t);
     }
 }
 
@@ -137,7 +137,7 @@ static void modes_of_breaking(void **state) {
     if (breaks)
       fixture_near(log[0].strain, cases[k].strain * in.threshold.strain, 1e-12, "strain logged");
     dem_system_free(s);
-    fixture_free(t);
+    dem_tessellation_free(t);
   }
 }
 
@@ -287,7 +287,7 @@ static void thresholds_belong_to_places(void **state) {
     dem_system_free(there);
   }
   dem_system_free(s);
-  fixture_free(other);
+  dem_tessellation_free(other);
   dem_tessellation_free(larger);
   dem_tessellation_free(t);
 }
@@ -311,7 +311,7 @@ static void grains_pass_where_said(void **state) {
         assert_true(dem_system_step(s));
       assert_true(fast ? s->c.x[0] > s->c.x[1] : s->c.x[0] < s->c.x[1]);
       dem_system_free(s);
-      fixture_free(t);
+      dem_tessellation_free(t);
     }
 }
 

@@ -177,7 +177,7 @@ static double damped_error(double time_step) {
   assert_true(exact < 0.0); /* they still overlap */
   const double error = fabs(s->c.x[1] - s->c.x[0] - (t->centroid[1].x - t->centroid[0].x) - exact);
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
   return error;
 }
 
@@ -211,7 +211,7 @@ static double growth_per_period(int integrator, bool velocities, double share) {
     energy[half] = fixture_total(dem_system_ledger(s));
   }
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
   return log(energy[1] / energy[0]) / 500.0;
 }
 
@@ -265,7 +265,7 @@ static void gear_has_its_coefficients(void **state) {
       fixture_near(got[k], predicted[k] + published[damped][k] * error, k ? 1e-19 : 1e-17, "Gear");
     dem_system_free(s);
   }
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* Breaking, damping and friction on: kinetic + stored + broken + dissipated stays what it was. */
@@ -431,7 +431,7 @@ static void gear_starts_with_the_derivatives(void **state) {
     fixture_near(s->c.gear[0][k][1], exact[k], fabs(exact[k]) * (10.0 * order[k] * (1.0 + u / v + v / u) + 1e-6),
                  "derivative");
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* Long grains that do nothing but turn: their lists must be made anew, or the end of one passes through the other. */
@@ -461,7 +461,7 @@ static void turning_grains_meet(void **state) {
   fixture_near(reach, apart - half_width, 800.0 * in.fidelity.time_step * half_length,
                "first touch"); /* one step's way */
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* A grain a thousand kilometres away costs no memory, and does not slow the search down. */

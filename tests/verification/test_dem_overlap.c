@@ -320,7 +320,7 @@ static void windows_of_a_square_lattice(void **state) {
        ++i) /* overlaps are 1e-3 of a cell, the gap at rest 1e-11; positions of 77 m have roundings of 1e-14 m */
     fixture_near(s->c.fx[i], i % 6 == 0 ? -face : i % 6 == 5 ? face : 0.0, 3e-8 * face, "push of a face");
   dem_system_free(s);
-  fixture_free(t);
+  dem_tessellation_free(t);
 }
 
 /* Pairs of every shape: a random polygon cut in two along a diagonal, then pushed and turned anyhow. */
@@ -381,7 +381,7 @@ static void windows_of_odd_shapes(void **state) {
                  "torque");
     dem_system_free(window);
     dem_system_free(general);
-    fixture_free(t);
+    dem_tessellation_free(t);
   }
   print_message("          %d contacts by windows, %d by the general overlap\n", windows, generals);
   assert_true(windows > 1000 && generals > 1000);
