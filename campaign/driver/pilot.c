@@ -1,4 +1,4 @@
-/* Pieces of runs, and coarse runs, on the clock. */
+/* Times the first steps of runs, and whole runs of coarse scenes. */
 #include "campaign/driver/pilot.h"
 
 #include <math.h>

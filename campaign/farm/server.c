@@ -1,4 +1,4 @@
-/* The fork server: makes slots when asked, and reports those that end. */
+/* The fork server: makes slots on request, and reports those that end. */
 #include "campaign/farm/server.h"
 
 #include <errno.h>

@@ -1,4 +1,4 @@
-/* A moving system as a whole: what it holds, and what can be asked of it between steps. */
+/* A moving system as a whole: what it holds, and what it reports between steps. */
 #include "engine/sph/step/system.h"
 
 #include <math.h>

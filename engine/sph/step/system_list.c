@@ -17,11 +17,11 @@ enum {
   ROOM = 4,          /* largest slack over h */
 };
 
-/* By precision. horizon_most: largest number of steps for which lists are made. listing: time to make the lists of a
- * particle over the time to sum one neighbour (bench_sph pairs). In float a sum takes half the time of double and
- * making lists takes as long, so that longer lists pay. */
+/* Both by precision. horizon_most: largest number of steps for which lists are made. rebuild_cost: time to make the
+ * lists of a particle over the time to sum one neighbour (bench_sph pairs). In float a sum takes half the time that it
+ * takes in double, and making lists takes as long. So longer lists pay in float. */
 static const uint64_t horizon_most[] = {[SPH_DOUBLE] = 20, [SPH_FLOAT] = 30};
-static const double listing[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
+static const double rebuild_cost[] = {[SPH_DOUBLE] = 50, [SPH_FLOAT] = 100};
 
 /* Moves the particle at order[i] to i, in all columns. */
 static bool permute(struct sph_system *s) {
@@ -144,9 +144,9 @@ bool sph_system_list_again(struct sph_system *s) {
 }
 
 /* Cost of pairs that are in the lists only because of fast particles' slack, over the steps for which the lists are
- * made. It is high where many particles fly fast and close together. Unit as `listing`. It is counted and not timed,
- * because the bits depend on it. */
-static double lost_on_room(const struct sph_system *s) {
+ * made. It is high where many particles fly fast and close together. The unit is that of `rebuild_cost`. The cost is
+ * counted and not timed, because the bits depend on it. */
+static double cost_of_slack(const struct sph_system *s) {
   double swollen = 0;
   for (size_t k = 0; k < s->block_count; k++)
     swollen += s->block[k].swollen;
@@ -177,12 +177,12 @@ bool sph_system_list(struct sph_system *s) {
   /* Lists for half as many steps cost less where the loss is above the cost of making lists twice. Lists for twice as
    * many steps have about eight times the loss. */
   while (s->now.horizon > LEAST_HORIZON && s->now.neighbours > 0 &&
-         lost_on_room(s) > 2 * listing[s->in.fidelity.precision]) {
+         cost_of_slack(s) > 2 * rebuild_cost[s->in.fidelity.precision]) {
     s->now.horizon /= 2;
     if (!list_anew(s))
       return false;
   }
-  if (s->now.neighbours > 0 && 8 * lost_on_room(s) < 2 * listing[s->in.fidelity.precision])
+  if (s->now.neighbours > 0 && 8 * cost_of_slack(s) < 2 * rebuild_cost[s->in.fidelity.precision])
     lengthen(s); /* for the next lists */
   return true;
 }
