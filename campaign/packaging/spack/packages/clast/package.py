@@ -2,6 +2,8 @@
 
 DEBIAN says which package of the list in setup.sh each dependency stands for; a test compares the two.
 """
+from pathlib import Path
+
 from spack.package import *
 
 DEBIAN = {
@@ -16,8 +18,10 @@ DEBIAN = {
 class Clast(CMakePackage):
     """Ensembles of simulations of how rocks break: many runs, one SQLite file."""
 
+    git = f"file://{Path(__file__).resolve().parents[5]}"  # the tree that this file is in
+
     license("GPL-3.0-or-later")
-    version("0.1.0")
+    version("0.1.0", branch="main")
 
     generator("ninja")
     depends_on("c", type="build")
