@@ -6,6 +6,7 @@
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
+#include "engine/scene_files.h"
 #include "engine/scene_materials.h"
 #include "engine/scene_settings.h"
 #include "schemas/document.h"
@@ -100,6 +101,7 @@ static status read_document(struct document *document, const char *folder, const
       goto cleanup;
     }
     scene_materials_take(root, kind->inputs, folder);
+    scene_files_take(root, kind->inputs, folder);
     document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
     snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
     scene_settings_read(document_key(root, "settings"), scene);
@@ -235,7 +237,11 @@ status scene_set(struct scene *scene, const char *path, const struct field_value
   const struct field *row = field_find(table, path, error);
   if (!row)
     return STATUS_CONTENT;
-  status code = field_set(row, scene->inputs, value, error);
+  struct field_value taken = *value;
+  status code = scene_files_set(row, &taken, error);
+  if (code)
+    return code;
+  code = field_set(row, scene->inputs, &taken, error);
   if (code)
     return code;
   scene->given[row - table->rows] = scene->overridden[row - table->rows] = true;

@@ -33,6 +33,8 @@ enum field_flags {
                               * are still found */
   FIELD_PERCENT = 64, /* FIELD_REAL of unit "1": a strain or share that people give in percent and that may exceed 1. A
                        * number without % is refused */
+  FIELD_FILE = 128,   /* FIELD_TEXT of inputs: a scene's document names a file, and the value is its SHA-256
+                       * (engine/scene_files.h) */
 };
 
 struct field {

@@ -54,6 +54,11 @@ CREATE TABLE point_input ( -- Every active input of every point.
   PRIMARY KEY (point_id, path)
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE shape_file ( -- Shape files of bodies, each once.
+  hash TEXT NOT NULL UNIQUE, -- SHA-256 of the file, the value of inputs that name one (target.mesh.file)
+  bytes BLOB NOT NULL -- the file as it was read, STL or OBJ
+) STRICT;
+
 CREATE TABLE axis ( -- Inputs that some campaign varied: columns of the views.
   path TEXT NOT NULL PRIMARY KEY, -- path of an input that some campaign varied
   column_name TEXT NOT NULL UNIQUE, -- its column in the views
@@ -1570,6 +1575,10 @@ INSERT INTO column_doc VALUES ('session', 'pid', NULL, 'process of the manager',
 INSERT INTO column_doc VALUES ('session', 'session_id', NULL, 'number of the invocation that computed', 0);
 
 INSERT INTO column_doc VALUES ('session', 'started_at', NULL, 'UTC, ISO 8601, to the millisecond', 0);
+
+INSERT INTO column_doc VALUES ('shape_file', 'bytes', NULL, 'the file as it was read, STL or OBJ', 0);
+
+INSERT INTO column_doc VALUES ('shape_file', 'hash', NULL, 'SHA-256 of the file, the value of inputs that name one (target.mesh.file)', 0);
 
 INSERT INTO column_doc VALUES ('spectra', 'bin', NULL, 'number of a mass bin: ten per decade, bin 0 starts at 1 kg', 0);
 

@@ -85,6 +85,8 @@ static bool add_column(struct reading *r, int64_t line, char *cell) {
   const struct field *row = field_find(campaign->scene->kind->inputs, cell, &error);
   if (!row)
     return wrong(r, line, "%s", error.message);
+  if (row->flags & FIELD_FILE)
+    return wrong(r, line, "%s: a shape file cannot be varied: write a scene for each shape", row->path);
   for (size_t i = 0; i < campaign->axis_count; i++)
     if (campaign->axes[i].row == row)
       return wrong(r, line, "two columns for %s", row->path);

@@ -276,6 +276,8 @@ static bool read_form(struct reading *r) {
 }
 
 static bool read_axis(struct reading *r) {
+  if (r->axis->row->flags & FIELD_FILE)
+    return wrong(r, NULL, "a shape file cannot be varied: write a scene, and a campaign, for each shape");
   switch (document_kind(r->node)) {
   case DOCUMENT_SEQUENCE: return read_values(r, r->node);
   case DOCUMENT_MAPPING: return read_form(r);

@@ -8,10 +8,11 @@
 #include <sys/stat.h>
 
 #include "engine/restart.h"
+#include "engine/scene_files.h"
 
 /* The encodings begin with these marks. All ranks of a farm run one binary, so arrays of structs are sent as they are
  * in memory. The marks, the sizes and the hashes of the tables find anything else. */
-#define TASK_MARK   "clast task 1"
+#define TASK_MARK   "clast task 2"
 #define RESULT_MARK "clast result 2"
 
 void run_result_clear(struct run_result *result) {
@@ -197,6 +198,14 @@ static void write_task(struct writer *writer, const struct run_request *request)
   put_count(writer, request->seed);
   put_text(writer, request->fields_path ? request->fields_path : "");
   put_object(writer, request->kind->inputs, request->inputs);
+
+  const struct mesh_file *files[SCENE_FILES_MOST]; /* another process has not read them */
+  const size_t count = scene_files_of(request->kind->inputs, request->inputs, files);
+  put_count(writer, count);
+  for (size_t i = 0; i < count; i++) {
+    put_count(writer, files[i]->size);
+    put(writer, files[i]->bytes, files[i]->size);
+  }
 }
 
 uint8_t *run_encode_task(const struct run_request *request, size_t *size) {
@@ -277,6 +286,19 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
   return STATUS_OK;
 }
 
+/* The files of the inputs, into the list of this process. */
+static status take_files(struct reader *reader, struct error *error) {
+  for (uint64_t left = take_count(reader); left > 0 && reader->good; left--) {
+    const uint64_t size = take_count(reader);
+    const uint8_t *bytes = take(reader, size);
+    const struct mesh_file *file;
+    const status code = bytes ? mesh_files_add("a task's shape file", bytes, (size_t)size, &file, error) : STATUS_OK;
+    if (code)
+      return code;
+  }
+  return STATUS_OK;
+}
+
 /* Reads a task; the inputs are the caller's to free. */
 static status decode_task(run_find find, const uint8_t *task, size_t size, struct run_request *request, void **inputs,
                           char *fields_path, size_t path_size, struct error *error) {
@@ -294,6 +316,9 @@ static status decode_task(run_find find, const uint8_t *task, size_t size, struc
     if (!*inputs)
       return status_fail(error, STATUS_MEMORY, "no memory for the inputs");
     take_object(&reader, request->kind->inputs, *inputs);
+    const status code = take_files(&reader, error);
+    if (code)
+      return code;
   }
   if (!reader.good || reader.left)
     return status_fail(error, STATUS_INTERNAL, "the task cannot be read: it comes from another version of clast");

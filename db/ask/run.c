@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "db/store/shapes.h"
+
 static void take_fact(const struct query_value *value, char *text, size_t size) {
   snprintf(text, size, "%s", value->kind == QUERY_TEXT ? value->text : "");
 }
@@ -37,7 +39,8 @@ status ask_run_read(struct store *store, int64_t run_id, struct ask_run *run, st
            "json_extract(facts, '$.compiler') FROM run JOIN point USING (point_id) LEFT JOIN session USING "
            "(session_id) WHERE run_id = %lld",
            (long long)run_id);
-  return query_run(store, sql, 0, NULL, 0, &sink, error);
+  const status code = query_run(store, sql, 0, NULL, 0, &sink, error);
+  return code ? code : shapes_load(store, run_id, error);
 }
 
 void ask_run_release(struct ask_run *run) {

@@ -5,6 +5,7 @@
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "db/store/shapes.h"
 #include "db/store/views.h"
 
 static const char adding_run[] = "adding a run", adding_point[] = "adding a point";
@@ -120,7 +121,9 @@ static status find_or_add_point(struct store *store, const struct scene *scene, 
   result = sql_run(store->point, adding_point, error);
   *point_id = sqlite3_last_insert_rowid(store->db);
   free(json);
-  return result == STATUS_OK ? add_inputs(store, *point_id, scene, error) : result;
+  if (result == STATUS_OK)
+    result = add_inputs(store, *point_id, scene, error);
+  return result == STATUS_OK ? shapes_add(store, scene, error) : result;
 }
 
 /* *grown: the views need another column. */

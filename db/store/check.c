@@ -10,6 +10,7 @@
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 #include "db/store/schema.h"
+#include "db/store/shapes.h"
 #include "engine/grow.h"
 #include "engine/scene.h"
 
@@ -261,6 +262,9 @@ static status check_point_identities(struct report *report, const struct scene *
  * that this program lacks, cannot be judged. */
 static status check_identities(struct report *report, struct error *error) {
   sqlite3_stmt *points = NULL, *runs = NULL;
+  struct error damaged = {0};
+  if (shapes_load(report->store, 0, &damaged) != STATUS_OK)
+    say(report, "%.600s", damaged.message);
   status result = sql_prepare(report->store->db, "SELECT point_id, scene, scene_name, engine FROM point", &points,
                               checking, error);
   if (result == STATUS_OK)

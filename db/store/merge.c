@@ -6,6 +6,7 @@
 #include "db/store/internal.h"
 #include "db/store/paths.h"
 #include "db/store/schema.h"
+#include "db/store/shapes.h"
 #include "db/store/views.h"
 #include "schemas/text.h"
 
@@ -203,6 +204,8 @@ static status copy_all(sqlite3 *db, int64_t *added, struct error *error) {
     result = copy_attempts(db, error);
   if (result == STATUS_OK)
     result = copy_campaigns_of_sessions(db, error);
+  if (result == STATUS_OK)
+    result = shapes_merge(db, error);
   return result == STATUS_OK ? copy_written_units(db, error) : result;
 }
 

@@ -48,6 +48,11 @@ static const struct schema_column point_input[] = {
     {"value", "ANY NOT NULL", NULL, "its value in SI units; choices by name, booleans 0 or 1, the keyword off as text"},
 };
 
+static const struct schema_column shape_file[] = {
+    {"hash", "TEXT NOT NULL UNIQUE", NULL, "SHA-256 of the file, the value of inputs that name one (target.mesh.file)"},
+    {"bytes", "BLOB NOT NULL", NULL, "the file as it was read, STL or OBJ"},
+};
+
 static const struct schema_column axis[] = {
     {"path", "TEXT NOT NULL PRIMARY KEY", NULL, "path of an input that some campaign varied"},
     {"column_name", "TEXT NOT NULL UNIQUE", NULL, "its column in the views"},
@@ -192,6 +197,7 @@ const struct schema_table schema_tables[] = {
     TABLE(point, "Points: sets of input values. The resolved scene is the truth.", ROWID),
     TABLE(campaign_point, "Which campaign has which point.", CLUSTERED("campaign_id, point_id")),
     TABLE(point_input, "Every active input of every point.", CLUSTERED("point_id, path")),
+    TABLE(shape_file, "Shape files of bodies, each once.", ROWID),
     TABLE(axis, "Inputs that some campaign varied: columns of the views.", .options = "STRICT, WITHOUT ROWID"),
     TABLE(run, "Runs: one simulation of a point with a seed, and what every engine reports of it.", ROWID,
           .fields = &outcome_table),

@@ -154,11 +154,11 @@ static void projectiles_are_aimed(void **state) {
           if (a)
             assert_true(fabs(normal[0]) > cos(0.1) ? flight[1] > 0 : flight[0] > -along * normal[0]);
           if (g && a < 2)
-            assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) <= 0);
+            assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight, NULL) <= 0);
           for (int k = 0; k < 3; k++)
             flight[k] = -flight[k];
           if (g)
-            assert_true(sph_shape_approach(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
+            assert_true(sph_shape_gap_ahead(&targets[t], &shot, flight, NULL) > 0); /* flies off: misses */
         }
   struct sph_shape shot = {.kind = SPH_SHAPE_SPHERE, .radius = 0.003};
   double flight[3];

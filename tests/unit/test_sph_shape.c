@@ -163,21 +163,21 @@ static void flights_hit_or_miss(void **state) {
   (void)state;
   struct sph_shape target = at(&sphere, 0, 0, 0), shot = at(&sphere, 10, 0, 0);
   double when;
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){-2, 0, 0}, &when) <= 0);
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){2, 0, 0}, &when) == 6); /* flies off: nearest now */
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, &when) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){2, 0, 0}, &when) == 6); /* flies off: nearest now */
   assert_true(when < 1e-6);
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){0, 0, 0}, &when) == 6);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, 0}, &when) == 6);
   shot.centre[1] = 5; /* passes 5 from the centre at x = 0, when 10 m are flown at 2 m/s */
-  assert_true(fabs(sph_shape_approach(&target, &shot, (double[3]){-2, 0, 0}, &when) - 1) < 1e-9);
+  assert_true(fabs(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, &when) - 1) < 1e-9);
   assert_true(fabs(when - 5) < 1e-3);
   shot.centre[1] = 3.999;
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){-2, 0, 0}, NULL) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, NULL) <= 0);
   shot.centre[1] = 4.001;
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){-2, 0, 0}, NULL) > 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){-2, 0, 0}, NULL) > 0);
   target = at(&box, 0, 0, 0);
   shot = at(&rod, 0, 0, 9);
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){0, 0, -1}, NULL) <= 0);
-  assert_true(sph_shape_approach(&target, &shot, (double[3]){1, 0, -0.2}, NULL) > 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){0, 0, -1}, NULL) <= 0);
+  assert_true(sph_shape_gap_ahead(&target, &shot, (double[3]){1, 0, -0.2}, NULL) > 0);
 }
 
 static void rays_leave_by_the_surface(void **state) {

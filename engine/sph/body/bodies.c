@@ -117,12 +117,15 @@ status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projecti
   if (!(angle >= 0 && angle < M_PI_2))
     return status_fail(error, STATUS_CONTENT, "the impact comes %g degrees from the normal: give 0 to below 90.",
                        angle * 180 / M_PI);
-  sph_shape_surface(target, outwards, point, normal);
+  if (!sph_shape_surface(target, outwards, point, normal))
+    return status_fail(error, STATUS_CONTENT,
+                       "no place of impact: the line from the target's centre of mass upwards (z) does not meet it. "
+                       "Turn the mesh in its file.");
   const int towards = fabs(normal[0]) > cos(0.1) ? 1 : 0;
   for (int k = 0; k < 3; k++)
     aside[k] = (k == towards) - normal[towards] * normal[k];
   unit(aside, aside);
-  const double away = gap + sph_shape_reach(projectile, normal);
+  const double away = gap + sph_shape_reach(projectile, (const double[3]){-normal[0], -normal[1], -normal[2]});
   for (int k = 0; k < 3; k++) {
     projectile->centre[k] = point[k] + away * normal[k];
     flight[k] = -cos(angle) * normal[k] + sin(angle) * aside[k];

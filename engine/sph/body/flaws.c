@@ -161,9 +161,13 @@ struct places {
 };
 
 void sph_flaws_point(uint64_t seed, uint64_t body, uint64_t flaw, const struct sph_shape *shape, double point[3]) {
-  uint64_t bits[4];
-  random_bits(seed, RANDOM_FLAW_PLACE, body, flaw, bits);
-  sph_shape_place(shape, (double[3]){random_uniform(bits[0]), random_uniform(bits[1]), random_uniform(bits[2])}, point);
+  uint64_t bits[4], draw = 0;
+  double uniform[3];
+  do { /* more than one draw for meshes only: they fill a thousandth of their box, or more */
+    random_bits(seed, RANDOM_FLAW_PLACE, body, flaw + (draw++ << 40), bits);
+    for (int k = 0; k < 3; k++)
+      uniform[k] = random_uniform(bits[k]);
+  } while (!sph_shape_place(shape, uniform, point));
 }
 
 static size_t nearest_particle(void *context, uint64_t flaw) {

@@ -105,7 +105,8 @@ static void ray(double u, double turn, double d[3]) {
 static void cut_shells(const struct sph_grading *g, const struct sph_shape *shape, struct shells *shells) {
   double size = 0, away = 0;
   for (int k = 0; k < 3; k++) {
-    const double unit[3] = {k == 0, k == 1, k == 2}, reach = sph_shape_reach(shape, unit);
+    const double unit[3] = {k == 0, k == 1, k == 2}, back[3] = {-unit[0], -unit[1], -unit[2]};
+    const double reach = fmax(sph_shape_reach(shape, unit), sph_shape_reach(shape, back));
     size += reach * reach;
     away += (g->point[k] - shape->centre[k]) * (g->point[k] - shape->centre[k]);
   }

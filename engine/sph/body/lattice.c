@@ -7,6 +7,7 @@
 #include "engine/random.h"
 #include "engine/sph/body/irregular.h"
 #include "engine/sph/body/particles.h"
+#include "engine/sph/body/shape_mesh.h"
 
 /* A right-angled cell with particles at `basis` (fractions of its sides). Lengths are in spacings: the hexagonal
  * lattice's neighbours are 2^(1/6) apart, its rows sqrt(3)/2 and its layers sqrt(2/3) of that. */
@@ -240,6 +241,8 @@ static bool thin(const struct cut *c) {
   const double across = c->layered ? sqrt(each / layer) : cbrt(each), along = c->layered ? 0 : across;
   if (s->kind == SPH_SHAPE_SPHERE)
     return false;
+  if (s->kind == SPH_SHAPE_MESH)
+    return !(sph_shape_mesh_area(s) * across < 39 * sph_shape_volume(s));
   double wider = 1;
   for (int k = 0; k < 3; k++)
     wider *= s->side[k] + 2 * across;
@@ -334,9 +337,9 @@ static status fill_cut(const struct sph_lattice *lattice, const struct cell *cel
   if (lattice->turned)
     random_rotation(lattice->seed, RANDOM_LATTICE, lattice->body, 0, c.frame);
   for (int k = 0; k < 3; k++) {
-    const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]};
+    const double axis[3] = {c.frame[0][k], c.frame[1][k], c.frame[2][k]}, back[3] = {-axis[0], -axis[1], -axis[2]};
     c.side[k] = spacing * period(cell, k);
-    c.reach[k] = sph_shape_reach(shape, axis);
+    c.reach[k] = fmax(sph_shape_reach(shape, axis), sph_shape_reach(shape, back));
   }
 
   double offset[3] = {0}, layers = 0;
@@ -367,7 +370,7 @@ static const char *not_periodic(const struct sph_lattice *lattice, const struct 
     return "a graded body";
   if (lattice->turned)
     return "a turned lattice";
-  return shape->kind == SPH_SHAPE_SPHERE ? "a sphere" : NULL;
+  return shape->kind == SPH_SHAPE_SPHERE ? "a sphere" : shape->kind == SPH_SHAPE_MESH ? "a mesh" : NULL;
 }
 
 static status check_periodic(const struct sph_lattice *lattice, const struct sph_shape *shape, int k,

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "engine/mesh/files.h"
 #include "engine/sph/body/bodies.h"
 
 enum { PISTON_LAYERS = 4 }; /* thicker than a support: the plate does not feel the piston's back */
@@ -52,6 +53,12 @@ static struct sph_shape shape_of(const struct sph_body_inputs *b) {
     break;
   case SPH_SHAPE_SPHERE: shape.radius = b->radius; break;
   case SPH_SHAPE_BOX: memcpy(shape.side, (const double[]){b->width, b->depth, b->height}, sizeof shape.side); break;
+  case SPH_SHAPE_MESH: {
+    const struct mesh_file *file = mesh_files_find(b->mesh.file);
+    shape.mesh = file ? file->mesh : NULL;
+    shape.unit = b->mesh.unit;
+    break;
+  }
   }
   return shape;
 }
@@ -105,16 +112,53 @@ double sph_derived_specific_energy(const struct sph_inputs *in) {
                                         : (double)NAN;
 }
 
+static double longest(const struct sph_shape *shape) {
+  if (shape->kind == SPH_SHAPE_MESH) {
+    double most = 0;
+    for (int k = 0; k < 3 && shape->mesh; k++)
+      most = fmax(most, shape->unit * (shape->mesh->high[k] - shape->mesh->low[k]));
+    return most;
+  }
+  if (shape->kind == SPH_SHAPE_SPHERE)
+    return 2 * shape->radius;
+  if (shape->kind == SPH_SHAPE_CYLINDER)
+    return fmax(2 * shape->radius, shape->length);
+  return fmax(shape->side[0], fmax(shape->side[1], shape->side[2]));
+}
+
+/* How far the projectile must go back along its flight, from the plane of the face that it hits, until nothing of a
+ * mesh, which may stand above that plane, overlaps it. */
+static double back_off(const struct sph_shape shape[2], const double flight[3]) {
+  const double up[3] = {0, 0, 1}, most = 4 * (longest(&shape[0]) + longest(&shape[1]));
+  const double least = 1e-3 * sph_shape_reach(&shape[1], up);
+  struct sph_shape moved = shape[1];
+  double back = 0, gap = 0;
+  while (back < most && (gap = sph_shape_gap(&shape[0], &moved)) < 0) {
+    back += fmax(-gap, least);
+    for (int k = 0; k < 3; k++)
+      moved.centre[k] = shape[1].centre[k] - back * flight[k];
+  }
+  return back;
+}
+
 status sph_derived_aim(const struct sph_inputs *in, struct sph_shape shape[2], double flight[3], struct error *error) {
   const double up[3] = {0, 0, 1}, angle = in->impact.angle;
   shape[0] = sph_derived_target(in);
   shape[1] = sph_derived_projectile(in);
   memcpy(shape[1].axis, (const double[]){sin(angle), 0, -cos(angle)}, sizeof shape[1].axis);
   status code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight,
-                               error); /* in contact; the gap follows, back along the flight */
-  for (int k = 0; !code && k < 3; k++)
-    shape[1].centre[k] -= flight[k] * in->impact.gap / cos(angle);
-  return code;
+                               error);            /* in contact; the gap follows, back along the flight */
+  if (!code && shape[0].kind == SPH_SHAPE_MESH) { /* its normal is known now, and with it the flight */
+    memcpy(shape[1].axis, flight, sizeof shape[1].axis);
+    code = sph_bodies_aim(&shape[0], &shape[1], up, angle, 0, flight, error);
+  }
+  if (code)
+    return code;
+  const bool rough = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH;
+  const double back = rough ? back_off(shape, flight) : 0;
+  for (int k = 0; k < 3; k++)
+    shape[1].centre[k] -= flight[k] * in->impact.gap / cos(angle) + flight[k] * back;
+  return STATUS_OK;
 }
 
 double sph_derived_spacing(const struct sph_inputs *in) {
@@ -147,14 +191,6 @@ double sph_derived_particles(const struct sph_inputs *in) {
   struct sph_shape shape = sph_derived_projectile(in);
   double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
   return target + sph_shape_volume(&shape) / (spacing * spacing * spacing);
-}
-
-static double longest(const struct sph_shape *shape) {
-  if (shape->kind == SPH_SHAPE_SPHERE)
-    return 2 * shape->radius;
-  if (shape->kind == SPH_SHAPE_CYLINDER)
-    return fmax(2 * shape->radius, shape->length);
-  return fmax(shape->side[0], fmax(shape->side[1], shape->side[2]));
 }
 
 double sph_derived_crossing(const struct sph_inputs *in) {

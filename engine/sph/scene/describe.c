@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "engine/builtin.h"
+#include "engine/mesh/mesh.h"
 #include "engine/sph/material/plane_shock.h"
 #include "engine/sph/modules/modules.h"
 #include "engine/sph/run/run.h"
@@ -91,6 +92,15 @@ double sph_describe_work(const struct sph_inputs *in) {
 
 /* ---- text ---- */
 
+static void mesh(const struct sph_shape *s, FILE *out) {
+  const struct mesh *m = s->mesh;
+  double side[3] = {0};
+  for (int k = 0; k < 3 && m; k++)
+    side[k] = s->unit * (m->high[k] - m->low[k]);
+  fprintf(out, "mesh of %zu faces, %.4g x %.4g x %.4g m, %.4g m^3,", m ? m->faces : 0, side[0], side[1], side[2],
+          sph_shape_volume(s));
+}
+
 static void shape(const char *name, const struct sph_shape *s, const struct sph_body_inputs *b, double spacing,
                   FILE *out) {
   static const char *const lattices[] = {"hexagonal lattice", "cubic lattice", "irregular points"};
@@ -100,6 +110,8 @@ static void shape(const char *name, const struct sph_shape *s, const struct sph_
     fprintf(out, "sphere of radius %.4g m", s->radius);
   else if (s->kind == SPH_SHAPE_CYLINDER)
     fprintf(out, "%s of radius %.4g m, length %.4g m", s->inner_radius > 0 ? "ring" : "cylinder", s->radius, s->length);
+  else if (s->kind == SPH_SHAPE_MESH)
+    mesh(s, out);
   else
     fprintf(out, "box of %.4g x %.4g x %.4g m", s->side[0], s->side[1], s->side[2]);
   fprintf(out, " of %s, %.4g kg; about %.0f particles, spacing %.3g m, %s\n", builtin_material_names[b->material_name],

@@ -11,7 +11,7 @@
 #include "engine/sph/pairs/pairs.h"
 
 static const char *const kinds[] = {"impact", "stretch", "vibration", "collision", "piston", NULL};
-static const char *const shapes[] = {"sphere", "cylinder", "box", NULL};
+static const char *const shapes[] = {"sphere", "cylinder", "box", "mesh", NULL};
 static const char *const lattices[] = {"hexagonal", "cubic", "irregular", NULL};
 static const char *const fractures[] = {"auto", "on", "off", NULL};
 static const char *const far_sides[] = {"free", "damped", NULL};
@@ -69,8 +69,16 @@ static const char *const precisions[] = {"double", "float", NULL};
 #define PROJECTILE_CHOICE_VALUE(...) OF_MATERIAL_CHOICE_VALUE(projectile, __VA_ARGS__)
 
 #define BODY_SIZES(B, shape_)                                                                                          \
-  REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                          \
-       .doc = "Radius of the sphere or cylinder."),                                                                    \
+  ROW(B.mesh.file, FIELD_TEXT, NULL, .text = "", .flags = FIELD_FILE | FIELD_DERIVED, .when = #B ".shape=mesh",        \
+      .doc = "Shape file, STL or OBJ: a closed surface of triangles; to be given. Its name is relative to the "        \
+             "scene's file. The "                                                                                      \
+             "centre of mass comes to the origin, the axes are those of the file, and z is up. A resolved scene has "  \
+             "the SHA-256 of the file instead, and a store keeps the file."),                                          \
+      REAL(B.mesh.unit, "m", NAN, 1e-12, 1e9, .flags = FIELD_DERIVED, .when = #B ".shape=mesh",                        \
+           .doc = "Length that 1 in the shape file stands for, such as 1 km or 1 mm: to be given, as the file does "   \
+                  "not say it."),                                                                                      \
+      REAL(B.radius, "m", shape_, 1e-9, 1e9, .when = #B ".shape=sphere|cylinder",                                      \
+           .doc = "Radius of the sphere or cylinder."),                                                                \
       REAL(B.inner_radius, "m", 0, 0, 1e9, .when = #B ".shape=cylinder",                                               \
            .doc = "Radius of a hole along the cylinder's axis: a ring. 0: a full cylinder."),                          \
       REAL(B.length, "m", 0.04, 1e-9, 1e9, .when = #B ".shape=cylinder",                                               \
@@ -122,7 +130,7 @@ static const struct field rows[] = {
 
     CHOICE(target.shape, shapes,
            .doc = "The target's outline, its centre at the origin. An impact takes all of them, a piston a box; "
-                  "the others are done to cylinders."),
+                  "the others are done to cylinders. A mesh comes from a shape file."),
     BODY_SIZES(target, 0.03),
     REAL(target.spin, "rad/s", 0, -1e9, 1e9, .when = "kind=impact",
          .doc = "The target turns about z before it is hit."),

@@ -21,8 +21,14 @@ enum sph_crack_radius { SPH_CRACK_RADIUS_VOLUME, SPH_CRACK_RADIUS_SUPPORT };
 /* Every flaw of a particle, or the lowest, the highest and the number of them. */
 enum sph_flaw_lists { SPH_FLAWS_EXACT, SPH_FLAWS_COMPACT };
 
+struct sph_mesh_inputs {
+  char file[FIELD_TEXT_SIZE]; /* SHA-256 of the shape file (engine/mesh/files.h) */
+  double unit;                /* m */
+};
+
 struct sph_body_inputs {
-  int shape;                           /* enum sph_shape_kind */
+  int shape; /* enum sph_shape_kind */
+  struct sph_mesh_inputs mesh;
   double radius, inner_radius, length; /* m */
   double width, depth, height;         /* m: box along x, y, z */
   double spin;                         /* rad/s about z */

@@ -125,6 +125,12 @@ static status check_shape(const char *name, const struct sph_body_inputs *body, 
   if (body->shape == SPH_SHAPE_CYLINDER && shape->kind == SPH_SHAPE_CYLINDER && body->inner_radius >= body->radius)
     REFUSE("%s.inner_radius is %.4g m, the radius %.4g m: a ring needs a smaller hole", name, body->inner_radius,
            body->radius);
+  if (shape->kind == SPH_SHAPE_MESH && !*body->mesh.file)
+    REFUSE("%s.mesh.file is missing: name a shape file, STL or OBJ", name);
+  if (shape->kind == SPH_SHAPE_MESH && !shape->mesh)
+    REFUSE("%s.mesh.file is not here (SHA-256 %.64s): give the name of the shape file", name, body->mesh.file);
+  if (shape->kind == SPH_SHAPE_MESH && isnan(body->mesh.unit))
+    REFUSE("%s.mesh.unit is missing: give the length that 1 in the shape file stands for, such as 1 km", name);
   if (!(sph_shape_volume(shape) > 0) || !isfinite(sph_shape_volume(shape)))
     REFUSE("%s has a volume of %.4g m^3: give other sizes", name, sph_shape_volume(shape));
   return STATUS_OK;
@@ -162,7 +168,8 @@ static status check_impact(const struct sph_inputs *in, struct error *error) {
     double flight[3];
     if ((code = sph_derived_aim(in, shape, flight, error)))
       return code;
-    if (sph_shape_approach(&shape[0], &shape[1], flight, NULL) > 0)
+    const bool meshes = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH; /* aimed at a face */
+    if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight, NULL) > 0)
       REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
              in->impact.angle, in->impact.gap);
   }

@@ -1,0 +1,284 @@
+/* A mesh from its file: the order of checks, volume, centre of mass; its extent, and where a line leaves it. */
+#include "engine/mesh/mesh.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "engine/grow.h"
+#include "engine/mesh/build.h"
+
+/* A body whose box is this much larger than it is: points could hardly be drawn from it. */
+static const double least_share = 1e-3, largest_coordinate = 1e15;
+
+status mesh_refuse(const struct mesh_soup *soup, size_t line, struct error *error, const char *format, ...) {
+  char text[512], place[64] = "";
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  if (line && soup->numbered)
+    snprintf(place, sizeof place, " face %zu:", line);
+  else if (line)
+    snprintf(place, sizeof place, "%zu:", line);
+  return status_fail(error, STATUS_CONTENT, "%.3000s:%s %s", soup->name, place, text);
+}
+
+static status no_memory(const char *name, struct error *error) {
+  return status_fail(error, STATUS_MEMORY, "no memory for the shape file %.3000s", name);
+}
+
+status mesh_soup_vertex(struct mesh_soup *soup, size_t line, const double place[3], struct error *error) {
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(place[k]) <= largest_coordinate))
+      return mesh_refuse(soup, line, error, "the coordinate %g is not finite, or above %g: mend the file", place[k],
+                         largest_coordinate);
+  if (soup->vertices >= 3 * (size_t)MESH_MOST_FACES)
+    return mesh_refuse(soup, line, error, "more than %d vertices: take a coarser model", 3 * MESH_MOST_FACES);
+  if (!grow_room(&soup->vertex, &soup->vertex_room, soup->vertices + 1, sizeof *soup->vertex))
+    return no_memory(soup->name, error);
+  for (int k = 0; k < 3; k++)
+    soup->vertex[soup->vertices][k] = place[k] + 0.0; /* -0 becomes 0 */
+  soup->vertices++;
+  return STATUS_OK;
+}
+
+status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corners[3], struct error *error) {
+  if (soup->faces >= MESH_MOST_FACES)
+    return mesh_refuse(soup, line, error, "more than %d triangles: take a coarser model", MESH_MOST_FACES);
+  size_t lines = soup->face_room;
+  if (!grow_room(&soup->line, &lines, soup->faces + 1, sizeof *soup->line) ||
+      !grow_room(&soup->face, &soup->face_room, soup->faces + 1, sizeof *soup->face))
+    return no_memory(soup->name, error);
+  memcpy(soup->face[soup->faces], corners, sizeof *soup->face);
+  soup->line[soup->faces++] = (uint32_t)line;
+  return STATUS_OK;
+}
+
+static void subtract(const double a[3], const double b[3], double out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = a[k] - b[k];
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+static void find_box(struct mesh *m) {
+  for (int k = 0; k < 3; k++) {
+    m->low[k] = INFINITY;
+    m->high[k] = -INFINITY;
+  }
+  for (size_t f = 0; f < m->faces; f++) /* vertices without a face do not count */
+    for (int c = 0; c < 3; c++)
+      for (int k = 0; k < 3; k++) {
+        m->low[k] = fmin(m->low[k], m->vertex[m->face[f][c]][k]);
+        m->high[k] = fmax(m->high[k], m->vertex[m->face[f][c]][k]);
+      }
+}
+
+static void shift(struct mesh *m, const double by[3]) {
+  for (size_t v = 0; v < m->vertices; v++)
+    subtract(m->vertex[v], by, m->vertex[v]);
+  subtract(m->low, by, m->low);
+  subtract(m->high, by, m->high);
+  for (int k = 0; k < 3; k++)
+    m->centre[k] += by[k];
+}
+
+/* Volume, area and centre of mass, of the tetrahedra between the faces and the origin. A surface that is inside out is
+ * turned. */
+static void measure(struct mesh *m) {
+  double moment[3] = {0};
+  for (size_t f = 0; f < m->faces; f++) {
+    const double *a = m->vertex[m->face[f][0]], *b = m->vertex[m->face[f][1]], *c = m->vertex[m->face[f][2]];
+    double ab[3], ac[3], n[3], d[3], six = 0;
+    subtract(b, a, ab);
+    subtract(c, a, ac);
+    cross(ab, ac, n);
+    cross(b, c, d);
+    for (int k = 0; k < 3; k++)
+      six += a[k] * d[k];
+    m->volume += six / 6;
+    m->area += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int k = 0; k < 3; k++)
+      moment[k] += six / 24 * (a[k] + b[k] + c[k]);
+  }
+  for (int k = 0; k < 3; k++)
+    moment[k] /= m->volume;
+  if (m->volume < 0)
+    for (size_t f = 0; f < m->faces; f++) {
+      const uint32_t first = m->face[f][0];
+      m->face[f][0] = m->face[f][1];
+      m->face[f][1] = first;
+    }
+  m->volume = fabs(m->volume);
+  bool within = true; /* rounding only, else */
+  for (int k = 0; k < 3; k++)
+    within = within && moment[k] >= m->low[k] && moment[k] <= m->high[k];
+  if (within)
+    shift(m, moment);
+}
+
+static status check_size(const struct mesh *m, const struct mesh_soup *soup, struct error *error) {
+  double box = 1;
+  for (int k = 0; k < 3; k++)
+    box *= m->high[k] - m->low[k];
+  if (!(m->volume > 0) || !isnormal(m->volume) || !isfinite(box))
+    return mesh_refuse(soup, 0, error, "the surface encloses a volume of %g: it must enclose a body", m->volume);
+  if (!(m->volume > least_share * box))
+    return mesh_refuse(soup, 0, error,
+                       "the body fills only %.2g of the box around it, and %g is the least: turn it along the axes, or "
+                       "take a thicker one",
+                       m->volume / box, least_share);
+  return STATUS_OK;
+}
+
+/* Takes vertices and faces from the soup. */
+static status build(struct mesh *m, struct mesh_soup *soup, struct error *error) {
+  m->vertices = soup->vertices;
+  m->faces = soup->faces;
+  m->vertex = soup->vertex;
+  m->face = soup->face;
+  soup->vertex = NULL;
+  soup->face = NULL;
+  find_box(m);
+  double middle[3];
+  for (int k = 0; k < 3; k++)
+    middle[k] = 0.5 * (m->low[k] + m->high[k]);
+  shift(m, middle); /* far from the origin volumes would cancel */
+  measure(m);
+  status code = check_size(m, soup, error);
+  if (code)
+    return code;
+  code = mesh_inside_make(m, error);
+  if (code)
+    return code;
+  code = mesh_inside_check(m, soup, error);
+  return code ? code : mesh_distance_make(m, error);
+}
+
+status mesh_read(const char *name, const void *bytes, size_t size, struct mesh **out, struct error *error) {
+  *out = NULL;
+  struct mesh_soup soup = {.name = name};
+  if (size > MESH_MOST_BYTES)
+    return mesh_refuse(&soup, 0, error, "the file has %zu MB, and %d MB is the most: take a coarser model", size >> 20,
+                       MESH_MOST_BYTES >> 20);
+  char *text = malloc(size + 1);
+  struct mesh *mesh = calloc(1, sizeof *mesh);
+  status code = text && mesh ? STATUS_OK : no_memory(name, error);
+  if (code)
+    goto cleanup;
+  if (size)
+    memcpy(text, bytes, size);
+  text[size] = 0;
+  code = mesh_formats_read(&soup, text, size, error);
+  if (code)
+    goto cleanup;
+  code = mesh_closed_make(&soup, error);
+  if (code)
+    goto cleanup;
+  code = build(mesh, &soup, error);
+  if (code)
+    goto cleanup;
+  *out = mesh;
+  mesh = NULL;
+cleanup:
+  free(text);
+  free(soup.vertex);
+  free(soup.face);
+  free(soup.line);
+  mesh_free(mesh);
+  return code;
+}
+
+void mesh_free(struct mesh *mesh) {
+  if (!mesh)
+    return;
+  mesh_inside_free(mesh->columns);
+  mesh_distance_free(mesh->tree);
+  free(mesh->vertex);
+  free(mesh->face);
+  free(mesh);
+}
+
+static double dot(const double a[3], const double b[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void mesh_normal(const struct mesh *m, uint32_t face, double n[3]) {
+  const uint32_t *corner = m->face[face];
+  const double *a = m->vertex[corner[0]], *b = m->vertex[corner[1]], *c = m->vertex[corner[2]];
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+  }
+  const double length = sqrt(dot(n, n));
+  for (int k = 0; k < 3; k++)
+    n[k] /= length;
+}
+
+double mesh_reach(const struct mesh *m, const double direction[3]) {
+  double reach = -INFINITY;
+  for (size_t f = 0; f < m->faces; f++)
+    for (int c = 0; c < 3; c++)
+      reach = fmax(reach, dot(m->vertex[m->face[f][c]], direction));
+  return reach;
+}
+
+/* ---- a line from the centre ---- */
+
+/* Two directions across d. */
+static void frame_of(const double d[3], double u[3], double v[3]) {
+  int least = 0;
+  for (int k = 1; k < 3; k++)
+    if (fabs(d[k]) < fabs(d[least]))
+      least = k;
+  for (int k = 0; k < 3; k++)
+    u[k] = (k == least) - d[least] * d[k];
+  const double length = sqrt(dot(u, u));
+  for (int k = 0; k < 3; k++)
+    u[k] /= length;
+  for (int k = 0; k < 3; k++)
+    v[k] = d[(k + 1) % 3] * u[(k + 2) % 3] - d[(k + 2) % 3] * u[(k + 1) % 3];
+}
+
+/* Does the line through the origin along u x v meet the face from inside? As in inside.c, both faces of an edge do the
+ * same sum for it. */
+static bool leaves_by(const struct mesh *m, const uint32_t corner[3], const double u[3], const double v[3]) {
+  int turned = 0;
+  for (int c = 0; c < 3; c++) {
+    const uint32_t a = corner[c], b = corner[(c + 1) % 3];
+    const double *low = m->vertex[a < b ? a : b], *high = m->vertex[a < b ? b : a];
+    const double y[2] = {dot(low, v), dot(high, v)}, x[2] = {dot(low, u), dot(high, u)};
+    if ((y[0] > 0) == (y[1] > 0))
+      continue;
+    if (x[0] - y[0] * ((x[1] - x[0]) / (y[1] - y[0])) > 0)
+      turned += (y[1] > 0) == (a < b) ? 1 : -1;
+  }
+  return turned > 0;
+}
+
+bool mesh_surface(const struct mesh *m, const double direction[3], double point[3], double normal[3]) {
+  double u[3], v[3], last = 0;
+  bool found = false;
+  frame_of(direction, u, v);
+  for (uint32_t f = 0; f < m->faces; f++) {
+    if (!leaves_by(m, m->face[f], u, v))
+      continue;
+    double n[3];
+    mesh_normal(m, f, n);
+    const double slope = dot(n, direction), along = dot(n, m->vertex[m->face[f][0]]) / slope;
+    if (!(slope > 0) || !(along > last))
+      continue;
+    last = along;
+    found = true;
+    memcpy(normal, n, sizeof n);
+  }
+  for (int k = 0; k < 3; k++)
+    point[k] = last * direction[k];
+  return found;
+}

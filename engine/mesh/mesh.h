@@ -1,0 +1,50 @@
+/* A closed surface of triangles from a shape file (STL or OBJ), and the solid inside it.
+ *
+ * Lengths are in units of the file. Places are relative to the centre of mass of the solid (uniform density). A mesh is
+ * checked when it is read: every edge has two faces that turn opposite ways, and along lines through all faces one
+ * enters and leaves the solid in turn. So cavities and several parts are fine; holes and faces that cut others are not.
+ *
+ * Files come from anyone: they are data, and limits hold for their size. */
+#ifndef CLAST_ENGINE_MESH_MESH_H
+#define CLAST_ENGINE_MESH_MESH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "schemas/status.h"
+
+enum { MESH_MOST_BYTES = 32 << 20, MESH_MOST_FACES = 500000 };
+
+struct mesh_columns;
+struct mesh_tree;
+
+struct mesh {
+  size_t vertices, faces;
+  double (*vertex)[3];
+  uint32_t (*face)[3]; /* its vertices, counter-clockwise seen from outside */
+  double centre[3];    /* of mass, in the coordinates of the file */
+  double volume, area;
+  double low[3], high[3];       /* the box around it */
+  struct mesh_columns *columns; /* inside.c */
+  struct mesh_tree *tree;       /* distance.c */
+};
+
+/* `name` is for messages. The format is found by the content. STATUS_CONTENT: not a shape file, or not a closed
+ * surface, with line (or number of the face) and remedy; STATUS_MEMORY. */
+status mesh_read(const char *name, const void *bytes, size_t size, struct mesh **out, struct error *error);
+void mesh_free(struct mesh *mesh); /* NULL is fine */
+
+/* The number of times that the surface goes round the point, 1 inside and 0 outside, is summed over the faces above it.
+ * An edge gives the same answer in its two faces, so no line can slip through between them; only points within rounding
+ * of the surface are undecided. */
+bool mesh_inside(const struct mesh *mesh, const double point[3]);
+/* The distance to the nearest face, negative inside. `normal` (NULL is fine) points outwards there. */
+double mesh_distance(const struct mesh *mesh, const double point[3], double normal[3]);
+/* The largest coordinate along a direction. */
+double mesh_reach(const struct mesh *mesh, const double direction[3]);
+/* The last place where the line from the centre along the unit direction leaves the solid, and the normal of the face
+ * there. False: it does not meet the solid (a ring). */
+bool mesh_surface(const struct mesh *mesh, const double direction[3], double point[3], double normal[3]);
+
+#endif
