@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Slurm for real: a cluster of one node on loopback, from Debian's packages slurm-wlm and munge, in a folder of its own.
-# The job script of the guide is requeued on 75 and finishes; a job array fills stores that are merged; srun without PMI is
-# refused. The bits are those of one machine.
+# The job script of the guide is requeued on 75 and finishes, also after scontrol requeue, scancel and SIGKILL; no run is
+# given up. A job array fills stores that are merged; srun without PMI is refused. The bits are those of one machine.
 #
 # Needs root, these packages and CLAST_FULL=1.
 . "$(dirname "$0")/../cli/lib.bash"
@@ -136,15 +136,43 @@ same_bits single.db one.bits "srun -n 1"
 job=$(sbatch --parsable --ntasks=2 --time=10 slurm.sh slow.yaml)
 wait_for "$job" COMPLETED
 
+# begin_job STORE: the job script with a store of its own, until it has some runs
+begin_job() {
+  sed "s/^store:.*/store: $1.db/" slow.yaml >"$1.yaml"
+  job=$(sbatch --parsable --ntasks=2 --time=10 slurm.sh "$1.yaml")
+  for i in $(seq 600); do [ "$(runs_in "$1.db")" -gt 5 ] && return; sleep 0.1; done
+  fail "job $job stored no runs"
+}
+# ends_well STORE WHAT: the job ends, no run counts as tried in vain, and the bits are right
+ends_well() {
+  wait_for "$job" COMPLETED
+  same_bits "$1.db" reference.bits "$2"
+  same "$(number "$1.db" 'select count(*) from attempt')" 0 "attempts that count against a run, $2"
+}
+start_again() { # of a job that waits for its two minutes
+  wait_for "$job" PENDING
+  scontrol update JobId="$job" StartTime=now
+}
+
 # A task that is killed (the machine's memory is out, say): srun says 137, and the job script requeues.
-sed 's/^store:.*/store: killed.db/' slow.yaml >killed.yaml
-job=$(sbatch --parsable --ntasks=2 --time=10 slurm.sh killed.yaml)
-for i in $(seq 600); do [ "$(runs_in killed.db)" -gt 5 ] && break; sleep 0.1; done
+begin_job killed
 tasks=$(scontrol listpids "$job.0" | awk '$4 ~ /^[0-9]+$/ { print $1 }')
 [ -n "$tasks" ] || fail "no tasks of job $job: $(scontrol listpids "$job")"
 kill -KILL $tasks
-wait_for "$job" PENDING
-scontrol update JobId="$job" StartTime=now
-wait_for "$job" COMPLETED
-same_bits killed.db reference.bits "after SIGKILL to all tasks"
-done_after 24
+start_again
+ends_well killed "after SIGKILL to all tasks"
+
+# The administrator, or a job that goes first, sends it back to the queue.
+begin_job requeued
+scontrol requeue "$job"
+start_again
+ends_well requeued "after scontrol requeue"
+
+# The user cancels it, and submits it again.
+begin_job cancelled
+scancel "$job"
+wait_for "$job" CANCELLED
+[ "$(runs_in cancelled.db)" -lt "$(runs_in alone.db)" ] || fail "the job was over before scancel"
+job=$(sbatch --parsable --ntasks=2 --time=10 slurm.sh cancelled.yaml)
+ends_well cancelled "after scancel"
+done_after 33
