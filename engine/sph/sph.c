@@ -101,7 +101,7 @@ const struct engine_kind sph_engine = {
         "explicit Weibull flaws. Benz & Asphaug (1994, 1995), with the corrections and options that `clast explain` "
         "names "
         "at each input.",
-    .results_version = 6,
+    .results_version = 7,
     .inputs = &sph_inputs,
     .results = &sph_results,
     .complete = complete,
