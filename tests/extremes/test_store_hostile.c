@@ -231,19 +231,6 @@ static void huge_and_odd_rows_are_found(void **state) {
   }
 }
 
-static char *dump(const char *path) {
-  struct store *store = NULL;
-  char *text = NULL;
-  size_t size = 0;
-  OK(store_open_reader(path, &store, &error));
-  FILE *out = open_memstream(&text, &size);
-  assert_non_null(out);
-  OK(store_dump(store, out, &error));
-  fclose(out);
-  OK(store_close(store, &error));
-  return text;
-}
-
 /* Noise of 200 bytes near the beginning of three pages. */
 static void spoil(const char *path, uint64_t round) {
   FILE *file = fopen(path, "r+b");
