@@ -2,6 +2,7 @@
 #include "engine/restart.h"
 
 #include <errno.h>
+#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +12,8 @@
 #include "schemas/text.h"
 
 static const char magic[8] = "CLASTRUN";
-/* 3: state and progress without members that nothing read; the order of a grain system's arrays. */
-enum { VERSION = 3 };
+/* 4: the build stands in the file. */
+enum { VERSION = 4 };
 enum { STATE, SAMPLES, SYSTEM, PARTS };
 
 struct part {
@@ -52,6 +53,26 @@ static char *identity(const struct engine_kind *kind, const void *inputs) {
   return text;
 }
 
+/* The first object is the program itself; its notes have the id that the linker makes of all its code (--build-id). */
+static int add_notes(struct dl_phdr_info *program, size_t size, void *hash) {
+  uint64_t *sum = hash;
+  (void)size;
+  for (size_t k = 0; k < program->dlpi_phnum; k++) {
+    const ElfW(Phdr) *part = &program->dlpi_phdr[k];
+    if (part->p_type == PT_NOTE)
+      *sum = text_hash(*sum, (const void *)(program->dlpi_addr + part->p_vaddr), part->p_memsz);
+  }
+  return 1;
+}
+
+/* Structs and columns are saved as they stand in memory. Another build may have them in another order of the same size,
+ * and would read one for the other. */
+static uint64_t build_hash(void) {
+  uint64_t sum = TEXT_HASH_START;
+  dl_iterate_phdr(add_notes, &sum);
+  return sum;
+}
+
 struct bytes {
   unsigned char *at;
   size_t size, used; /* used: written, or read so far */
@@ -82,7 +103,7 @@ static bool get_exactly(struct bytes *b, uint64_t number) {
 static status write_parts(const struct engine_kind *kind, const void *inputs, uint64_t seed,
                           const struct part parts[PARTS], const char *path, struct error *error) {
   char *text = identity(kind, inputs);
-  struct bytes b = {.size = text ? sizeof magic + 8 * 6 + strlen(text) : 0};
+  struct bytes b = {.size = text ? sizeof magic + 8 * 7 + strlen(text) : 0};
   for (size_t k = 0; k < PARTS; k++)
     b.size += 8 + parts[k].size;
   b.at = text ? malloc(b.size) : NULL;
@@ -94,6 +115,7 @@ static status write_parts(const struct engine_kind *kind, const void *inputs, ui
   put_number(&b, VERSION);
   put_number(&b, seed);
   put_number(&b, cpu_class_choose());
+  put_number(&b, build_hash());
   put_number(&b, strlen(text));
   put(&b, text, strlen(text));
   put_number(&b, PARTS);
@@ -158,11 +180,14 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
 }
 
 static status refuse(const char *path, struct error *error) {
-  return status_fail(error, STATUS_CONTENT,
-                     "the restart file '%s' was written by another build of clast: start the run afresh", path);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "the restart file '%s' was written by another build of clast, and only that one can go on from it: finish "
+      "the run with that one, or start it afresh",
+      path);
 }
 
-/* Reads magic, checksum, version, seed, class and identity: everything before the parts. */
+/* Reads magic, checksum, version, seed, class, build and identity: everything before the parts. */
 static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
   char head[sizeof magic];
   uint64_t sum, class, length;
@@ -174,8 +199,9 @@ static status read_head(struct bytes *b, const char *identity, const char *path,
     return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
                        path);
 
-  const bool known = get_exactly(b, VERSION) && get(b, seed, 8) && get(b, &class, 8);
-  if (known && class != (uint64_t)cpu_class_choose()) {
+  if (!get_exactly(b, VERSION) || !get(b, seed, 8) || !get(b, &class, 8))
+    return refuse(path, error);
+  if (class != (uint64_t)cpu_class_choose()) {
     const char *name = cpu_class_name((enum cpu_class) class);
     return status_fail(
         error, STATUS_CONTENT,
@@ -183,11 +209,13 @@ static status read_head(struct bytes *b, const char *identity, const char *path,
         "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
         path, name, cpu_class_name(cpu_class_choose()), name);
   }
-  if (!known || !get(b, &length, 8) || length != strlen(identity) || b->size - b->used < length ||
+  if (!get_exactly(b, build_hash()))
+    return refuse(path, error);
+  if (!get(b, &length, 8) || length != strlen(identity) || b->size - b->used < length ||
       memcmp(b->at + b->used, identity, length) != 0)
-    return status_fail(
-        error, STATUS_CONTENT,
-        "the restart file '%s' belongs to another scene or another version of clast: start the run afresh", path);
+    return status_fail(error, STATUS_CONTENT,
+                       "the restart file '%s' belongs to another scene: name another one, or start the run afresh",
+                       path);
   b->used += length;
   return STATUS_OK;
 }

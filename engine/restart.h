@@ -1,8 +1,8 @@
 /* Restart files of any engine: what the next step of a run depends on, for the same binary on the same CPU class. A
  * file is written under a temporary name and renamed.
  *
- *   "CLASTRUN", u64 version, u64 seed, u64 CPU class, u64 length + identity (engine, results_version, all inputs), u64
- * number of parts, each u64 size + bytes, u64 FNV-1a of all before it.
+ *   "CLASTRUN", u64 version, u64 seed, u64 CPU class, u64 build, u64 length + identity (engine, results_version, all
+ * inputs), u64 number of parts, each u64 size + bytes, u64 FNV-1a of all before it.
  *
  * Parts: the run's state (a plain value), its samples, its moving system. */
 #ifndef CLAST_ENGINE_RESTART_H
@@ -37,7 +37,7 @@ struct restart_run {
 /* STATUS_IO, STATUS_MEMORY. */
 status restart_save(const struct engine_kind *kind, void *run, const char *path, struct error *error);
 /* Creates the run that a file was saved of; the same bits follow. *run is NULL on failure. STATUS_MISSING, STATUS_IO,
- * STATUS_MEMORY; STATUS_CONTENT: no restart file, damaged, of another CPU class, of other inputs or another version. */
+ * STATUS_MEMORY; STATUS_CONTENT: no restart file, damaged, of another CPU class, another build or other inputs. */
 status restart_load(const struct engine_kind *kind, const void *inputs, const char *path, void **run,
                     struct error *error);
 
