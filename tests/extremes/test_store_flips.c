@@ -173,23 +173,15 @@ static void every_value_of_a_run_is_found(void **state) {
 }
 
 /* Nothing of a source with a damaged run is taken. */
-static void merge_refuses_a_damaged_run(void **state) {
-  (void)state;
+static void merge_refuses(const char *change) {
   char path[64], target[64];
   struct file file = whole_store(path);
   struct store *store = NULL;
   sqlite3 *db = NULL;
   int64_t added = 0, differing = 0;
-  bool whole = false;
   assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
-  assert_int_equal(sqlite3_exec(db, "UPDATE run SET time = time * 1.5 WHERE run_id = 7", NULL, NULL, NULL), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db, change, NULL, NULL, NULL), SQLITE_OK);
   sqlite3_close(db);
-  OK(store_open_reader(path, &store, &error));
-  OK(store_check_run(store, 6, &whole, &error));
-  assert_true(whole);
-  OK(store_check_run(store, 7, &whole, &error));
-  assert_false(whole);
-  OK(store_close(store, &error));
   OK(store_open_writer(fixture_path(target, "flips-target"), &store, NULL, 0, &error));
   assert_int_equal(store_merge(store, path, &added, &differing, &error), STATUS_CONTENT);
   assert_non_null(strstr(error.message, "run 7"));
@@ -202,11 +194,40 @@ static void merge_refuses_a_damaged_run(void **state) {
   free(file.bytes);
 }
 
+static void merge_refuses_a_damaged_run(void **state) {
+  (void)state;
+  merge_refuses("UPDATE run SET time = time * 1.5 WHERE run_id = 7");
+  merge_refuses("UPDATE spectrum SET mass = mass * (1 + 2.3e-16) WHERE run_id = 7");
+  merge_refuses("UPDATE spectrum SET count = count + 1 WHERE run_id = 7");
+  merge_refuses("DELETE FROM spectrum WHERE run_id = 7");
+  merge_refuses("INSERT INTO spectrum (run_id, bin, count, mass) VALUES (7, 30, 1, 1000)");
+}
+
+static void one_damaged_run_is_told_from_whole_ones(void **state) {
+  (void)state;
+  char path[64];
+  struct file file = whole_store(path);
+  struct store *store = NULL;
+  sqlite3 *db = NULL;
+  bool whole = false;
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  assert_int_equal(sqlite3_exec(db, "UPDATE run SET time = time * 1.5 WHERE run_id = 7", NULL, NULL, NULL), SQLITE_OK);
+  sqlite3_close(db);
+  OK(store_open_reader(path, &store, &error));
+  OK(store_check_run(store, 6, &whole, &error));
+  assert_true(whole);
+  OK(store_check_run(store, 7, &whole, &error));
+  assert_false(whole);
+  OK(store_close(store, &error));
+  free(file.bytes);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_flipped_bit_is_found),
       cmocka_unit_test(every_value_of_a_run_is_found),
       cmocka_unit_test(merge_refuses_a_damaged_run),
+      cmocka_unit_test(one_damaged_run_is_told_from_whole_ones),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -182,6 +182,9 @@ static void huge_and_odd_rows_are_found(void **state) {
       "UPDATE run SET state = NULL, identity = NULL, replicate = 'x' WHERE run_id = 5",
       "UPDATE bin SET lower = NULL",
       "UPDATE spectrum SET bin = 9223372036854775807 WHERE run_id = 4 AND bin = -4",
+      "UPDATE spectrum SET bin = 3000000000 WHERE run_id = 4 AND bin = -4", /* no 32 bits */
+      "UPDATE spectrum SET count = -5 WHERE run_id = 4 AND bin = -4",
+      "UPDATE spectrum SET count = 4000000000 WHERE run_id = 4 AND bin = -4", /* its square has no 64 bits */
       "UPDATE point SET scene = (WITH RECURSIVE n (i, t) AS (SELECT 1, '[' UNION ALL SELECT i + 1, t || t FROM n WHERE "
       "i < 21) SELECT max(t) FROM n)" /* a million brackets deep */
   };
