@@ -20,6 +20,8 @@ static const char lacks_wal_text[] =
     "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
     "files, or make a copy with `clast export`.";
 
+enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's head of a file, in its first page, without any table */
+
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
   if (!store)
@@ -162,8 +164,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   if (result != STATUS_OK) {
     struct stat file;
     release(store);
-    if (!existed && stat(path, &file) == 0 && file.st_size == 0)
-      unlink(path); /* this call made it, and it is empty */
+    if (!existed && stat(path, &file) == 0 && file.st_size <= EMPTY_STORE)
+      unlink(path); /* this call made it, and it has no table: the disk was full before the first one */
     return result;
   }
   *out = store;

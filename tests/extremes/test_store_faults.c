@@ -156,6 +156,22 @@ static void file_size_limit_loses_nothing_committed(void **state) {
   run_out_of_room(fixture_path(path, "narrow"), narrow_files, widen_files);
 }
 
+/* Not even the tables fit. What is left must not look like a store that was copied without its -wal file. */
+static void no_room_for_a_table_leaves_no_file(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  fixture_path(path, "no-room");
+  narrow_files();
+  setrlimit(RLIMIT_FSIZE, &(struct rlimit){.rlim_cur = 40000, .rlim_max = wide.rlim_max});
+  const status opened = store_open_writer(path, &store, NULL, 0, &error);
+  widen_files();
+  assert_int_equal(opened, STATUS_IO);
+  assert_null(store);
+  assert_int_not_equal(access(path, F_OK), 0);
+  OK(fill(path, RUNS, &error));
+}
+
 static const char disk[] = "test-store-disk";
 static void nothing(void) {}
 static void enlarge_disk(void) {
@@ -282,6 +298,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(killed_writer_loses_at_most_its_batch),
       cmocka_unit_test(file_size_limit_loses_nothing_committed),
+      cmocka_unit_test(no_room_for_a_table_leaves_no_file),
       cmocka_unit_test(full_disk_loses_nothing_committed),
       cmocka_unit_test(without_permission),
       cmocka_unit_test(reader_never_blocks_the_writer),
