@@ -28,17 +28,18 @@ ends() { # ends CODE WHAT
   ok "exit $1: $2"
 }
 
-# SIGTERM to the whole process group, twice, in two sessions: `timeout`, scancel, preemption. Nothing counts as failed.
+# SIGTERM to the whole process group, in three sessions. Nothing counts as failed. Twice: `timeout`, scancel. Between
+# SIGSTOP and SIGCONT: a job that is suspended for another one, and what systemd sends.
 cp slow.yaml term.yaml
 echo 'limits: {attempts: 1}' >>term.yaml
-for i in 1 2; do
+for signals in "TERM TERM" "TERM TERM" "STOP TERM CONT"; do
   begin term.db "$clast" run term.yaml --store term.db -j 1
-  kill -TERM -- "-$pid"; sleep 0.2; kill -TERM -- "-$pid" 2>/dev/null || true
-  ends 75 "SIGTERM twice to the process group"
+  for signal in $signals; do kill "-$signal" -- "-$pid" 2>/dev/null || true; sleep 0.2; done
+  ends 75 "SIG$signals to the process group"
 done
 same "$(ask term.db 'select count(*) from attempt')" 0 "attempts that failed"
 expect 0 "$clast" run term.yaml --store term.db -j 2 --quiet
-same_bits term.db reference.bits "after four SIGTERM"
+same_bits term.db reference.bits "after these signals"
 
 # kill -9 of the processes that compute, as the kernel does when memory is out: tried again, never given up for good
 sed 's/per_point: .*}/per_point: 1}/; s/14 cm/120 cm/; s/vary:.*/limits: {attempts: 1}/; s/1.5 ms/6 ms/' slow.yaml >killed.yaml
@@ -172,4 +173,4 @@ pid=$!
 sleep 1.5; kill -TERM "$pid"
 got=0; wait "$pid" || got=$?
 case $got in 75 | 143) ok "bench_farm ended with $got after SIGTERM" ;; *) fail "bench_farm ended with $got after SIGTERM" ;; esac
-done_after 41
+done_after 42
