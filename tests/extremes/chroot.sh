@@ -25,7 +25,7 @@ got=0
 unshare --mount --pid --fork sh -c "
   mount -t proc proc '$root/proc' && mount --rbind /dev '$root/dev' &&
   exec chroot '$root' env -i HOME=/root LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin \
-    sh -c 'cd /root/clast && exec ./setup.sh $setup'" </dev/null 2>&1 | tee log || got=$?
+    sh -c 'cd && cd clast && exec ./setup.sh $setup'" </dev/null 2>&1 | tee log || got=$?
 [ "$got" -eq 0 ] || fail "exit $got: ./setup.sh $setup"
 ok "./setup.sh $setup in a 0700 home"
 if [ "$setup" = demo ]; then

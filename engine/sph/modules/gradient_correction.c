@@ -22,7 +22,7 @@ const struct sph_module sph_gradient_correction_module = {
            "rigid rotation "
            "strains nothing, energy and angular momentum keep, free sides are as stiff as the inside.",
     .source = "Randles & Libersky 1996; Bonet & Lok 1999 (Comput. Methods Appl. Mech. Eng. 180, 97)",
-    .when = "gradient_correction is asked for",
+    .when = "gradient_correction: true",
     .on = on,
     .columns = columns,
     .bytes_in_pairs = 92, /* wider records; measured */

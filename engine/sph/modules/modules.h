@@ -4,8 +4,10 @@
  * A module owns its physics: NAME.c has its description, checks, what it prepares and reports; NAME.h has what it
  * declares (inputs, values of a material, columns, results: declarations.h), and its loops over particles, compiled
  * once per CPU class (ranges.h). It acts on other modules only through columns and through struct sph_terms
- * (system_layout.h), never by a flag inside their loops: solid_density  density of the solid matter, which the equation
- * of state publishes yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
+ * (system_layout.h), never by a flag inside their loops:
+ *
+ *   solid_density  density of the solid matter, which the equation of state publishes
+ *   yield_limit    a yield law sets it, other modules lower it, `elastic` brings the stress back to it
  *   two_mu         effective 2 mu, where it is not the material's
  *   flaw_damage    damage by flaws, where another module damages the body, too
  *   crack_stress, crack_pressure   the stress that opens flaws, where it is not the particle's own
