@@ -80,8 +80,9 @@ static void killed_writer_loses_at_most_its_batch(void **state) {
           *added += new;
         }
     }
-    /* After so many more runs and a moment more; every fifth while the store is being made or opened. */
-    int64_t enough = (int64_t)(before + 600 * fixture_random(11, (uint64_t)i));
+    /* After so many more runs, up to three batches, and a moment more; every fifth while the store is being made or
+     * opened. */
+    int64_t enough = (int64_t)(before + 1500 * fixture_random(11, (uint64_t)i));
     double start = clock_s();
     while (i % 5 && *(volatile int64_t *)added < enough && clock_s() - start < 20)
       usleep(200);
