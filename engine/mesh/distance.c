@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "engine/mesh/build.h"
+#include "engine/vector3.h"
 
 enum { LEAF = 4, DEEPEST = 64 };
 
@@ -16,10 +17,6 @@ struct mesh_tree {
   struct box *box;
   uint32_t *face; /* in the order of the leaves */
 };
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /* ---- the tree ---- */
 
@@ -109,14 +106,12 @@ void mesh_distance_free(struct mesh_tree *tree) {
 /* Moves `nearest` to the point of the edge from a to b if that is nearer to p. */
 static void try_edge(const double p[3], const double a[3], const double b[3], double *squares, double nearest[3]) {
   double along[3], from[3], off[3];
-  for (int k = 0; k < 3; k++) {
-    along[k] = b[k] - a[k];
-    from[k] = p[k] - a[k];
-  }
-  const double part = fmax(0, fmin(1, dot(from, along) / dot(along, along)));
+  vector3_subtract(b, a, along);
+  vector3_subtract(p, a, from);
+  const double part = fmax(0, fmin(1, vector3_dot(from, along) / vector3_dot(along, along)));
   for (int k = 0; k < 3; k++)
     off[k] = from[k] - part * along[k];
-  const double away = dot(off, off);
+  const double away = vector3_dot(off, off);
   if (!(away < *squares))
     return;
   *squares = away;
@@ -128,18 +123,17 @@ static void try_edge(const double p[3], const double a[3], const double b[3], do
 static bool try_face(const struct mesh *m, uint32_t face, const double p[3], double *squares, double nearest[3]) {
   const uint32_t *corner = m->face[face];
   const double before = *squares;
-  double n[3], from[3];
+  double n[3], from[3], edge[3], left[3];
   bool over = true;
   mesh_normal(m, face, n);
   for (int c = 0; c < 3; c++) {
     const double *a = m->vertex[corner[c]], *b = m->vertex[corner[(c + 1) % 3]];
-    const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-    for (int k = 0; k < 3; k++)
-      from[k] = p[k] - a[k];
-    const double left[3] = {n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]};
-    over = over && dot(left, from) >= 0;
+    vector3_subtract(b, a, edge);
+    vector3_subtract(p, a, from);
+    vector3_cross(n, edge, left);
+    over = over && vector3_dot(left, from) >= 0;
   }
-  const double above = dot(n, from);
+  const double above = vector3_dot(n, from);
   if (over && above * above < *squares) {
     *squares = above * above;
     for (int k = 0; k < 3; k++)

@@ -9,6 +9,7 @@
 
 #include "engine/grow.h"
 #include "engine/mesh/build.h"
+#include "engine/vector3.h"
 
 /* A body whose box is this much larger than it is: points could hardly be drawn from it. */
 static const double least_share = 1e-3, largest_coordinate = 1e15;
@@ -57,16 +58,6 @@ status mesh_soup_face(struct mesh_soup *soup, size_t line, const uint32_t corner
   return STATUS_OK;
 }
 
-static void subtract(const double a[3], const double b[3], double out[3]) {
-  for (int k = 0; k < 3; k++)
-    out[k] = a[k] - b[k];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-  for (int k = 0; k < 3; k++)
-    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void find_box(struct mesh *m) {
   for (int k = 0; k < 3; k++) {
     m->low[k] = INFINITY;
@@ -82,11 +73,19 @@ static void find_box(struct mesh *m) {
 
 static void shift(struct mesh *m, const double by[3]) {
   for (size_t v = 0; v < m->vertices; v++)
-    subtract(m->vertex[v], by, m->vertex[v]);
-  subtract(m->low, by, m->low);
-  subtract(m->high, by, m->high);
+    vector3_subtract(m->vertex[v], by, m->vertex[v]);
+  vector3_subtract(m->low, by, m->low);
+  vector3_subtract(m->high, by, m->high);
   for (int k = 0; k < 3; k++)
     m->centre[k] += by[k];
+}
+
+/* Normal to a face, outwards; its length is twice the face's area. */
+static void area_vector(const struct mesh *m, const uint32_t corner[3], double n[3]) {
+  double ab[3], ac[3];
+  vector3_subtract(m->vertex[corner[1]], m->vertex[corner[0]], ab);
+  vector3_subtract(m->vertex[corner[2]], m->vertex[corner[0]], ac);
+  vector3_cross(ab, ac, n);
 }
 
 /* Volume, area and centre of mass, of the tetrahedra between the faces and the origin. A surface that is inside out is
@@ -95,15 +94,12 @@ static void measure(struct mesh *m) {
   double moment[3] = {0};
   for (size_t f = 0; f < m->faces; f++) {
     const double *a = m->vertex[m->face[f][0]], *b = m->vertex[m->face[f][1]], *c = m->vertex[m->face[f][2]];
-    double ab[3], ac[3], n[3], d[3], six = 0;
-    subtract(b, a, ab);
-    subtract(c, a, ac);
-    cross(ab, ac, n);
-    cross(b, c, d);
-    for (int k = 0; k < 3; k++)
-      six += a[k] * d[k];
+    double n[3], d[3];
+    area_vector(m, m->face[f], n);
+    vector3_cross(b, c, d);
+    const double six = vector3_dot(a, d);
     m->volume += six / 6;
-    m->area += 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    m->area += 0.5 * sqrt(vector3_dot(n, n));
     for (int k = 0; k < 3; k++)
       moment[k] += six / 24 * (a[k] + b[k] + c[k]);
   }
@@ -205,18 +201,9 @@ void mesh_free(struct mesh *mesh) {
   free(mesh);
 }
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void mesh_normal(const struct mesh *m, uint32_t face, double n[3]) {
-  const uint32_t *corner = m->face[face];
-  const double *a = m->vertex[corner[0]], *b = m->vertex[corner[1]], *c = m->vertex[corner[2]];
-  for (int k = 0; k < 3; k++) {
-    const int i = (k + 1) % 3, j = (k + 2) % 3;
-    n[k] = (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
-  }
-  const double length = sqrt(dot(n, n));
+  area_vector(m, m->face[face], n);
+  const double length = sqrt(vector3_dot(n, n));
   for (int k = 0; k < 3; k++)
     n[k] /= length;
 }
@@ -225,7 +212,7 @@ double mesh_reach(const struct mesh *m, const double direction[3]) {
   double reach = -INFINITY;
   for (size_t f = 0; f < m->faces; f++)
     for (int c = 0; c < 3; c++)
-      reach = fmax(reach, dot(m->vertex[m->face[f][c]], direction));
+      reach = fmax(reach, vector3_dot(m->vertex[m->face[f][c]], direction));
   return reach;
 }
 
@@ -239,11 +226,10 @@ static void frame_of(const double d[3], double u[3], double v[3]) {
       least = k;
   for (int k = 0; k < 3; k++)
     u[k] = (k == least) - d[least] * d[k];
-  const double length = sqrt(dot(u, u));
+  const double length = sqrt(vector3_dot(u, u));
   for (int k = 0; k < 3; k++)
     u[k] /= length;
-  for (int k = 0; k < 3; k++)
-    v[k] = d[(k + 1) % 3] * u[(k + 2) % 3] - d[(k + 2) % 3] * u[(k + 1) % 3];
+  vector3_cross(d, u, v);
 }
 
 /* Does the line through the origin along u x v meet the face from inside? As in inside.c, both faces of an edge do the
@@ -253,7 +239,7 @@ static bool leaves_by(const struct mesh *m, const uint32_t corner[3], const doub
   for (int c = 0; c < 3; c++) {
     const uint32_t a = corner[c], b = corner[(c + 1) % 3];
     const double *low = m->vertex[a < b ? a : b], *high = m->vertex[a < b ? b : a];
-    const double y[2] = {dot(low, v), dot(high, v)}, x[2] = {dot(low, u), dot(high, u)};
+    const double y[2] = {vector3_dot(low, v), vector3_dot(high, v)}, x[2] = {vector3_dot(low, u), vector3_dot(high, u)};
     if ((y[0] > 0) == (y[1] > 0))
       continue;
     if (x[0] - y[0] * ((x[1] - x[0]) / (y[1] - y[0])) > 0)
@@ -271,7 +257,7 @@ bool mesh_surface(const struct mesh *m, const double direction[3], double point[
       continue;
     double n[3];
     mesh_normal(m, f, n);
-    const double slope = dot(n, direction), along = dot(n, m->vertex[m->face[f][0]]) / slope;
+    const double slope = vector3_dot(n, direction), along = vector3_dot(n, m->vertex[m->face[f][0]]) / slope;
     if (!(slope > 0) || !(along > last))
       continue;
     last = along;

@@ -5,12 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "engine/vector3.h"
 
 static double unit(const double a[3], double out[3]) {
-  const double length = sqrt(dot(a, a));
+  const double length = sqrt(vector3_dot(a, a));
   for (int k = 0; k < 3; k++)
     out[k] = length > 0 ? a[k] / length : 0;
   return length;
@@ -110,7 +108,7 @@ cleanup:
 status sph_bodies_aim(const struct sph_shape *target, struct sph_shape *projectile, const double direction[3],
                       double angle, double gap, double flight[3], struct error *error) {
   double outwards[3], point[3], normal[3], aside[3];
-  if (!(unit(direction, outwards) > 0) || !isfinite(dot(direction, direction)))
+  if (!(unit(direction, outwards) > 0) || !isfinite(vector3_dot(direction, direction)))
     return status_fail(error, STATUS_CONTENT, "the place of impact has no direction from the target's centre.");
   if (!(gap >= 0 && isfinite(gap)))
     return status_fail(error, STATUS_CONTENT, "the gap before the impact is %g m: give 0 or more.", gap);
@@ -147,7 +145,7 @@ void sph_bodies_stretch(struct sph_particles *p, struct sph_range range, const d
   unit(axis, w);
   for (size_t i = range.first; i < range.first + range.n; i++) {
     const double r[3] = {p->x[i] - centre[0], p->y[i] - centre[1], p->z[i] - centre[2]};
-    const double along = dot(r, w);
+    const double along = vector3_dot(r, w);
     p->vx[i] += rate * (along * w[0] - ratio * (r[0] - along * w[0]));
     p->vy[i] += rate * (along * w[1] - ratio * (r[1] - along * w[1]));
     p->vz[i] += rate * (along * w[2] - ratio * (r[2] - along * w[2]));
@@ -167,7 +165,7 @@ bool sph_bodies_beyond(const struct sph_middle *middle, const double point[3]) {
   double w[3];
   unit(middle->axis, w);
   const double r[3] = {point[0] - middle->centre[0], point[1] - middle->centre[1], point[2] - middle->centre[2]};
-  return fabs(dot(r, w)) > middle->half;
+  return fabs(vector3_dot(r, w)) > middle->half;
 }
 
 size_t sph_bodies_hold(struct sph_particles *p, struct sph_range range, const struct sph_middle *middle, int freedoms) {

@@ -1,24 +1,11 @@
 /* Distances of two shapes: gaps, depths of overlap, and the nearest approach of a flight. */
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "engine/sph/body/shape.h"
 #include "engine/sph/body/shape_mesh.h"
-
-static double dot(const double a[3], const double b[3]) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Returns the length of a. Scales first, so that no size overflows. */
-static double unit(const double a[3], double out[3]) {
-  const double largest = fmax(fabs(a[0]), fmax(fabs(a[1]), fabs(a[2])));
-  if (!(largest > 0) || !isfinite(largest))
-    return 0;
-  const double b[3] = {a[0] / largest, a[1] / largest, a[2] / largest}, length = sqrt(dot(b, b));
-  for (int k = 0; k < 3; k++)
-    out[k] = b[k] / length;
-  return length * largest;
-}
+#include "engine/vector3.h"
 
 static struct sph_shape hull(const struct sph_shape *s) {
   struct sph_shape h = *s;
@@ -43,11 +30,8 @@ static void directions(const struct sph_shape *a, const struct sph_shape *b, con
   int count = 6;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++, count++)
-      for (int k = 0; k < 3; k++)
-        try[count][k] = try[i][(k + 1) % 3] * try[3 + j][(k + 2) % 3] - try[i][(k + 2) % 3] * try[3 + j][(k + 1) % 3];
-  for (int k = 0; k < 3; k++)
-    try[count][k] = d[k];
-  count++;
+      vector3_cross(try[i], try[3 + j], try[count]);
+  memcpy(try[count++], d, sizeof try[0]);
   for (int i = 0; count < DIRECTIONS; i++, count++) { /* an even cover of half the sphere */
     const double z = (i + 0.5) / 48, across = sqrt(1 - z * z), turn = 2.399963229728653 * i;
     try[count][0] = across * cos(turn);
@@ -56,38 +40,71 @@ static void directions(const struct sph_shape *a, const struct sph_shape *b, con
   }
 }
 
-/* The depth of overlap is the least push along any direction that separates two hulls. Tries some directions, then
- * searches about the best. */
-static double depth(const struct sph_shape *a, const struct sph_shape *b) {
-  double try[DIRECTIONS][3], d[3], best = -INFINITY, u[3] = {0, 0, 1}, v[3];
-  for (int k = 0; k < 3; k++)
-    d[k] = b->centre[k] - a->centre[k];
-  directions(a, b, d, try);
-#define PART(v) (fabs(dot(v, d)) - sph_shape_reach(a, v) - sph_shape_reach(b, v))
-  for (int i = 0; i < DIRECTIONS; i++)
-    if (unit(try[i], v) > 1e-9 && PART(v) > best) {
-      best = PART(v);
-      for (int k = 0; k < 3; k++)
-        u[k] = v[k];
-    }
-  for (double step = 0.3; step > 1e-7;) {
-    bool better = false;
-    for (int i = 0; i < 3 && !better; i++)
-      for (int sign = -1; sign <= 1 && !better; sign += 2) {
-        double w[3] = {u[0], u[1], u[2]};
-        w[i] += sign * step;
-        if (unit(w, v) > 0 && PART(v) > best) {
-          best = PART(v);
-          for (int k = 0; k < 3; k++)
-            u[k] = v[k];
-          better = true;
-        }
-      }
-    if (!better)
-      step *= 0.5;
+/* Two hulls, and the direction that separates them best so far. */
+struct separation {
+  const struct sph_shape *a, *b;
+  double between[3]; /* m, of their centres */
+  double direction[3], distance;
+};
+
+/* Takes the direction of `towards`, which is longer than `least`, if it separates the hulls better. */
+static bool improve(struct separation *s, const double towards[3], double least) {
+  double v[3];
+  if (!(vector3_unit(towards, v) > least))
+    return false;
+  const double distance = fabs(vector3_dot(v, s->between)) - sph_shape_reach(s->a, v) - sph_shape_reach(s->b, v);
+  if (!(distance > s->distance))
+    return false;
+  s->distance = distance;
+  memcpy(s->direction, v, sizeof v);
+  return true;
+}
+
+/* Tries to turn the direction a little, both ways about each axis. */
+static bool turn(struct separation *s, double step) {
+  for (int side = 0; side < 6; side++) {
+    double w[3];
+    memcpy(w, s->direction, sizeof w);
+    w[side / 2] += side % 2 ? step : -step;
+    if (improve(s, w, 0))
+      return true;
   }
-#undef PART
-  return best;
+  return false;
+}
+
+/* The depth of overlap, negative, is the least push along any direction that separates two hulls. Tries some
+ * directions, then searches about the best. */
+static double depth(const struct sph_shape *a, const struct sph_shape *b) {
+  struct separation s = {.a = a, .b = b, .direction = {0, 0, 1}, .distance = -INFINITY};
+  double try[DIRECTIONS][3];
+  vector3_subtract(b->centre, a->centre, s.between);
+  directions(a, b, s.between, try);
+  for (int i = 0; i < DIRECTIONS; i++)
+    improve(&s, try[i], 1e-9);
+  for (double step = 0.3; step > 1e-7;)
+    if (!turn(&s, step))
+      step *= 0.5;
+  return s.distance;
+}
+
+/* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points. */
+static double convex_gap(const struct sph_shape *a, const struct sph_shape *b) {
+  double p[3], normal[3], gap = INFINITY;
+  memcpy(p, b->centre, sizeof p);
+  const double x[3] = {1, 0, 0}, size = sph_shape_reach(a, x) + sph_shape_reach(b, x);
+  for (int round = 0; round < 2000; round++) {
+    const double before = gap;
+    for (int side = 0; side < 2; side++) {
+      gap = sph_shape_distance(side ? b : a, p, normal);
+      for (int k = 0; k < 3 && gap > 0; k++)
+        p[k] -= gap * normal[k];
+    }
+    if (gap <= 1e-9 * size)
+      return fmin(depth(a, b), 0);
+    if (before - gap < 1e-12 * size && round)
+      break;
+  }
+  return gap;
 }
 
 double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *ring_b) {
@@ -96,61 +113,47 @@ double sph_shape_gap(const struct sph_shape *ring_a, const struct sph_shape *rin
     return sph_shape_distance(&a, b.centre, NULL) - b.radius;
   if (a.kind == SPH_SHAPE_SPHERE)
     return sph_shape_distance(&b, a.centre, NULL) - a.radius;
-  if (a.kind == SPH_SHAPE_MESH && b.kind == SPH_SHAPE_MESH)
+
+  const bool mesh_a = a.kind == SPH_SHAPE_MESH, mesh_b = b.kind == SPH_SHAPE_MESH;
+  if (mesh_a && mesh_b)
     return fmin(sph_shape_mesh_gap(&a, &b), sph_shape_mesh_gap(&b, &a));
-  if (a.kind == SPH_SHAPE_MESH || b.kind == SPH_SHAPE_MESH)
-    return a.kind == SPH_SHAPE_MESH ? sph_shape_mesh_gap(&a, &b) : sph_shape_mesh_gap(&b, &a);
-  /* Between convex bodies, alternate projections onto one and the other end at the nearest pair of points. */
-  double p[3] = {b.centre[0], b.centre[1], b.centre[2]}, normal[3], gap = INFINITY;
-  const double size = sph_shape_reach(&a, (double[3]){1, 0, 0}) + sph_shape_reach(&b, (double[3]){1, 0, 0});
-  for (int turn = 0; turn < 2000; turn++) {
-    double before = gap;
-    for (int side = 0; side < 2; side++) {
-      const double distance = sph_shape_distance(side ? &b : &a, p, normal);
-      for (int k = 0; k < 3 && distance > 0; k++)
-        p[k] -= distance * normal[k];
-      gap = distance;
-    }
-    if (gap <= 1e-9 * size)
-      return fmin(depth(&a, &b), 0);
-    if (before - gap < 1e-12 * size && turn)
-      break;
-  }
-  return gap;
+  if (mesh_a)
+    return sph_shape_mesh_gap(&a, &b);
+  if (mesh_b)
+    return sph_shape_mesh_gap(&b, &a);
+  return convex_gap(&a, &b);
 }
 
 double sph_shape_gap_ahead(const struct sph_shape *a, const struct sph_shape *b, const double velocity[3],
                            double *when) {
-  double direction[3], zero = sph_shape_gap(a, b), unused;
+  const double golden = 0.6180339887498949;
+  double direction[3], d[3], least = sph_shape_gap(a, b), unused;
   if (!when)
     when = &unused;
   *when = 0;
-  const double speed = unit(velocity, direction);
-  if (!(speed > 0) || zero <= 0)
-    return zero;
+  const double speed = vector3_unit(velocity, direction);
+  if (!(speed > 0) || least <= 0)
+    return least;
+
   /* Between convex bodies the gap is a convex function of the way: golden section. */
-  const double d[3] = {a->centre[0] - b->centre[0], a->centre[1] - b->centre[1], a->centre[2] - b->centre[2]};
-  double ways[4] = {0, 0, 0,
-                    fmax(0, dot(d, direction)) + sph_shape_reach(a, direction) + sph_shape_reach(b, direction)};
-  const double golden = 0.6180339887498949;
-  struct sph_shape moved = *b;
-  double gaps[4] = {zero, 0, 0, 0};
-  for (int turn = 0; turn < 200 && ways[3] - ways[0] > 1e-12 * (ways[3] + sph_shape_reach(b, direction)); turn++) {
-    ways[1] = ways[3] - golden * (ways[3] - ways[0]);
-    ways[2] = ways[0] + golden * (ways[3] - ways[0]);
-    for (int i = 1; i <= 2; i++) {
+  vector3_subtract(a->centre, b->centre, d);
+  const double reach = sph_shape_reach(b, direction);
+  double low = 0, high = fmax(0, vector3_dot(d, direction)) + sph_shape_reach(a, direction) + reach;
+  for (int turn = 0; turn < 200 && high - low > 1e-12 * (high + reach) && !(least <= 0); turn++) {
+    const double ways[2] = {high - golden * (high - low), low + golden * (high - low)};
+    double gaps[2];
+    for (int i = 0; i < 2; i++) {
+      struct sph_shape moved = *b;
       for (int k = 0; k < 3; k++)
         moved.centre[k] = b->centre[k] + ways[i] * direction[k];
       gaps[i] = sph_shape_gap(a, &moved);
     }
-    if (gaps[1] <= gaps[2])
-      ways[3] = ways[2];
+    if (gaps[0] <= gaps[1])
+      high = ways[1];
     else
-      ways[0] = ways[1];
-    zero = fmin(zero, fmin(gaps[1], gaps[2]));
-    *when = 0.5 * (ways[0] + ways[3]) / speed;
-    if (zero <= 0)
-      break;
+      low = ways[0];
+    least = fmin(least, fmin(gaps[0], gaps[1]));
+    *when = 0.5 * (low + high) / speed;
   }
-  return zero;
+  return least;
 }
