@@ -1,5 +1,5 @@
 /* Statistics of a sample with their uncertainty: every mean has its number of values and its interval. The store's
- * views compute the same in plain SQL (db/store/views.c); a test compares the two. */
+ * views compute the same in plain SQL (db/store/views_statistics.c); a test compares the two. */
 #ifndef CLAST_ANALYSIS_STATISTICS_SAMPLE_H
 #define CLAST_ANALYSIS_STATISTICS_SAMPLE_H
 

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "db/ask/query.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "engine/outcome.h"
 
 static struct query_canned queries[] = {
@@ -68,13 +68,13 @@ static struct query_canned queries[] = {
 
 static void write_point_stats(FILE *out) {
   const char *const first = outcome_main(0)->path;
-  views_write_statistics(1, &first, out);
+  views_statistics_write(1, &first, out);
   fputs("SELECT point_id, results_version, n, m0 AS mean, d0 AS sd, d0 / sqrt(n) AS se FROM scatter", out);
 }
 
 static void write_scatter(FILE *out) {
-  const char *names[VIEWS_MAIN_MAXIMUM];
-  size_t count = views_main_results(names);
+  const char *names[VIEWS_STATISTICS_MAIN];
+  size_t count = views_statistics_main(names);
   fputs("SELECT point_id, n", out);
   for (size_t i = 0; i < count; i++)
     fprintf(out, ",\n  %1$s_sd / %1$s_mean AS %1$s_scatter", names[i]);

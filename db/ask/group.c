@@ -4,7 +4,7 @@
 
 #include "db/ask/query.h"
 #include "db/store/internal.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "engine/engine.h"
 #include "schemas/text.h"
 
@@ -142,7 +142,7 @@ static void write_points(FILE *out, const struct names *axes, const struct names
   const char *list[NAMES];
   for (size_t i = 0; i < quantities->count; i++)
     list[i] = quantities->name[i];
-  views_write_resolution(quantities->count, list, out);
+  views_statistics_resolution(quantities->count, list, out);
   fputs(" USING (point_id, results_version)\nGROUP BY ", out);
 }
 
@@ -163,7 +163,7 @@ static char *group_sql(const struct names *axes, const struct names *quantities)
             i, q, i, q, i, i, q, i, i);
     char degrees[32];
     snprintf(degrees, sizeof degrees, "(u%zu - 1)", i);
-    views_write_student(degrees, out);
+    views_statistics_student(degrees, out);
     fprintf(out, ") AS \"%s_hw95\", e%zu AS \"%s_resolution\", v%zu AS \"%s_resolution_verdict\"", q, i, q, i, q);
   }
   fputs("\nFROM (SELECT ", out);
@@ -265,8 +265,8 @@ status ask_group(struct store *store, const char *by, const char *quantities, co
   if (result != STATUS_OK)
     return result;
   if (!quantities) {
-    const char *names[VIEWS_MAIN_MAXIMUM];
-    results.count = views_main_results(names);
+    const char *names[VIEWS_STATISTICS_MAIN];
+    results.count = views_statistics_main(names);
     for (size_t i = 0; i < results.count; i++)
       snprintf(results.name[i], NAME, "%s", names[i]);
   }

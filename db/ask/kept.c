@@ -9,7 +9,7 @@
 #include "db/sql.h"
 #include "db/store/internal.h"
 #include "db/store/paths.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "schemas/text.h"
 
 enum { AXES = 64 };
@@ -46,8 +46,8 @@ status ask_kept(struct store *store, const struct query_sink *sink, struct error
   struct giving giving = {store, sink};
   const struct query_sink between = {&giving, give_names, give_row};
   struct ask_column axes[AXES];
-  const char *results[VIEWS_MAIN_MAXIMUM];
-  const size_t result_count = views_main_results(results);
+  const char *results[VIEWS_STATISTICS_MAIN];
+  const size_t result_count = views_statistics_main(results);
   size_t axis_count = 0, size = 0;
   char *sql = NULL;
   status code = ask_columns_axes(store, false, AXES, axes, &axis_count, error);

@@ -7,7 +7,7 @@
 #include "analysis/statistics/sample.h"
 #include "db/ask/columns.h"
 #include "db/ask/page_private.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "engine/grow.h"
 #include "schemas/text.h"
 
@@ -35,8 +35,8 @@ struct reading {
 };
 
 static bool is_main(const char *name) {
-  const char *names[VIEWS_MAIN_MAXIMUM];
-  const size_t count = views_main_results(names);
+  const char *names[VIEWS_STATISTICS_MAIN];
+  const size_t count = views_statistics_main(names);
   for (size_t i = 0; i < count; i++)
     if (strcmp(names[i], name) == 0)
       return true;

@@ -108,6 +108,32 @@ void schema_write_table(const struct schema_table *table, FILE *out) {
   fprintf(out, ") %s;\n", table->options);
 }
 
+/* The index-th column of a table: its own columns come first, then those of its fields. Returns what a developer looks
+ * for: the column, or the path of the row that makes it. */
+static const char *column_at(const struct schema_table *table, size_t index, char name[SCHEMA_NAME_SIZE]) {
+  const char *source = index < table->count ? table->columns[index].name
+                                            : table->fields->rows[index - table->count].path;
+  field_column_name(source, name, SCHEMA_NAME_SIZE);
+  return source;
+}
+
+status schema_check_names(const struct schema_table *table, struct error *error) {
+  const size_t count = table->count + (table->fields ? table->fields->count : 0);
+  for (size_t i = 0; i < count; i++) {
+    char name[SCHEMA_NAME_SIZE], other[SCHEMA_NAME_SIZE];
+    const char *source = column_at(table, i, name);
+    for (size_t j = 0; j < i; j++) {
+      const char *earlier = column_at(table, j, other);
+      if (sqlite3_stricmp(name, other) == 0)
+        return status_fail(
+            error, STATUS_INTERNAL,
+            "'%s' and '%s' would be one column of table %s, %s: give one of them another name in its row", earlier,
+            source, table->name, name);
+    }
+  }
+  return STATUS_OK;
+}
+
 status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error) {
   sqlite3_stmt *statement = NULL;
   status result = sql_prepare(db, "SELECT 1 FROM pragma_table_xinfo(?1, 'main') WHERE name = ?2 OR ?2 = ''", &statement,
@@ -177,7 +203,10 @@ static status add_missing(sqlite3 *db, const char *table, const char *column, co
 
 status schema_complete(sqlite3 *db, const struct schema_table *table, struct error *error) {
   bool has = false;
-  status result = schema_has_column(db, table->name, "", &has, error);
+  status result = schema_check_names(table, error);
+  if (result != STATUS_OK)
+    return result;
+  result = schema_has_column(db, table->name, "", &has, error);
   if (result != STATUS_OK)
     return result;
   if (!has) {

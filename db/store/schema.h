@@ -53,6 +53,10 @@ void schema_write_index(const struct schema_index *index, FILE *out);
  * result a number. `not_surplus`: "surplus = 0", or another expression for it. The same as store_run_counts(). */
 void schema_write_counts(const char *not_surplus, FILE *out);
 
+/* Refuses a table in which two columns have one name, and names both: paths of rows become names of columns
+ * (schemas/field.h), so that largest.speed and largest_speed are the same one. STATUS_INTERNAL. */
+status schema_check_names(const struct schema_table *table, struct error *error);
+
 /* *has: the database has this column of this table; of any column with the name "". */
 status schema_has_column(sqlite3 *db, const char *table, const char *column, bool *has, struct error *error);
 /* Creates what is missing in the database: the table, or columns that its field table has gained (NULL in old rows),

@@ -20,8 +20,6 @@ static const char lacks_wal_text[] =
     "was copied without its -wal file while it was being written: what that file held is missing here. Copy both "
     "files, or make a copy with `clast export`.";
 
-enum { EMPTY_STORE = 4096 }; /* bytes: SQLite's head of a file, in its first page, without any table */
-
 static struct store *allocate(const char *path) {
   struct store *store = calloc(1, sizeof *store);
   if (!store)
@@ -108,6 +106,23 @@ static bool is_partial_copy(const struct store *store, int version) {
   return sql_integer(store->db, "SELECT count(*) FROM holder", 0, &holders, NULL) == STATUS_OK && holders > 0;
 }
 
+static status use_wal(struct store *store, struct error *error) {
+  return sql_execute(store->db, "PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 4000", "opening for writing",
+                     error);
+}
+
+/* Tables first: a file in WAL mode that has none is taken for a copy without its -wal file. */
+static status create_tables(struct store *store, struct error *error) {
+  const status result = migrate_bring_forward(store->db, store->path, -1, error);
+  return result == STATUS_OK ? use_wal(store, error) : result;
+}
+
+/* WAL mode first: readers never meet a journal that a kill left behind, which they could not undo. */
+static status bring_forward(struct store *store, int version, struct error *error) {
+  const status result = use_wal(store, error);
+  return result == STATUS_OK ? migrate_bring_forward(store->db, store->path, version, error) : result;
+}
+
 /* The file is locked: opens it, brings it forward and reads what a writer must know. */
 static status open_locked(struct store *store, struct error *error) {
   int version = -1;
@@ -119,12 +134,12 @@ static status open_locked(struct store *store, struct error *error) {
     return result;
   store->lacks_wal = is_partial_copy(store, version);
   result = sql_execute(store->db,
-                       "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA "
-                       "temp_store = MEMORY; PRAGMA cache_size = -32768; PRAGMA wal_autocheckpoint = 4000",
+                       "PRAGMA synchronous = NORMAL; PRAGMA foreign_keys = OFF; PRAGMA temp_store = MEMORY; "
+                       "PRAGMA cache_size = -32768",
                        "opening for writing", error);
   if (result != STATUS_OK)
     return result;
-  result = migrate_bring_forward(store->db, store->path, version, error);
+  result = version < 0 ? create_tables(store, error) : bring_forward(store, version, error);
   if (result != STATUS_OK)
     return result;
   result = write_holder(store, error);
@@ -164,8 +179,8 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   if (result != STATUS_OK) {
     struct stat file;
     release(store);
-    if (!existed && stat(path, &file) == 0 && file.st_size <= EMPTY_STORE)
-      unlink(path); /* this call made it, and it has no table: the disk was full before the first one */
+    if (!existed && stat(path, &file) == 0 && file.st_size == 0)
+      unlink(path); /* this call made it, and it has no table */
     return result;
   }
   *out = store;

@@ -4,8 +4,6 @@
 #ifndef CLAST_DB_STORE_VIEWS_H
 #define CLAST_DB_STORE_VIEWS_H
 
-#include <stdio.h>
-
 #include "db/sql.h"
 
 enum { VIEWS_COUNT = 5 };
@@ -17,26 +15,8 @@ status views_regenerate(sqlite3 *db, struct error *error);
 /* Makes those of this connection. Changes no file: for readers. */
 status views_make_temporary(sqlite3 *db, struct error *error);
 
-/* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already.
- */
+/* The column of a new axis: its path with underscores. "input_" goes in front when a view has such a column already:
+ * SQL takes A and a for one name. */
 status views_axis_column(sqlite3 *db, const char *path, char *name, size_t size, struct error *error);
-
-/* The main results (engine/outcome.h), by rank: the columns of table run whose statistics the view `points` shows.
- * Returns how many. */
-enum { VIEWS_MAIN_MAXIMUM = 16 };
-size_t views_main_results(const char *names[VIEWS_MAIN_MAXIMUM]);
-
-/* SQL that begins a query on the statistics of columns of table run, for every point and results_version: the table
- * expression `scatter` with point_id, results_version, n, the quantile t of views_write_student() and, for the N-th
- * name from 0, its mean mN and standard deviation dN. In C this is sample_summarise(); a test compares the two. */
-void views_write_statistics(size_t count, const char *const *names, FILE *out);
-
-/* SQL of a table expression with point_id, results_version and, for the N-th name from 0 (a column of the view runs),
- * the half width eN and the verdict vN of the view resolution; NULL for what was not studied. */
-void views_write_resolution(size_t count, const char *const *names, FILE *out);
-
-/* SQL for the two-sided 95 % quantile of Student's t with `degrees` (an SQL expression) of freedom: sample_student()
- * for tools without our functions, within 5e-6. */
-void views_write_student(const char *degrees, FILE *out);
 
 #endif

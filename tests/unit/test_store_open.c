@@ -8,6 +8,7 @@
 
 #include <signal.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
@@ -106,6 +107,25 @@ static void empty_file_is_a_new_store(void **state) {
   OK(store_open_reader(path, &store, &error));
   assert_near(number(store, "SELECT count(*) FROM run"), 40, 0);
   store_close(store, NULL);
+}
+
+/* A file without a table is an empty file, not half of a copy. */
+static void failed_creation_leaves_an_empty_file(void **state) {
+  (void)state;
+  char path[64];
+  struct store *store = NULL;
+  struct rlimit wide;
+  getrlimit(RLIMIT_FSIZE, &wide);
+  signal(SIGXFSZ, SIG_IGN);
+  fclose(fopen(fixture_path(path, "no-room"), "w"));
+  setrlimit(RLIMIT_FSIZE, &(struct rlimit){.rlim_cur = 20000, .rlim_max = wide.rlim_max});
+  const status made = store_open_writer(path, &store, NULL, 0, &error);
+  setrlimit(RLIMIT_FSIZE, &wide);
+  assert_int_equal(made, STATUS_IO);
+  assert_int_equal(size_of(path), 0);
+  assert_int_equal(store_open_reader(path, &store, &error), STATUS_CONTENT);
+  assert_non_null(strstr(error.message, "is empty"));
+  populated(path);
 }
 
 /* Version 0: no running sums, no bin edges, views of another shape, and columns that have come since are absent. */
@@ -357,6 +377,7 @@ int main(void) {
       cmocka_unit_test(foreign_files_are_refused),
       cmocka_unit_test(missing_and_unreachable),
       cmocka_unit_test(empty_file_is_a_new_store),
+      cmocka_unit_test(failed_creation_leaves_an_empty_file),
       cmocka_unit_test(old_store_is_brought_forward),
       cmocka_unit_test(digests_are_added),
       cmocka_unit_test(sessions_get_their_campaign),

@@ -10,7 +10,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include "analysis/statistics/sample.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "tests/support/store_checks.h"
 
 enum { M = 3, K = 2, RUNS = 25 };
@@ -126,7 +126,7 @@ static void student_is_students(void **state) {
     FILE *out = open_memstream(&sql, &size);
     snprintf(number_text, sizeof number_text, "%d", degrees);
     fputs("SELECT ", out);
-    views_write_student(number_text, out);
+    views_statistics_student(number_text, out);
     fclose(out);
     double expected = sample_student((size_t)degrees + 1, 0.95);
     assert_near(expected, gsl_cdf_tdist_Pinv(0.975, degrees), 0);

@@ -11,7 +11,7 @@
 #include <sqlite3.h>
 
 #include "db/store/schema.h"
-#include "db/store/views.h"
+#include "db/store/views_statistics.h"
 #include "tests/support/store_fixture.h"
 
 #define REMEDY "if that is on purpose: cmake --build --preset release --target schemas, and commit the file"
@@ -164,12 +164,73 @@ static void names_are_those_of_the_tables(void **state) {
   const struct field *row;
   assert_non_null(outcome_main(0));
   for (size_t i = 0; (row = outcome_main(i)); i++) {
-    assert_true(i < VIEWS_MAIN_MAXIMUM);
+    assert_true(i < VIEWS_STATISTICS_MAIN);
     assert_true(row->kind == FIELD_INTEGER || (row->kind == FIELD_REAL && !(row->flags & FIELD_MAY_BE_OFF)));
   }
   const struct field *states = field_find(&outcome_table, "state", &error);
   assert_string_equal(states->choices[OUTCOME_COMPLETED], "completed");
   assert_string_equal(states->choices[OUTCOME_END_TIME], "end-time");
+}
+
+/* All rows of all tables, the results of every engine and module among them. */
+static void every_column_has_a_name_of_its_own(void **state) {
+  (void)state;
+  for (size_t i = 0; i < schema_table_count(); i++) {
+    const struct schema_table table = schema_table_at(i);
+    if (schema_check_names(&table, &error) != STATUS_OK)
+      fail_msg("%s", error.message);
+  }
+}
+
+static void differ(const struct field_table *inputs, const struct field_table *results) {
+  char input[SCHEMA_NAME_SIZE], result[SCHEMA_NAME_SIZE];
+  for (size_t i = 0; i < inputs->count; i++)
+    for (size_t k = 0; k < results->count; k++) {
+      field_column_name(inputs->rows[i].path, input, sizeof input);
+      field_column_name(results->rows[k].path, result, sizeof result);
+      if (sqlite3_stricmp(input, result) == 0)
+        fail_msg("input %s and result %s would be one column", inputs->rows[i].path, results->rows[k].path);
+    }
+}
+
+/* An input that a campaign varies has a column beside the results. */
+static void no_input_has_the_column_of_a_result(void **state) {
+  (void)state;
+  for (size_t i = 0; i < engine_count(); i++) {
+    differ(engine_at(i)->inputs, &outcome_table);
+    differ(engine_at(i)->inputs, engine_at(i)->results);
+  }
+}
+
+/* SQL takes A and a for the same name: Tillotson's law has both. */
+static void inputs_that_differ_by_case_get_two_columns(void **state) {
+  (void)state;
+  static const char *const paths[] = {"target.material.tillotson.A", "target.material.tillotson.a"};
+  const struct field_table *inputs = engine_find("sph", &error)->inputs;
+  char path[64];
+  struct store *store = NULL;
+  sqlite3 *db = NULL;
+  assert_int_equal(store_open_writer(fixture_path(path, "case"), &store, NULL, 0, &error), STATUS_OK);
+  for (size_t i = 0; i < 2; i++)
+    assert_int_equal(store_add_axis(store, field_find(inputs, paths[i], &error), "", &error), STATUS_OK);
+  assert_int_equal(store_close(store, &error), STATUS_OK);
+  assert_int_equal(sqlite3_open(path, &db), SQLITE_OK);
+  assert_int_equal(integer(db, "SELECT count(DISTINCT lower(column_name)) FROM axis"), 2);
+  sqlite3_close(db);
+}
+
+static void one_column_of_two_rows_is_refused(void **state) {
+  (void)state;
+  static const struct field rows[] = {{.path = "largest.speed"}, {.path = "mass"}, {.path = "largest_speed"}};
+  static const struct field_table fields = {.rows = rows, .count = 3};
+  static const struct schema_column columns[] = {{.name = "run_id"}, {.name = "Mass"}};
+  const struct schema_table two_rows = {.name = "result_x", .fields = &fields};
+  assert_int_equal(schema_check_names(&two_rows, &error), STATUS_INTERNAL);
+  assert_non_null(strstr(error.message, "'largest.speed' and 'largest_speed'"));
+  assert_non_null(strstr(error.message, "result_x"));
+  const struct schema_table row_and_column = {.name = "result_x", .columns = columns, .count = 2, .fields = &fields};
+  assert_int_equal(schema_check_names(&row_and_column, &error), STATUS_INTERNAL);
+  assert_non_null(strstr(error.message, "'Mass' and 'mass'"));
 }
 
 static void canned_queries_know_the_real_columns(void **state) {
@@ -194,9 +255,16 @@ int main(int count, char **arguments) {
     return 0;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(committed_text_is_the_schema),  cmocka_unit_test(text_makes_the_same_store),
-      cmocka_unit_test(every_column_is_documented),    cmocka_unit_test(every_table_is_strict),
-      cmocka_unit_test(names_are_those_of_the_tables), cmocka_unit_test(canned_queries_know_the_real_columns),
+      cmocka_unit_test(committed_text_is_the_schema),
+      cmocka_unit_test(text_makes_the_same_store),
+      cmocka_unit_test(every_column_is_documented),
+      cmocka_unit_test(every_table_is_strict),
+      cmocka_unit_test(names_are_those_of_the_tables),
+      cmocka_unit_test(canned_queries_know_the_real_columns),
+      cmocka_unit_test(every_column_has_a_name_of_its_own),
+      cmocka_unit_test(no_input_has_the_column_of_a_result),
+      cmocka_unit_test(inputs_that_differ_by_case_get_two_columns),
+      cmocka_unit_test(one_column_of_two_rows_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

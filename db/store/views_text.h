@@ -1,0 +1,13 @@
+/* The text of the views. For db/store/views.c. */
+#ifndef CLAST_DB_STORE_VIEWS_TEXT_H
+#define CLAST_DB_STORE_VIEWS_TEXT_H
+
+#include <stdio.h>
+
+#include "db/sql.h"
+
+/* Writes the index-th view of views_names as it follows CREATE VIEW and the schema's name: "runs AS SELECT ...;". Its
+ * columns are those that this database has. */
+status views_text_write(sqlite3 *db, size_t index, FILE *out, struct error *error);
+
+#endif
