@@ -58,6 +58,11 @@ status store_begin(struct store *store, struct error *error);
  * is rolled back and the store refuses further writing. Returns `result`, or the status of the commit. */
 status store_end(struct store *store, status result, int rows, struct error *error);
 
+/* What the store keeps of the engine. Creates the engine's result table when the store has none; *grown becomes true
+ * when the views need another column. */
+status store_kind_of(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
+                     struct error *error);
+
 /* Is the run part of the statistics? schema_write_counts() writes the same condition in SQL. */
 static inline bool store_run_counts(const struct store_run *run) {
   return !run->surplus && outcome_counts(run->outcome);

@@ -41,7 +41,7 @@ static void release(struct store *store) {
   };
   for (size_t i = 0; i < sizeof statements / sizeof statements[0]; i++)
     sqlite3_finalize(statements[i]);
-  for (size_t i = 0; i < store->kind_count; i++) {
+  for (size_t i = 0; i < STORE_KINDS; i++) {
     sqlite3_finalize(store->kinds[i].insert.statement);
     digest_names_clear(&store->kinds[i].names);
   }
@@ -146,6 +146,30 @@ static status open_locked(struct store *store, struct error *error) {
   return result == STATUS_OK ? identities_load(store, error) : result;
 }
 
+/* A call that failed leaves no file that it made and that has no table. */
+static void remove_empty(const char *path) {
+  struct stat file;
+  if (stat(path, &file) == 0 && file.st_size == 0)
+    unlink(path);
+}
+
+/* What a person should know of a store that could be opened: "" for nothing. */
+static void write_warning(const struct store *store, char *warning, size_t size) {
+  const char *network = lock_network_file_system(store->lock);
+  if (size == 0)
+    return;
+  if (store->lacks_wal)
+    snprintf(warning, size, "warning: %s %s", store->path, lacks_wal_text);
+  else if (network)
+    snprintf(
+        warning, size,
+        "%s is on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
+        "local disk and copy the file when it is done.",
+        store->path, network);
+  else
+    warning[0] = '\0';
+}
+
 status store_open_writer(const char *path, struct store **out, char *warning, size_t warning_size,
                          struct error *error) {
   bool held = false;
@@ -158,7 +182,7 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->writer = true;
-  bool existed = access(path, F_OK) == 0;
+  const bool existed = access(path, F_OK) == 0;
   store->lacks_wal = place_lacks_wal(path);
   status result = lock_take(path, &store->lock, &held, error);
   if (result != STATUS_OK) {
@@ -166,21 +190,12 @@ status store_open_writer(const char *path, struct store **out, char *warning, si
     return held ? refuse_held(path, error) : result;
   }
 
-  const char *network = lock_network_file_system(store->lock);
-  if (network && warning_size)
-    snprintf(
-        warning, warning_size,
-        "%s is on a network file system (%s), where locks and shared memory may fail and damage a store: write to a "
-        "local disk and copy the file when it is done.",
-        path, network);
   result = open_locked(store, error);
-  if (store->lacks_wal && warning_size)
-    snprintf(warning, warning_size, "warning: %s %s", path, lacks_wal_text);
+  write_warning(store, warning, warning_size);
   if (result != STATUS_OK) {
-    struct stat file;
     release(store);
-    if (!existed && stat(path, &file) == 0 && file.st_size == 0)
-      unlink(path); /* this call made it, and it has no table */
+    if (!existed)
+      remove_empty(path);
     return result;
   }
   *out = store;
@@ -194,42 +209,51 @@ static status make_readable(struct store *store, struct error *error) {
   return result == STATUS_OK ? sql_execute(store->db, "PRAGMA query_only = ON", "opening", error) : result;
 }
 
-status store_open_reader(const char *path, struct store **out, struct error *error) {
+/* Is it a store that this program can read? */
+static status check_version(const struct store *store, int version, struct error *error) {
+  if (version >= SCHEMA_READABLE)
+    return STATUS_OK;
+  if (version >= 0)
+    return status_fail(
+        error, STATUS_CONTENT,
+        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or `clast "
+        "merge NEW.db` it: opening for writing brings it forward and keeps a copy.",
+        store->path, version, SCHEMA_VERSION);
+  if (store->lacks_wal)
+    return status_fail(error, STATUS_CONTENT, "%s %s", store->path, lacks_wal_text);
+  return status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", store->path);
+}
+
+static status open_readable(struct store *store, struct error *error) {
   int version = -1;
+  status result = open_database(store, SQLITE_OPEN_READONLY, error);
+  if (result == STATUS_OK)
+    result = migrate_inspect(store->db, store->path, &version, error);
+  if (result != STATUS_OK)
+    return result;
+  store->lacks_wal = is_partial_copy(store, version);
+  result = check_version(store, version, error);
+  return result == STATUS_OK ? make_readable(store, error) : result;
+}
+
+status store_open_reader(const char *path, struct store **out, struct error *error) {
+  struct stat file;
   *out = NULL;
   if (access(path, F_OK) != 0)
     return status_fail(error, STATUS_MISSING, "%s: there is no such store. Look at the name and the current folder.",
                        path);
-  struct stat file;
   if (stat(path, &file) == 0 && S_ISDIR(file.st_mode))
     return status_fail(error, STATUS_IO, "%s is a folder: name the store's file.", path);
   struct store *store = allocate(path);
   if (!store)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", path);
   store->lacks_wal = place_lacks_wal(path);
-  status result = open_database(store, SQLITE_OPEN_READONLY, error);
+  const status result = open_readable(store, error);
   if (result == STATUS_OK)
-    result = migrate_inspect(store->db, path, &version, error);
-  if (result == STATUS_OK)
-    store->lacks_wal = is_partial_copy(store, version);
-  if (result == STATUS_OK && version < 0 && store->lacks_wal)
-    result = status_fail(error, STATUS_CONTENT, "%s %s", path, lacks_wal_text);
-  if (result == STATUS_OK && version < 0)
-    result = status_fail(error, STATUS_CONTENT, "%s is empty: no campaign was stored in it yet.", path);
-  if (result == STATUS_OK && version < SCHEMA_READABLE)
-    result = status_fail(
-        error, STATUS_CONTENT,
-        "%s was written by an older clast (store version %d, now %d). Run its campaign once more, or `clast "
-        "merge NEW.db` it: opening for writing brings it forward and keeps a copy.",
-        path, version, SCHEMA_VERSION);
-  if (result == STATUS_OK)
-    result = make_readable(store, error);
-  if (result != STATUS_OK) {
+    *out = store;
+  else
     release(store);
-    return result;
-  }
-  *out = store;
-  return STATUS_OK;
+  return result;
 }
 
 status store_close(struct store *store, struct error *error) {
