@@ -69,38 +69,58 @@ static const char *without_engine(const char *column) {
   return column;
 }
 
+/* Looks for the name as it is written, as the name of a column, and without an engine in front. */
+static status look_for(struct store *store, const char *columns_sql, const char *name, struct choice *choice,
+                       struct error *error) {
+  char column[NAME];
+  field_column_name(name, column, sizeof column);
+  const char *const forms[] = {name, column, without_engine(column)};
+  const struct query_sink sink = {.context = choice, .row = consider};
+  status result = STATUS_OK;
+  *choice = (struct choice){.guess = text_guess(name)};
+  for (size_t i = 0; result == STATUS_OK && choice->matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
+    choice->wanted = forms[i];
+    choice->known[0] = '\0';
+    result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
+  }
+  return result;
+}
+
+static status judge(const struct choice *choice, const char *what, const char *name, struct error *error) {
+  if (choice->matches == 1)
+    return STATUS_OK;
+  if (choice->matches > 1)
+    return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, name, choice->matching);
+  if (choice->near[0])
+    return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, name, choice->near);
+  return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, name,
+                     choice->known[0] ? choice->known : "none");
+}
+
+/* The next word of a list with commas, without blanks around it. Returns the rest of the list. */
+static const char *next_word(const char *list, char word[NAME]) {
+  const size_t length = strcspn(list, ",");
+  const char *rest = list + length + (list[length] == ',');
+  const char *begin = list + strspn(list, " "), *end = list + length;
+  while (end > begin && end[-1] == ' ')
+    end--;
+  snprintf(word, NAME, "%.*s", begin < end ? (int)(end - begin) : 0, begin);
+  return rest;
+}
+
 static status resolve(struct store *store, const char *list, const char *what, const char *columns_sql,
                       struct names *out, struct error *error) {
   while (*list) {
     char word[NAME];
-    size_t length = strcspn(list, ",");
-    snprintf(word, sizeof word, "%.*s", (int)(length < NAME ? length : NAME - 1), list);
-    list += length + (list[length] == ',');
-    char *from = word + strspn(word, " ");
-    for (size_t n = strlen(from); n > 0 && from[n - 1] == ' '; n--)
-      from[n - 1] = '\0';
-    if (!*from)
+    struct choice choice;
+    list = next_word(list, word);
+    if (!*word)
       continue;
-    struct choice choice = {.guess = text_guess(from)};
-    const struct query_sink sink = {.context = &choice, .row = consider};
-    status result = STATUS_OK;
-    char column[NAME];
-    field_column_name(from, column, sizeof column);
-    const char *const forms[] = {from, column, without_engine(column)};
-    for (size_t i = 0; result == STATUS_OK && choice.matches == 0 && i < sizeof forms / sizeof forms[0]; i++) {
-      choice.wanted = forms[i];
-      choice.known[0] = '\0';
-      result = query_run(store, columns_sql, 0, NULL, 0, &sink, error);
-    }
+    status result = look_for(store, columns_sql, word, &choice, error);
+    if (result == STATUS_OK)
+      result = judge(&choice, what, word, error);
     if (result != STATUS_OK)
       return result;
-    if (choice.matches > 1)
-      return status_fail(error, STATUS_USAGE, "%s '%s' is ambiguous: %s end like that.", what, from, choice.matching);
-    if (choice.matches == 0 && choice.near[0])
-      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown; did you mean '%s'?", what, from, choice.near);
-    if (choice.matches == 0)
-      return status_fail(error, STATUS_USAGE, "%s '%s' is unknown. Known are: %s.", what, from,
-                         choice.known[0] ? choice.known : "none");
     if (out->count == NAMES)
       return status_fail(error, STATUS_USAGE, "More than %d of them: %s", NAMES, what);
     snprintf(out->name[out->count++], NAME, "%s", choice.found);

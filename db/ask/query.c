@@ -1,7 +1,6 @@
 /* Runs one statement that only reads, with a time limit. */
 #include "db/ask/query.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -24,74 +23,82 @@ static int look(void *context) {
   return watch->late;
 }
 
-/* Allows reading only: no change, no other file, no transaction, and only pragmas that describe. */
-static int authorize(void *context, int action, const char *first, const char *second, const char *database,
-                     const char *trigger) {
+/* A pragma that describes the database. journal_mode with a value would change it. */
+static bool describes(const char *pragma, const char *value) {
   static const char *const describing[] = {"table_info",     "table_xinfo",       "table_list",       "index_list",
                                            "index_info",     "index_xinfo",       "foreign_key_list", "database_list",
                                            "application_id", "schema_version",    "user_version",     "page_count",
                                            "page_size",      "function_list",     "compile_options",  "integrity_check",
-                                           "quick_check",    "foreign_key_check", "journal_mode",     "encoding"};
-  struct watch *watch = context;
-  (void)database, (void)trigger;
+                                           "quick_check",    "foreign_key_check", "encoding"};
+  if (strcmp(pragma, "journal_mode") == 0)
+    return !value;
+  for (size_t i = 0; i < sizeof describing / sizeof describing[0]; i++)
+    if (strcmp(pragma, describing[i]) == 0)
+      return true;
+  return false;
+}
+
+static bool only_reads(int action, const char *first, const char *second) {
   switch (action) {
   case SQLITE_SELECT:
   case SQLITE_READ:
-  case SQLITE_RECURSIVE: return SQLITE_OK;
-  case SQLITE_UPDATE: /* how SQLite declares json_each and the like; a real one is refused as not read-only */
-    if (first && strcmp(first, "sqlite_master") == 0)
-      return SQLITE_OK;
-    break;
-  case SQLITE_FUNCTION:
-    if (second && strcmp(second, "load_extension") == 0)
-      break;
-    return SQLITE_OK;
-  case SQLITE_PRAGMA:
-    for (size_t i = 0; first && i < sizeof describing / sizeof describing[0]; i++)
-      if (strcmp(first, describing[i]) == 0 && (strcmp(first, "journal_mode") != 0 || !second))
-        return SQLITE_OK;
-    break;
-  default: break;
+  case SQLITE_RECURSIVE: return true;
+  /* how SQLite declares json_each and the like; a real one is refused as not read-only */
+  case SQLITE_UPDATE: return first && strcmp(first, "sqlite_master") == 0;
+  case SQLITE_FUNCTION: return !second || strcmp(second, "load_extension") != 0;
+  case SQLITE_PRAGMA: return first && describes(first, second);
+  default: return false;
   }
+}
+
+/* Allows reading only: no change, no other file, no transaction, and only pragmas that describe. */
+static int authorize(void *context, int action, const char *first, const char *second, const char *database,
+                     const char *trigger) {
+  struct watch *watch = context;
+  (void)database, (void)trigger;
+  if (only_reads(action, first, second))
+    return SQLITE_OK;
   watch->writes = true;
   return SQLITE_DENY;
 }
 
-static bool only_space_and_comments(const char *text) {
-  while (*text) {
-    if (isspace((unsigned char)*text) || *text == ';')
-      text++;
-    else if (strncmp(text, "--", 2) == 0)
+/* Behind blanks, semicolons and comments. */
+static const char *skip_space(const char *text) {
+  for (;;) {
+    text += strspn(text, " \t\n\v\f\r;");
+    if (strncmp(text, "--", 2) == 0) {
       text += strcspn(text, "\n");
-    else if (strncmp(text, "/*", 2) == 0) {
+    } else if (strncmp(text, "/*", 2) == 0) {
       const char *end = strstr(text + 2, "*/");
-      if (!end)
-        return true;
-      text = end + 2;
-    } else
-      return false;
+      text = end ? end + 2 : text + strlen(text);
+    } else {
+      return text;
+    }
   }
-  return true;
+}
+
+static status refuse_sql(sqlite3 *db, const char *sql, struct error *error) {
+  const int offset = sqlite3_error_offset(db);
+  if (offset >= 0 && (size_t)offset < strlen(sql))
+    return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.40s", sqlite3_errmsg(db), sql + offset);
+  return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
 }
 
 static status prepare(struct store *store, const char *sql, struct watch *watch, sqlite3_stmt **statement,
                       struct error *error) {
-  const char *tail = NULL;
-  if (only_space_and_comments(sql))
+  const char *tail = "";
+  if (!*skip_space(sql))
     return status_fail(error, STATUS_USAGE, "The query is empty: give one SELECT.");
-  int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
-  if (code == SQLITE_AUTH || watch->writes || (code == SQLITE_OK && *statement && !sqlite3_stmt_readonly(*statement)))
+  const int code = sqlite3_prepare_v2(store->db, sql, -1, statement, &tail);
+  const bool writes = code == SQLITE_AUTH || watch->writes || (*statement && !sqlite3_stmt_readonly(*statement));
+  if (writes)
     return status_fail(error, STATUS_USAGE,
                        "A query may only read (SELECT): this statement would change something, or open another file.");
-  if ((code & 0xff) == SQLITE_ERROR) {
-    int offset = sqlite3_error_offset(store->db);
-    if (offset >= 0 && (size_t)offset < strlen(sql))
-      return status_fail(error, STATUS_USAGE, "SQL error: %s, at: %.40s", sqlite3_errmsg(store->db), sql + offset);
-    return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(store->db));
-  }
+  if ((code & 0xff) == SQLITE_ERROR)
+    return refuse_sql(store->db, sql, error);
   if (code != SQLITE_OK)
     return sql_fail(store->db, code, "the query", error);
-  if (tail && !only_space_and_comments(tail))
+  if (*skip_space(tail))
     return status_fail(error, STATUS_USAGE, "A query is one statement; a second one begins at: %.40s", tail);
   return STATUS_OK;
 }
@@ -112,30 +119,38 @@ static void bind_text_or_number(sqlite3_stmt *statement, int index, const char *
     sqlite3_bind_text(statement, index, value, -1, SQLITE_TRANSIENT);
 }
 
+/* The value for the statement's index-th parameter, the last one that was given; NULL: there is none. */
+static const struct query_parameter *value_for(sqlite3_stmt *statement, int index, size_t count,
+                                               const struct query_parameter *parameters) {
+  const char *name = sqlite3_bind_parameter_name(statement, index);
+  while (name && count-- > 0)
+    if (strcmp(parameters[count].name, name + 1) == 0)
+      return &parameters[count];
+  return NULL;
+}
+
+static bool is_used(sqlite3_stmt *statement, const struct query_parameter *parameter) {
+  const int wanted = sqlite3_bind_parameter_count(statement);
+  for (int i = 1; i <= wanted; i++)
+    if (value_for(statement, i, 1, parameter))
+      return true;
+  return false;
+}
+
 static status bind(sqlite3_stmt *statement, size_t count, const struct query_parameter *parameters,
                    struct error *error) {
-  int wanted = sqlite3_bind_parameter_count(statement);
+  const int wanted = sqlite3_bind_parameter_count(statement);
   for (int i = 1; i <= wanted; i++) {
+    const struct query_parameter *parameter = value_for(statement, i, count, parameters);
     const char *name = sqlite3_bind_parameter_name(statement, i);
-    bool found = false;
-    for (size_t k = 0; k < count && name; k++)
-      if (strcmp(parameters[k].name, name + 1) == 0) {
-        bind_text_or_number(statement, i, parameters[k].value);
-        found = true;
-      }
-    if (!found)
+    if (!parameter)
       return status_fail(error, STATUS_USAGE, "The query needs a value for %s: give --with %s=VALUE.",
                          name ? name : "?", name ? name + 1 : "NAME");
+    bind_text_or_number(statement, i, parameter->value);
   }
-  for (size_t k = 0; k < count; k++) {
-    bool used = false;
-    for (int i = 1; i <= wanted; i++) {
-      const char *name = sqlite3_bind_parameter_name(statement, i);
-      used = used || (name && strcmp(parameters[k].name, name + 1) == 0);
-    }
-    if (!used)
+  for (size_t k = 0; k < count; k++)
+    if (!is_used(statement, &parameters[k]))
       return status_fail(error, STATUS_USAGE, "The query has no parameter :%s.", parameters[k].name);
-  }
   return STATUS_OK;
 }
 
@@ -166,38 +181,51 @@ static struct query_value value_of(sqlite3_stmt *statement, int i) {
   return value;
 }
 
+/* Why there was no next row. */
+static status judge_end(sqlite3_stmt *statement, int code, const struct watch *watch, struct error *error) {
+  sqlite3 *db = sqlite3_db_handle(statement);
+  if (code == SQLITE_DONE)
+    return STATUS_OK;
+  if (watch->late)
+    return status_fail(error, STATUS_STOPPED,
+                       "The query took longer than its time limit and was stopped: narrow it, or "
+                       "raise the limit.");
+  if ((code & 0xff) == SQLITE_ERROR)
+    return status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
+  return sql_fail(db, code, "the query", error);
+}
+
+static status give_names(sqlite3_stmt *statement, size_t columns, const struct query_sink *sink, struct error *error) {
+  if (!sink->columns)
+    return STATUS_OK;
+  const char **names = calloc(columns + 1, sizeof *names);
+  if (!names)
+    return status_fail(error, STATUS_MEMORY, "the query: memory ran out");
+  for (size_t i = 0; i < columns; i++)
+    names[i] = sqlite3_column_name(statement, (int)i);
+  const status result = sink->columns(sink->context, columns, names, error);
+  free(names);
+  return result;
+}
+
 static status give_rows(sqlite3_stmt *statement, const struct query_sink *sink, const struct watch *watch,
                         struct error *error) {
-  int columns = sqlite3_column_count(statement), code = SQLITE_DONE;
-  status result = STATUS_OK;
-  const char **names = calloc((size_t)columns + 1, sizeof *names);
-  struct query_value *values = calloc((size_t)columns + 1, sizeof *values);
-  if (!names || !values)
-    result = status_fail(error, STATUS_MEMORY, "the query: memory ran out");
-  for (int i = 0; result == STATUS_OK && i < columns; i++)
-    names[i] = sqlite3_column_name(statement, i);
-  if (result == STATUS_OK && sink->columns)
-    result = sink->columns(sink->context, (size_t)columns, names, error);
+  const size_t columns = (size_t)sqlite3_column_count(statement);
+  status result = give_names(statement, columns, sink, error);
+  if (result != STATUS_OK)
+    return result;
+  struct query_value *values = calloc(columns + 1, sizeof *values);
+  if (!values)
+    return status_fail(error, STATUS_MEMORY, "the query: memory ran out");
+  int code = SQLITE_DONE;
   while (result == STATUS_OK && (code = sqlite3_step(statement)) == SQLITE_ROW) {
-    for (int i = 0; i < columns; i++)
-      values[i] = value_of(statement, i);
+    for (size_t i = 0; i < columns; i++)
+      values[i] = value_of(statement, (int)i);
     if (sink->row)
-      result = sink->row(sink->context, (size_t)columns, values, error);
+      result = sink->row(sink->context, columns, values, error);
   }
-  if (result == STATUS_OK && code != SQLITE_DONE) {
-    sqlite3 *db = sqlite3_db_handle(statement);
-    if (watch->late)
-      result = status_fail(error, STATUS_STOPPED,
-                           "The query took longer than its time limit and was stopped: narrow it, or "
-                           "raise the limit.");
-    else if ((code & 0xff) == SQLITE_ERROR)
-      result = status_fail(error, STATUS_USAGE, "SQL error: %s", sqlite3_errmsg(db));
-    else
-      result = sql_fail(db, code, "the query", error);
-  }
-  free(names);
   free(values);
-  return result;
+  return result == STATUS_OK ? judge_end(statement, code, watch, error) : result;
 }
 
 status query_run(struct store *store, const char *sql, size_t parameter_count, const struct query_parameter *parameters,

@@ -100,32 +100,52 @@ static status add_bin(struct adding *adding, struct sums_row *total, const struc
   return STATUS_OK;
 }
 
+/* Compares the row that `bins` stands on with this bin of the run, adds it to the sums (total NULL: the run does not
+ * count), and goes to the next row. */
+static status take_bin(struct adding *adding, int64_t run, const struct spectrum_bin_row *bin, struct sums_row *total,
+                       struct error *error) {
+  if (!is_row(adding, run, bin))
+    return refuse(run, error);
+  const status result = total ? add_bin(adding, total, bin, error) : STATUS_OK;
+  return result == STATUS_OK ? next_bin(adding, error) : result;
+}
+
+/* Rows of runs that are not there are passed over. */
+static status skip_to(struct adding *adding, int64_t run, struct error *error) {
+  status result = STATUS_OK;
+  while (result == STATUS_OK && adding->more && sqlite3_column_int64(adding->bins, RUN) < run)
+    result = next_bin(adding, error);
+  return result;
+}
+
+static void widen(struct adding *adding, const struct spectrum_bin_row *first, const struct spectrum_bin_row *last) {
+  if (first->bin < adding->lowest)
+    adding->lowest = first->bin;
+  if (last->bin > adding->highest)
+    adding->highest = last->bin;
+}
+
 /* Compares the rows of the run with its bins, and adds these. */
 static status take_bins(struct adding *adding, int64_t run, struct sums_row *total, struct error *error) {
   struct spectrum_bin_row bins[MOST_BINS];
   size_t count = 0;
-  const bool counts = sqlite3_column_int(adding->runs, COUNTS) != 0;
   status result = make_bins(adding, bins, &count, error);
-  while (result == STATUS_OK && adding->more && sqlite3_column_int64(adding->bins, RUN) < run)
-    result = next_bin(adding, error);
-  if (result == STATUS_OK && count > MOST_BINS)
+  if (result == STATUS_OK)
+    result = skip_to(adding, run, error);
+  if (result != STATUS_OK)
+    return result;
+  if (count > MOST_BINS)
     return refuse(run, error);
-  for (size_t i = 0; result == STATUS_OK && i < count; i++) {
-    if (!is_row(adding, run, &bins[i]))
-      return refuse(run, error);
-    if (counts)
-      result = add_bin(adding, total, &bins[i], error);
-    if (result == STATUS_OK)
-      result = next_bin(adding, error);
-  }
+
+  const bool counts = sqlite3_column_int(adding->runs, COUNTS) != 0;
+  for (size_t i = 0; result == STATUS_OK && i < count; i++)
+    result = take_bin(adding, run, &bins[i], counts ? total : NULL, error);
   if (result != STATUS_OK)
     return result;
   if (adding->more && sqlite3_column_int64(adding->bins, RUN) == run)
     return refuse(run, error);
-  if (count && bins[0].bin < adding->lowest)
-    adding->lowest = bins[0].bin;
-  if (count && bins[count - 1].bin > adding->highest)
-    adding->highest = bins[count - 1].bin;
+  if (count > 0)
+    widen(adding, &bins[0], &bins[count - 1]);
   adding->gathered += count;
   return STATUS_OK;
 }
