@@ -1,209 +1,194 @@
-/* Adding rows of runs and attempts. Every statement is prepared once, and a run needs no text or JSON. */
+/* Adding rows of campaigns, of axes, of points with their inputs, and of attempts. */
 #include <stdlib.h>
-#include <string.h>
-#include <time.h>
 
 #include "db/store/internal.h"
 #include "db/store/schema.h"
+#include "db/store/shapes.h"
 #include "db/store/views.h"
 
-static const char adding_run[] = "adding a run";
+static const char adding_point[] = "adding a point";
+static const char adding_campaign[] = "adding a campaign";
 
-static double wall_clock(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_REALTIME, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static const struct sql_column run_id_column = {"run_id", SQL_COLUMN_INTEGER, 0};
-
-/* The names of what digest_run() adds, made once for a store and an engine. */
-static status name_columns(struct store *store, struct store_kind *kind, struct error *error) {
-  const struct schema_table results = schema_result_table(kind->kind);
-  store->name_of.identity = digest_name("run", "identity");
-  store->name_of.replicate = digest_name("run", "replicate");
-  store->name_of.seed = digest_name("run", "seed");
-  store->name_of.results_version = digest_name("run", "results_version");
-  store->name_of.masses = digest_name("fragment_mass", "masses");
-  status result = digest_names_make(&store->outcome_names, "run", &outcome_table, error);
-  if (result == STATUS_OK)
-    result = digest_names_make(&store->estimate_names, "estimate", &estimates_table, error);
-  return result == STATUS_OK ? digest_names_make(&kind->names, results.name, kind->kind->results, error) : result;
-}
-
-static status has_no_rows(struct store *store, const char *table, bool *none, struct error *error) {
-  int64_t filled = 0;
-  char *sql = sqlite3_mprintf("SELECT EXISTS (SELECT 1 FROM \"%w\")", table);
-  if (!sql)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  const status result = sql_integer(store->db, sql, 0, &filled, error);
-  sqlite3_free(sql);
-  *none = filled == 0;
-  return result;
-}
-
-/* Creates the engine's result table, or its columns, when the store has none. */
-static status complete_table(struct store *store, const struct schema_table *table, bool *grown, struct error *error) {
-  static const char version[] = "PRAGMA schema_version";
-  int64_t before = 0, after = 0;
-  status result = sql_integer(store->db, version, 0, &before, error);
-  if (result == STATUS_OK)
-    result = schema_complete(store->db, table, error);
-  if (result == STATUS_OK)
-    result = sql_integer(store->db, version, 0, &after, error);
-  *grown = *grown || before != after;
-  return result;
-}
-
-/* Everything that a store keeps of an engine. */
-static status open_kind(struct store *store, const struct engine_kind *kind, struct store_kind *entry, bool *grown,
-                        struct error *error) {
-  const struct schema_table table = schema_result_table(kind);
-  entry->kind = kind;
-  status result = complete_table(store, &table, grown, error);
-  if (result == STATUS_OK)
-    result = sql_insert_prepare(store->db, &entry->insert, table.name, 1, &run_id_column, kind->results, 1, adding_run,
-                                error);
-  if (result == STATUS_OK)
-    result = has_no_rows(store, table.name, &entry->first, error);
-  return result == STATUS_OK ? name_columns(store, entry, error) : result;
-}
-
-status store_kind_of(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
-                     struct error *error) {
-  for (size_t i = 0; i < store->kind_count; i++)
-    if (store->kinds[i].kind == kind) {
-      *found = &store->kinds[i];
-      return STATUS_OK;
-    }
-  if (store->kind_count == STORE_KINDS)
-    return status_fail(error, STATUS_INTERNAL, "more than %d engines in one store", STORE_KINDS);
-  *found = &store->kinds[store->kind_count];
-  const status result = open_kind(store, kind, *found, grown, error);
-  store->kind_count += result == STATUS_OK;
-  return result;
-}
-
-/* The columns of table run that are not results. */
-struct run_row {
-  struct store_run run;
-  int results_version;
-  bool counts;
-  double finished_at;
-  uint8_t digest[16];
-};
-#define RUN(name_, kind_, member_)                                                                                     \
-  { name_, SQL_COLUMN_##kind_, offsetof(struct run_row, member_) }
-static const struct sql_column run_columns[] = {
-    RUN("point_id", INTEGER, run.point_id),
-    RUN("session_id", KEY, run.session_id),
-    RUN("identity", IDENTITY, run.identity),
-    RUN("replicate", INTEGER, run.replicate),
-    RUN("seed", INTEGER, run.seed),
-    RUN("results_version", INT, results_version),
-    RUN("surplus", BOOLEAN, run.surplus),
-    RUN("counts", BOOLEAN, counts),
-    RUN("attempt", INT, run.attempt),
-    RUN("wall_time", REAL, run.wall_s),
-    RUN("cpu_time", REAL, run.cpu_s),
-    RUN("peak_memory", INTEGER, run.peak_memory),
-    RUN("host", TEXT, run.host),
-    RUN("rank", INT, run.rank),
-    RUN("finished_at", REAL, finished_at),
-    RUN("fields_path", TEXT, run.fields_path),
-    RUN("digest", IDENTITY, digest),
-};
-
-/* The digest of the rows that a run is about to become: db/store/digest_rows.c finds the same in them. */
-static void digest_run(const struct store *store, const struct store_kind *kind, const struct store_run *run,
-                       uint8_t digest[16]) {
-  struct digest sum = {0};
-  digest_add_bytes(&sum, store->name_of.identity, run->identity, sizeof run->identity);
-  digest_add_integer(&sum, store->name_of.replicate, run->replicate);
-  digest_add_integer(&sum, store->name_of.seed, (int64_t)run->seed);
-  digest_add_integer(&sum, store->name_of.results_version, run->kind->results_version);
-  digest_add_fields(&sum, &store->outcome_names, &outcome_table, 0, run->outcome);
-  if (run->result)
-    digest_add_fields(&sum, &kind->names, run->kind->results, 0, run->result);
-  digest_add_bytes(&sum, store->name_of.masses, store->blob, 8 * run->fragment_count);
-  for (size_t i = 0; i < run->estimate_count; i++)
-    digest_add_fields(&sum, &store->estimate_names, &estimates_table, i, &run->estimates[i]);
-  digest_write(sum, digest);
-}
-
-static status add_row(struct store *store, const struct store_kind *kind, const struct store_run *run, int64_t *run_id,
-                      struct error *error) {
-  status result = sql_insert_prepare(store->db, &store->run, "run", sizeof run_columns / sizeof run_columns[0],
-                                     run_columns, &outcome_table, 1, adding_run, error);
+/* *campaign_id: 0 when the campaign is not stored yet. */
+static status find_campaign(struct store *store, const char *name, const char *document_text, int64_t *campaign_id,
+                            struct error *error) {
+  sqlite3_stmt *statement = NULL;
+  status result = sql_prepare(store->db, "SELECT campaign_id FROM campaign WHERE name = ?1 AND document = ?2",
+                              &statement, adding_campaign, error);
   if (result != STATUS_OK)
     return result;
-  struct run_row row = {.run = *run,
-                        .results_version = run->kind->results_version,
-                        .counts = store_run_counts(run),
-                        .finished_at = wall_clock()};
-  digest_run(store, kind, run, row.digest);
-  sql_insert_bind(&store->run, 0, &row, run->outcome);
-  result = sql_run(store->run.statement, adding_run, error);
-  *run_id = sqlite3_last_insert_rowid(store->db);
-  return result;
-}
-
-/* What the engine reports of the run; NULL: nothing. With its first run an engine's results get columns in the views.
- */
-static status add_result(struct store *store, struct store_kind *kind, int64_t run_id, const void *values,
-                         struct error *error) {
-  if (!values)
-    return STATUS_OK;
-  sql_insert_bind(&kind->insert, 0, &run_id, values);
-  const status result = sql_run(kind->insert.statement, adding_run, error);
-  if (result != STATUS_OK || !kind->first)
-    return result;
-  kind->first = false;
-  return views_regenerate(store->db, error);
-}
-
-/* The rows of the run in all tables. */
-static status add_rows(struct store *store, struct store_kind *kind, const struct store_run *run, struct error *error) {
-  int64_t run_id = 0;
-  status result = store_fragments_encode(store, run, error);
-  if (result == STATUS_OK)
-    result = add_row(store, kind, run, &run_id, error);
-  if (result == STATUS_OK)
-    result = add_result(store, kind, run_id, run->result, error);
-  if (result == STATUS_OK)
-    result = store_fragments_add(store, run_id, run, error);
-  if (result != STATUS_OK || run->estimate_count == 0)
-    return result;
-  return store_set_estimates_rows(store, run_id, run->estimate_count, run->estimates, error);
-}
-
-static status add_run(struct store *store, const struct store_run *run, struct error *error) {
-  bool grown = false;
-  struct store_kind *kind = NULL;
-  status result = store_kind_of(store, run->kind, &kind, &grown, error);
-  if (result == STATUS_OK && grown)
-    result = views_regenerate(store->db, error);
-  if (result != STATUS_OK)
-    return result;
-  result = add_rows(store, kind, run, error);
-  if (result != STATUS_OK)
-    return result;
-
-  struct identities_state *state = identities_add(&store->identities, run->identity);
-  if (!state)
-    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_run);
-  state->stored = true;
-  memcpy(store->batch_identities[store->batch_identity_count++], run->identity, 16);
+  sql_bind_text(statement, 1, name);
+  sql_bind_text(statement, 2, document_text);
+  *campaign_id = sqlite3_step(statement) == SQLITE_ROW ? sqlite3_column_int64(statement, 0) : 0;
+  sqlite3_finalize(statement);
   return STATUS_OK;
 }
 
-status store_add_run(struct store *store, const struct store_run *run, struct error *error) {
-  if (store_has_run(store, run->identity))
-    return STATUS_OK;
+static status find_or_add_campaign(struct store *store, const char *name, const char *document_text,
+                                   const char *plan_json, int64_t *campaign_id, struct error *error) {
+  status result = find_campaign(store, name, document_text, campaign_id, error);
+  if (result != STATUS_OK || *campaign_id != 0)
+    return result;
+  sqlite3_stmt *statement = NULL;
+  result = sql_prepare(store->db,
+                       "INSERT INTO campaign (name, document, plan, added_at) VALUES (?1, ?2, ?3, "
+                       "strftime('%Y-%m-%dT%H:%M:%fZ', 'now'))",
+                       &statement, adding_campaign, error);
+  if (result != STATUS_OK)
+    return result;
+  sql_bind_text(statement, 1, name);
+  sql_bind_text(statement, 2, document_text);
+  sql_bind_text(statement, 3, plan_json);
+  result = sql_run(statement, adding_campaign, error);
+  *campaign_id = sqlite3_last_insert_rowid(store->db);
+  sqlite3_finalize(statement);
+  return result;
+}
+
+status store_add_campaign(struct store *store, const char *name, const char *document_text, const char *plan_json,
+                          int64_t *campaign_id, struct error *error) {
   status result = store_begin(store, error);
   if (result != STATUS_OK)
     return result;
-  return store_end(store, add_run(store, run, error), 1, error);
+  result = find_or_add_campaign(store, name, document_text, plan_json, campaign_id, error);
+  return store_end(store, result, 1, error);
+}
+
+static status add_inputs(struct store *store, int64_t point_id, const struct scene *scene, struct error *error) {
+  const struct field_table *inputs = scene->kind->inputs;
+  status result = sql_prepare_once(store->db, &store->point_input,
+                                   "INSERT INTO point_input (point_id, path, value) VALUES (?1, ?2, ?3)", adding_point,
+                                   error);
+  for (size_t i = 0; result == STATUS_OK && i < inputs->count; i++) {
+    const struct field *row = &inputs->rows[i];
+    if (!field_is_active(inputs, row, scene->inputs))
+      continue;
+    sqlite3_bind_int64(store->point_input, 1, point_id);
+    sql_bind_text(store->point_input, 2, row->path);
+    sql_bind_field(store->point_input, 3, row, scene->inputs, true);
+    result = sql_run(store->point_input, adding_point, error);
+  }
+  return result;
+}
+
+/* The digest of the rows that a point is about to become. */
+static void digest_point(const struct scene *scene, const uint8_t hash[16], const char *json, uint8_t digest[16]) {
+  const struct field_table *inputs = scene->kind->inputs;
+  const struct digest value = digest_name("point_input", "value");
+  struct digest sum = {0};
+  digest_add_bytes(&sum, digest_name("point", "hash"), hash, 16);
+  digest_add_text(&sum, digest_name("point", "engine"), scene->kind->name);
+  digest_add_text(&sum, digest_name("point", "scene_name"), scene->name);
+  digest_add_text(&sum, digest_name("point", "scene"), json);
+  for (size_t i = 0; i < inputs->count; i++)
+    if (field_is_active(inputs, &inputs->rows[i], scene->inputs))
+      digest_add_field(&sum, value, digest_row(inputs->rows[i].path), &inputs->rows[i], scene->inputs, true);
+  digest_write(sum, digest);
+}
+
+static status find_or_add_point(struct store *store, const struct scene *scene, int64_t *point_id,
+                                struct error *error) {
+  status result = store_point_find(store, scene, point_id, error);
+  if (result != STATUS_OK || *point_id != 0)
+    return result;
+  uint8_t hash[16];
+  store_point_hash(scene, hash);
+  result = sql_prepare_once(store->db, &store->point,
+                            "INSERT INTO point (hash, engine, scene_name, scene, digest) VALUES (?1, ?2, ?3, ?4, ?5)",
+                            adding_point, error);
+  if (result != STATUS_OK)
+    return result;
+  char *json = scene_json(scene);
+  if (!json)
+    return status_fail(error, STATUS_MEMORY, "%s: memory ran out", adding_point);
+  uint8_t digest[16];
+  digest_point(scene, hash, json, digest);
+
+  sqlite3_bind_blob(store->point, 1, hash, 16, SQLITE_STATIC);
+  sql_bind_text(store->point, 2, scene->kind->name);
+  sql_bind_text(store->point, 3, scene->name);
+  sql_bind_text(store->point, 4, json);
+  sqlite3_bind_blob(store->point, 5, digest, sizeof digest, SQLITE_STATIC);
+  result = sql_run(store->point, adding_point, error);
+  *point_id = sqlite3_last_insert_rowid(store->db);
+  free(json);
+  if (result == STATUS_OK)
+    result = add_inputs(store, *point_id, scene, error);
+  return result == STATUS_OK ? shapes_add(store, scene, error) : result;
+}
+
+/* *grown: the views need another column. */
+static status add_axis(struct store *store, const struct field *row, bool *grown, struct error *error) {
+  status result = sql_prepare_once(store->db, &store->axis_find, "SELECT 1 FROM axis WHERE path = ?1", adding_point,
+                                   error);
+  if (result != STATUS_OK)
+    return result;
+  sql_bind_text(store->axis_find, 1, row->path);
+  bool known = sqlite3_step(store->axis_find) == SQLITE_ROW;
+  sqlite3_reset(store->axis_find);
+  if (known)
+    return STATUS_OK;
+  char name[SCHEMA_NAME_SIZE];
+  result = views_axis_column(store->db, row->path, name, sizeof name, error);
+  if (result != STATUS_OK)
+    return result;
+  *grown = true;
+  return sql_executef(store->db, adding_point, error,
+                      "INSERT INTO axis (path, column_name, unit, meaning) VALUES (%Q, %Q, %Q, %Q)", row->path, name,
+                      row->unit, row->doc ? row->doc : "");
+}
+
+static status add_axis_with_unit(struct store *store, const struct field *row, const char *unit, struct error *error) {
+  bool grown = false;
+  status result = add_axis(store, row, &grown, error);
+  if (result == STATUS_OK)
+    result = sql_executef(store->db, adding_point, error,
+                          "UPDATE axis SET written_unit = nullif(%Q, '') WHERE path = %Q", unit, row->path);
+  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+}
+
+status store_add_axis(struct store *store, const struct field *row, const char *unit, struct error *error) {
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  return store_end(store, add_axis_with_unit(store, row, unit, error), 1, error);
+}
+
+static status add_to_campaign(struct store *store, int64_t campaign_id, int64_t point_id, struct error *error) {
+  status result = sql_prepare_once(store->db, &store->campaign_point,
+                                   "INSERT OR IGNORE INTO campaign_point (campaign_id, point_id) VALUES (?1, ?2)",
+                                   adding_point, error);
+  if (result != STATUS_OK)
+    return result;
+  sqlite3_bind_int64(store->campaign_point, 1, campaign_id);
+  sqlite3_bind_int64(store->campaign_point, 2, point_id);
+  return sql_run(store->campaign_point, adding_point, error);
+}
+
+static status add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
+                        const char *const *varied_paths, int64_t *point_id, struct error *error) {
+  bool grown = false;
+  struct store_kind *kind = NULL;
+  status result = store_add_run_kind(store, scene->kind, &kind, &grown, error);
+  if (result != STATUS_OK)
+    return result;
+  result = find_or_add_point(store, scene, point_id, error);
+  if (result == STATUS_OK && campaign_id > 0)
+    result = add_to_campaign(store, campaign_id, *point_id, error);
+  for (size_t i = 0; result == STATUS_OK && i < varied_count; i++) {
+    const struct field *row = field_find(scene->kind->inputs, varied_paths[i], error);
+    result = row ? add_axis(store, row, &grown, error) : STATUS_CONTENT;
+  }
+  return result == STATUS_OK && grown ? views_regenerate(store->db, error) : result;
+}
+
+status store_add_point(struct store *store, int64_t campaign_id, const struct scene *scene, size_t varied_count,
+                       const char *const *varied_paths, int64_t *point_id, struct error *error) {
+  status result = store_begin(store, error);
+  if (result != STATUS_OK)
+    return result;
+  result = add_point(store, campaign_id, scene, varied_count, varied_paths, point_id, error);
+  return store_end(store, result, 1, error);
 }
 
 struct attempt_row {
@@ -242,7 +227,7 @@ static status add_attempt(struct store *store, const struct store_attempt *attem
   if (!state)
     return status_fail(error, STATUS_MEMORY, "%s: memory ran out", doing);
 
-  struct attempt_row row = {.attempt = *attempt, .failed_at = wall_clock()};
+  struct attempt_row row = {.attempt = *attempt, .failed_at = store_wall_clock()};
   if (!attempt->reason)
     row.attempt.reason = "exit";
   if (!attempt->message)

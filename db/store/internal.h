@@ -2,6 +2,8 @@
 #ifndef CLAST_DB_STORE_INTERNAL_H
 #define CLAST_DB_STORE_INTERNAL_H
 
+#include <time.h>
+
 #include "db/sql.h"
 #include "db/store/digest.h"
 #include "db/store/identities.h"
@@ -52,6 +54,13 @@ struct store {
   size_t bin_capacity;
 };
 
+/* s since 1970-01-01 UTC */
+static inline double store_wall_clock(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_REALTIME, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 /* Call before the first row of a batch: begins the transaction. Refuses readers and stores after a failed write. */
 status store_begin(struct store *store, struct error *error);
 /* Call after `rows` more rows: commits when the batch is large or old enough. When `result` is not OK, the whole batch
@@ -60,8 +69,8 @@ status store_end(struct store *store, status result, int rows, struct error *err
 
 /* What the store keeps of the engine. Creates the engine's result table when the store has none; *grown becomes true
  * when the views need another column. */
-status store_kind_of(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
-                     struct error *error);
+status store_add_run_kind(struct store *store, const struct engine_kind *kind, struct store_kind **found, bool *grown,
+                          struct error *error);
 
 /* Is the run part of the statistics? schema_write_counts() writes the same condition in SQL. */
 static inline bool store_run_counts(const struct store_run *run) {
