@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_ROOM = 32 };
+enum { LEAST_ROOM = 32, CACHE_LINE = 64 };
 
 bool grow_block(void *array, size_t bytes) {
   void *block;
@@ -22,6 +22,22 @@ bool grow_doubling(void *array, size_t *room, size_t need, size_t item) {
     wanted = need;
   if (!grow_block(array, wanted * item))
     return false;
+  *room = wanted;
+  return true;
+}
+
+bool grow_aligned(void *array, size_t *room, size_t need, size_t item, size_t keep) {
+  if (need <= *room)
+    return true;
+  const size_t wanted = need + need / 8 + GROW_SPARE;
+  void *old, *block = aligned_alloc(CACHE_LINE, (wanted * item + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE);
+  if (!block)
+    return false;
+  memcpy(&old, array, sizeof old); /* a pointer of any type */
+  if (keep)
+    memcpy(block, old, keep * item);
+  free(old);
+  memcpy(array, &block, sizeof block);
   *room = wanted;
   return true;
 }

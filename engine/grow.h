@@ -16,4 +16,9 @@ static inline bool grow_room(void *array, size_t *room, size_t need, size_t item
   return need <= *room || grow_doubling(array, room, need, item);
 }
 
+/* The same for an array that begins at a cache line: room for an eighth more than `need`, and for GROW_SPARE items that
+ * kernels may read beyond the end. The first `keep` items stay. */
+enum { GROW_SPARE = 64 };
+bool grow_aligned(void *array, size_t *room, size_t need, size_t item, size_t keep);
+
 #endif

@@ -1,4 +1,5 @@
-/* Growing arrays: what is in them stays, they double, and one large need is met at once. */
+/* Growing arrays: what is in them stays, they double, and one large need is met at once. Aligned ones keep only what
+ * the caller names. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -58,10 +59,31 @@ static void without_memory_the_array_stays(void **state) {
   free(text);
 }
 
+static void aligned_arrays_keep_what_is_asked_for(void **state) {
+  (void)state;
+  uint32_t *values = NULL;
+  size_t room = 0;
+  assert_true(grow_aligned(&values, &room, 800, sizeof *values, 0));
+  assert_int_equal(room, 900 + GROW_SPARE);
+  for (uint32_t i = 0; i < 10; i++)
+    values[i] = i;
+  const uint32_t *before = values;
+  assert_true(grow_aligned(&values, &room, 900, sizeof *values, 10)); /* there is room */
+  assert_ptr_equal(values, before);
+  assert_true(grow_aligned(&values, &room, 5000, sizeof *values, 10));
+  assert_int_equal((uintptr_t)values % 64, 0);
+  for (uint32_t i = 0; i < 10; i++)
+    assert_int_equal(values[i], i);
+  assert_false(grow_aligned(&values, &room, SIZE_MAX / 16, sizeof *values, 10));
+  assert_int_equal(values[9], 9);
+  free(values);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(items_stay_and_the_room_doubles),
       cmocka_unit_test(a_large_need_is_met_at_once),
+      cmocka_unit_test(aligned_arrays_keep_what_is_asked_for),
       cmocka_unit_test(without_memory_the_array_stays),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAF = 16 /* a multiple of any per_list */, BOXES = 8, LEVELS = 12, TOP = 8, LINE = 64 };
+#include "engine/grow.h"
+
+enum { LEAF = 16 /* a multiple of any per_list */, BOXES = 8, LEVELS = 12, TOP = 8 };
 /* Largest side of a leaf box, in reaches: a fragment far away gets a leaf of its own and widens no box. */
 static const double widest = 4;
 static const struct sph_near_box no_box = {{NAN, NAN, NAN}, {0}, 0};
@@ -29,21 +31,6 @@ struct sph_neighbours {
   struct sph_near_particles particles;
   double period[3];
 };
-
-static bool grow(void **array, size_t *capacity, size_t wanted, size_t keep, size_t size) {
-  if (wanted <= *capacity)
-    return true;
-  const size_t more = wanted + wanted / 8 + LINE;
-  void *grown = aligned_alloc(LINE, (more * size + LINE - 1) / LINE * LINE);
-  if (!grown)
-    return false;
-  if (keep)
-    memcpy(grown, *array, keep * size);
-  free(*array);
-  *array = grown;
-  *capacity = more;
-  return true;
-}
 
 struct sph_neighbours *sph_neighbours_create(size_t n, size_t chunk, size_t per_list,
                                              const struct sph_pair_kernels *kernels) {
@@ -245,9 +232,9 @@ status sph_neighbours_find(struct sph_neighbours *s, size_t n, const double *x, 
     boxes += count;
   }
   const size_t leaves = BOXES * s->nodes[0];
-  if (!grow((void **)&s->box, &s->box_capacity, boxes, 0, sizeof *s->box) ||
-      !grow((void **)&s->leaf_first, &s->leaf_capacity, leaves, 0, sizeof *s->leaf_first) ||
-      !grow((void **)&s->leaf_size, &s->size_capacity, leaves, 0, sizeof *s->leaf_size))
+  if (!grow_aligned(&s->box, &s->box_capacity, boxes, sizeof *s->box, 0) ||
+      !grow_aligned(&s->leaf_first, &s->leaf_capacity, leaves, sizeof *s->leaf_first, 0) ||
+      !grow_aligned(&s->leaf_size, &s->size_capacity, leaves, sizeof *s->leaf_size, 0))
     return status_fail(error, STATUS_MEMORY, "no memory to find the neighbours of %zu particles", n);
   s->particles.first = s->leaf_first;
   s->particles.size = s->leaf_size;
@@ -276,13 +263,13 @@ static bool find_nodes(const struct sph_neighbours *s, size_t node, struct searc
                        size_t *count) {
   const struct sph_near_box own = surround(&s->box[node]);
   size_t used = s->nodes[s->levels - 1], from = 0;
-  if (!grow((void **)&w->node[0], &w->node_capacity[0], used, 0, sizeof **w->node))
+  if (!grow_aligned(&w->node[0], &w->node_capacity[0], used, sizeof **w->node, 0))
     return false;
   for (size_t k = 0; k < used; k++)
     w->node[0][k] = (uint32_t)k;
   for (size_t level = s->levels; level-- > 1; from = 1 - from) {
     const uint32_t lowest = (uint32_t)(node >> 3 * (level - 1));
-    if (!grow((void **)&w->node[1 - from], &w->node_capacity[1 - from], BOXES * used, 0, sizeof **w->node))
+    if (!grow_aligned(&w->node[1 - from], &w->node_capacity[1 - from], BOXES * used, sizeof **w->node, 0))
       return false;
     used = s->kernels->near_boxes(s->box + s->level_first[level], w->node[from], used, &own, s->period, lowest,
                                   w->node[1 - from]);
@@ -297,12 +284,12 @@ static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t
                             size_t count, struct search *w, double *at[4], size_t *candidates) {
   const struct sph_near_box own = get(&s->box[leaf / BOXES], leaf % BOXES);
   const size_t first = s->leaf_first[leaf], size = s->leaf_size[leaf];
-  if (!grow((void **)&w->leaf, &w->leaf_capacity, BOXES * count, 0, sizeof *w->leaf))
+  if (!grow_aligned(&w->leaf, &w->leaf_capacity, BOXES * count, sizeof *w->leaf, 0))
     return false;
   const size_t leaves = s->kernels->near_boxes(s->box, nodes, count, &own, s->period, (uint32_t)leaf + 1, w->leaf);
   const size_t row = (leaves + 1) * (LEAF + 1) + BOXES;
-  if (!grow((void **)&w->real, &w->real_capacity, 4 * row, 0, sizeof *w->real) ||
-      !grow((void **)&w->number, &w->number_capacity, row, 0, sizeof *w->number))
+  if (!grow_aligned(&w->real, &w->real_capacity, 4 * row, sizeof *w->real, 0) ||
+      !grow_aligned(&w->number, &w->number_capacity, row, sizeof *w->number, 0))
     return false;
   double *rest[4];
   for (int d = 0; d < 4; d++) {
@@ -325,7 +312,7 @@ static bool find_candidates(const struct sph_neighbours *s, size_t chunk, size_t
 /* Merges the ascending list `more` into the ascending `list`; an entry of both has the tags of both. */
 static bool join(struct search *w, uint32_t *list, size_t count, const uint32_t *more, size_t more_count,
                  size_t *out_count) {
-  if (!grow((void **)&w->joined, &w->joined_capacity, count + more_count, 0, sizeof *w->joined))
+  if (!grow_aligned(&w->joined, &w->joined_capacity, count + more_count, sizeof *w->joined, 0))
     return false;
   size_t used = 0;
   for (size_t a = 0, b = 0; a < count || b < more_count; used++) {
@@ -346,7 +333,7 @@ static bool list_leaf(const struct sph_neighbours *s, size_t leaf, size_t first,
                       struct search *w, struct sph_neighbour_lists *lists, size_t *used) {
   const size_t size = s->leaf_size[leaf], base = s->leaf_first[leaf] - first;
   const size_t needed = *used + (size + 1) * (candidates + 2 * SPH_LIST_ALIGN);
-  if (needed > lists->capacity && !grow((void **)&lists->j, &lists->capacity, 2 * needed, *used, sizeof *lists->j))
+  if (needed > lists->capacity && !grow_aligned(&lists->j, &lists->capacity, 2 * needed, sizeof *lists->j, *used))
     return false;
   double own[LEAF][4];
   for (size_t k = 0; k < size; k++)
@@ -380,7 +367,7 @@ bool sph_neighbours_list(const struct sph_neighbours *s, size_t chunk, struct sp
   struct search w = {0};
   const size_t first = chunk * s->chunk;
   size_t used = 0;
-  bool enough = grow((void **)&lists->j, &lists->capacity, 1, 0, sizeof *lists->j);
+  bool enough = grow_aligned(&lists->j, &lists->capacity, 1, sizeof *lists->j, 0);
   lists->start[0] = 0;
   lists->pairs = 0;
   for (size_t node = s->chunk_node[chunk]; enough && node < s->chunk_node[chunk + 1]; node++) {
