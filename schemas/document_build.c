@@ -207,45 +207,6 @@ static document_node *scalar(struct builder *b, struct fy_token *token, size_t s
   return node;
 }
 
-static int by_text(const void *a, const void *b) {
-  const document_node *const *left = a, *const *right = b;
-  int order = strcmp((*left)->text, (*right)->text);
-  if (order)
-    return order;
-  return ((*left)->start > (*right)->start) - ((*left)->start < (*right)->start);
-}
-
-static void report_duplicate(struct builder *b, document_node *key, const document_node *first) {
-  if (b->document->error_count >= DOCUMENT_MOST_ERRORS) {
-    b->document->error_count++; /* only counted */
-    return;
-  }
-  char path[PATH_SIZE], whole[2 * PATH_SIZE];
-  where(b, path);
-  snprintf(whole, sizeof whole, "%s%s%.150s", path, *path ? "." : "", key->text);
-  document_report(key, whole, "given twice; the first is in line %zu; remove one",
-                  document_report_line(b->document, first->start));
-}
-
-/* Sorted, not pairwise: a file of a hundred thousand keys must not take minutes. */
-static void report_duplicates(struct builder *b, const document_node *mapping) {
-  document_node **keys = malloc((mapping->count + 1) * sizeof(document_node *));
-  if (!keys) {
-    b->failed = true;
-    return;
-  }
-  for (size_t i = 0; i < mapping->count; i++)
-    keys[i] = mapping->pairs[i].key;
-  qsort(keys, mapping->count, sizeof *keys, by_text);
-  for (size_t i = 1, first = 0; i < mapping->count; i++) {
-    if (strcmp(keys[first]->text, keys[i]->text) != 0 || keys[i]->faulty || keys[first]->faulty)
-      first = i;
-    else
-      report_duplicate(b, keys[i], keys[first]);
-  }
-  free(keys);
-}
-
 static void open_collection(struct builder *b, document_node *node) {
   if (!node)
     return;
@@ -265,8 +226,9 @@ static void close_collection(struct builder *b, size_t end) {
   char first = b->document->text[node->start];
   if (end > node->start && (first == '{' || first == '['))
     node->end = end; /* of others the first character is marked */
-  if (node->kind == DOCUMENT_MAPPING && node->count > 1)
-    report_duplicates(b, node);
+  char path[PATH_SIZE];
+  if (node->kind == DOCUMENT_MAPPING && node->count > 1 && !document_duplicates_report(node, where(b, path)))
+    b->failed = true;
   attach(b, node);
 }
 

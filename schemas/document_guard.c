@@ -4,30 +4,28 @@
 #include "schemas/document_tree.h"
 #include "schemas/text.h"
 
-/* YAML 1.2.2, 5.1: what is not printable there is refused here too, and so are the line ends of YAML 1.1 (U+0085,
- * U+2028, U+2029) and byte order marks in the middle, which tools disagree about. */
-static bool is_control(const unsigned char *text, size_t length) {
-  if (length == 1) {
-    const bool allowed = text[0] == '\t' || text[0] == '\n' || text[0] == '\r';
-    return (text[0] < 0x20 && !allowed) || text[0] == 0x7F;
-  }
-  if (length == 2)
-    return text[0] == 0xC2 && text[1] < 0xA0; /* U+0080 to U+009F */
-  if (length == 3) {
-    const bool separator = text[0] == 0xE2 && text[1] == 0x80 && (text[2] == 0xA8 || text[2] == 0xA9);
-    const bool byte_order_mark = text[0] == 0xEF && text[1] == 0xBB && text[2] == 0xBF;
-    const bool no_character = text[0] == 0xEF && text[1] == 0xBF && text[2] >= 0xBE; /* U+FFFE, U+FFFF */
-    return separator || byte_order_mark || no_character;
-  }
+/* YAML 1.2.2, 5.1: what is not printable there is refused here too, and so are the line ends of YAML 1.1 and byte order
+ * marks in the middle, which tools disagree about. */
+static const struct {
+  uint32_t first, last;
+} refused[] = {
+    {0x00, 0x08},     {0x0B, 0x0C},     {0x0E, 0x1F}, /* all but tab, line feed and carriage return */
+    {0x7F, 0x9F},     {0x2028, 0x2029},               /* U+0085, U+2028, U+2029: line ends of YAML 1.1 */
+    {0xFEFF, 0xFEFF}, {0xFFFE, 0xFFFF},               /* byte order mark; no characters */
+};
+
+static bool is_refused(uint32_t character) {
+  for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++)
+    if (character >= refused[k].first && character <= refused[k].last)
+      return true;
   return false;
 }
 
 size_t document_guard_text(const char *text, size_t size) {
-  const unsigned char *bytes = (const unsigned char *)text;
   size_t i = 0;
   while (i < size) {
     size_t length = text_utf8_length(text + i, size - i);
-    if (length == 0 || is_control(bytes + i, length))
+    if (length == 0 || is_refused(text_utf8_character(text + i, length)))
       return i;
     i += length;
   }

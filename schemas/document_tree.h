@@ -63,6 +63,9 @@ size_t document_guard_text(const char *text, size_t size);
  * leave a tree (duplicate keys, tags, lost aliases) are reported, too, but the status is STATUS_OK. */
 status document_build(struct document *document);
 
+/* Reports the keys that a mapping at `path` gives twice. False without memory. */
+bool document_duplicates_report(const document_node *mapping, const char *path);
+
 /* An error about bytes [start, end) of the text. */
 void document_report_at(struct document *document, size_t start, size_t end, const char *path, const char *format, ...)
     __attribute__((format(printf, 5, 6)));

@@ -1,4 +1,4 @@
-/* Names, values, conditions and bytes of field tables. */
+/* Names, values, conditions and bytes of field tables. What rows accept, in words, is in field_describe.c. */
 #include "schemas/field.h"
 
 #include <inttypes.h>
@@ -199,24 +199,24 @@ static bool value_is(const struct field *row, const void *object, const char *te
   return strlen(shown) == length && memcmp(shown, text, length) == 0;
 }
 
-/* The first row, from this one up through the rows that control it, whose condition is not met; NULL when the row is
- * active. A circular chain ends after as many links as the table has rows: inactive. */
-static const struct field *unmet(const struct field_table *table, const struct field *row, const void *object,
-                                 const struct field **other) {
-  for (size_t links = 0; row->when; links++) {
+/* Whether the row has one of the values that stand behind `=`, separated by `|`. */
+static bool is_one_of(const struct field *row, const void *object, const char *values) {
+  for (const char *at = values;; at++) {
+    const size_t length = strcspn(at, "|");
+    if (value_is(row, object, at, length))
+      return true;
+    at += length;
+    if (!*at)
+      return false;
+  }
+}
+
+const struct field *field_unmet(const struct field_table *table, const struct field *row, const void *object,
+                                const struct field **other) {
+  for (size_t links = 0; row->when; links++) { /* a circular chain has more links than the table rows */
     const char *equals = strchr(row->when, '=');
     *other = equals ? field_controller(table, row) : NULL;
-    if (!*other || links > table->count)
-      return row;
-    bool met = false;
-    for (const char *at = equals + 1; !met;) {
-      size_t length = strcspn(at, "|");
-      met = value_is(*other, object, at, length);
-      if (!at[length])
-        break;
-      at += length + 1;
-    }
-    if (!met)
+    if (!*other || links > table->count || !is_one_of(*other, object, equals + 1))
       return row;
     row = *other;
   }
@@ -225,82 +225,18 @@ static const struct field *unmet(const struct field_table *table, const struct f
 
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object) {
   const struct field *other;
-  return unmet(table, row, object, &other) == NULL;
+  return field_unmet(table, row, object, &other) == NULL;
 }
 
-void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
-                             size_t size) {
-  const struct field *other, *link = unmet(table, row, object, &other);
-  *text = 0;
-  if (!link || !other)
-    return;
-  char *wanted = NULL, came[FIELD_TEXT_SIZE];
-  size_t length = 0;
-  FILE *words = open_memstream(&wanted, &length);
-  if (!words)
-    return;
-  field_describe_condition(link, words);
-  fclose(words);
-
-  struct field_value value;
-  field_get(other, object, &value);
-  field_print(other, &value, came, sizeof came);
-  snprintf(text, size, "used only when %s is %s; here it is %s", other->path, wanted ? wanted : "", came);
-  free(wanted);
-}
-
-void field_describe_condition(const struct field *row, FILE *out) {
-  const char *equals = strchr(row->when, '=');
-  for (const char *at = equals ? equals + 1 : ""; *at; at++) {
-    if (*at == '|')
-      fputs(" or ", out);
-    else
-      fputc(*at, out);
-  }
-}
-
-void field_describe_choices(const struct field *row, char *text, size_t size) {
-  size_t used = 0;
-  *text = 0;
-  for (size_t i = 0; row->choices[i] && used < size; i++) {
-    const char *between = row->choices[i + 1] ? ", " : " or ";
-    int n = snprintf(text + used, size - used, "%s%s", i ? between : "", row->choices[i]);
-    used += n > 0 ? (size_t)n : 0;
-  }
+const char *field_shown_unit(const struct field *row) {
+  if (row->flags & FIELD_PERCENT)
+    return "%";
+  return row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
 }
 
 bool field_needs_unit(const struct field *row) {
   const bool number = row->kind == FIELD_REAL || row->kind == FIELD_INTEGER;
-  return number && (row->flags & FIELD_PERCENT || (row->unit && strcmp(row->unit, "1") != 0));
-}
-
-/* A bound as a user would write it: "0", "1e-7" of a row in percent. */
-static void print_bound(const struct field *row, double bound, char text[64]) {
-  struct field bare = *row;
-  bare.kind = FIELD_REAL;
-  bare.unit = "1";
-  const struct field_value value = {.kind = FIELD_REAL, .number = bound};
-  field_print(&bare, &value, text, 64);
-  text[strcspn(text, " ")] = 0;
-}
-
-void field_describe_range(const struct field *row, char *text, size_t size) {
-  char low[64], high[64];
-  const char *unit = row->flags & FIELD_PERCENT ? "%" : row->unit && strcmp(row->unit, "1") ? row->unit : "";
-  const char *space = *unit ? " " : "";
-  print_bound(row, row->minimum, low);
-  print_bound(row, row->maximum, high);
-  bool has_low = row->minimum > -HUGE_VAL, has_high = row->maximum < HUGE_VAL;
-  const char *from = row->flags & FIELD_ABOVE_MINIMUM ? "above" : "at least";
-  const char *to = row->flags & FIELD_BELOW_MAXIMUM ? "below" : "at most";
-  if (has_low && has_high)
-    snprintf(text, size, "%s %s and %s %s%s%s", from, low, to, high, space, unit);
-  else if (has_low)
-    snprintf(text, size, "%s %s%s%s", from, low, space, unit);
-  else if (has_high)
-    snprintf(text, size, "%s %s%s%s", to, high, space, unit);
-  else
-    snprintf(text, size, "a number%s%s", *unit ? " in " : "", unit);
+  return number && *field_shown_unit(row);
 }
 
 /* ---- bytes ---- */
@@ -336,46 +272,69 @@ static uint64_t take(const uint8_t *bytes, size_t count) {
   return value;
 }
 
+/* Bytes of a number, truth or choice; of a text those of its length. */
+static size_t width_of(const struct field *row) {
+  switch (row->kind) {
+  case FIELD_REAL:
+  case FIELD_INTEGER: return 8;
+  case FIELD_CHOICE: return 2;
+  case FIELD_BOOLEAN:
+  case FIELD_TEXT: break;
+  }
+  return 1;
+}
+
+/* What stands in those bytes. */
+static uint64_t bits_of(const struct field *row, const void *from) {
+  uint64_t bits = 0;
+  bool truth;
+  int index;
+  switch (row->kind) {
+  case FIELD_REAL:
+  case FIELD_INTEGER: memcpy(&bits, from, 8); return bits;
+  case FIELD_BOOLEAN: memcpy(&truth, from, sizeof truth); return truth;
+  case FIELD_CHOICE: memcpy(&index, from, sizeof index); return (uint16_t)index;
+  case FIELD_TEXT: return strnlen(from, FIELD_TEXT_SIZE - 1);
+  }
+  return 0;
+}
+
 size_t field_encode(const struct field_table *table, const void *object, uint8_t *bytes) {
   size_t size = put(bytes, table_hash(table), 8);
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
-    const char *from = (const char *)object + row->offset;
-    uint8_t *to = bytes ? bytes + size : NULL;
-    uint64_t bits = 0;
-    switch (row->kind) {
-    case FIELD_REAL:
-    case FIELD_INTEGER:
-      memcpy(&bits, from, 8);
-      size += put(to, bits, 8);
-      break;
-    case FIELD_BOOLEAN: {
-      bool truth;
-      memcpy(&truth, from, sizeof truth);
-      size += put(to, truth, 1);
-      break;
-    }
-    case FIELD_CHOICE: {
-      int index;
-      memcpy(&index, from, sizeof index);
-      size += put(to, (uint64_t)(uint16_t)index, 2);
-      break;
-    }
-    case FIELD_TEXT: {
-      size_t length = strnlen(from, FIELD_TEXT_SIZE - 1);
-      size += put(to, length, 1);
-      if (to)
-        memcpy(to + 1, from, length);
-      size += length;
-      break;
-    }
-    }
+    const void *from = seat(row, object);
+    const uint64_t bits = bits_of(row, from);
+    size += put(bytes ? bytes + size : NULL, bits, width_of(row));
+    if (row->kind != FIELD_TEXT)
+      continue;
+    if (bytes)
+      memcpy(bytes + size, from, bits);
+    size += bits;
   }
   return size;
 }
 
 size_t field_encoded_size(const struct field_table *table, const void *object) {
   return field_encode(table, object, NULL);
+}
+
+/* Stores what stood in the bytes of a number, truth or choice. False: no such value. */
+static bool store_bits(const struct field *row, uint64_t bits, void *to) {
+  const bool truth = bits == 1;
+  const int index = (int)bits;
+  if (row->kind == FIELD_BOOLEAN && bits > 1)
+    return false;
+  if (row->kind == FIELD_CHOICE && bits >= field_choice_count(row))
+    return false;
+  switch (row->kind) {
+  case FIELD_REAL:
+  case FIELD_INTEGER: memcpy(to, &bits, 8); break;
+  case FIELD_BOOLEAN: memcpy(to, &truth, sizeof truth); break;
+  case FIELD_CHOICE: memcpy(to, &index, sizeof index); break;
+  case FIELD_TEXT: break;
+  }
+  return true;
 }
 
 size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_t size, void *object) {
@@ -385,37 +344,21 @@ size_t field_decode(const struct field_table *table, const uint8_t *bytes, size_
   for (size_t i = 0; i < table->count; i++) {
     const struct field *row = &table->rows[i];
     char *to = (char *)object + row->offset;
-    static const size_t widths[] = {8, 8, 1, 2, 1};
-    size_t width = widths[row->kind];
+    const size_t width = width_of(row);
     if (size - used < width)
       return 0;
-    uint64_t bits = take(bytes + used, width);
+    const uint64_t bits = take(bytes + used, width);
     used += width;
-    switch (row->kind) {
-    case FIELD_REAL:
-    case FIELD_INTEGER: memcpy(to, &bits, 8); break;
-    case FIELD_BOOLEAN: {
-      bool truth = bits == 1;
-      if (bits > 1)
+    if (row->kind != FIELD_TEXT) {
+      if (!store_bits(row, bits, to))
         return 0;
-      memcpy(to, &truth, sizeof truth);
-      break;
+      continue;
     }
-    case FIELD_CHOICE: {
-      int index = (int)bits;
-      if (bits >= field_choice_count(row))
-        return 0;
-      memcpy(to, &index, sizeof index);
-      break;
-    }
-    case FIELD_TEXT:
-      if (size - used < bits)
-        return 0;
-      memset(to, 0, FIELD_TEXT_SIZE);
-      memcpy(to, bytes + used, bits);
-      used += bits;
-      break;
-    }
+    if (size - used < bits)
+      return 0;
+    memset(to, 0, FIELD_TEXT_SIZE);
+    memcpy(to, bytes + used, bits);
+    used += bits;
   }
   return used;
 }

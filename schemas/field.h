@@ -106,6 +106,10 @@ void field_defaults(const struct field_table *table, void *object);
 /* The row that decides whether this one is active; NULL when it has no condition, or a condition on an unknown row. */
 const struct field *field_controller(const struct field_table *table, const struct field *row);
 bool field_is_active(const struct field_table *table, const struct field *row, const void *object);
+/* The first row, from this one up through the rows that control it, whose condition is not met, and in *other the row
+ * that it asks; NULL when the row is active. The rows of a circular chain are inactive. */
+const struct field *field_unmet(const struct field_table *table, const struct field *row, const void *object,
+                                const struct field **other);
 
 /* Why a row is inactive: "used only when charge.kind is disc or ring, which is none"; empty text when it is active. */
 void field_describe_inactive(const struct field_table *table, const struct field *row, const void *object, char *text,
@@ -125,6 +129,8 @@ void field_set_unchecked(const struct field *row, void *object, const struct fie
 /* The same without storing: *out is `value` in the row's own kind. */
 status field_set_value(const struct field *row, const struct field_value *value, struct field_value *out,
                        struct error *error);
+/* The unit behind the row's numbers where people read them: "%", "m/s"; empty for a plain number. */
+const char *field_shown_unit(const struct field *row);
 /* A number of this row needs a unit behind it when a user writes it (0 does not). */
 bool field_needs_unit(const struct field *row);
 /* From text as a user types it: "5 km/s", "off", "true", a choice. Dimension, unit and range are checked. */

@@ -24,67 +24,90 @@ static void print_plain(char *to, const char *mantissa, size_t count, long expon
   *to = 0;
 }
 
+/* The fewest digits that read back as the same double. */
+struct digits {
+  char mantissa[24]; /* without sign and point */
+  size_t count;
+  long exponent; /* of the first digit */
+};
+
+static struct digits shortest_digits(double number) {
+  char text[32];
+  for (int precision = 0; precision < 17; precision++) {
+    snprintf(text, sizeof text, "%.*e", precision, number);
+    if (strtod(text, NULL) == number)
+      break;
+  }
+  struct digits d = {0};
+  const char *at = text;
+  for (; *at != 'e'; at++)
+    if (*at >= '0' && *at <= '9')
+      d.mantissa[d.count++] = *at;
+  d.exponent = strtol(at + 1, NULL, 10);
+  return d;
+}
+
+/* Is it written without an exponent? 5000 and 1234567 are, 5e8 is not. */
+static bool is_plain(const struct digits *d) {
+  const long most = d->count > 4 ? 9 : 6;
+  return d->exponent >= 0 && d->exponent < most;
+}
+
 /* The number times 10^ten: its own shortest digits, with the point elsewhere. */
 static void print_shifted(double number, long ten, char text[32]) {
   if (isnan(number)) {
     strcpy(text, "off");
     return;
   }
+  if (signbit(number))
+    *text++ = '-';
   if (isinf(number)) {
-    strcpy(text, number > 0 ? "inf" : "-inf");
+    strcpy(text, "inf");
     return;
   }
 
-  /* The fewest digits that read back as the same double, as d.ddde±x. */
-  char digits[32];
-  for (int precision = 0; precision < 17; precision++) {
-    snprintf(digits, sizeof digits, "%.*e", precision, number);
-    if (strtod(digits, NULL) == number)
-      break;
-  }
-  char mantissa[24];
-  size_t count = 0, i = digits[0] == '-';
-  for (; digits[i] != 'e'; i++)
-    if (digits[i] != '.')
-      mantissa[count++] = digits[i];
-  const long exponent = strtol(digits + i + 1, NULL, 10) + (number == 0 ? 0 : ten);
-
-  char *to = text;
-  if (digits[0] == '-')
-    *to++ = '-';
-  if (exponent >= -5 && exponent < 0)
-    print_small(to, mantissa, count, exponent);
-  else if (exponent >= 0 && (exponent < 6 || (exponent < 9 && count > 4))) /* 5000, but 5e8 */
-    print_plain(to, mantissa, count, exponent);
-  else if (count == 1)
-    sprintf(to, "%ce%ld", mantissa[0], exponent);
+  struct digits d = shortest_digits(number);
+  if (number != 0)
+    d.exponent += ten;
+  if (d.exponent >= -5 && d.exponent < 0)
+    print_small(text, d.mantissa, d.count, d.exponent);
+  else if (is_plain(&d))
+    print_plain(text, d.mantissa, d.count, d.exponent);
+  else if (d.count == 1)
+    sprintf(text, "%ce%ld", d.mantissa[0], d.exponent);
   else
-    sprintf(to, "%c.%.*se%ld", mantissa[0], (int)count - 1, mantissa + 1, exponent);
+    sprintf(text, "%c.%.*se%ld", d.mantissa[0], (int)d.count - 1, d.mantissa + 1, d.exponent);
 }
 
 void field_print_number(double number, char text[32]) {
   print_shifted(number, 0, text);
 }
 
+static int print_real(const struct field *row, double number, char *buffer, size_t size) {
+  char text[32];
+  print_shifted(number, row->flags & FIELD_PERCENT ? 2 : 0, text); /* decimal shifts are exact in unit_read, too */
+  const char *unit = isnan(number) ? "" : field_shown_unit(row);
+  return snprintf(buffer, size, "%s%s%s", text, *unit ? " " : "", unit);
+}
+
+static int print_integer(const struct field *row, int64_t integer, char *buffer, size_t size) {
+  const char *unit = field_shown_unit(row);
+  return snprintf(buffer, size, "%" PRId64 "%s%s", integer, *unit ? " " : "", unit);
+}
+
+static const char *choice_name(const struct field *row, const struct field_value *value) {
+  if (value->text[0])
+    return value->text;
+  const size_t index = value->number >= 0 ? (size_t)value->number : 0;
+  return index < field_choice_count(row) ? row->choices[index] : "?";
+}
+
 int field_print(const struct field *row, const struct field_value *value, char *buffer, size_t size) {
-  const bool percent = row->flags & FIELD_PERCENT;
-  const char *unit = percent ? "%" : row->unit && strcmp(row->unit, "1") ? row->unit : "";
-  const char *space = *unit ? " " : "";
-  char number[32];
   switch (row->kind) {
-  case FIELD_REAL:
-    print_shifted(value->number, percent ? 2 : 0, number); /* decimal shifts are exact in unit_read, too */
-    if (isnan(value->number))
-      return snprintf(buffer, size, "%s", number);
-    return snprintf(buffer, size, "%s%s%s", number, space, unit);
-  case FIELD_INTEGER: return snprintf(buffer, size, "%" PRId64 "%s%s", value->integer, space, unit);
+  case FIELD_REAL: return print_real(row, value->number, buffer, size);
+  case FIELD_INTEGER: return print_integer(row, value->integer, buffer, size);
   case FIELD_BOOLEAN: return snprintf(buffer, size, "%s", value->number != 0 ? "true" : "false");
-  case FIELD_CHOICE: {
-    if (value->text[0])
-      return snprintf(buffer, size, "%s", value->text);
-    size_t index = value->number >= 0 ? (size_t)value->number : 0;
-    return snprintf(buffer, size, "%s", index < field_choice_count(row) ? row->choices[index] : "?");
-  }
+  case FIELD_CHOICE: return snprintf(buffer, size, "%s", choice_name(row, value));
   case FIELD_TEXT: return snprintf(buffer, size, "%s", value->text);
   }
   return 0;

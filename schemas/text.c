@@ -6,32 +6,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Lengths of sequences: what their first byte is, and the first character that needs so many bytes. */
+static const struct {
+  unsigned char mask, first;
+  uint32_t least;
+} utf8[] = {{0x80, 0x00, 0}, {0xE0, 0xC0, 0x80}, {0xF0, 0xE0, 0x800}, {0xF8, 0xF0, 0x10000}};
+enum { UTF8_LONGEST = sizeof utf8 / sizeof utf8[0] };
+
+/* What the first byte says; 0: it begins no sequence. */
 static size_t utf8_claimed_length(unsigned char first) {
-  if (first < 0x80)
-    return 1;
-  if (first >= 0xC2 && first < 0xE0)
-    return 2;
-  if (first >= 0xE0 && first < 0xF0)
-    return 3;
-  if (first >= 0xF0 && first < 0xF5)
-    return 4;
+  for (size_t length = 1; length <= UTF8_LONGEST; length++)
+    if ((first & utf8[length - 1].mask) == utf8[length - 1].first)
+      return length;
   return 0;
 }
 
+uint32_t text_utf8_character(const char *text, size_t length) {
+  uint32_t character = (unsigned char)text[0] & (unsigned char)~utf8[length - 1].mask;
+  for (size_t i = 1; i < length; i++)
+    character = character << 6 | ((unsigned char)text[i] & 0x3F);
+  return character;
+}
+
 size_t text_utf8_length(const char *text, size_t left) {
-  const unsigned char *byte = (const unsigned char *)text;
-  const size_t length = left ? utf8_claimed_length(byte[0]) : 0;
+  const size_t length = left ? utf8_claimed_length((unsigned char)text[0]) : 0;
   if (length == 0 || length > left)
     return 0;
 
   for (size_t i = 1; i < length; i++)
-    if ((byte[i] & 0xC0) != 0x80)
+    if (((unsigned char)text[i] & 0xC0) != 0x80)
       return 0;
 
-  const bool overlong = (byte[0] == 0xE0 && byte[1] < 0xA0) || (byte[0] == 0xF0 && byte[1] < 0x90);
-  const bool surrogate = byte[0] == 0xED && byte[1] > 0x9F;
-  const bool too_large = byte[0] == 0xF4 && byte[1] > 0x8F;
-  return overlong || surrogate || too_large ? 0 : length;
+  const uint32_t character = text_utf8_character(text, length);
+  const bool overlong = character < utf8[length - 1].least;
+  const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
+  return overlong || surrogate || character > 0x10FFFF ? 0 : length;
 }
 
 void text_json_string(const char *text, FILE *out) {
@@ -101,6 +110,10 @@ uint64_t text_hash(uint64_t hash, const void *bytes, size_t size) {
   return hash;
 }
 
+static size_t smaller(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
 size_t text_distance(const char *a, size_t length, const char *b) {
   size_t m = strlen(b), rows[3][TEXT_DISTANCE_LENGTH + 1];
   if (length > TEXT_DISTANCE_LENGTH || m > TEXT_DISTANCE_LENGTH)
@@ -111,14 +124,11 @@ size_t text_distance(const char *a, size_t length, const char *b) {
     size_t *row = rows[i % 3], *above = rows[(i + 2) % 3], *second = rows[(i + 1) % 3];
     row[0] = i;
     for (size_t j = 1; j <= m; j++) {
-      size_t best = above[j - 1] + (a[i - 1] != b[j - 1]);
-      if (above[j] + 1 < best)
-        best = above[j] + 1;
-      if (row[j - 1] + 1 < best)
-        best = row[j - 1] + 1;
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && second[j - 2] + 1 < best)
-        best = second[j - 2] + 1;
-      row[j] = best;
+      const size_t changed = above[j - 1] + (a[i - 1] != b[j - 1]);
+      row[j] = smaller(changed, smaller(above[j], row[j - 1]) + 1);
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped)
+        row[j] = smaller(row[j], second[j - 2] + 1);
     }
   }
   return rows[length % 3][m];

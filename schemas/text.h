@@ -11,6 +11,9 @@
  * overlong, surrogate, cut off or above U+10FFFF (RFC 3629, section 4). */
 size_t text_utf8_length(const char *text, size_t left);
 
+/* The character that a well-formed sequence of this length encodes. */
+uint32_t text_utf8_character(const char *text, size_t length);
+
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
 

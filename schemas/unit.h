@@ -8,12 +8,15 @@
 
 #include "schemas/status.h"
 
+/* The dimensions kg, m, s, K, rad, byte. The last two are kept apart so that "4 deg" is refused for a length or a plain
+ * number. */
+enum { UNIT_BASES = 6 };
+
 struct unit {
   double factor; /* 1 of this unit in SI: times / per * 10^ten */
   int ten;       /* kept apart so that "5 cm", "50 mm" and "0.05 m" become the same double: decimal shifts are exact */
   double times, per;
-  /* Exponents. rad and byte are kept apart so that "4 deg" is refused for a length or a plain number. */
-  signed char kg, m, s, K, rad, byte;
+  signed char power[UNIT_BASES];
 };
 
 /* Grammar: names joined by space, '*', '.', '/' with integer powers '^n' or '**n'; parentheses; SI prefixes, and
