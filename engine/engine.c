@@ -23,14 +23,10 @@ const struct engine_kind *engine_at(size_t index) {
 
 const struct engine_kind *engine_find(const char *name, struct error *error) {
   char list[256] = "";
-  size_t used = 0;
   for (size_t i = 0; i < engine_count(); i++) {
     if (strcmp(kinds[i]->name, name) == 0)
       return kinds[i];
-    if (used < sizeof list) {
-      int n = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", kinds[i]->name);
-      used += n > 0 ? (size_t)n : 0;
-    }
+    text_append(list, sizeof list, "%s%s", i ? ", " : "", kinds[i]->name);
   }
   status_fail(error, STATUS_CONTENT, "there is no engine '%.60s'; known are: %s", name, list);
   return NULL;

@@ -1,8 +1,9 @@
 /* The list of knobs. */
 #include "engine/knob.h"
 
-#include <stdio.h>
 #include <string.h>
+
+#include "schemas/text.h"
 
 const char *const knob_group_names[] = {"resolution", "part", "model", "settings"};
 
@@ -87,16 +88,14 @@ size_t knob_index(const struct knob *knob) {
 
 const struct knob *knob_find(const char *engine, const char *name, struct error *error) {
   char known[1024] = "";
-  size_t used = 0;
   for (size_t i = 0; i < knob_count(); i++) {
     if (strcmp(knobs[i].engine, engine) != 0)
       continue;
     if (strcmp(knobs[i].name, name) == 0)
       return &knobs[i];
-    if (used < sizeof known)
-      used += (size_t)snprintf(known + used, sizeof known - used, ", %s", knobs[i].name);
+    text_append(known, sizeof known, "%s%s", *known ? ", " : "", knobs[i].name);
   }
   status_fail(error, STATUS_USAGE, "engine %s has no knob '%.64s'; it has %s (`clast converge --list`)", engine, name,
-              known[0] ? known + 2 : "none");
+              *known ? known : "none");
   return NULL;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/text.h"
 
 enum { PATH_SIZE = 200 };
 
@@ -33,50 +34,29 @@ static document_node *create(struct builder *b, enum document_kind kind, const c
     b->failed = true;
     return NULL;
   }
-  document_node *node = calloc(1, sizeof *node + length + 1);
+  document_node *node = document_node_make(document, kind, text, length);
   if (!node) {
     b->failed = true;
     return NULL;
   }
-  node->document = document;
-  node->kind = kind;
   node->start = start;
   node->end = kind == DOCUMENT_SCALAR && end > start ? end : start + 1;
-  if (length)
-    memcpy(node->text, text, length);
-  node->next = document->nodes;
-  document->nodes = node;
-  document->node_count++;
   return node;
 }
 
 static void append(struct builder *b, document_node *to, document_node *key, document_node *value) {
-  if (to->count == to->capacity) {
-    size_t capacity = to->capacity ? 2 * to->capacity : 4;
-    struct document_pair *pairs = realloc(to->pairs, capacity * sizeof *pairs);
-    if (!pairs) {
-      b->failed = true;
-      return;
-    }
-    to->pairs = pairs;
-    to->capacity = capacity;
-  }
-  to->pairs[to->count++] = (struct document_pair){.key = key, .value = value};
-  value->parent = to;
-  value->key = key;
+  if (!document_node_append(to, key, value))
+    b->failed = true;
 }
 
 /* The path of what is being read now, such as "vary.grain.density[2]". */
 static const char *where(const struct builder *b, char path[PATH_SIZE]) {
-  size_t used = 0;
   *path = 0;
-  for (size_t i = 0; i < b->depth && used < PATH_SIZE; i++) {
-    int n = 0;
+  for (size_t i = 0; i < b->depth; i++) {
     if (b->open[i]->kind == DOCUMENT_SEQUENCE)
-      n = snprintf(path + used, PATH_SIZE - used, "[%zu]", b->open[i]->count);
+      text_append(path, PATH_SIZE, "[%zu]", b->open[i]->count);
     else if (b->key[i])
-      n = snprintf(path + used, PATH_SIZE - used, "%s%s", used ? "." : "", b->key[i]->text);
-    used += n > 0 ? (size_t)n : 0;
+      text_append(path, PATH_SIZE, "%s%s", *path ? "." : "", b->key[i]->text);
   }
   return path;
 }

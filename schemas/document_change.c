@@ -8,18 +8,11 @@
 /* ---- putting ---- */
 
 static document_node *create(struct document *document, enum document_kind kind, const char *text) {
-  const size_t length = strlen(text);
-  document_node *node = calloc(1, sizeof *node + length + 1);
+  document_node *node = document_node_make(document, kind, text, strlen(text));
   if (!node)
     return NULL;
-  node->document = document;
-  node->kind = kind;
   node->plain = true;
   node->put = true;
-  memcpy(node->text, text, length);
-  node->next = document->nodes;
-  document->nodes = node;
-  document->node_count++;
   return node;
 }
 
@@ -28,70 +21,53 @@ static bool set(document_node *mapping, const char *key, document_node *value) {
   document_node *name = create(mapping->document, DOCUMENT_SCALAR, key);
   if (!name)
     return false;
+  struct document_pair *pair = document_node_find(mapping, key);
+  if (!pair)
+    return document_node_append(mapping, name, value);
+  pair->key = name;
+  pair->value = value;
   value->parent = mapping;
   value->key = name;
-  for (size_t i = 0; i < mapping->count; i++)
-    if (strcmp(mapping->pairs[i].key->text, key) == 0) {
-      mapping->pairs[i].key = name;
-      mapping->pairs[i].value = value;
-      return true;
-    }
-  struct document_pair *pairs = realloc(mapping->pairs, (mapping->count + 1) * sizeof *pairs);
-  if (!pairs)
-    return false;
-  mapping->pairs = pairs;
-  mapping->capacity = mapping->count + 1;
-  pairs[mapping->count++] = (struct document_pair){.key = name, .value = value};
   return true;
 }
 
-static document_node *find(const document_node *mapping, const char *key) {
-  for (size_t i = 0; i < mapping->count; i++)
-    if (strcmp(mapping->pairs[i].key->text, key) == 0)
-      return mapping->pairs[i].value;
-  return NULL;
+/* The mapping at a key of the document: what is there, or a new one for nothing. NULL without memory. A value that is
+ * no mapping is returned, too. */
+static document_node *section_at(struct document *document, const char *key) {
+  const struct document_pair *pair = document_node_find(document->root, key);
+  if (pair && !document_value_is_null(pair->value)) /* "set:" with nothing behind it */
+    return pair->value;
+  document_node *section = create(document, DOCUMENT_MAPPING, "");
+  return section && set(document->root, key, section) ? section : NULL;
 }
 
 status document_change_put(struct document *document, const char *const keys[2], const char *value, const char *origin,
                            struct error *error) {
-  document_node *into = document->root, *scalar = NULL;
   if (!document->origin)
     document->origin = strdup(origin);
-  if (!document->origin)
-    goto no_memory;
-  if (keys[1]) {
-    into = find(document->root, keys[0]);
-    if (into && document_value_is_null(into)) /* "set:" with nothing behind it */
-      into = NULL;
-    if (into && into->kind != DOCUMENT_MAPPING)
-      return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so that `%.100s` of %s cannot be put into it",
-                         document->name, keys[0], keys[1], origin);
-    if (!into) {
-      into = create(document, DOCUMENT_MAPPING, "");
-      if (!into || !set(document->root, keys[0], into))
-        goto no_memory;
-    }
-  }
-  scalar = create(document, DOCUMENT_SCALAR, value);
-  if (!scalar || !set(into, keys[1] ? keys[1] : keys[0], scalar))
-    goto no_memory;
+  document_node *into = keys[1] ? section_at(document, keys[0]) : document->root;
+  if (into && into->kind != DOCUMENT_MAPPING)
+    return status_fail(error, STATUS_CONTENT, "%s: `%s` is no mapping, so that `%.100s` of %s cannot be put into it",
+                       document->name, keys[0], keys[1], origin);
+  document_node *scalar = create(document, DOCUMENT_SCALAR, value);
+  const char *key = keys[1] ? keys[1] : keys[0];
+  if (!document->origin || !into || !scalar || !set(into, key, scalar))
+    return status_fail(error, STATUS_MEMORY, "%s: no memory", document->name);
   document->changed = true;
   return STATUS_OK;
-no_memory:
-  return status_fail(error, STATUS_MEMORY, "%s: no memory", document->name);
 }
 
 /* ---- writing ---- */
 
 /* Plain text that means the same inside brackets: words, numbers with units. All else is quoted. */
+#define DIGITS  "0123456789"
+#define LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 static bool stays_plain(const char *text) {
-  static const char safe[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._%/^*()+-";
-  const char first = *text;
-  const bool sign = first == '-' || first == '+' || first == '.';
-  const bool begins = (first >= '0' && first <= '9') || (first >= 'a' && first <= 'z') ||
-                      (first >= 'A' && first <= 'Z') || (sign && text[1] >= '0' && text[1] <= '9');
-  const size_t length = strlen(text);
-  return begins && strspn(text, safe) == length && text[length - 1] != ' ';
+  const size_t length = strlen(text), sign = strspn(text, "-+.") == 1;
+  const char *first = sign ? DIGITS : DIGITS LETTERS;
+  if (length == sign || !strchr(first, text[sign]))
+    return false;
+  return strspn(text, DIGITS LETTERS " ._%/^*()+-") == length && text[length - 1] != ' ';
 }
 
 static void write_scalar(const document_node *node, FILE *out) {

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/text.h"
 
 enum { PATH_SIZE = 256 };
 
@@ -17,16 +18,10 @@ struct reading {
   } * places;
 };
 
-static bool listed(const char *word, const char *const *words) {
-  for (; words && *words; words++)
-    if (strcmp(word, *words) == 0)
-      return true;
-  return false;
-}
-
 /* The words allowed at this level, each once; malloc'd, the strings, too. */
 static char **siblings(const struct reading *r, const char *prefix) {
-  size_t length = strlen(prefix), count = 0, extra = 0;
+  const size_t length = strlen(prefix);
+  size_t count = 0, extra = 0;
   while (r->also && r->also[extra])
     extra++;
   char **words = calloc(r->table->count + extra + 1, sizeof *words);
@@ -37,13 +32,10 @@ static char **siblings(const struct reading *r, const char *prefix) {
     if (strncmp(path, prefix, length) != 0)
       continue;
     char *word = strndup(path + length, strcspn(path + length, "."));
-    bool known = !word;
-    for (size_t j = 0; j < count && !known; j++)
-      known = strcmp(words[j], word) == 0;
-    if (known)
-      free(word);
-    else
+    if (word && !text_is_one_of(word, (const char *const *)words))
       words[count++] = word;
+    else
+      free(word);
   }
   for (size_t i = 0; i < extra && length == 0; i++)
     if ((words[count] = strdup(r->also[i])) != NULL)
@@ -71,13 +63,16 @@ struct meaning {
   bool section;
 };
 
-static struct meaning meaning_of(const struct field_table *table, const char *path, size_t length) {
+/* `length` as snprintf returned it: a path that was cut means nothing. */
+static struct meaning meaning_of(const struct field_table *table, const char *path, int length) {
   struct meaning found = {0};
+  if (length <= 0 || length >= PATH_SIZE - 2)
+    return found;
   for (size_t k = 0; k < table->count && !found.row; k++) {
     const char *known = table->rows[k].path;
     if (strcmp(known, path) == 0)
       found.row = &table->rows[k];
-    else if (strncmp(known, path, length) == 0 && known[length] == '.')
+    else if (strncmp(known, path, (size_t)length) == 0 && known[length] == '.')
       found.section = true;
   }
   return found;
@@ -96,14 +91,14 @@ static void read_row(struct reading *r, const struct field *row, document_node *
 static void walk(struct reading *r, document_node *mapping, const char *prefix) {
   for (size_t i = 0; i < mapping->count; i++) {
     document_node *key = mapping->pairs[i].key, *node = mapping->pairs[i].value;
-    if (key->faulty || (!*prefix && listed(key->text, r->also)))
+    if (key->faulty || (!*prefix && text_is_one_of(key->text, r->also)))
       continue;
     mapping->pairs[i].seen = true;
 
     char path[PATH_SIZE];
     const int length = snprintf(path, sizeof path - 1, "%s%s", prefix, key->text);
-    const bool fits = length > 0 && length < PATH_SIZE - 2 && !strchr(key->text, '.');
-    const struct meaning meaning = fits ? meaning_of(r->table, path, (size_t)length) : (struct meaning){0};
+    const bool dotted = strchr(key->text, '.') != NULL; /* "a.b: 1" instead of a section a */
+    const struct meaning meaning = dotted ? (struct meaning){0} : meaning_of(r->table, path, length);
     if (meaning.row) {
       read_row(r, meaning.row, key, node);
     } else if (meaning.section && node->kind == DOCUMENT_MAPPING) {
@@ -123,13 +118,12 @@ static void walk(struct reading *r, document_node *mapping, const char *prefix) 
 static document_node *holder(document_node *mapping, const char *path) {
   for (;;) {
     size_t length = strcspn(path, ".");
-    document_node *next = NULL;
-    for (size_t i = 0; path[length] && i < mapping->count && !next; i++)
-      if (strncmp(mapping->pairs[i].key->text, path, length) == 0 && !mapping->pairs[i].key->text[length])
-        next = mapping->pairs[i].value;
-    if (!next || next->kind != DOCUMENT_MAPPING)
+    char key[PATH_SIZE];
+    snprintf(key, sizeof key, "%.*s", (int)length, path);
+    const struct document_pair *next = path[length] ? document_node_find(mapping, key) : NULL;
+    if (!next || next->value->kind != DOCUMENT_MAPPING)
       return mapping;
-    mapping = next;
+    mapping = next->value;
     path += length + 1;
   }
 }

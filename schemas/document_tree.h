@@ -52,6 +52,13 @@ struct document {
   bool si; /* numbers without a unit are in SI */
 };
 
+/* document_node.c. Makes a node that belongs to the document and stands nowhere in it; NULL without memory. */
+document_node *document_node_make(struct document *document, enum document_kind kind, const char *text, size_t length);
+/* Puts a value at the end of a list (key NULL) or mapping. False without memory. */
+bool document_node_append(document_node *to, document_node *key, document_node *value);
+/* The pair of a mapping with this key, faulty or not; NULL when there is none. */
+struct document_pair *document_node_find(const document_node *mapping, const char *key);
+
 /* Bytes that must never reach libfyaml or a terminal: NUL, invalid UTF-8, control characters, tabs as indentation.
  * False: an error was reported. */
 bool document_guard(struct document *document);

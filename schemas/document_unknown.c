@@ -8,14 +8,18 @@ enum { PATH_SIZE = 300, LIST_SIZE = 400 };
 
 /* "a, b, c", cut with "..." when it is too long. */
 static void write_list(const char *const *words, char list[LIST_SIZE]) {
-  size_t used = 0;
   *list = 0;
-  for (size_t i = 0; words && words[i] && used < LIST_SIZE; i++) {
-    int n = snprintf(list + used, LIST_SIZE - used, "%s%s", i ? ", " : "", words[i]);
-    used += n > 0 ? (size_t)n : 0;
-  }
-  if (used >= LIST_SIZE)
+  for (size_t i = 0; words && words[i]; i++)
+    text_append(list, LIST_SIZE, "%s%s", i ? ", " : "", words[i]);
+  if (strlen(list) == LIST_SIZE - 1)
     memcpy(list + LIST_SIZE - 4, "...", 4);
+}
+
+static const char *nearest(const char *typed, const char *const *known) {
+  struct text_guess guess = text_guess(typed);
+  for (size_t i = 0; known && known[i]; i++)
+    text_guess_offer(&guess, known[i]);
+  return guess.nearest;
 }
 
 void document_unknown_key(document_node *key, const char *path, const char *const *known, const char *elsewhere) {
@@ -26,22 +30,23 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
     document->error_count++;
     return;
   }
-  struct text_guess guess = text_guess(key->text);
-  for (size_t i = 0; known && known[i]; i++)
-    text_guess_offer(&guess, known[i]);
 
-  char whole[PATH_SIZE], list[LIST_SIZE];
-  snprintf(whole, sizeof whole, "%s%s%.100s", path ? path : "", path && *path ? "." : "", key->text);
+  char whole[PATH_SIZE] = "", list[LIST_SIZE];
+  if (path && *path)
+    text_append(whole, sizeof whole, "%s.", path);
+  text_append(whole, sizeof whole, "%.100s", key->text);
   write_list(known, list);
+  const char *near = nearest(key->text, known);
+  const bool dotted = !near && elsewhere && strcmp(elsewhere, key->text) == 0;
+  if (!near)
+    near = elsewhere;
   if (strcmp(key->text, "<<") == 0)
     document_report(key, whole, "merge keys are not part of YAML 1.2; write the keys out");
-  else if (guess.nearest)
-    document_report(key, whole, "unknown key; did you mean '%s'?", guess.nearest);
-  else if (elsewhere && strcmp(elsewhere, key->text) == 0)
+  else if (dotted)
     document_report(key, whole, "a path with dots; nest it: write '%.*s:' and the rest indented below it",
                     (int)strcspn(elsewhere, "."), elsewhere);
-  else if (elsewhere)
-    document_report(key, whole, "unknown key; did you mean '%s'?", elsewhere);
+  else if (near)
+    document_report(key, whole, "unknown key; did you mean '%s'?", near);
   else if (*list)
     document_report(key, whole, "unknown key; known here are %s", list);
   else
@@ -50,10 +55,8 @@ void document_unknown_key(document_node *key, const char *path, const char *cons
 
 void document_unknown_keys(document_node *mapping, const char *path, const char *const *known) {
   for (size_t i = 0; mapping->kind == DOCUMENT_MAPPING && i < mapping->count; i++) {
-    bool listed = mapping->pairs[i].seen;
-    for (size_t k = 0; known && known[k] && !listed; k++)
-      listed = strcmp(known[k], mapping->pairs[i].key->text) == 0;
-    if (!listed)
-      document_unknown_key(mapping->pairs[i].key, path, known, NULL);
+    const struct document_pair *pair = &mapping->pairs[i];
+    if (!pair->seen && !text_is_one_of(pair->key->text, known))
+      document_unknown_key(pair->key, path, known, NULL);
   }
 }

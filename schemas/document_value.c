@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "schemas/document_tree.h"
+#include "schemas/text.h"
 
 enum { LIST_SIZE = 400, PATH_SIZE = 256 };
 
@@ -14,17 +15,10 @@ const char *document_value_what(const document_node *node) {
   return "something else";
 }
 
-static bool any_of(const char *text, const char *const *words) {
-  for (; *words; words++)
-    if (strcmp(text, *words) == 0)
-      return true;
-  return false;
-}
-
 /* YAML 1.2.2, 10.3.2, the core schema: which plain scalars are null. */
 bool document_value_is_null(const document_node *node) {
   static const char *const nulls[] = {"", "~", "null", "Null", "NULL", NULL};
-  return node->kind == DOCUMENT_SCALAR && node->plain && any_of(node->text, nulls);
+  return node->kind == DOCUMENT_SCALAR && node->plain && text_is_one_of(node->text, nulls);
 }
 
 static void describe(const struct field *row, char *text, size_t size) {
@@ -39,18 +33,19 @@ static void describe(const struct field *row, char *text, size_t size) {
 
 const char *document_value_path(const document_node *node, char *path, size_t size) {
   const document_node *chain[DOCUMENT_DEEPEST + 1];
-  size_t depth = 0, used = 0;
+  size_t depth = 0;
   *path = 0;
   for (; node && node->parent && depth <= DOCUMENT_DEEPEST; node = node->parent)
     chain[depth++] = node;
-  while (depth-- > 0 && used < size) {
+  while (depth-- > 0) {
     const document_node *at = chain[depth];
     size_t index = 0;
     while (!at->key && at->parent->pairs[index].value != at)
       index++;
-    int n = at->key ? snprintf(path + used, size - used, "%s%s", used ? "." : "", at->key->text)
-                    : snprintf(path + used, size - used, "[%zu]", index);
-    used += n > 0 ? (size_t)n : 0;
+    if (at->key)
+      text_append(path, size, "%s%s", *path ? "." : "", at->key->text);
+    else
+      text_append(path, size, "[%zu]", index);
   }
   return path;
 }
@@ -72,19 +67,18 @@ static const char *own_spelling(const struct field *row, const char *text) {
   static const char *const yes[] = {"True", "TRUE", NULL}, *const no[] = {"False", "FALSE", NULL};
   if (row->kind != FIELD_BOOLEAN)
     return text;
-  if (any_of(text, yes))
+  if (text_is_one_of(text, yes))
     return "true";
-  return any_of(text, no) ? "false" : text;
+  return text_is_one_of(text, no) ? "false" : text;
 }
 
 static status read_value(const document_node *node, const struct field *row, struct field_value *value,
                          struct error *error) {
-  const bool null = document_value_is_null(node);
-  if (null || node->kind != DOCUMENT_SCALAR) {
+  const char *what = document_value_is_null(node) ? "nothing" : document_value_what(node);
+  if (document_value_is_null(node) || node->kind != DOCUMENT_SCALAR) {
     char expected[LIST_SIZE];
     describe(row, expected, sizeof expected);
-    return status_fail(error, STATUS_CONTENT, "expected %s, got %s", expected,
-                       null ? "nothing" : document_value_what(node));
+    return status_fail(error, STATUS_CONTENT, "expected %s, got %s", expected, what);
   }
   const bool unitless = !row->unit || strcmp(row->unit, "1") == 0;
   if (!node->plain && row->kind == FIELD_BOOLEAN)

@@ -45,14 +45,10 @@ void field_column_name(const char *path, char *name, size_t size) {
 
 /* The paths that end in a suffix, as "'a.x', 'b.x'". */
 static void list_paths(const struct field_table *table, const char *suffix, char *names, size_t size) {
-  size_t used = 0;
   *names = 0;
-  for (size_t i = 0; i < table->count && used < size; i++) {
-    if (!ends_with(table->rows[i].path, suffix))
-      continue;
-    int n = snprintf(names + used, size - used, "%s'%s'", used ? ", " : "", table->rows[i].path);
-    used += n > 0 ? (size_t)n : 0;
-  }
+  for (size_t i = 0; i < table->count; i++)
+    if (ends_with(table->rows[i].path, suffix))
+      text_append(names, size, "%s'%s'", *names ? ", " : "", table->rows[i].path);
 }
 
 static void fail_unknown(const struct field_table *table, const char *path, struct error *error) {

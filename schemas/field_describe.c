@@ -37,12 +37,10 @@ void field_describe_condition(const struct field *row, FILE *out) {
 }
 
 void field_describe_choices(const struct field *row, char *text, size_t size) {
-  size_t used = 0;
   *text = 0;
-  for (size_t i = 0; row->choices[i] && used < size; i++) {
+  for (size_t i = 0; row->choices[i]; i++) {
     const char *between = row->choices[i + 1] ? ", " : " or ";
-    int n = snprintf(text + used, size - used, "%s%s", i ? between : "", row->choices[i]);
-    used += n > 0 ? (size_t)n : 0;
+    text_append(text, size, "%s%s", i ? between : "", row->choices[i]);
   }
 }
 

@@ -1,6 +1,7 @@
 /* Small tools for text: UTF-8, JSON strings, paragraphs, a hash, guesses of names. */
 #include "schemas/text.h"
 
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -94,6 +95,21 @@ void text_wrap(const char *text, size_t at, size_t indent, size_t width, FILE *o
     column += word;
   }
   fputc('\n', out);
+}
+
+bool text_is_one_of(const char *text, const char *const *words) {
+  for (; words && *words; words++)
+    if (strcmp(text, *words) == 0)
+      return true;
+  return false;
+}
+
+void text_append(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text + used, size - used, format, arguments);
+  va_end(arguments);
 }
 
 void text_sentence(const char *doc, char *text, size_t size) {

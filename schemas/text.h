@@ -3,6 +3,7 @@
 #ifndef CLAST_SCHEMAS_TEXT_H
 #define CLAST_SCHEMAS_TEXT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -16,6 +17,12 @@ uint32_t text_utf8_character(const char *text, size_t length);
 
 /* Writes `text` as a JSON string with its quotes. Bytes that are not UTF-8 become U+FFFD. */
 void text_json_string(const char *text, FILE *out);
+
+/* Whether `text` is one of the words, which end with NULL. No list has no words. */
+bool text_is_one_of(const char *text, const char *const *words);
+
+/* Appends to `text`, which has room for `size` bytes; what does not fit is cut. */
+void text_append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /* The first sentence of `doc` without its full stop. */
 void text_sentence(const char *doc, char *text, size_t size);

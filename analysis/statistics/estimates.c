@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "schemas/text.h"
+
 const char *const estimates_window_names[] = {"from_2", "from_5", "from_10", NULL};
 static const char *const window_docs =
     "from 1.5 mean masses of an element (grain or particle). Of one run: without single elements. Of a point: by mass "
@@ -159,8 +161,7 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
   *window = (enum estimates_window)ESTIMATES_HEADLINE_WINDOW;
   if (!*is || strcmp(name, "beta") == 0)
     return STATUS_OK;
-  char all[512];
-  size_t used = 0;
+  char all[512] = "";
   for (int m = EXPONENT_LEAST_SQUARES; m <= EXPONENT_MASSES; m++)
     for (int w = 0; w < ESTIMATES_WINDOWS; w++) {
       char known[64];
@@ -169,8 +170,7 @@ status estimates_named(const char *name, bool *is, enum exponent_method *method,
       *window = (enum estimates_window)w;
       if (strcmp(name, known) == 0)
         return STATUS_OK;
-      if (used < sizeof all)
-        used += (size_t)snprintf(all + used, sizeof all - used, ", %s", known);
+      text_append(all, sizeof all, ", %s", known);
     }
   return status_fail(error, STATUS_USAGE,
                      "'%s' is no exponent that points have: give beta, or beta_METHOD_WINDOW, which is one of%s", name,
