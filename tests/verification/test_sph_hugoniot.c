@@ -12,7 +12,8 @@
  *
  * And a slow uniaxial compression through yield: slopes K + 4 mu/3, then K.
  *
- * CLAST_FULL=1: twice the length in particles. */
+ * CLAST_FULL=1: more of the length in particles, other lattices, 10 km/s, and the compression without the correction.
+ */
 #include "tests/support/sph_solid.h"
 
 static void jump_conditions(void **state) {
@@ -173,7 +174,13 @@ static void strong(void **state) {
   static const struct { double up, pressure; } cases[] = {{5000, 0.01}, {10000, 0.02}, {20000, 0.05}};
   const struct sph_material m = solid_aluminium();
   for (int k = 0; k < 3; k++) {
-    const struct shock s = drive(&m, cases[k].up, SOLID_SLOW ? 70 : 110, SPH_LATTICE_CUBIC, false, true);
+    if (k == 1 && !solid_full())
+      continue; /* between the two others */
+    const struct shock s = drive(&m, cases[k].up,
+                                 SOLID_SLOW     ? 70
+                                 : solid_full() ? 110
+                                                : 80,
+                                 SPH_LATTICE_CUBIC, false, true);
     const struct solid_jump want = solid_hugoniot(&m, cases[k].up);
     const double speed = s.speed / want.shock - 1, pressure = s.plateau.pressure / want.pressure - 1;
     print_message(
@@ -268,7 +275,8 @@ static void ramp(bool correction) {
 static void yield_ramp(void **state) {
   (void)state;
   ramp(true);
-  ramp(false);
+  if (solid_full())
+    ramp(false);
 }
 
 int main(void) {

@@ -1,7 +1,7 @@
 /* Scene porous-plate (T5): a piston drives a shock into porous aluminium without strength. What the run reports, and
  * what the engine says that it should be, against jump conditions solved apart from the engine (palpha_exact.h): front
- * speeds, the plateau behind the shock, the precursor, the energy; converging. By default 100 and 200 points along the
- * bar; with CLAST_FULL=1 200, 400 and 800. */
+ * speeds, the plateau behind the shock, the precursor, the energy; converging. By default a weak shock at 100 and 200
+ * points along the bar, and the fastest at 200; CLAST_FULL=1: four speeds, 200, 400 and 800 points. */
 #include "engine/sph/material/materials.h"
 #include "engine/sph/material/plane_shock.h"
 #include "palpha_exact.h"
@@ -84,6 +84,13 @@ static void slow_and_fast_pistons(void **state) {
 
 /* ---- the moving plate ---- */
 
+/* Under the sanitizers a run costs ten times as much: one of each kind is enough to see what they look for. */
+#ifdef __SANITIZE_ADDRESS__
+enum { SLOW = 1 };
+#else
+enum { SLOW = 0 };
+#endif
+
 static struct sph_results run(int points, double piston) {
   char along[40], speed[60];
   snprintf(along, sizeof along, "fidelity.points=%d", points);
@@ -110,19 +117,30 @@ static struct sph_results run(int points, double piston) {
   return r;
 }
 
+/* alpha of matter that was raised from rest to P and never had more. */
+static double exact_alpha(const struct exact_matter *m, double P) {
+  return P > m->P_e ? exact_crush(m, exact_alpha_e(m), P) : exact_elastic(m, P, exact_alpha_e(m));
+}
+
+/* Between a shock of 1000 m/s and the precursor, which is nearly as fast, 200 points leave nothing that is flat: the
+ * foot of the shock raises P above P_e by some 0.4 % there, and 0.4 % of P close pores by 3e-4 of alpha. */
+static bool precursor_is_flat(double piston, int points) {
+  return piston < 1000 || points >= 400;
+}
+
 /* Us 1 %, plateau 1 %, alpha 0.005, precursor 0.5 % and its pressure 1 %. P behind a weak shock follows rho with K/P =
- * 38 times its error. A shock of 1000 m/s is nearly as fast as the precursor: with 200 points what is flat between them
- * is three layers long, and the foot of the shock has begun to close pores there. */
+ * 38 times its error. At 1000 m/s 0.6 % of P: where matter slips between the piston's layers 200 points lose 0.86 %. */
 static void check(const struct sph_results *r, double piston, int points) {
   near(r->shock.speed, r->shock.speed_exact, 0.01, "Us");
   near(r->shock.density, r->shock.density_exact, points < 400 ? 0.002 : 0.001, "density behind the shock");
-  near(r->shock.pressure, r->shock.pressure_exact, 0.01, "pressure behind the shock");
+  near(r->shock.pressure, r->shock.pressure_exact, piston < 1000 ? 0.01 : 0.006, "pressure behind the shock");
   near(r->shock.distention, r->shock.distention_exact, 0.005 / r->shock.distention_exact, "alpha behind the shock");
   near(r->precursor.speed, r->precursor.speed_exact, 0.005, "precursor");
   near(r->precursor.pressure, r->precursor.pressure_exact, 0.01, "pressure of the precursor");
-  if (piston < 1000 || points >= 400)
-    near(r->precursor.distention, r->precursor.distention_exact, 1e-4,
-         "alpha of the precursor"); /* of 1.1e-3 that it changes */
+  const double on_curve = exact_alpha(&exact_porous_aluminium, r->precursor.pressure);
+  near(r->precursor.distention, on_curve, 1e-4, "alpha of the precursor at its pressure"); /* it changes by 1.1e-3 */
+  if (precursor_is_flat(piston, points))
+    near(r->precursor.distention, r->precursor.distention_exact, 1e-4, "alpha of the precursor");
 }
 
 /* Error of what only the curve decides: the weak shock leaves alpha = 1.0334. It falls with the spacing. */
@@ -133,20 +151,28 @@ static double precursor_error(const struct sph_results *r) {
   return fabs(r->precursor.speed - r->precursor.speed_exact);
 }
 
+static void other_speeds(int points) {
+  static const double full[] = {100, 458, 1000}, quick[] = {1000};
+  const double *piston = run_case_full() ? full : quick;
+  const size_t count = run_case_full() ? sizeof full / sizeof *full : sizeof quick / sizeof *quick;
+  for (size_t k = 0; k < count; k++) {
+    const struct sph_results other = run(points, piston[k]);
+    check(&other, piston[k], points);
+  }
+}
+
 static void all_speeds(void **state) {
   (void)state;
   struct sph_results coarse = run(100, 200);
+  if (SLOW)
+    return;
   for (int points = 200; points <= (run_case_full() ? 800 : 200); points *= 2) {
     const struct sph_results weak = run(points, 200);
     check(&weak, 200, points);
-    for (int k = 0; k < 3; k++) {
-      const double piston = (double[]){100, 458, 1000}[k];
-      const struct sph_results other = run(points, piston);
-      check(&other, piston, points);
-    }
     assert_true(weak_error(&weak) < 0.5 * weak_error(&coarse)); /* first order at least */
     assert_true(precursor_error(&weak) < 0.6 * precursor_error(&coarse));
     coarse = weak;
+    other_speeds(points);
   }
 }
 
