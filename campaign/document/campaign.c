@@ -1,16 +1,11 @@
-/* The keys of a campaign as field tables, and the reader of the document. */
+/* The keys of a campaign as field tables, and a campaign from a document. */
 #include "campaign/document/campaign.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "analysis/statistics/estimates.h"
-#include "campaign/design/design.h"
-#include "campaign/document/campaign_points.h"
-#include "campaign/document/campaign_vary.h"
-#include "campaign/document/campaign_walk.h"
-#include "db/store/place.h"
+#include "campaign/document/campaign_read.h"
 #include "engine/random.h"
 #include "schemas/document.h"
 
@@ -113,6 +108,13 @@ static const struct field design_rows[] = {
 const struct field_table campaign_design_table = FIELD_TABLE(design_rows, struct campaign_design_keys, "design",
                                                              "How points are made from the varied inputs.");
 
+const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row) {
+  for (size_t i = 0; i < campaign->axis_count; i++)
+    if (campaign->axes[i].row == row)
+      return &campaign->axes[i];
+  return NULL;
+}
+
 bool campaign_usable(const struct outcome *outcome) {
   return outcome_is_usable(outcome->state);
 }
@@ -150,221 +152,6 @@ double campaign_value(const struct field *row, bool of_outcome, const struct out
   return row->kind == FIELD_INTEGER ? (double)value.integer : value.number;
 }
 
-static void read_set(document_node *set, struct campaign *campaign) {
-  if (!set)
-    return;
-  if (document_kind(set) != DOCUMENT_MAPPING) {
-    document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
-    return;
-  }
-  for (size_t i = 0; i < document_count(set); i++) {
-    const char *key = NULL;
-    struct error error = {0};
-    document_node *node = document_item(set, i, &key);
-    struct field_value value;
-    char path[320];
-    snprintf(path, sizeof path, "set.%.300s", key ? key : "");
-    if (!key || document_kind(node) != DOCUMENT_SCALAR) {
-      document_report(node, path, "expected one value; several values belong in `vary`");
-      continue;
-    }
-    const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
-    if (row)
-      for (size_t j = 0; j < campaign->axis_count; j++)
-        if (campaign->axes[j].row == row) {
-          status_fail(&error, STATUS_CONTENT, "set here and varied in `vary`; leave one of them out");
-          row = NULL;
-          break;
-        }
-    if (!row)
-      document_report(node, path, "%s", error.message);
-    else if (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK)
-      document_report(node, path, "%s", error.message);
-  }
-}
-
-static void read_keep(document_node *keep, struct campaign *campaign) {
-  static const char *const expected = "expected {fields: none | all | extremes | first N}";
-  if (!keep)
-    return;
-  document_node *fields = document_kind(keep) == DOCUMENT_MAPPING ? document_key(keep, "fields") : NULL;
-  const char *text = fields ? document_scalar(fields) : NULL;
-  if (document_kind(keep) == DOCUMENT_MAPPING)
-    document_unknown_keys(keep, "keep", (const char *const[]){"fields", NULL});
-  if (!text) {
-    document_report(fields ? fields : keep, "keep", "%s", expected);
-    return;
-  }
-  char *end = NULL;
-  if (strcmp(text, "none") == 0)
-    campaign->keep = CAMPAIGN_KEEP_NONE;
-  else if (strcmp(text, "all") == 0)
-    campaign->keep = CAMPAIGN_KEEP_ALL;
-  else if (strcmp(text, "extremes") == 0)
-    campaign->keep = CAMPAIGN_KEEP_EXTREMES;
-  else if (strncmp(text, "first ", 6) == 0 && text[6] >= '1' && text[6] <= '9' && strlen(text + 6) < 10 &&
-           (campaign->keep_first = strtoll(text + 6, &end, 10)) > 0 && *end == '\0')
-    campaign->keep = CAMPAIGN_KEEP_FIRST;
-  else
-    document_report(fields, "keep.fields", "%s, got '%.80s'", expected, text);
-}
-
-static void read_design(document_node *design, struct campaign *campaign) {
-  field_defaults(&campaign_design_table, &campaign->design);
-  if (!design)
-    return;
-  if (document_kind(design) == DOCUMENT_MAPPING) {
-    document_read(design, &campaign_design_table, NULL, &campaign->design);
-    if (document_key(design, "file")) {
-      if (document_count(design) > 1)
-        document_report(design, "design", "a file is the list of points: leave the other keys of design out");
-      campaign->design.kind = CAMPAIGN_LIST;
-      campaign->design.points = 0;
-    }
-    return;
-  }
-  struct field row = design_rows[0];
-  row.path = "design";
-  struct field_value value;
-  if (document_value(design, &row, &value))
-    campaign->design.kind = (int)value.number;
-}
-
-static document_node *key_of(document_node *mapping, const char *key) {
-  return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
-}
-
-/* The union in `seeds`: a fixed number, or a rule with a maximum. */
-static void check_seeds(document_node *root, struct campaign *campaign) {
-  document_node *seeds = key_of(root, "seeds");
-  document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
-  if (until && per_point)
-    document_report(per_point, "seeds.per_point",
-                    "a fixed number and `until` exclude each other; leave one of them out");
-  if (max && !until)
-    document_report(max, "seeds.max", "only `until` has a maximum; a fixed number is per_point");
-  if (!until)
-    return;
-  campaign->per_point = 0;
-  if (!campaign->until_quantity[0])
-    memcpy(campaign->until_quantity, campaign->quantity, sizeof campaign->until_quantity);
-  if (!key_of(until, "half_width"))
-    document_report(until, "seeds.until", "'half_width' is missing: how narrow must the interval be?");
-  if (campaign->until_minimum > campaign->maximum)
-    document_report(max ? max : until, "seeds.max",
-                    "%lld replicates at most, but the first decision comes after %lld; raise max "
-                    "or lower until.minimum",
-                    (long long)campaign->maximum, (long long)campaign->until_minimum);
-}
-
-/* `accuracy` decides the seeds itself. */
-static void check_accuracy(document_node *root, struct campaign *campaign) {
-  document_node *accuracy = document_key(root, "accuracy"), *seeds = key_of(document_key(root, "seeds"), "per_point");
-  if (!campaign->accuracy_quantity[0])
-    memcpy(campaign->accuracy_quantity, campaign->quantity, sizeof campaign->accuracy_quantity);
-  if (!accuracy)
-    return;
-  if (!key_of(accuracy, "within"))
-    document_report(accuracy, "accuracy", "'within' is missing: how far may the result be off?");
-  if (seeds || key_of(document_key(root, "seeds"), "until"))
-    document_report(accuracy, "accuracy",
-                    "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "
-                    "out");
-}
-
-static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
-  struct error error;
-  bool of_outcome;
-  if (!campaign_quantity(campaign->scene->kind, name, &of_outcome, &error))
-    document_report(node, path, "%s", error.message);
-}
-
-/* A study of convergence knows exponents, too: they belong to a point, and have no mean over runs. */
-static void check_accuracy_quantity(document_node *node, const struct campaign *campaign) {
-  struct error error;
-  bool exponent;
-  enum exponent_method method;
-  enum estimates_window window;
-  if (estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
-    document_report(node, "accuracy.quantity", "%s", error.message);
-  else if (!exponent)
-    check_quantity(node, "accuracy.quantity", campaign->accuracy_quantity, campaign);
-}
-
-/* The varied inputs, from `vary` or from a file. */
-static bool read_axes(document_node *root, const char *folder, struct campaign *campaign) {
-  document_node *vary = document_key(root, "vary"), *file = key_of(document_key(root, "design"), "file");
-  if (!file)
-    return campaign_vary_read(vary, campaign);
-  if (vary)
-    document_report(vary, "vary", "the columns of design.file are what varies; leave vary out");
-  return campaign_points_read(file, folder, campaign) && !vary;
-}
-
-/* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. */
-static void check_points(document_node *root, struct campaign *campaign) {
-  enum { TRIED = 1000 };
-  struct error error = {0};
-  document_node *vary = document_key(root, "vary"), *where = document_key(root, "design");
-  document_node *node = vary ? vary : root;
-  struct campaign_walk walk;
-  const bool begun = campaign_walk_begin(&walk, campaign, &error) == STATUS_OK;
-  if (!begun)
-    document_report(where ? where : node, "design", "%s", error.message);
-  for (int i = 0; begun && i < TRIED && campaign_walk_next(&walk); i++) {
-    struct scene *scene = campaign_walk_scene(&walk, &error);
-    if (!scene && campaign->point_lines)
-      document_report(where, "design.file", "%s:%lld: %s", campaign->design.file, (long long)campaign->point_lines[i],
-                      error.message);
-    else if (!scene)
-      document_report(node, vary ? "vary" : "scene", "%s", error.message);
-    if (!scene)
-      break;
-    scene_free(scene);
-  }
-  campaign_walk_end(&walk);
-}
-
-static void read_all(document_node *root, const char *folder, struct campaign *campaign) {
-  static const char *const also[] = {"vary", "set", "design", "keep", NULL};
-  struct error error = {0};
-  field_defaults(&campaign_table, campaign);
-  bool plain = document_read(root, &campaign_table, also, campaign);
-  document_node *scene = document_key(root, "scene");
-  document_node *set = document_key(root, "set");
-  read_keep(document_key(root, "keep"), campaign);
-  read_design(document_key(root, "design"), campaign);
-  check_seeds(root, campaign);
-  check_accuracy(root, campaign);
-  if (!campaign->store[0] &&
-      snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
-    document_report(document_key(root, "name"), "name", "too long to name the store after it; give `store`");
-  if (!document_key(root, "store") && strchr(campaign->name, '/')) /* a name is no way to another folder */
-    document_report(document_key(root, "name"), "name",
-                    "\"%s\" has a slash, and the store would be in another folder; take it out, or give `store`",
-                    campaign->name);
-  if (campaign->store[0] && place_refused(campaign->store))
-    document_report(document_key(root, "store"), "store", "%s", place_refused(campaign->store));
-  if (!scene || !campaign->scene_reference[0])
-    return; /* document_read has reported it; nothing more can be read without it */
-  if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) != STATUS_OK) {
-    document_report(scene, "scene", "%s", error.message);
-    return;
-  }
-  bool varied = read_axes(root, folder, campaign);
-  read_set(set, campaign);
-  document_node *quantity = document_key(root, "quantity"), *until = key_of(key_of(root, "seeds"), "until");
-  document_node *accuracy_quantity = key_of(document_key(root, "accuracy"), "quantity");
-  if (accuracy_quantity)
-    check_accuracy_quantity(accuracy_quantity, campaign);
-  document_node *until_quantity = key_of(until, "quantity");
-  check_quantity(quantity ? quantity : scene, "quantity", campaign->quantity, campaign);
-  if (until_quantity)
-    check_quantity(until_quantity, "seeds.until.quantity", campaign->until_quantity, campaign);
-  if (plain && varied)
-    check_points(root, campaign);
-}
-
 /* The document for the store. The sum tells which points it stood for; another file of points is another campaign. */
 static char *text_for_store(const char *document, const struct campaign *campaign) {
   char *text = NULL;
@@ -388,7 +175,7 @@ static status from_document(struct document *document, const struct campaign_cha
   struct campaign *campaign = calloc(1, sizeof *campaign);
   if (!campaign)
     return status_fail(error, STATUS_MEMORY, "no memory for the campaign");
-  read_all(document_root(document), folder, campaign); /* its defaults clear the whole struct */
+  campaign_read(document_root(document), folder, campaign); /* its defaults clear the whole struct */
   char *changed = document_change_text(document);
   campaign->text = changed ? text_for_store(changed, campaign) : NULL;
   free(changed);

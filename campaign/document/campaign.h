@@ -82,6 +82,9 @@ status campaign_parse_stored(const char *name, const char *text, const char *fol
                              struct error *error);
 void campaign_free(struct campaign *campaign); /* NULL is fine */
 
+/* The axis of an input; NULL: it does not vary. */
+const struct design_axis *campaign_axis(const struct campaign *campaign, const struct field *row);
+
 /* Replicates of a point at least, and at most. Equal for per_point. */
 int64_t campaign_replicates_least(const struct campaign *campaign);
 int64_t campaign_replicates_most(const struct campaign *campaign);

@@ -1,4 +1,4 @@
-/* What the keys of a campaign with several forms mean. campaign.c and campaign_vary.c read them. */
+/* What the keys of a campaign with several forms mean. campaign_read.c and campaign_vary.c read them. */
 #include "campaign/document/campaign_keys.h"
 
 #include <string.h>

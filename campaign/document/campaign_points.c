@@ -87,9 +87,8 @@ static bool add_column(struct reading *r, int64_t line, char *cell) {
     return wrong(r, line, "%s", error.message);
   if (row->flags & FIELD_FILE)
     return wrong(r, line, "%s: a shape file cannot be varied: write a scene for each shape", row->path);
-  for (size_t i = 0; i < campaign->axis_count; i++)
-    if (campaign->axes[i].row == row)
-      return wrong(r, line, "two columns for %s", row->path);
+  if (campaign_axis(campaign, row))
+    return wrong(r, line, "two columns for %s", row->path);
   if (*r->units[campaign->axis_count] && row->kind != FIELD_REAL)
     return wrong(r, line, "%s has no unit; leave [%s] out", row->path, r->units[campaign->axis_count]);
   campaign->axes[campaign->axis_count++] = (struct design_axis){.row = row,

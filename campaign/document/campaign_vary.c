@@ -192,34 +192,22 @@ static bool read_lognormal(struct reading *r, document_node *node) {
   return good && read_truncation(r, true);
 }
 
-static bool read_linked(struct reading *r, document_node *node) {
+/* The values that go with those of the other input, one to one. */
+static bool read_linked_values(struct reading *r, document_node *values) {
+  if (document_kind(values) != DOCUMENT_SEQUENCE)
+    return wrong(r, values, "expected a list of values, one for each value of the input it follows");
+  const bool good = read_values(r, values);
   r->axis->kind = DESIGN_AXIS_LINKED;
-  struct error error;
-  const char *other = document_scalar(node);
-  const struct field *row = other ? field_find(r->campaign->scene->kind->inputs, other, &error) : NULL;
-  if (!row)
-    return wrong(r, node, other ? error.message : "expected the path of the varied input that this one follows");
-  r->axis->linked = SIZE_MAX; /* by name at first: the other input may stand later in the document */
-  for (size_t i = 0; i < r->campaign->axis_count; i++)
-    if (r->campaign->axes[i].row == row)
-      r->axis->linked = i;
-  if (r->axis->linked == SIZE_MAX || row == r->axis->row)
-    return wrong(r, node, "follows an input that is not varied; name one of the other keys of `vary`");
-  document_node *values = document_key(r->node, "values");
-  if (values) {
-    if (document_kind(values) != DOCUMENT_SEQUENCE)
-      return wrong(r, values, "expected a list of values, one for each value of the input it follows");
-    bool good = read_values(r, values);
-    r->axis->kind = DESIGN_AXIS_LINKED;
-    return good;
-  }
-  r->axis->a = 1;
-  struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
-  struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
+  return good;
+}
+
+/* factor times the other input, plus offset. */
+static bool read_line(struct reading *r) {
+  const struct field factor = number_row(r, "1", -HUGE_VAL, HUGE_VAL, 0);
+  const struct field offset = number_row(r, r->axis->row->unit, -HUGE_VAL, HUGE_VAL, own_percent(r));
   document_node *factor_node = document_key(r->node, "factor"), *offset_node = document_key(r->node, "offset");
   bool good = true;
-  if (!is_number(row) || !is_number(r->axis->row))
-    return wrong(r, node, "only numbers follow by factor and offset; give `values`");
+  r->axis->a = 1;
   if (factor_node)
     good &= read_number(r, factor_node, "factor", &factor, &r->axis->a);
   if (offset_node)
@@ -227,52 +215,88 @@ static bool read_linked(struct reading *r, document_node *node) {
   return good;
 }
 
+static bool read_linked(struct reading *r, document_node *node) {
+  struct error error;
+  const struct campaign *campaign = r->campaign;
+  const char *name = document_scalar(node);
+  const struct field *row = name ? field_find(campaign->scene->kind->inputs, name, &error) : NULL;
+  r->axis->kind = DESIGN_AXIS_LINKED;
+  if (!row)
+    return wrong(r, node, name ? error.message : "expected the path of the varied input that this one follows");
+  const struct design_axis *other = campaign_axis(campaign, row);
+  if (!other || other == r->axis)
+    return wrong(r, node, "follows an input that is not varied; name one of the other keys of `vary`");
+  r->axis->linked = (size_t)(other - campaign->axes);
+  document_node *values = document_key(r->node, "values");
+  if (values)
+    return read_linked_values(r, values);
+  if (!is_number(row) || !is_number(r->axis->row))
+    return wrong(r, node, "only numbers follow by factor and offset; give `values`");
+  return read_line(r);
+}
+
+static bool read_spaced_form(struct reading *r, document_node *from) {
+  double a = 0, b = 0;
+  document_node *to = document_key(r->node, "to");
+  if (!to)
+    return wrong(r, NULL, "'to' is missing");
+  return read_own(r, from, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
+}
+
+static bool read_logarithmic_form(struct reading *r, document_node *pair) {
+  double a = 0, b = 0;
+  return read_pair(r, pair, true, &a, &b) && read_spaced(r, a, b, true);
+}
+
+static bool read_uniform(struct reading *r, document_node *pair) {
+  r->axis->kind = DESIGN_AXIS_UNIFORM;
+  return read_pair(r, pair, false, &r->axis->a, &r->axis->b);
+}
+
+static bool read_log_uniform(struct reading *r, document_node *pair) {
+  r->axis->kind = DESIGN_AXIS_LOG_UNIFORM;
+  return read_pair(r, pair, true, &r->axis->a, &r->axis->b);
+}
+
 /* The forms that are mappings: the first key tells which form it is. */
-static bool read_form(struct reading *r) {
-  enum form { SPACED, SPACED_LOG, UNIFORM, UNIFORM_LOG, NORMAL, LOGNORMAL, LINKED, FORMS } form = FORMS;
-  static const char *const keys[FORMS][5] = {[SPACED] = {"from", "to", "n"},
-                                             [SPACED_LOG] = {"log", "n"},
-                                             [UNIFORM] = {"uniform"},
-                                             [UNIFORM_LOG] = {"log_uniform"},
-                                             [NORMAL] = {"normal", "truncated"},
-                                             [LOGNORMAL] = {"lognormal", "truncated"},
-                                             [LINKED] = {"linked", "factor", "offset", "values"}};
-  int found = 0;
-  document_node *node = NULL;
-  for (enum form i = SPACED; i < FORMS; i++) {
-    document_node *here = document_key(r->node, keys[i][0]);
-    if (here) {
-      form = i;
-      node = here;
-      found++;
-    }
+static const struct form {
+  const char *keys[5];
+  bool (*read)(struct reading *r, document_node *first);
+} forms[] = {
+    {{"from", "to", "n"}, read_spaced_form},
+    {{"log", "n"}, read_logarithmic_form},
+    {{"uniform"}, read_uniform},
+    {{"log_uniform"}, read_log_uniform},
+    {{"normal", "truncated"}, read_normal},
+    {{"lognormal", "truncated"}, read_lognormal},
+    {{"linked", "factor", "offset", "values"}, read_linked},
+};
+
+/* NULL: the mapping has no first key of a form, or several. */
+static const struct form *find_form(const struct reading *r) {
+  const struct form *found = NULL;
+  for (size_t i = 0; i < sizeof forms / sizeof forms[0]; i++) {
+    if (!document_key(r->node, forms[i].keys[0]))
+      continue;
+    if (found)
+      return NULL;
+    found = &forms[i];
   }
-  if (found != 1)
+  return found;
+}
+
+static bool read_form(struct reading *r) {
+  const struct form *form = find_form(r);
+  if (!form)
     return wrong(r, NULL,
                  "expected one of {from, to, n}, {log: [a, b], n}, {uniform: [a, b]}, {log_uniform: [a, b]}, {normal: "
                  "{mean, sd}}, {lognormal: {median, sigma}}, {linked: path}");
-  for (int k = 0; keys[form][k]; k++)
-    document_key(r->node, keys[form][k]); /* marks the keys as known, wherever the reading below may end */
-  document_unknown_keys(r->node, r->path, keys[form]);
-  if (form != LINKED && !is_number(r->axis->row))
+  for (int k = 0; form->keys[k]; k++)
+    document_key(r->node, form->keys[k]); /* marks the keys as known, wherever the reading below may end */
+  document_unknown_keys(r->node, r->path, form->keys);
+  if (form->read != read_linked && !is_number(r->axis->row))
     return wrong(r, NULL, "this input is no number: give a list of its values");
-  double a = 0, b = 0;
-  switch (form) {
-  case SPACED: {
-    document_node *to = document_key(r->node, "to");
-    if (!to)
-      return wrong(r, NULL, "'to' is missing");
-    return read_own(r, node, &a) && read_own(r, to, &b) && read_spaced(r, a, b, false);
-  }
-  case SPACED_LOG: return read_pair(r, node, true, &a, &b) && read_spaced(r, a, b, true);
-  case UNIFORM:
-  case UNIFORM_LOG:
-    r->axis->kind = form == UNIFORM ? DESIGN_AXIS_UNIFORM : DESIGN_AXIS_LOG_UNIFORM;
-    return read_pair(r, node, form == UNIFORM_LOG, &r->axis->a, &r->axis->b);
-  case NORMAL: return read_normal(r, node);
-  case LOGNORMAL: return read_lognormal(r, node);
-  default: return read_linked(r, node);
-  }
+  return form->read(r, document_key(r->node, form->keys[0]));
 }
 
 static bool read_axis(struct reading *r) {
@@ -302,6 +326,37 @@ static bool check_links(struct reading *readings, struct campaign *campaign) {
   return true;
 }
 
+/* Finds the input of the index-th key and makes its axis. */
+static bool begin_axis(struct reading *readings, size_t index, document_node *vary, struct campaign *campaign) {
+  const char *key = NULL;
+  struct error error = {0};
+  struct reading *r = &readings[index];
+  r->node = document_item(vary, index, &key);
+  r->campaign = campaign;
+  r->axis = &campaign->axes[index];
+  snprintf(r->path, sizeof r->path, "vary.%.300s", key ? key : "");
+  const struct field *row = key ? field_find(campaign->scene->kind->inputs, key, &error) : NULL;
+  if (!row)
+    return wrong(r, NULL, key ? error.message : "expected a path");
+  const struct design_axis *same = campaign_axis(campaign, row);
+  *r->axis = (struct design_axis){.row = row, .lower = -HUGE_VAL, .upper = HUGE_VAL};
+  campaign->axis_count = index + 1;
+  if (same)
+    document_report(r->node, r->path, "the same input as %s", readings[same - campaign->axes].path);
+  return !same;
+}
+
+/* The rows of all axes first, so that links work in any order. */
+static bool read_axes(struct reading *readings, size_t count, document_node *vary, struct campaign *campaign) {
+  for (size_t i = 0; i < count; i++)
+    if (!begin_axis(readings, i, vary, campaign))
+      return false;
+  bool good = true;
+  for (size_t i = 0; i < count; i++)
+    good &= read_axis(&readings[i]);
+  return good && check_links(readings, campaign);
+}
+
 bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
   if (!vary)
     return true;
@@ -309,38 +364,14 @@ bool campaign_vary_read(document_node *vary, struct campaign *campaign) {
     document_report(vary, "vary", "expected a mapping of paths to values, e.g. threshold.strain: [1 %%, 3 %%]");
     return false;
   }
-  size_t count = document_count(vary);
+  const size_t count = document_count(vary);
+  bool good = false;
   struct reading *readings = calloc(count + 1, sizeof *readings);
   campaign->axes = calloc(count + 1, sizeof *campaign->axes);
-  bool good = readings && campaign->axes;
-  if (!good)
+  if (readings && campaign->axes)
+    good = read_axes(readings, count, vary, campaign);
+  else
     document_report(vary, "vary", "no memory");
-  for (size_t i = 0; good && i < count; i++) { /* the rows of all axes first, so that links work in any order */
-    const char *key = NULL;
-    struct error error = {0};
-    readings[i].node = document_item(vary, i, &key);
-    readings[i].campaign = campaign;
-    readings[i].axis = &campaign->axes[i];
-    snprintf(readings[i].path, sizeof readings[i].path, "vary.%.300s", key ? key : "");
-    const struct field *row = key ? field_find(campaign->scene->kind->inputs, key, &error) : NULL;
-    if (!row) {
-      document_report(readings[i].node, readings[i].path, "%s", key ? error.message : "expected a path");
-      good = false;
-      continue;
-    }
-    for (size_t j = 0; j < i; j++)
-      if (campaign->axes[j].row == row) {
-        document_report(readings[i].node, readings[i].path, "the same input as %s", readings[j].path);
-        good = false;
-      }
-    campaign->axes[i] = (struct design_axis){.row = row, .lower = -HUGE_VAL, .upper = HUGE_VAL};
-    campaign->axis_count = i + 1;
-  }
-  bool rows = good;
-  for (size_t i = 0; rows && i < count; i++)
-    good &= read_axis(&readings[i]);
-  if (good)
-    good = check_links(readings, campaign);
   free(readings);
   return good;
 }

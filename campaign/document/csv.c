@@ -54,25 +54,35 @@ static bool blank(char c) {
   return c == ' ' || c == '\t';
 }
 
+static void skip_blanks(struct csv *csv) {
+  while (csv->text < csv->end && blank(*csv->text))
+    csv->text++;
+}
+
+static bool ends_cell(const struct csv *csv) {
+  return ends_line(csv) || *csv->text == ',';
+}
+
+/* Blanks at the end do not belong to it. */
+static bool plain(struct csv *csv, char cell[CSV_CELL], size_t *length) {
+  while (!ends_cell(csv))
+    if (!put(csv, cell, length))
+      return false;
+  while (*length > 0 && blank(cell[*length - 1]))
+    (*length)--;
+  return true;
+}
+
 bool csv_cell(struct csv *csv, char cell[CSV_CELL], bool *last) {
   size_t length = 0;
   csv->wrong = NULL;
-  while (csv->text < csv->end && blank(*csv->text))
-    csv->text++;
-  if (csv->text < csv->end && *csv->text == '"') {
-    if (!quoted(csv, cell, &length))
-      return false;
-    while (csv->text < csv->end && blank(*csv->text))
-      csv->text++;
-    if (!ends_line(csv) && *csv->text != ',')
-      return fail(csv, "text after a closing double quote");
-  } else {
-    while (!ends_line(csv) && *csv->text != ',')
-      if (!put(csv, cell, &length))
-        return false;
-    while (length > 0 && blank(cell[length - 1]))
-      length--;
-  }
+  skip_blanks(csv);
+  const bool in_quotes = csv->text < csv->end && *csv->text == '"';
+  if (!(in_quotes ? quoted : plain)(csv, cell, &length))
+    return false;
+  skip_blanks(csv);
+  if (!ends_cell(csv))
+    return fail(csv, "text after a closing double quote");
   cell[length] = '\0';
   *last = ends_line(csv);
   if (*last)

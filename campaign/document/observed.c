@@ -113,6 +113,18 @@ static bool read_number(document_node *mapping, int which, const struct observed
   return true;
 }
 
+/* `share` belongs to the quantities that count fragments above a mass. */
+static void read_share(document_node *node, struct observed_datum *datum) {
+  document_node *share = document_key(node, "share");
+  const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
+  if (above && !read_number(node, SHARE, datum, &datum->share) && !share)
+    document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body",
+                    datum->quantity);
+  if (!above && share)
+    document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
+  datum->ask.share = datum->share;
+}
+
 static void read_datum(struct reading *r, document_node *node) {
   static const char *const known[] = {"quantity", "value", "error", "resolution", "share", NULL};
   if (document_kind(node) != DOCUMENT_MAPPING) {
@@ -120,7 +132,7 @@ static void read_datum(struct reading *r, document_node *node) {
     return;
   }
   struct observed_datum *datum = add_datum(r, node);
-  document_node *quantity = document_key(node, "quantity"), *share = document_key(node, "share");
+  document_node *quantity = document_key(node, "quantity");
   const char *name = quantity ? document_scalar(quantity) : NULL;
   document_unknown_keys(node, "measured", known);
   if (!name)
@@ -134,12 +146,7 @@ static void read_datum(struct reading *r, document_node *node) {
     document_report(node, "measured", "'value' is missing: what was measured?");
   read_number(node, ERROR, datum, &datum->error);
   read_number(node, RESOLUTION, datum, &datum->resolution);
-  const bool above = datum->ask.kind == ASK_SPECIMENS_COUNT || datum->ask.kind == ASK_SPECIMENS_SHARE;
-  if (above && !read_number(node, SHARE, datum, &datum->share) && !share)
-    document_report(node, "measured", "%s needs 'share': fragments heavier than this share of the body", name);
-  if (!above && share)
-    document_report(share, "share", "only " COUNT_ABOVE " and " SHARE_ABOVE " have a share");
-  datum->ask.share = datum->share;
+  read_share(node, datum);
 }
 
 static void read_data(struct reading *r, document_node *list) {
@@ -185,50 +192,64 @@ static void take_masses(struct reading *r, document_node *node, size_t count, do
   }
 }
 
+/* All masses of the list and their sum. False: one was reported. */
+static bool read_masses(document_node *list, const struct field *row, double *masses, double *sum) {
+  struct field_value mass;
+  *sum = 0;
+  for (size_t i = 0; i < document_count(list); i++) {
+    if (!document_value(document_item(list, i, NULL), row, &mass))
+      return false;
+    *sum += masses[i] = mass.number;
+  }
+  return true;
+}
+
+/* The keys of `fragments`. */
+struct fragments {
+  document_node *masses, *total, *complete;
+};
+
+static void read_fragment_list(struct reading *r, const struct fragments *from, double *masses) {
+  const struct field row = {.path = "masses",
+                            .kind = FIELD_REAL,
+                            .unit = "kg",
+                            .maximum = HUGE_VAL,
+                            .flags = FIELD_ABOVE_MINIMUM};
+  struct field_value total, complete;
+  double sum;
+  if (!document_value(from->total, &row, &total) || !document_value(from->complete, &row, &complete) ||
+      !read_masses(from->masses, &row, masses, &sum))
+    return;
+  if (sum > 1.02 * total.number)
+    document_report(from->masses, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum,
+                    total.number);
+  else
+    take_masses(r, from->masses, document_count(from->masses), masses, total.number, complete.number);
+}
+
 static void read_fragments(struct reading *r, document_node *node) {
   static const char *const known[] = {"total", "complete", "masses", NULL};
-  struct field row = {.path = "masses",
-                      .kind = FIELD_REAL,
-                      .unit = "kg",
-                      .maximum = HUGE_VAL,
-                      .flags = FIELD_ABOVE_MINIMUM};
   if (!node)
     return;
-  document_node *list = document_kind(node) == DOCUMENT_MAPPING ? document_key(node, "masses") : NULL;
-  document_node *total_node = list ? document_key(node, "total") : NULL;
-  document_node *complete_node = list ? document_key(node, "complete") : NULL;
-  struct field_value total, complete, mass;
-  if (!list || !total_node || !complete_node || document_kind(list) != DOCUMENT_SEQUENCE || document_count(list) == 0) {
+  struct fragments from = {NULL, NULL, NULL};
+  if (document_kind(node) == DOCUMENT_MAPPING)
+    from = (struct fragments){document_key(node, "masses"), document_key(node, "total"),
+                              document_key(node, "complete")};
+  if (!from.masses || !from.total || !from.complete || document_kind(from.masses) != DOCUMENT_SEQUENCE ||
+      document_count(from.masses) == 0) {
     document_report(node, "fragments",
                     "expected {total: mass of the body, complete: mass from which on every fragment is in the list, "
                     "masses: [...]}");
     return;
   }
   document_unknown_keys(node, "fragments", known);
-  const size_t count = document_count(list);
-  double *masses = calloc(count, sizeof *masses), sum = 0;
-  bool good = masses && document_value(total_node, &row, &total) && document_value(complete_node, &row, &complete);
-  for (size_t i = 0; good && i < count; i++) {
-    good = document_value(document_item(list, i, NULL), &row, &mass);
-    sum += masses[i] = mass.number;
-  }
-  if (good && sum > 1.02 * total.number) {
-    document_report(list, "masses", "the fragments weigh %.4g kg together, the body %.4g kg", sum, total.number);
-    good = false;
-  }
-  if (good)
-    take_masses(r, list, count, masses, total.number, complete.number);
+  double *masses = calloc(document_count(from.masses), sizeof *masses);
+  if (masses)
+    read_fragment_list(r, &from, masses);
   free(masses);
 }
 
 /* ---- shots ---- */
-
-static bool is_varied(const struct campaign *campaign, const struct field *row) {
-  for (size_t i = 0; i < campaign->axis_count; i++)
-    if (campaign->axes[i].row == row)
-      return true;
-  return false;
-}
 
 static void read_set(struct reading *r, document_node *set, struct scene *scene) {
   if (!set)
@@ -247,7 +268,7 @@ static void read_set(struct reading *r, document_node *set, struct scene *scene)
     const struct field *row = key ? field_find(scene->kind->inputs, key, &error) : NULL;
     if (!key || !text)
       document_report(node, path, "expected one value");
-    else if (row && is_varied(r->campaign, row))
+    else if (row && campaign_axis(r->campaign, row))
       document_report(node, path, "known here and unknown in the campaign (`vary`); leave one of them out");
     else if (!row || scene_set_text(scene, key, text, &error) != STATUS_OK)
       document_report(node, path, "%s", error.message);

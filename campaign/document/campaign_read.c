@@ -1,0 +1,263 @@
+/* Reads the document of a campaign: the plain keys by their rows, the keys of several forms by hand. */
+#include "campaign/document/campaign_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "analysis/statistics/estimates.h"
+#include "campaign/document/campaign_points.h"
+#include "campaign/document/campaign_vary.h"
+#include "campaign/document/campaign_walk.h"
+#include "db/store/place.h"
+
+static document_node *key_of(document_node *mapping, const char *key) {
+  return mapping && document_kind(mapping) == DOCUMENT_MAPPING ? document_key(mapping, key) : NULL;
+}
+
+/* One entry of `set`. `path` is where it stands in the document. */
+static void read_set_value(document_node *node, const char *key, const char *path, struct campaign *campaign) {
+  struct error error = {0};
+  struct field_value value;
+  if (!key || document_kind(node) != DOCUMENT_SCALAR) {
+    document_report(node, path, "expected one value; several values belong in `vary`");
+    return;
+  }
+  const struct field *row = field_find(campaign->scene->kind->inputs, key, &error);
+  if (!row) {
+    document_report(node, path, "%s", error.message);
+    return;
+  }
+  if (campaign_axis(campaign, row)) {
+    document_report(node, path, "set here and varied in `vary`; leave one of them out");
+    return;
+  }
+  if (document_value(node, row, &value) && scene_set(campaign->scene, row->path, &value, &error) != STATUS_OK)
+    document_report(node, path, "%s", error.message);
+}
+
+static void read_set(document_node *set, struct campaign *campaign) {
+  if (!set)
+    return;
+  if (document_kind(set) != DOCUMENT_MAPPING) {
+    document_report(set, "set", "expected a mapping of paths to values, e.g. contact.friction: 0.2");
+    return;
+  }
+  for (size_t i = 0; i < document_count(set); i++) {
+    const char *key = NULL;
+    char path[320];
+    document_node *node = document_item(set, i, &key);
+    snprintf(path, sizeof path, "set.%.300s", key ? key : "");
+    read_set_value(node, key, path, campaign);
+  }
+}
+
+/* "first 12": a number from 1 without sign or blanks, of up to 9 digits. 0: it is none. */
+static int64_t first_of(const char *text) {
+  char *end = NULL;
+  if (strncmp(text, "first ", 6) != 0 || text[6] < '1' || text[6] > '9' || strlen(text + 6) >= 10)
+    return 0;
+  const int64_t count = strtoll(text + 6, &end, 10);
+  return *end ? 0 : count;
+}
+
+static void read_keep(document_node *keep, struct campaign *campaign) {
+  static const char *const names[] =
+      {[CAMPAIGN_KEEP_NONE] = "none", [CAMPAIGN_KEEP_ALL] = "all", [CAMPAIGN_KEEP_EXTREMES] = "extremes"};
+  static const char expected[] = "expected {fields: none | all | extremes | first N}";
+  document_node *fields = key_of(keep, "fields");
+  const char *text = fields ? document_scalar(fields) : NULL;
+  if (!keep)
+    return;
+  if (document_kind(keep) == DOCUMENT_MAPPING)
+    document_unknown_keys(keep, "keep", (const char *const[]){"fields", NULL});
+  if (!text) {
+    document_report(fields ? fields : keep, "keep", "%s", expected);
+    return;
+  }
+  for (int i = 0; i < (int)(sizeof names / sizeof names[0]); i++)
+    if (strcmp(text, names[i]) == 0) {
+      campaign->keep = i;
+      return;
+    }
+  campaign->keep = CAMPAIGN_KEEP_FIRST;
+  campaign->keep_first = first_of(text);
+  if (campaign->keep_first == 0)
+    document_report(fields, "keep.fields", "%s, got '%.80s'", expected, text);
+}
+
+static void read_design(document_node *design, struct campaign *campaign) {
+  field_defaults(&campaign_design_table, &campaign->design);
+  if (!design)
+    return;
+  if (document_kind(design) == DOCUMENT_MAPPING) {
+    document_read(design, &campaign_design_table, NULL, &campaign->design);
+    if (document_key(design, "file")) {
+      if (document_count(design) > 1)
+        document_report(design, "design", "a file is the list of points: leave the other keys of design out");
+      campaign->design.kind = CAMPAIGN_LIST;
+      campaign->design.points = 0;
+    }
+    return;
+  }
+  struct field row = campaign_design_table.rows[0]; /* kind */
+  row.path = "design";
+  struct field_value value;
+  if (document_value(design, &row, &value))
+    campaign->design.kind = (int)value.number;
+}
+
+/* The union in `seeds`: a fixed number, or a rule with a maximum. */
+static void check_seeds(document_node *root, struct campaign *campaign) {
+  document_node *seeds = key_of(root, "seeds");
+  document_node *until = key_of(seeds, "until"), *per_point = key_of(seeds, "per_point"), *max = key_of(seeds, "max");
+  if (until && per_point)
+    document_report(per_point, "seeds.per_point",
+                    "a fixed number and `until` exclude each other; leave one of them out");
+  if (max && !until)
+    document_report(max, "seeds.max", "only `until` has a maximum; a fixed number is per_point");
+  if (!until)
+    return;
+  campaign->per_point = 0;
+  if (!campaign->until_quantity[0])
+    memcpy(campaign->until_quantity, campaign->quantity, sizeof campaign->until_quantity);
+  if (!key_of(until, "half_width"))
+    document_report(until, "seeds.until", "'half_width' is missing: how narrow must the interval be?");
+  if (campaign->until_minimum > campaign->maximum)
+    document_report(max ? max : until, "seeds.max",
+                    "%lld replicates at most, but the first decision comes after %lld; raise max "
+                    "or lower until.minimum",
+                    (long long)campaign->maximum, (long long)campaign->until_minimum);
+}
+
+/* `accuracy` decides the seeds itself. */
+static void check_accuracy(document_node *root, struct campaign *campaign) {
+  document_node *accuracy = document_key(root, "accuracy"), *seeds = key_of(document_key(root, "seeds"), "per_point");
+  if (!campaign->accuracy_quantity[0])
+    memcpy(campaign->accuracy_quantity, campaign->quantity, sizeof campaign->accuracy_quantity);
+  if (!accuracy)
+    return;
+  if (!key_of(accuracy, "within"))
+    document_report(accuracy, "accuracy", "'within' is missing: how far may the result be off?");
+  if (seeds || key_of(document_key(root, "seeds"), "until"))
+    document_report(accuracy, "accuracy",
+                    "accuracy finds the number of seeds; leave seeds.per_point and seeds.until "
+                    "out");
+}
+
+static void check_quantity(document_node *node, const char *path, const char *name, const struct campaign *campaign) {
+  struct error error;
+  bool of_outcome;
+  if (!campaign_quantity(campaign->scene->kind, name, &of_outcome, &error))
+    document_report(node, path, "%s", error.message);
+}
+
+/* A study of convergence knows exponents, too: they belong to a point, and have no mean over runs. */
+static void check_accuracy_quantity(document_node *node, const struct campaign *campaign) {
+  struct error error;
+  bool exponent;
+  enum exponent_method method;
+  enum estimates_window window;
+  if (estimates_named(campaign->accuracy_quantity, &exponent, &method, &window, &error) != STATUS_OK)
+    document_report(node, "accuracy.quantity", "%s", error.message);
+  else if (!exponent)
+    check_quantity(node, "accuracy.quantity", campaign->accuracy_quantity, campaign);
+}
+
+static void check_quantities(document_node *root, const struct campaign *campaign) {
+  document_node *quantity = document_key(root, "quantity");
+  document_node *until = key_of(key_of(key_of(root, "seeds"), "until"), "quantity");
+  document_node *accuracy = key_of(document_key(root, "accuracy"), "quantity");
+  if (accuracy)
+    check_accuracy_quantity(accuracy, campaign);
+  check_quantity(quantity ? quantity : document_key(root, "scene"), "quantity", campaign->quantity, campaign);
+  if (until)
+    check_quantity(until, "seeds.until.quantity", campaign->until_quantity, campaign);
+}
+
+/* The varied inputs, from `vary` or from a file. */
+static bool read_axes(document_node *root, const char *folder, struct campaign *campaign) {
+  document_node *vary = document_key(root, "vary"), *file = key_of(document_key(root, "design"), "file");
+  if (!file)
+    return campaign_vary_read(vary, campaign);
+  if (vary)
+    document_report(vary, "vary", "the columns of design.file are what varies; leave vary out");
+  return campaign_points_read(file, folder, campaign) && !vary;
+}
+
+/* A point that cannot be run: the line of the file that it stands on, or the key that made it. */
+static void report_point(document_node *root, int64_t index, const char *why, const struct campaign *campaign) {
+  document_node *vary = document_key(root, "vary");
+  if (campaign->point_lines)
+    document_report(document_key(root, "design"), "design.file", "%s:%lld: %s", campaign->design.file,
+                    (long long)campaign->point_lines[index], why);
+  else
+    document_report(vary ? vary : root, vary ? "vary" : "scene", "%s", why);
+}
+
+/* Tries every point of a small design, or the first ones of a large one. The driver writes notes about the others. */
+static void check_points(document_node *root, struct campaign *campaign) {
+  enum { TRIED = 1000 };
+  struct error error = {0};
+  struct campaign_walk walk;
+  if (campaign_walk_begin(&walk, campaign, &error) != STATUS_OK) {
+    document_node *design = document_key(root, "design"), *vary = document_key(root, "vary");
+    if (!design)
+      design = vary ? vary : root;
+    document_report(design, "design", "%s", error.message);
+    goto cleanup;
+  }
+  for (int64_t i = 0; i < TRIED && campaign_walk_next(&walk); i++) {
+    struct scene *scene = campaign_walk_scene(&walk, &error);
+    if (!scene) {
+      report_point(root, i, error.message, campaign);
+      break;
+    }
+    scene_free(scene);
+  }
+cleanup:
+  campaign_walk_end(&walk);
+}
+
+/* The store is named after the campaign when the document does not name it. */
+static void check_store(document_node *root, struct campaign *campaign) {
+  document_node *name = document_key(root, "name"), *store = document_key(root, "store");
+  if (!campaign->store[0] &&
+      snprintf(campaign->store, sizeof campaign->store, "%s.db", campaign->name) >= (int)sizeof campaign->store)
+    document_report(name, "name", "too long to name the store after it; give `store`");
+  if (!store && strchr(campaign->name, '/')) /* a name is no way to another folder */
+    document_report(name, "name",
+                    "\"%s\" has a slash, and the store would be in another folder; take it out, or give `store`",
+                    campaign->name);
+  if (campaign->store[0] && place_refused(campaign->store))
+    document_report(store, "store", "%s", place_refused(campaign->store));
+}
+
+static bool read_scene(document_node *root, const char *folder, struct campaign *campaign) {
+  struct error error = {0};
+  document_node *scene = document_key(root, "scene");
+  if (!scene || !campaign->scene_reference[0])
+    return false; /* document_read has reported it */
+  if (scene_load(campaign->scene_reference, folder, &campaign->scene, &error) == STATUS_OK)
+    return true;
+  document_report(scene, "scene", "%s", error.message);
+  return false;
+}
+
+void campaign_read(document_node *root, const char *folder, struct campaign *campaign) {
+  static const char *const also[] = {"vary", "set", "design", "keep", NULL};
+  field_defaults(&campaign_table, campaign);
+  const bool plain = document_read(root, &campaign_table, also, campaign);
+  document_node *set = document_key(root, "set");
+  read_keep(document_key(root, "keep"), campaign);
+  read_design(document_key(root, "design"), campaign);
+  check_seeds(root, campaign);
+  check_accuracy(root, campaign);
+  check_store(root, campaign);
+  if (!read_scene(root, folder, campaign))
+    return; /* nothing more can be read without it */
+  const bool varied = read_axes(root, folder, campaign);
+  read_set(set, campaign);
+  check_quantities(root, campaign);
+  if (plain && varied)
+    check_points(root, campaign);
+}

@@ -1,0 +1,12 @@
+/* The reader of a campaign's document. For campaign/document/campaign.c. */
+#ifndef CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
+#define CLAST_CAMPAIGN_DOCUMENT_CAMPAIGN_READ_H
+
+#include "campaign/document/campaign.h"
+#include "schemas/document.h"
+
+/* Fills the whole struct, text excepted. Errors are reported to the document: see document_finish(). `folder` is what
+ * scene and design.file are relative to (NULL: the current one). */
+void campaign_read(document_node *root, const char *folder, struct campaign *campaign);
+
+#endif
