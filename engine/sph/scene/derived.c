@@ -63,6 +63,10 @@ static struct sph_shape shape_of(const struct sph_body_inputs *b) {
   return shape;
 }
 
+double sph_derived_shortest_side(const struct sph_body_inputs *body) {
+  return fmin(body->width, fmin(body->depth, body->height));
+}
+
 double sph_derived_thickness(const struct sph_inputs *in, int direction, double at_least) {
   double spacing = sph_derived_spacing(in), support = 2 * spacing * in->fidelity.smoothing * (1 + in->fidelity.skin);
   return sph_lattice_period(in->target.lattice, spacing, direction, fmax(at_least, 2.1 * support));
@@ -191,6 +195,12 @@ double sph_derived_particles(const struct sph_inputs *in) {
   struct sph_shape shape = sph_derived_projectile(in);
   double spacing = sph_derived_fine_spacing(in) * in->fidelity.projectile_spacing;
   return target + sph_shape_volume(&shape) / (spacing * spacing * spacing);
+}
+
+double sph_derived_arrival(const struct sph_inputs *in) {
+  if (in->kind == SPH_IMPACT && in->impact.speed > 0)
+    return in->impact.gap / (in->impact.speed * cos(in->impact.angle));
+  return in->kind == SPH_COLLISION ? in->collision.gap / in->collision.speed : 0;
 }
 
 double sph_derived_crossing(const struct sph_inputs *in) {

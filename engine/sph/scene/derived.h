@@ -15,8 +15,9 @@ bool sph_derived_has_intruder(const struct sph_inputs *inputs);
 bool sph_derived_cracks(const struct sph_body_inputs *body);
 /* The body as the moving system reads it. */
 struct sph_body_physics sph_derived_physics(const struct sph_body_inputs *body, const struct sph_flaws *flaws);
-double sph_derived_density(const struct sph_body_inputs *body);    /* kg/m^3, bulk */
-double sph_derived_wave_speed(const struct sph_body_inputs *body); /* m/s, longitudinal */
+double sph_derived_density(const struct sph_body_inputs *body);       /* kg/m^3, bulk */
+double sph_derived_wave_speed(const struct sph_body_inputs *body);    /* m/s, longitudinal */
+double sph_derived_shortest_side(const struct sph_body_inputs *body); /* m, of a box */
 /* Outlines of target and projectile (of the size that impact.projectile selects), both at the origin. */
 struct sph_shape sph_derived_target(const struct sph_inputs *inputs);
 struct sph_shape sph_derived_projectile(const struct sph_inputs *inputs);
@@ -29,6 +30,8 @@ double sph_derived_projectile_mass(const struct sph_inputs *inputs); /* kg; 0 wi
 double sph_derived_spacing(const struct sph_inputs *inputs);         /* m, of the target: (V/n)^(1/3) */
 double sph_derived_fine_spacing(const struct sph_inputs *inputs);    /* m, of the target where the projectile hits */
 double sph_derived_particles(const struct sph_inputs *inputs);       /* of all bodies; an estimate for plans */
+/* s, until the bodies of an impact or collision meet; 0 for scenes without a gap. */
+double sph_derived_arrival(const struct sph_inputs *inputs);
 double sph_derived_crossing(const struct sph_inputs *inputs); /* s, of a wave through the target's longest extent */
 double sph_derived_smallest_spacing(const struct sph_inputs *inputs); /* m, of all bodies */
 /* Target and projectile at the start, and the unit direction of flight. The projectile hits the target where the normal

@@ -73,24 +73,38 @@ static status refuse_missing(size_t k, const char *body_name, const char *materi
          material, remedy);
 }
 
-static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
-  const struct sph_material *m = &body->material;
+static status check_needed(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
   for (size_t k = 0; k < sph_materials_table.count; k++) {
     struct field_value value;
-    field_get(&sph_materials_table.rows[k], m, &value);
+    field_get(&sph_materials_table.rows[k], &body->material, &value);
     if (value.kind == FIELD_REAL && isnan(value.number) && needed(k, body))
       return refuse_missing(k, body_name, builtin_material_names[body->material_name], error);
   }
+  return STATUS_OK;
+}
+
+static status check_flaws(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const bool m_off = field_is_off(body->material.weibull.m), k_off = field_is_off(body->material.weibull.k);
+  if (!body->strength || body->fracture != SPH_FRACTURE_AUTO || m_off == k_off)
+    return STATUS_OK;
+  REFUSE(
+      "%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
+      body_name, m_off ? "k" : "m", m_off ? "m" : "k");
+}
+
+static status check_material(const char *body_name, const struct sph_body_inputs *body, struct error *error) {
+  const struct sph_material *m = &body->material;
+  status code = check_needed(body_name, body, error);
+  if (code)
+    return code;
   if (!(m->tillotson.E_cv > m->tillotson.E_iv))
     REFUSE(
         "%s.material.tillotson.E_cv is %.4g J/kg, not above tillotson.E_iv %.4g J/kg: vaporisation begins before it is "
         "complete",
         body_name, m->tillotson.E_cv, m->tillotson.E_iv);
-  bool m_off = field_is_off(m->weibull.m), k_off = field_is_off(m->weibull.k);
-  if (body->strength && body->fracture == SPH_FRACTURE_AUTO && m_off != k_off)
-    REFUSE(
-        "%s.material.weibull.%s is given without weibull.%s: give both, or set both off for a body that does not crack",
-        body_name, m_off ? "k" : "m", m_off ? "m" : "k");
+  code = check_flaws(body_name, body, error);
+  if (code)
+    return code;
   for (size_t k = 0; k < SPH_MODULES; k++) {
     struct error why = {0};
     if (sph_modules_at(k)->check_material && sph_modules_at(k)->check_material(m, &why))
@@ -120,19 +134,29 @@ status sph_inputs_check_given(const struct sph_inputs *in, const bool *given, st
 
 /* ---- sizes ---- */
 
+static status check_mesh(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape,
+                         struct error *error) {
+  if (!*body->mesh.file)
+    REFUSE("%s.mesh.file is missing: name a shape file, STL or OBJ", name);
+  if (!shape->mesh)
+    REFUSE("%s.mesh.file is not here (SHA-256 %.64s): give the name of the shape file", name, body->mesh.file);
+  if (isnan(body->mesh.unit))
+    REFUSE("%s.mesh.unit is missing: give the length that 1 in the shape file stands for, such as 1 km", name);
+  return STATUS_OK;
+}
+
 static status check_shape(const char *name, const struct sph_body_inputs *body, const struct sph_shape *shape,
                           struct error *error) {
-  if (body->shape == SPH_SHAPE_CYLINDER && shape->kind == SPH_SHAPE_CYLINDER && body->inner_radius >= body->radius)
+  const bool cylinder = body->shape == SPH_SHAPE_CYLINDER && shape->kind == SPH_SHAPE_CYLINDER;
+  if (cylinder && body->inner_radius >= body->radius)
     REFUSE("%s.inner_radius is %.4g m, the radius %.4g m: a ring needs a smaller hole", name, body->inner_radius,
            body->radius);
-  if (shape->kind == SPH_SHAPE_MESH && !*body->mesh.file)
-    REFUSE("%s.mesh.file is missing: name a shape file, STL or OBJ", name);
-  if (shape->kind == SPH_SHAPE_MESH && !shape->mesh)
-    REFUSE("%s.mesh.file is not here (SHA-256 %.64s): give the name of the shape file", name, body->mesh.file);
-  if (shape->kind == SPH_SHAPE_MESH && isnan(body->mesh.unit))
-    REFUSE("%s.mesh.unit is missing: give the length that 1 in the shape file stands for, such as 1 km", name);
-  if (!(sph_shape_volume(shape) > 0) || !isfinite(sph_shape_volume(shape)))
-    REFUSE("%s has a volume of %.4g m^3: give other sizes", name, sph_shape_volume(shape));
+  const status code = shape->kind == SPH_SHAPE_MESH ? check_mesh(name, body, shape, error) : STATUS_OK;
+  if (code)
+    return code;
+  const double volume = sph_shape_volume(shape);
+  if (!(volume > 0) || !isfinite(volume))
+    REFUSE("%s has a volume of %.4g m^3: give other sizes", name, volume);
   return STATUS_OK;
 }
 
@@ -142,47 +166,102 @@ static status check_cylinder(const struct sph_inputs *in, const char *protocol, 
   return STATUS_OK;
 }
 
-static status check_impact(const struct sph_inputs *in, struct error *error) {
-  struct sph_shape target = sph_derived_target(in), projectile;
+static status check_arrival(const struct sph_inputs *in, const char *who, const char *input, double gap,
+                            struct error *error) {
+  const double arrival = sph_derived_arrival(in);
+  if (arrival >= in->stop.end_time)
+    REFUSE("%s %.4g s over %s %.4g m, but the run ends at %.4g s: raise stop.end_time or lower the gap", who, arrival,
+           input, gap, in->stop.end_time);
+  return STATUS_OK;
+}
+
+/* ---- impacts ---- */
+
+static status check_projectile(const struct sph_inputs *in, struct error *error) {
   if (in->impact.projectile == SPH_BY_ENERGY && !(in->impact.speed > 0))
     REFUSE("impact.specific_energy at impact.speed 0 would need a projectile without end: give a speed, or "
-           "impact.projectile: "
-           "size");
-  projectile = sph_derived_projectile(in);
-  status code = in->impact.projectile == SPH_BY_SIZE ? check_shape("projectile", &in->projectile, &projectile, error)
-                                                     : STATUS_OK;
-  if (code)
-    return code;
-  if (!(projectile.kind == SPH_SHAPE_SPHERE ? projectile.radius > 1e-12 && projectile.radius < 1e9 : true))
+           "impact.projectile: size");
+  const struct sph_shape projectile = sph_derived_projectile(in);
+  if (in->impact.projectile == SPH_BY_SIZE) {
+    const status code = check_shape("projectile", &in->projectile, &projectile, error);
+    if (code)
+      return code;
+  }
+  const bool extreme = !(projectile.radius > 1e-12 && projectile.radius < 1e9);
+  if (projectile.kind == SPH_SHAPE_SPHERE && extreme)
     REFUSE("a projectile of radius %.4g m (from %s) is out of range", projectile.radius,
            in->impact.projectile == SPH_BY_MASS ? "impact.mass" : "impact.specific_energy");
-  if (target.kind == SPH_SHAPE_CYLINDER && target.inner_radius > 0)
+  if (in->target.shape == SPH_SHAPE_CYLINDER && in->target.inner_radius > 0)
     REFUSE("a projectile comes down along the axis of a ring and misses it: give target.inner_radius: 0");
-  if (in->impact.speed > 0) {
-    double arrival = in->impact.gap / (in->impact.speed * cos(in->impact.angle));
-    if (arrival >= in->stop.end_time)
-      REFUSE("the projectile needs %.4g s over impact.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or "
-             "lower the gap",
-             arrival, in->impact.gap, in->stop.end_time);
-    struct sph_shape shape[2];
-    double flight[3];
-    if ((code = sph_derived_aim(in, shape, flight, error)))
-      return code;
-    const bool meshes = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH; /* aimed at a face */
-    if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight, NULL) > 0)
-      REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
-             in->impact.angle, in->impact.gap);
-  }
-  double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
+  return STATUS_OK;
+}
+
+static status check_flight(const struct sph_inputs *in, struct error *error) {
+  struct sph_shape shape[2];
+  double flight[3];
+  if (!(in->impact.speed > 0))
+    return STATUS_OK;
+  status code = check_arrival(in, "the projectile needs", "impact.gap", in->impact.gap, error);
+  if (code)
+    return code;
+  code = sph_derived_aim(in, shape, flight, error);
+  if (code)
+    return code;
+  const bool meshes = shape[0].kind == SPH_SHAPE_MESH || shape[1].kind == SPH_SHAPE_MESH; /* aimed at a face */
+  if (!meshes && sph_shape_gap_ahead(&shape[0], &shape[1], flight, NULL) > 0)
+    REFUSE("the projectile flies past the target: lower impact.angle (%.4g rad) or impact.gap (%.4g m)",
+           in->impact.angle, in->impact.gap);
+  return STATUS_OK;
+}
+
+static status check_impact(const struct sph_inputs *in, struct error *error) {
+  status code = check_projectile(in, error);
+  if (code)
+    return code;
+  code = check_flight(in, error);
+  if (code)
+    return code;
+  const double pieces = sph_derived_particles(in) - (double)in->fidelity.particles;
   if (pieces < 1 - 1e-9) /* one is enough, within rounding of its volume */
     REFUSE("the projectile would be %.2g particles: lower fidelity.projectile_spacing (now %.4g), raise "
-           "fidelity.particles, or "
-           "take a larger projectile",
+           "fidelity.particles, or take a larger projectile",
            pieces, in->fidelity.projectile_spacing);
   if (in->fidelity.graded && in->fidelity.fine_spacing > sph_derived_spacing(in))
     REFUSE("fidelity.fine_spacing is %.4g m, above the uniform spacing %.4g m of so many particles: lower it, or set "
            "fidelity.graded: false",
            in->fidelity.fine_spacing, sph_derived_spacing(in));
+  return STATUS_OK;
+}
+
+/* ---- other protocols ---- */
+
+static status check_stretch(const struct sph_inputs *in, struct error *error) {
+  const status code = check_cylinder(in, "stretch", error);
+  if (code)
+    return code;
+  if (2 * in->stretch.grip >= 0.9 * in->target.length)
+    REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more "
+           "fidelity.particles or a longer target.length",
+           in->stretch.grip, in->target.length);
+  if (2 * in->stretch.flaw_free >= 0.95 * in->target.length)
+    REFUSE("ends of %.4g m without flaws leave too little of a rod of %.4g m: give a shorter stretch.flaw_free",
+           in->stretch.flaw_free, in->target.length);
+  return STATUS_OK;
+}
+
+static status check_collision(const struct sph_inputs *in, struct error *error) {
+  const double spacing = sph_derived_spacing(in);
+  status code = check_cylinder(in, "collision", error);
+  if (code)
+    return code;
+  if (in->target.turned)
+    REFUSE("a turned lattice cannot repeat along the axis: set target.turned: false");
+  code = check_arrival(in, "the bodies need", "collision.gap", in->collision.gap, error);
+  if (code)
+    return code;
+  if (in->collision.gap < spacing / 2)
+    REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap",
+           in->collision.gap, spacing);
   return STATUS_OK;
 }
 
@@ -203,36 +282,11 @@ static status check_piston(const struct sph_inputs *in, struct error *error) {
 }
 
 static status check_protocol(const struct sph_inputs *in, struct error *error) {
-  status code;
-  double spacing = sph_derived_spacing(in);
   switch ((enum sph_kind)in->kind) {
   case SPH_IMPACT: return check_impact(in, error);
-  case SPH_STRETCH:
-    if ((code = check_cylinder(in, "stretch", error)))
-      return code;
-    if (2 * in->stretch.grip >= 0.9 * in->target.length)
-      REFUSE("grips of %.4g m leave too little of a rod of %.4g m: give a shorter stretch.grip, more "
-             "fidelity.particles or a longer "
-             "target.length",
-             in->stretch.grip, in->target.length);
-    if (2 * in->stretch.flaw_free >= 0.95 * in->target.length)
-      REFUSE("ends of %.4g m without flaws leave too little of a rod of %.4g m: give a shorter stretch.flaw_free",
-             in->stretch.flaw_free, in->target.length);
-    return STATUS_OK;
+  case SPH_STRETCH: return check_stretch(in, error);
   case SPH_VIBRATION: return check_cylinder(in, "vibration", error);
-  case SPH_COLLISION:
-    if ((code = check_cylinder(in, "collision", error)))
-      return code;
-    if (in->target.turned)
-      REFUSE("a turned lattice cannot repeat along the axis: set target.turned: false");
-    if (in->collision.gap / in->collision.speed >= in->stop.end_time)
-      REFUSE("the bodies need %.4g s over collision.gap %.4g m, but the run ends at %.4g s: raise stop.end_time or "
-             "lower the gap",
-             in->collision.gap / in->collision.speed, in->collision.gap, in->stop.end_time);
-    if (in->collision.gap < spacing / 2)
-      REFUSE("collision.gap is %.4g m, less than half a particle spacing (%.4g m): the bodies would overlap",
-             in->collision.gap, spacing);
-    return STATUS_OK;
+  case SPH_COLLISION: return check_collision(in, error);
   case SPH_PISTON: return check_piston(in, error);
   }
   return STATUS_OK;
@@ -249,47 +303,67 @@ const char *sph_inputs_check_fewer(const struct sph_inputs *in) {
   return "lower fidelity.particles";
 }
 
-status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
-  struct sph_shape target = sph_derived_target(in);
+/* ---- any scene ---- */
+
+static status check_bodies(const struct sph_inputs *in, struct error *error) {
+  const struct sph_shape target = sph_derived_target(in);
   status code = check_material("target", &in->target, error);
   if (code)
     return code;
   code = check_shape("target", &in->target, &target, error);
-  if (code)
+  if (code || !sph_derived_has_projectile(in))
     return code;
-  if (sph_derived_has_projectile(in))
-    code = check_material("projectile", &in->projectile, error);
-  if (code)
-    return code;
-  code = check_protocol(in, error);
-  if (code)
-    return code;
+  return check_material("projectile", &in->projectile, error);
+}
 
-  bool cracks = sph_derived_cracks(&in->target) ||
-                (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
+static status check_cracks(const struct sph_inputs *in, struct error *error) {
+  const bool cracks = sph_derived_cracks(&in->target) ||
+                      (sph_derived_has_projectile(in) && sph_derived_cracks(&in->projectile));
   if (cracks && in->method.artificial_stress > 0)
     REFUSE("method.artificial_stress would hold cracks together: set it to 0, or target.fracture: off");
-  if (in->fracture.cell > 0 && in->fracture.front == SPH_CRACK_FRONT_PLANE)
+  if (!(in->fracture.cell > 0))
+    return STATUS_OK;
+  if (in->fracture.front == SPH_CRACK_FRONT_PLANE)
     REFUSE("fracture.cell cannot be used with fracture.front: plane: set fracture.cell: 0 m, or fracture.front: none");
-  if (in->fracture.cell > 0 && in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
+  if (in->fracture.crack_radius == SPH_CRACK_RADIUS_SUPPORT)
     REFUSE("fracture.crack_radius: support has no meaning for cells: set it to volume, or fracture.cell: 0 m");
-  if (in->fragments.layer_width > 30 * sph_derived_smallest_spacing(in)) /* each finds 1e5 others */
+  return STATUS_OK;
+}
+
+static status check_lengths(const struct sph_inputs *in, struct error *error) {
+  const double spacing = sph_derived_smallest_spacing(in);
+  if (in->fragments.layer_width > 30 * spacing) /* each particle finds 1e5 others */
     REFUSE("fragments.layer_width is %.4g m, more than 30 particle spacings of %.4g m: give a smaller width",
-           in->fragments.layer_width, sph_derived_smallest_spacing(in));
-  if (in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1 &&
-      2 * in->sides.depth >= fmin(in->target.width, fmin(in->target.depth, in->target.height)))
+           in->fragments.layer_width, spacing);
+  const bool damped = in->target.shape == SPH_SHAPE_BOX && in->sides.far == 1;
+  if (damped && 2 * in->sides.depth >= sph_derived_shortest_side(&in->target))
     REFUSE("sides.depth is %.4g m, which leaves nothing of the box undamped: give less than half of the shortest side",
            in->sides.depth);
-  double particles = sph_derived_particles(in);
+  return STATUS_OK;
+}
+
+static status check_cost(const struct sph_inputs *in, struct error *error) {
+  const double particles = sph_derived_particles(in), end = in->stop.end_time;
   if (!(particles <= 2e9))
     REFUSE("%.3g particles are too many (at most 2e9): %s", particles, sph_inputs_check_fewer(in));
-  if (!(in->stop.end_time > 0) || !isfinite(in->stop.end_time))
-    REFUSE("stop.end_time is %.4g s: give a time", in->stop.end_time);
-  double step = in->fidelity.cfl * sph_derived_smallest_spacing(in) / sph_derived_wave_speed(&in->target);
-  double steps = in->stop.end_time / step;
-  if (!(steps <= 1e10))
+  if (!(end > 0) || !isfinite(end))
+    REFUSE("stop.end_time is %.4g s: give a time", end);
+  const double step = in->fidelity.cfl * sph_derived_smallest_spacing(in) / sph_derived_wave_speed(&in->target);
+  if (!(end / step <= 1e10))
     REFUSE("the run could take %.3g time steps (at most 1e10): end it earlier (stop.end_time %.4g s) or take larger "
            "particles",
-           steps, in->stop.end_time);
+           end / step, end);
+  return STATUS_OK;
+}
+
+status sph_inputs_check(const struct sph_inputs *in, struct error *error) {
+  static status (*const checks[])(const struct sph_inputs *, struct error *) = {check_bodies, check_protocol,
+                                                                                check_cracks, check_lengths,
+                                                                                check_cost};
+  for (size_t k = 0; k < sizeof checks / sizeof checks[0]; k++) {
+    const status code = checks[k](in, error);
+    if (code)
+      return code;
+  }
   return STATUS_OK;
 }

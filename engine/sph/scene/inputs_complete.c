@@ -9,8 +9,6 @@
 #include "engine/sph/scene/derived.h"
 #include "engine/sph/scene/inputs.h"
 
-#define FREE(member) (!given[row_at(offsetof(struct sph_inputs, member))])
-
 static size_t row_at(size_t offset) {
   size_t row = 0;
   while (sph_inputs.rows[row].offset != offset)
@@ -22,8 +20,8 @@ static size_t row_at(size_t offset) {
 static void complete_material(struct sph_inputs *in, struct sph_body_inputs *body, const char *fallback,
                               const bool *given) {
   struct sph_material material;
-  size_t name = (size_t)((char *)&body->material_name - (char *)in),
-         first = (size_t)((char *)&body->material - (char *)in);
+  const size_t name = (size_t)((char *)&body->material_name - (char *)in);
+  const size_t first = (size_t)((char *)&body->material - (char *)in);
   if (!given[row_at(name)])
     for (body->material_name = 0; strcmp(builtin_material_names[body->material_name], fallback) != 0;)
       body->material_name++;
@@ -66,44 +64,30 @@ static double plate_time(const struct sph_inputs *in) {
   return 0.94 * in->target.width / (exact.has_precursor ? exact.precursor.speed : exact.shock.speed);
 }
 
+/* A value that follows from others, unless the scene gives it. */
+#define COMPLETE(member, value)                                                                                        \
+  do {                                                                                                                 \
+    if (!given[row_at(offsetof(struct sph_inputs, member))])                                                           \
+      in->member = (value);                                                                                            \
+  } while (0)
+
 void sph_inputs_complete(struct sph_inputs *in, const bool *given) {
   complete_material(in, &in->target, "basalt", given);
   complete_material(in, &in->projectile, "nylon", given);
   const bool specimens = in->kind == SPH_IMPACT || in->kind == SPH_STRETCH;
-  if (FREE(target.turned))
-    in->target.turned = specimens;
-  if (FREE(projectile.turned))
-    in->projectile.turned = specimens;
-  double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
-  if (FREE(sides.depth))
-    in->sides.depth = 0.1 * fmin(in->target.width, fmin(in->target.depth, in->target.height));
-  if (FREE(fidelity.fine_spacing))
-    in->fidelity.fine_spacing = 0.5 * spacing;
-  if (FREE(fidelity.fine_radius))
-    in->fidelity.fine_radius = 4 * in->fidelity.fine_spacing;
-  if (FREE(impact.gap))
-    in->impact.gap = sph_derived_fine_spacing(in);
-  if (FREE(collision.gap))
-    in->collision.gap = 2 * spacing;
-  if (FREE(stretch.grip))
-    in->stretch.grip = fmax(in->target.length / 20, 3 * spacing);
-  if (FREE(stretch.flaw_free))
-    in->stretch.flaw_free = fmax(in->target.length / 10, in->stretch.grip + 2.5 * spacing);
-  if (FREE(fragments.static_strength))
-    in->fragments.static_strength = static_strength(in);
-  if (FREE(fragments.layer_width))
-    in->fragments.layer_width = in->fracture.cell;
-  if (FREE(fragments.dust_mass))
-    in->fragments.dust_mass = 1e-3 * sph_derived_target_mass(in);
-  if (FREE(stop.quiet_time))
-    in->stop.quiet_time = 2 * crossing;
-  if (FREE(stop.end_time)) {
-    in->stop.end_time = 10 * crossing;
-    if (in->kind == SPH_IMPACT && in->impact.speed > 0)
-      in->stop.end_time += in->impact.gap / (in->impact.speed * cos(in->impact.angle));
-    else if (in->kind == SPH_COLLISION)
-      in->stop.end_time += in->collision.gap / in->collision.speed;
-    else if (in->kind == SPH_PISTON)
-      in->stop.end_time = plate_time(in);
-  }
+  COMPLETE(target.turned, specimens);
+  COMPLETE(projectile.turned, specimens);
+  const double spacing = sph_derived_spacing(in), crossing = sph_derived_crossing(in);
+  COMPLETE(sides.depth, 0.1 * sph_derived_shortest_side(&in->target));
+  COMPLETE(fidelity.fine_spacing, 0.5 * spacing);
+  COMPLETE(fidelity.fine_radius, 4 * in->fidelity.fine_spacing);
+  COMPLETE(impact.gap, sph_derived_fine_spacing(in));
+  COMPLETE(collision.gap, 2 * spacing);
+  COMPLETE(stretch.grip, fmax(in->target.length / 20, 3 * spacing));
+  COMPLETE(stretch.flaw_free, fmax(in->target.length / 10, in->stretch.grip + 2.5 * spacing));
+  COMPLETE(fragments.static_strength, static_strength(in));
+  COMPLETE(fragments.layer_width, in->fracture.cell);
+  COMPLETE(fragments.dust_mass, 1e-3 * sph_derived_target_mass(in));
+  COMPLETE(stop.quiet_time, 2 * crossing);
+  COMPLETE(stop.end_time, in->kind == SPH_PISTON ? plate_time(in) : 10 * crossing + sph_derived_arrival(in));
 }
