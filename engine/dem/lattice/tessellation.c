@@ -25,28 +25,38 @@ static uint32_t *corner_list(struct corners *corners, double x, double y) {
   return &corners->head[(size_t)row * corners->columns + (size_t)column];
 }
 
-/* Index of the corner at p, which is added if it is new; UINT32_MAX: no memory. */
-static uint32_t corner_find(struct corners *corners, struct dem_point p) {
-  uint32_t *seen[4] = {0};
+static bool is_at(const struct corners *corners, uint32_t corner, struct dem_point p) {
+  const struct dem_point at = corners->at[corner];
+  return fabs(at.x - p.x) <= same_corner && fabs(at.y - p.y) <= same_corner;
+}
+
+/* The corner at p, in up to four squares; UINT32_MAX: none. */
+static uint32_t corner_known(struct corners *corners, struct dem_point p) {
+  const uint32_t *seen[4] = {0};
   for (int k = 0; k < 4; k++) {
-    uint32_t *list = corner_list(corners, p.x + (k & 1 ? same_corner : -same_corner),
-                                 p.y + (k & 2 ? same_corner : -same_corner));
+    const uint32_t *list = corner_list(corners, p.x + (k & 1 ? same_corner : -same_corner),
+                                       p.y + (k & 2 ? same_corner : -same_corner));
     if (list == seen[0] || list == seen[1] || list == seen[2])
       continue;
     seen[k] = list;
     for (uint32_t c = *list; c; c = corners->next[c - 1])
-      if (fabs(corners->at[c - 1].x - p.x) <= same_corner && fabs(corners->at[c - 1].y - p.y) <= same_corner)
+      if (is_at(corners, c - 1, p))
         return c - 1;
   }
-  if (corners->count == corners->capacity) {
-    size_t capacity = 2 * corners->capacity + 64;
-    if (!grow_block(&corners->at, capacity * sizeof *corners->at) ||
-        !grow_block(&corners->next, capacity * sizeof *corners->next))
-      return UINT32_MAX;
-    corners->capacity = capacity;
-  }
+  return UINT32_MAX;
+}
+
+/* Index of the corner at p, which is added if it is new; UINT32_MAX: no memory. */
+static uint32_t corner_find(struct corners *corners, struct dem_point p) {
+  const uint32_t known = corner_known(corners, p);
+  if (known != UINT32_MAX)
+    return known;
+  size_t room = corners->capacity;
+  if (!grow_room(&corners->at, &room, corners->count + 1, sizeof *corners->at) ||
+      !grow_room(&corners->next, &corners->capacity, corners->count + 1, sizeof *corners->next))
+    return UINT32_MAX;
   uint32_t *list = corner_list(corners, p.x, p.y);
-  uint32_t c = (uint32_t)corners->count++;
+  const uint32_t c = (uint32_t)corners->count++;
   corners->at[c] = p;
   corners->next[c] = *list;
   *list = c + 1;
@@ -89,42 +99,68 @@ static struct dem_point world(const struct builder *b, struct dem_point p) {
                             b->lattice->origin.y + b->lattice->spacing * (p.y - b->oy)};
 }
 
-/* Cuts the cell of one lattice point and appends it if it belongs to the body. False: no memory. */
-static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
-  struct dem_tessellation *t = b->out;
-  int64_t i = (int64_t)row * b->points.columns + column;
-  b->number[i] = UINT32_MAX;
-  if (b->lattice->outline == DEM_OUTLINE_DISC) { /* a centroid lies at most sqrt(2) spacings from its point */
-    double reach = b->lattice->radius / b->lattice->spacing + 1.5;
-    double x = b->points.point[i].x - b->ox, y = b->points.point[i].y - b->oy;
-    if (x * x + y * y > reach * reach)
-      return true;
-  }
-  struct dem_lattice_cell cell;
-  if (!dem_lattice_cell(&b->points, column, row, &cell))
+/* Is the point so far outside of a disc that its cell is, too? A centroid lies at most sqrt(2) spacings from its point.
+ */
+static bool is_far_outside(const struct builder *b, struct dem_point p) {
+  if (b->lattice->outline != DEM_OUTLINE_DISC)
     return false;
-  uint32_t corner[DEM_LATTICE_CORNERS];
-  for (int k = 0; k < cell.count; k++) {
-    corner[k] = corner_find(&b->corners,
-                            dem_lattice_corner(&b->points, i, cell.across[k], cell.across[k ? k - 1 : cell.count - 1]));
+  const double reach = b->lattice->radius / b->lattice->spacing + 1.5, x = p.x - b->ox, y = p.y - b->oy;
+  return x * x + y * y > reach * reach;
+}
+
+static bool is_outside(const struct builder *b, struct dem_point centroid) {
+  const struct dem_lattice *lattice = b->lattice;
+  return lattice->outline == DEM_OUTLINE_DISC &&
+         hypot(centroid.x - lattice->origin.x, centroid.y - lattice->origin.y) > lattice->radius;
+}
+
+/* The unique corners of the cell of point i. False: no memory. */
+static bool find_corners(struct builder *b, int64_t i, const struct dem_lattice_cell *cell,
+                         uint32_t corner[DEM_LATTICE_CORNERS]) {
+  for (int k = 0; k < cell->count; k++) {
+    const int64_t before = cell->across[k ? k - 1 : cell->count - 1];
+    corner[k] = corner_find(&b->corners, dem_lattice_corner(&b->points, i, cell->across[k], before));
     if (corner[k] == UINT32_MAX)
       return false;
   }
-  size_t start = t->first_vertex[t->cell_count], n = 0;
-  size_t need = start + (size_t)cell.count, capacity = b->vertex_capacity;
-  if (!grow_room(&t->vertex, &capacity, need, sizeof *t->vertex) ||
+  return true;
+}
+
+/* Writes the cell's vertices from `start` on, without sides whose ends are the same corner. Returns their number. */
+static size_t write_vertices(struct builder *b, const struct dem_lattice_cell *cell, const uint32_t *corner,
+                             size_t start) {
+  size_t n = 0;
+  for (int k = 0; k < cell->count; k++) {
+    if (corner[k] == corner[k + 1 < cell->count ? k + 1 : 0])
+      continue;
+    b->out->vertex[start + n] = world(b, b->corners.at[corner[k]]);
+    b->across[start + n++] = cell->across[k];
+  }
+  return n;
+}
+
+/* Cuts the cell of one lattice point and appends it if it belongs to the body. False: no memory. */
+static bool add_cell(struct builder *b, uint32_t column, uint32_t row) {
+  struct dem_tessellation *t = b->out;
+  const int64_t i = (int64_t)row * b->points.columns + column;
+  b->number[i] = UINT32_MAX;
+  if (is_far_outside(b, b->points.point[i]))
+    return true;
+
+  struct dem_lattice_cell cell;
+  uint32_t corner[DEM_LATTICE_CORNERS];
+  if (!dem_lattice_cell(&b->points, column, row, &cell) || !find_corners(b, i, &cell, corner))
+    return false;
+  const size_t c = t->cell_count, start = t->first_vertex[c], need = start + (size_t)cell.count;
+  size_t room = b->vertex_capacity;
+  if (!grow_room(&t->vertex, &room, need, sizeof *t->vertex) ||
       !grow_room(&b->across, &b->vertex_capacity, need, sizeof *b->across))
     return false;
-  for (int k = 0; k < cell.count; k++) /* leave out a side whose ends are the same corner */
-    if (corner[k] != corner[k + 1 < cell.count ? k + 1 : 0]) {
-      t->vertex[start + n] = world(b, b->corners.at[corner[k]]);
-      b->across[start + n++] = cell.across[k];
-    }
-  size_t c = t->cell_count;
+  const size_t n = write_vertices(b, &cell, corner, start);
   measure(t->vertex + start, n, &t->area[c], &t->centroid[c], &t->polar_moment[c]);
-  if (b->lattice->outline == DEM_OUTLINE_DISC &&
-      hypot(t->centroid[c].x - b->lattice->origin.x, t->centroid[c].y - b->lattice->origin.y) > b->lattice->radius)
+  if (is_outside(b, t->centroid[c]))
     return true;
+
   t->grid_x[c] = column - b->points.centre;
   t->grid_y[c] = row - b->points.centre;
   b->number[i] = (uint32_t)c;
@@ -145,11 +181,13 @@ static bool add_pairs(struct builder *b) {
     uint32_t start = t->first_vertex[c], end = t->first_vertex[c + 1];
     uint32_t found[DEM_LATTICE_CORNERS][2]; /* the other cell, the side's first vertex */
     size_t count = 0;
-    for (uint32_t k = start; k < end; k++)
-      if (b->across[k] >= 0 && b->number[b->across[k]] != UINT32_MAX && b->number[b->across[k]] > c) {
-        found[count][0] = b->number[b->across[k]];
-        found[count++][1] = k;
-      }
+    for (uint32_t k = start; k < end; k++) {
+      const uint32_t other = b->across[k] < 0 ? UINT32_MAX : b->number[b->across[k]];
+      if (other == UINT32_MAX || other <= c)
+        continue;
+      found[count][0] = other;
+      found[count++][1] = k;
+    }
     qsort(found, count, sizeof found[0], by_second);
     size_t capacity = b->pair_capacity;
     if (!grow_room(&t->pair, &capacity, t->pair_count + count, sizeof *t->pair) ||
@@ -177,91 +215,100 @@ static bool allocate(struct dem_tessellation *t, size_t cells) {
   return t->first_vertex && t->centroid && t->area && t->polar_moment && t->grid_x && t->grid_y;
 }
 
+/* Cuts all cells of the lattice points. False: no memory. */
+static bool cut_body(struct builder *b) {
+  const size_t n = (size_t)b->points.columns * b->points.rows;
+  b->corners = (struct corners){.columns = b->points.columns, .rows = b->points.rows};
+  b->corners.head = calloc(n, sizeof *b->corners.head);
+  b->number = malloc(n * sizeof *b->number);
+  b->out = calloc(1, sizeof *b->out);
+  if (!b->corners.head || !b->number || !b->out || !allocate(b->out, n))
+    return false;
+  for (uint32_t row = 0; row < b->points.rows; row++)
+    for (uint32_t column = 0; column < b->points.columns; column++)
+      if (!add_cell(b, column, row))
+        return false;
+  return add_pairs(b);
+}
+
+static void free_builder(struct builder *b) {
+  dem_tessellation_free(b->out);
+  free(b->points.point);
+  free(b->corners.head);
+  free(b->corners.next);
+  free(b->corners.at);
+  free(b->number);
+  free(b->across);
+}
+
 status dem_tessellation_make(const struct dem_lattice *lattice, struct dem_tessellation **out, struct error *error) {
   *out = NULL;
   struct builder b = {.lattice = lattice};
-  status code = STATUS_OK;
-  double squares = lattice->outline == DEM_OUTLINE_DISC ? 4 * pow(lattice->radius / lattice->spacing + 8, 2)
-                                                        : (double)lattice->columns * lattice->rows;
+  const bool disc = lattice->outline == DEM_OUTLINE_DISC;
+  const double squares = disc ? 4 * pow(lattice->radius / lattice->spacing + 8, 2)
+                              : (double)lattice->columns * lattice->rows;
   if (!(squares >= 1 && squares < 1e8))
     return status_fail(error, STATUS_CONTENT,
                        "a body of %.3g grains cannot be made: change its size or the grain spacing", squares);
-  code = dem_lattice_fill(lattice, &b.points, error);
+  status code = dem_lattice_fill(lattice, &b.points, error);
   if (code)
     return code;
-  size_t n = (size_t)b.points.columns * b.points.rows;
-  bool fits = false;
-  b.ox = lattice->outline == DEM_OUTLINE_DISC ? 0.5 * b.points.columns : 0;
-  b.oy = lattice->outline == DEM_OUTLINE_DISC ? 0.5 * b.points.rows : 0;
-  b.corners = (struct corners){.columns = b.points.columns, .rows = b.points.rows};
-  b.corners.head = calloc(n, sizeof *b.corners.head);
-  b.number = malloc(n * sizeof *b.number);
-  b.out = calloc(1, sizeof *b.out);
-  if (!b.corners.head || !b.number || !b.out || !allocate(b.out, n))
-    goto cleanup;
-  for (uint32_t row = 0; row < b.points.rows; row++)
-    for (uint32_t column = 0; column < b.points.columns; column++)
-      if (!add_cell(&b, column, row))
-        goto cleanup;
-  if (!add_pairs(&b))
-    goto cleanup;
-  fits = true;
-  if (b.out->cell_count == 0)
+  b.ox = disc ? 0.5 * b.points.columns : 0;
+  b.oy = disc ? 0.5 * b.points.rows : 0;
+  if (!cut_body(&b)) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for a body of %zu grains",
+                       (size_t)b.points.columns * b.points.rows);
+  } else if (b.out->cell_count == 0) {
     code = status_fail(error, STATUS_CONTENT, "no grain lies within the body: give a grain spacing below its size");
-cleanup:
-  if (!fits)
-    code = status_fail(error, STATUS_MEMORY, "no memory for a body of %zu grains", n);
-  if (!code) {
+  } else {
     *out = b.out;
     b.out = NULL;
   }
-  dem_tessellation_free(b.out);
-  free(b.points.point);
-  free(b.corners.head);
-  free(b.corners.next);
-  free(b.corners.at);
-  free(b.number);
-  free(b.across);
+  free_builder(&b);
   return code;
+}
+
+/* Copies a tessellation into a larger one, from these numbers on. */
+static void copy_part(struct dem_tessellation *to, const struct dem_tessellation *from, uint32_t cell, uint32_t vertex,
+                      size_t pair) {
+  const size_t n = from->cell_count;
+  memcpy(to->vertex + vertex, from->vertex, from->first_vertex[n] * sizeof *to->vertex);
+  memcpy(to->centroid + cell, from->centroid, n * sizeof *to->centroid);
+  memcpy(to->area + cell, from->area, n * sizeof *to->area);
+  memcpy(to->polar_moment + cell, from->polar_moment, n * sizeof *to->polar_moment);
+  memcpy(to->grid_x + cell, from->grid_x, n * sizeof *to->grid_x);
+  memcpy(to->grid_y + cell, from->grid_y, n * sizeof *to->grid_y);
+  for (size_t c = 0; c <= n; c++)
+    to->first_vertex[cell + c] = vertex + from->first_vertex[c];
+  for (size_t k = 0; k < from->pair_count; k++) {
+    to->pair[pair + k][0] = cell + from->pair[k][0];
+    to->pair[pair + k][1] = cell + from->pair[k][1];
+    to->side[pair + k] = from->side[k];
+  }
 }
 
 status dem_tessellation_join(const struct dem_tessellation *a, const struct dem_tessellation *b,
                              struct dem_tessellation **out, struct error *error) {
   *out = NULL;
   struct dem_tessellation *t = calloc(1, sizeof *t);
-  size_t cells = a->cell_count + b->cell_count, pairs = a->pair_count + b->pair_count;
-  uint32_t na = (uint32_t)a->cell_count, va = a->first_vertex[na], vb = b->first_vertex[b->cell_count];
+  const size_t cells = a->cell_count + b->cell_count, pairs = a->pair_count + b->pair_count;
+  const uint32_t vertices = a->first_vertex[a->cell_count];
   bool fits = t && allocate(t, cells);
   if (fits) {
-    t->vertex = malloc((size_t)(va + vb) * sizeof *t->vertex);
-    t->pair = malloc((pairs ? pairs : 1) * sizeof *t->pair);
-    t->side = malloc((pairs ? pairs : 1) * sizeof *t->side);
+    t->vertex = malloc((size_t)(vertices + b->first_vertex[b->cell_count]) * sizeof *t->vertex);
+    t->pair = malloc((pairs + 1) * sizeof *t->pair);
+    t->side = malloc((pairs + 1) * sizeof *t->side);
+    fits = t->vertex && t->pair && t->side;
   }
-  if (!fits || !t->vertex || !t->pair || !t->side) {
+  if (!fits) {
     dem_tessellation_free(t);
     return status_fail(error, STATUS_MEMORY, "no memory for a body of %zu grains", cells);
   }
   t->cell_count = cells;
   t->pair_count = pairs;
-  t->joined_at = na;
-  const struct dem_tessellation *part[2] = {a, b};
-  for (int p = 0; p < 2; p++) {
-    uint32_t cell = p ? na : 0, vertex = p ? va : 0;
-    size_t pair = p ? a->pair_count : 0, n = part[p]->cell_count;
-    memcpy(t->vertex + vertex, part[p]->vertex, part[p]->first_vertex[n] * sizeof *t->vertex);
-    memcpy(t->centroid + cell, part[p]->centroid, n * sizeof *t->centroid);
-    memcpy(t->area + cell, part[p]->area, n * sizeof *t->area);
-    memcpy(t->polar_moment + cell, part[p]->polar_moment, n * sizeof *t->polar_moment);
-    memcpy(t->grid_x + cell, part[p]->grid_x, n * sizeof *t->grid_x);
-    memcpy(t->grid_y + cell, part[p]->grid_y, n * sizeof *t->grid_y);
-    for (size_t c = 0; c <= n; c++)
-      t->first_vertex[cell + c] = vertex + part[p]->first_vertex[c];
-    for (size_t k = 0; k < part[p]->pair_count; k++) {
-      t->pair[pair + k][0] = cell + part[p]->pair[k][0];
-      t->pair[pair + k][1] = cell + part[p]->pair[k][1];
-      t->side[pair + k] = part[p]->side[k];
-    }
-  }
+  t->joined_at = a->cell_count;
+  copy_part(t, a, 0, 0, 0);
+  copy_part(t, b, (uint32_t)a->cell_count, vertices, a->pair_count);
   *out = t;
   return STATUS_OK;
 }

@@ -5,65 +5,93 @@
 
 #include "engine/dem/run/run.h"
 
-/* Adds the link of a pair whose grains are both present. number[grain]: among the present, or UINT32_MAX. */
-static void add_link(const struct dem_run *run, size_t pair, const uint32_t *number, uint32_t (*link)[2],
-                     size_t *links) {
-  const uint32_t a = number[run->tessellation->pair[pair][0]], b = number[run->tessellation->pair[pair][1]];
+/* What the search for fragments works on. */
+struct search {
+  struct fragment_member *member;
+  uint32_t *number;        /* by grain: its number among the present ones, or UINT32_MAX */
+  uint32_t *grain, *found; /* by number: the grain; its fragment */
+  uint32_t (*link)[2];
+  size_t present, links;
+};
+
+static void free_search(struct search *w) {
+  free(w->member);
+  free(w->number);
+  free(w->grain);
+  free(w->found);
+  free(w->link);
+}
+
+static bool allocate(struct search *w, const struct dem_tessellation *t) {
+  const size_t n = t->cell_count;
+  w->member = malloc(n * sizeof *w->member);
+  w->number = malloc(n * sizeof *w->number);
+  w->grain = malloc(n * sizeof *w->grain);
+  w->found = malloc(n * sizeof *w->found);
+  w->link = malloc((t->pair_count + 1) * sizeof *w->link);
+  return w->member && w->number && w->grain && w->found && w->link;
+}
+
+static void add_grains(const struct dem_run *run, struct search *w) {
+  for (uint32_t i = 0; i < run->tessellation->cell_count; i++) {
+    const struct dem_grain g = dem_system_grain(run->system, i);
+    w->number[i] = UINT32_MAX;
+    if (!g.present)
+      continue;
+    w->number[i] = (uint32_t)w->present;
+    w->grain[w->present] = i;
+    w->member[w->present++] = (struct fragment_member){.mass = g.mass,
+                                                       .position = {g.x, g.y, 0},
+                                                       .velocity = {g.vx, g.vy, 0},
+                                                       .spin = g.spin,
+                                                       .moment_of_inertia = g.moment_of_inertia};
+  }
+}
+
+/* Adds the link of a pair whose grains are both present. */
+static void add_link(const struct dem_run *run, size_t pair, struct search *w) {
+  const uint32_t a = w->number[run->tessellation->pair[pair][0]], b = w->number[run->tessellation->pair[pair][1]];
   if (a == UINT32_MAX || b == UINT32_MAX)
     return;
-  link[*links][0] = a;
-  link[(*links)++][1] = b;
+  w->link[w->links][0] = a;
+  w->link[w->links++][1] = b;
+}
+
+/* The beams that held at the time `when`: those of now, and those that broke since. */
+static void add_links(const struct dem_run *run, double when, struct search *w) {
+  const struct dem_break *log;
+  for (size_t p = 0; p < run->tessellation->pair_count; p++)
+    if (dem_system_beam_alive(run->system, p))
+      add_link(run, p, w);
+  for (size_t k = dem_system_breaks(run->system, &log); k > 0 && log[k - 1].time > when; k--)
+    add_link(run, log[k - 1].beam, w);
 }
 
 /* Finds the fragments of the time `when`: the present grains, joined by the beams that held then. Their motion is that
  * of now. label[grain] (may be NULL) becomes the fragment's number, UINT32_MAX for the explosive. */
 static status fragments_of(const struct dem_run *run, double when, uint32_t *label, struct fragment **fragments,
                            size_t *count, struct error *error) {
-  const struct dem_tessellation *t = run->tessellation;
-  const struct dem_break *log;
-  size_t n = t->cell_count, present = 0, links = 0;
+  const size_t n = run->tessellation->cell_count;
+  struct search w = {0};
   *fragments = NULL;
   *count = 0;
-  status code = STATUS_OK;
-  struct fragment_member *member = malloc(n * sizeof *member);
-  uint32_t *number = malloc(n * sizeof *number), *grain = malloc(n * sizeof *grain), *found = malloc(n * sizeof *found);
-  uint32_t(*link)[2] = malloc((t->pair_count ? t->pair_count : 1) * sizeof *link);
-  if (!member || !number || !grain || !found || !link) {
+  status code;
+  if (!allocate(&w, run->tessellation)) {
     code = status_fail(error, STATUS_MEMORY, "no memory to find the fragments of %zu grains", n);
     goto cleanup;
   }
-  for (uint32_t i = 0; i < n; i++) {
-    struct dem_grain g = dem_system_grain(run->system, i);
-    number[i] = UINT32_MAX;
-    if (!g.present)
-      continue;
-    number[i] = (uint32_t)present;
-    grain[present] = i;
-    member[present++] = (struct fragment_member){.mass = g.mass,
-                                                 .position = {g.x, g.y, 0},
-                                                 .velocity = {g.vx, g.vy, 0},
-                                                 .spin = g.spin,
-                                                 .moment_of_inertia = g.moment_of_inertia};
-  }
-  for (size_t p = 0; p < t->pair_count; p++)
-    if (dem_system_beam_alive(run->system, p))
-      add_link(run, p, number, link, &links);
-  for (size_t k = dem_system_breaks(run->system, &log); k > 0 && log[k - 1].time > when; k--)
-    add_link(run, log[k - 1].beam, number, link, &links);
-  code = fragments_find_plane(present, member, links, (const uint32_t(*)[2])link, found, fragments, count, error);
+  add_grains(run, &w);
+  add_links(run, when, &w);
+  code = fragments_find_plane(w.present, w.member, w.links, (const uint32_t(*)[2])w.link, w.found, fragments, count,
+                              error);
   if (code)
     goto cleanup;
   for (size_t k = 0; k < *count; k++)
-    (*fragments)[k].first = grain[(*fragments)[k].first];
-  if (label)
-    for (size_t i = 0; i < n; i++)
-      label[i] = number[i] == UINT32_MAX ? UINT32_MAX : found[number[i]];
+    (*fragments)[k].first = w.grain[(*fragments)[k].first];
+  for (size_t i = 0; label && i < n; i++)
+    label[i] = w.number[i] == UINT32_MAX ? UINT32_MAX : w.found[w.number[i]];
 cleanup:
-  free(member);
-  free(number);
-  free(grain);
-  free(found);
-  free(link);
+  free_search(&w);
   return code;
 }
 
@@ -102,6 +130,21 @@ static double vibration(size_t count, const struct fragment *fragments) {
   return fmax(0, sum); /* of single grains alone: rounding */
 }
 
+static void fill_breaks(const struct dem_run *run, struct dem_results *results) {
+  const struct dem_break *log;
+  const size_t breaks = dem_system_breaks(run->system, &log);
+  results->broken = (int64_t)breaks;
+  for (size_t k = 0; k < breaks; k++)
+    results->broken_bend += log[k].bending;
+  results->broken_stretch = results->broken - results->broken_bend;
+  if (results->beams > 0)
+    results->broken_share = (double)results->broken / (double)results->beams;
+  if (breaks > 0) {
+    results->first_break = log[0].time;
+    results->last_break = log[breaks - 1].time;
+  }
+}
+
 static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, double energy_input,
                          struct dem_results *results) {
   const struct dem_tessellation *t = run->tessellation;
@@ -137,18 +180,7 @@ static void fill_results(struct dem_run *run, const struct dem_ledger *ledger, d
   results->grains = (int64_t)t->cell_count - (run->charge != UINT32_MAX);
   for (size_t p = 0; p < t->pair_count; p++)
     results->beams += t->pair[p][0] != run->charge && t->pair[p][1] != run->charge;
-  const struct dem_break *log;
-  size_t breaks = dem_system_breaks(run->system, &log);
-  results->broken = (int64_t)breaks;
-  for (size_t k = 0; k < breaks; k++)
-    results->broken_bend += log[k].bending;
-  results->broken_stretch = results->broken - results->broken_bend;
-  if (results->beams > 0)
-    results->broken_share = (double)results->broken / (double)results->beams;
-  if (breaks > 0) {
-    results->first_break = log[0].time;
-    results->last_break = log[breaks - 1].time;
-  }
+  fill_breaks(run, results);
   if (dem_inputs_loaded(&run->inputs))
     dem_loading_results(run, results);
 }
@@ -183,13 +215,41 @@ static struct outcome_small small_fragments(size_t count, const struct fragment 
   return (struct outcome_small){.dust = NAN, .complete = grains > 0 ? 1.5 * mass / grains : 0};
 }
 
+/* Energy of the fragments' translation, J/m. */
+static double translation(size_t count, const struct fragment *fragments) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++) {
+    const double *v = fragments[k].velocity;
+    sum += 0.5 * fragments[k].mass * (v[0] * v[0] + v[1] * v[1]);
+  }
+  return sum;
+}
+
+/* Errors of energy and momentum, and the share of the energy that is translation; NaN where nothing was put in. */
+static void fill_balance(const struct dem_run *run, const struct dem_ledger *ledger, double input, double translation,
+                         struct outcome *outcome) {
+  const struct dem_state *s = &run->state;
+  double momentum[2], magnitude;
+  dem_run_momentum(run, momentum, &magnitude);
+  /* forces inside the body cancel: the impulse on held grains is the momentum that the free ones lose */
+  const double px = momentum[0] - s->momentum_start[0] + s->impulse[0];
+  const double py = momentum[1] - s->momentum_start[1] + s->impulse[1];
+  outcome->energy_error = outcome->kinetic_energy_share = outcome->momentum_error = NAN;
+  if (input > 0) {
+    outcome->energy_error = not_infinite(fabs(dem_run_closed(ledger) - s->closed_start) / input);
+    outcome->kinetic_energy_share = not_infinite(translation / input);
+  }
+  if (magnitude > 0)
+    outcome->momentum_error = not_infinite(hypot(px, py) / magnitude);
+}
+
 status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct dem_results *results,
                          struct fragment **fragments, size_t *count, struct error *error) {
   status code = dem_report_fragments(run, NULL, fragments, count, error);
   if (code)
     return code;
-  struct dem_ledger ledger = dem_system_ledger(run->system);
-  double input = run->state.energy_input + fabs(ledger.external_work);
+  const struct dem_ledger ledger = dem_system_ledger(run->system);
+  const double input = run->state.energy_input + fabs(ledger.external_work);
   fill_results(run, &ledger, input, results);
 
   *outcome = (struct outcome){.state = run->state.finished ? run->state.outcome_state : OUTCOME_END_TIME,
@@ -208,19 +268,7 @@ status dem_report_finish(struct dem_run *run, struct outcome *outcome, struct de
     *count = 0;
     return code;
   }
-  outcome->energy_error = input > 0 ? not_infinite(fabs(dem_run_closed(&ledger) - run->state.closed_start) / input)
-                                    : (double)NAN;
-  double momentum[2], magnitude, translation = 0;
-  dem_run_momentum(run, momentum, &magnitude);
-  /* forces inside the body cancel: the impulse on held grains is the momentum that the free ones lose */
-  double px = momentum[0] - run->state.momentum_start[0] + run->state.impulse[0];
-  double py = momentum[1] - run->state.momentum_start[1] + run->state.impulse[1];
-  outcome->momentum_error = magnitude > 0 ? not_infinite(hypot(px, py) / magnitude) : (double)NAN;
-  for (size_t k = 0; k < *count; k++) {
-    const double *v = (*fragments)[k].velocity;
-    translation += 0.5 * (*fragments)[k].mass * (v[0] * v[0] + v[1] * v[1]);
-  }
-  outcome->kinetic_energy_share = input > 0 ? not_infinite(translation / input) : (double)NAN;
+  fill_balance(run, &ledger, input, translation(*count, *fragments), outcome);
   warn(run, outcome);
   return STATUS_OK;
 }

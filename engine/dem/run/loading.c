@@ -27,11 +27,9 @@ static double mean(const struct dem_run *run, const uint32_t *grain, size_t coun
   return sum / (double)count;
 }
 
-status dem_loading_start(struct dem_run *run, struct error *error) {
-  const struct dem_tessellation *t = run->tessellation;
-  size_t n = t->cell_count;
-  uint32_t rows = (uint32_t)run->inputs.body.rows, columns = (uint32_t)run->inputs.body.columns;
-  double steps = ceil(dem_inputs_end_time(&run->inputs) / run->inputs.fidelity.time_step);
+static status allocate(struct dem_run *run, struct error *error) {
+  const size_t n = run->tessellation->cell_count;
+  const double steps = ceil(dem_inputs_end_time(&run->inputs) / run->inputs.fidelity.time_step);
   run->sample_interval = (uint64_t)fmax(1, floor(steps / SAMPLES));
   run->sample_capacity = (size_t)(1.1 * steps / (double)run->sample_interval) + 8;
   run->sample = calloc(run->sample_capacity, sizeof *run->sample);
@@ -39,28 +37,46 @@ status dem_loading_start(struct dem_run *run, struct error *error) {
   run->upper = malloc(n * sizeof *run->upper);
   run->left = malloc(n * sizeof *run->left);
   run->right = malloc(n * sizeof *run->right);
-  if (!run->sample || !run->lower || !run->upper || !run->left || !run->right)
-    return status_fail(error, STATUS_MEMORY, "no memory for the sides of %zu grains", n);
-  unsigned freedoms = run->inputs.kind == DEM_COMPRESSION ? 7 : 6;
-  for (uint32_t c = 0; c < n; c++) {
-    bool lower = t->grid_y[c] == 0, upper = t->grid_y[c] == rows - 1;
+  if (run->sample && run->lower && run->upper && run->left && run->right)
+    return STATUS_OK;
+  return status_fail(error, STATUS_MEMORY, "no memory for the sides of %zu grains", n);
+}
+
+/* A grain of the middle half, away from the held sides, may be where the width is measured. */
+static void add_to_gauge(struct dem_run *run, uint32_t grain) {
+  const struct dem_tessellation *t = run->tessellation;
+  const uint32_t rows = (uint32_t)run->inputs.body.rows, columns = (uint32_t)run->inputs.body.columns;
+  if (t->grid_y[grain] < rows / 4 || t->grid_y[grain] >= rows - rows / 4)
+    return;
+  if (t->grid_x[grain] == 0)
+    run->left[run->left_count++] = grain;
+  if (t->grid_x[grain] == columns - 1)
+    run->right[run->right_count++] = grain;
+}
+
+status dem_loading_start(struct dem_run *run, struct error *error) {
+  const struct dem_tessellation *t = run->tessellation;
+  const uint32_t rows = (uint32_t)run->inputs.body.rows;
+  const unsigned freedoms = run->inputs.kind == DEM_COMPRESSION ? 7 : 6;
+  const status code = allocate(run, error);
+  if (code)
+    return code;
+  for (uint32_t c = 0; c < t->cell_count; c++) {
+    const bool lower = t->grid_y[c] == 0, upper = t->grid_y[c] == rows - 1;
     if (lower)
       run->lower[run->lower_count++] = c;
     if (upper)
       run->upper[run->upper_count++] = c;
-    if (lower || upper) {
-      run->held[c] = (unsigned char)freedoms;
-      dem_system_hold(run->system, c, freedoms);
-    } else if (t->grid_y[c] >= rows / 4 && t->grid_y[c] < rows - rows / 4) { /* the middle half: away from the sides */
-      if (t->grid_x[c] == 0)
-        run->left[run->left_count++] = c;
-      if (t->grid_x[c] == columns - 1)
-        run->right[run->right_count++] = c;
+    if (!lower && !upper) {
+      add_to_gauge(run, c);
+      continue;
     }
+    run->held[c] = (unsigned char)freedoms;
+    dem_system_hold(run->system, c, freedoms);
   }
   run->gauge_length = mean(run, run->upper, run->upper_count, false) - mean(run, run->lower, run->lower_count, false);
   run->gauge_width = mean(run, run->right, run->right_count, true) - mean(run, run->left, run->left_count, true);
-  run->section = columns * run->inputs.grain.spacing;
+  run->section = (uint32_t)run->inputs.body.columns * run->inputs.grain.spacing;
   return STATUS_OK;
 }
 

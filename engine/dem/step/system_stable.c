@@ -48,40 +48,62 @@ static void add_bond(const struct dem_system *s, size_t slot, const double *u, d
  * (tests/verification/test_dem_motion.c). */
 static const double largest_angle[] = {[DEM_VERLET] = 2.0, [DEM_GEAR] = 0.54};
 
-double dem_system_stable_time_step(const struct dem_system *s) {
+/* Any start with all modes in it. The two grains beyond the last one stay at rest. */
+static void start(const struct dem_system *s, double *u) {
   const size_t n = s->count;
-  double *u = malloc(6 * (n + 2) * sizeof *u), *f = u ? u + 3 * (n + 2) : NULL;
+  for (size_t k = 0; k < 3 * n; k++)
+    u[k] = ((double)(k * 2654435761u >> 7 & 1023u) / 511.5 - 1.0) * (k % 3 == 2 ? 1.0 / s->mean_diameter : 1.0);
+  memset(u + 3 * n, 0, 6 * sizeof *u);
+}
+
+/* f = K u */
+static void apply_stiffness(const struct dem_system *s, const double *u, double *f) {
+  memset(f, 0, 3 * (s->count + 2) * sizeof *f);
+  for (size_t slot = 0; slot < s->now.bond_blocks * DEM_BLOCK; slot++)
+    if (s->lane_pair[slot] != DEM_NO_PAIR)
+      add_bond(s, slot, u, f);
+}
+
+/* Returns the Rayleigh quotient u.K u / u.M u from f = K u. Then f = M^-1 K u and *largest its largest component. */
+static double quotient(const struct dem_system *s, const double *u, double *f, double *largest) {
+  const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
+  double top = 0.0, bottom = 0.0;
+  *largest = 0.0;
+  for (size_t k = 0; k < 3 * s->count; k++) {
+    const double per_mass = mobility[k % 3][k / 3];
+    if (!(per_mass > 0.0))
+      continue;
+    top += u[k] * f[k];
+    bottom += u[k] * u[k] / per_mass;
+    f[k] *= per_mass;
+    *largest = fmax(*largest, fabs(f[k]));
+  }
+  return bottom > 0.0 ? top / bottom : 0.0;
+}
+
+/* u = f, scaled; what is held stays at rest. */
+static void take_next(const struct dem_system *s, const double *f, double largest, double *u) {
+  const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
+  for (size_t k = 0; k < 3 * s->count; k++)
+    u[k] = mobility[k % 3][k / 3] > 0.0 ? f[k] / largest : 0.0;
+}
+
+double dem_system_stable_time_step(const struct dem_system *s) {
+  const size_t size = 3 * (s->count + 2);
+  double *u = malloc(2 * size * sizeof *u);
   if (!u)
     return NAN;
-  const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  for (size_t k = 0; k < 3 * (n + 2); k++) /* any start with all modes in it */
-    u[k] = ((double)(k * 2654435761u >> 7 & 1023u) / 511.5 - 1.0) * (k % 3 == 2 ? 1.0 / s->mean_diameter : 1.0);
-  u[3 * n] = u[3 * n + 1] = u[3 * n + 2] = u[3 * n + 3] = u[3 * n + 4] = u[3 * n + 5] = 0.0;
-  double squared = 0.0;
+  double *f = u + size, squared = 0.0;
+  start(s, u);
   for (int iteration = 0; iteration < 1000; iteration++) {
-    memset(f, 0, 3 * (n + 2) * sizeof *f);
-    for (size_t slot = 0; slot < s->now.bond_blocks * DEM_BLOCK; slot++)
-      if (s->lane_pair[slot] != DEM_NO_PAIR)
-        add_bond(s, slot, u, f);
-    /* Rayleigh quotient u.K u / u.M u, then u <- M^-1 K u, scaled. */
-    double top = 0.0, bottom = 0.0, largest = 0.0;
-    for (size_t i = 0; i < n; i++)
-      for (size_t k = 0; k < 3; k++) {
-        const double per_mass = mobility[k][i], v = u[3 * i + k];
-        if (!(per_mass > 0.0))
-          continue;
-        top += v * f[3 * i + k];
-        bottom += v * v / per_mass;
-        f[3 * i + k] *= per_mass;
-        largest = fmax(largest, fabs(f[3 * i + k]));
-      }
+    double largest;
     const double before = squared;
-    squared = bottom > 0.0 ? top / bottom : 0.0;
-    if (!(largest > 0.0) || (iteration > 20 && fabs(squared - before) < 1e-7 * squared))
+    apply_stiffness(s, u, f);
+    squared = quotient(s, u, f, &largest);
+    const bool settled = iteration > 20 && fabs(squared - before) < 1e-7 * squared;
+    if (!(largest > 0.0) || settled)
       break;
-    for (size_t i = 0; i < n; i++)
-      for (size_t k = 0; k < 3; k++)
-        u[3 * i + k] = mobility[k][i] > 0.0 ? f[3 * i + k] / largest : 0.0;
+    take_next(s, f, largest, u);
   }
   free(u);
   return squared > 0.0 ? largest_angle[s->in->fidelity.integrator] / sqrt(squared) : (double)INFINITY;
