@@ -14,6 +14,7 @@
 static const char magic[8] = "CLASTRUN";
 /* 4: the build stands in the file. */
 enum { VERSION = 4 };
+#define NO_RESTART_FILE "'%s' is no restart file: name another one, or move it away to start the run afresh"
 enum { STATE, SAMPLES, SYSTEM, PARTS };
 
 struct part {
@@ -173,8 +174,7 @@ status restart_peek(const char *path, uint64_t *seed, struct error *error) {
   size_t got = fread(&head, sizeof head, 1, file);
   fclose(file);
   if (got != 1 || memcmp(head.magic, magic, sizeof magic) != 0)
-    return status_fail(error, STATUS_CONTENT,
-                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
+    return status_fail(error, STATUS_CONTENT, NO_RESTART_FILE, path);
   *seed = head.seed;
   return STATUS_OK;
 }
@@ -187,32 +187,42 @@ static status refuse(const char *path, struct error *error) {
       path);
 }
 
-/* Reads magic, checksum, version, seed, class, build and identity: everything before the parts. */
-static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
+/* Reads the magic and checks the sum over the file. */
+static status read_seal(struct bytes *b, const char *path, struct error *error) {
   char head[sizeof magic];
-  uint64_t sum, class, length;
+  uint64_t sum;
   if (b->size < sizeof magic + 8 || !get(b, head, sizeof head) || memcmp(head, magic, sizeof magic) != 0)
-    return status_fail(error, STATUS_CONTENT,
-                       "'%s' is no restart file: name another one, or move it away to start the run afresh", path);
+    return status_fail(error, STATUS_CONTENT, NO_RESTART_FILE, path);
   memcpy(&sum, b->at + b->size - 8, 8);
   if (sum != text_hash(TEXT_HASH_START, b->at, b->size - 8))
     return status_fail(error, STATUS_CONTENT, "the restart file '%s' is damaged or cut short: start the run afresh",
                        path);
+  return STATUS_OK;
+}
 
+static status other_class(enum cpu_class class, const char *path, struct error *error) {
+  const char *name = cpu_class_name(class);
+  return status_fail(
+      error, STATUS_CONTENT,
+      "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
+      "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
+      path, name, cpu_class_name(cpu_class_choose()), name);
+}
+
+/* Reads magic, checksum, version, seed, class, build and identity: everything before the parts. */
+static status read_head(struct bytes *b, const char *identity, const char *path, uint64_t *seed, struct error *error) {
+  uint64_t class, length;
+  const status code = read_seal(b, path, error);
+  if (code)
+    return code;
   if (!get_exactly(b, VERSION) || !get(b, seed, 8) || !get(b, &class, 8))
     return refuse(path, error);
-  if (class != (uint64_t)cpu_class_choose()) {
-    const char *name = cpu_class_name((enum cpu_class) class);
-    return status_fail(
-        error, STATUS_CONTENT,
-        "the restart file '%s' is of CPU class %s, this run of %s, and bits are the same within one class only: "
-        "resume on a machine that has it with CLAST_CPU=%s in the environment, or start the run afresh",
-        path, name, cpu_class_name(cpu_class_choose()), name);
-  }
+  if (class != (uint64_t)cpu_class_choose())
+    return other_class((enum cpu_class) class, path, error);
   if (!get_exactly(b, build_hash()))
     return refuse(path, error);
-  if (!get(b, &length, 8) || length != strlen(identity) || b->size - b->used < length ||
-      memcmp(b->at + b->used, identity, length) != 0)
+  const bool whole = get(b, &length, 8) && length <= b->size - b->used;
+  if (!whole || length != strlen(identity) || memcmp(b->at + b->used, identity, length) != 0)
     return status_fail(error, STATUS_CONTENT,
                        "the restart file '%s' belongs to another scene: name another one, or start the run afresh",
                        path);

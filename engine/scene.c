@@ -6,6 +6,7 @@
 
 #include "engine/blake2s.h"
 #include "engine/builtin.h"
+#include "engine/file_name.h"
 #include "engine/scene_files.h"
 #include "engine/scene_materials.h"
 #include "engine/scene_settings.h"
@@ -52,10 +53,10 @@ static status unknown_builtin(const char *name, struct error *error) {
 
 static const char *const own_keys[] = {"engine", "name", "source", "settings", NULL};
 
-static const struct field head_rows[] = {
-    {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"},
-    {.path = "source", .kind = FIELD_TEXT, .doc = "Where it comes from: paper, section, figure"},
-};
+static const struct field name_row = {.path = "name", .kind = FIELD_TEXT, .doc = "The scene's name"};
+static const struct field source_row = {.path = "source",
+                                        .kind = FIELD_TEXT,
+                                        .doc = "Where it comes from: paper, section, figure"};
 
 static struct scene *create(const struct engine_kind *kind) {
   struct scene *scene = calloc(1, sizeof *scene);
@@ -73,94 +74,111 @@ static struct scene *create(const struct engine_kind *kind) {
   return scene;
 }
 
+/* The engine that a document names; NULL: an error was reported. */
+static const struct engine_kind *read_engine(document_node *root) {
+  document_node *engine = document_key(root, "engine");
+  if (!engine) {
+    document_report(root, "engine", "is missing; say which engine runs this scene, such as 'engine: dem'");
+    return NULL;
+  }
+  const char *name = document_scalar(engine);
+  if (!name) {
+    document_report(engine, "engine", "expected an engine's name, such as 'engine: dem'");
+    return NULL;
+  }
+  struct error unknown;
+  const struct engine_kind *kind = engine_find(name, &unknown);
+  if (!kind)
+    document_report(engine, "engine", "%s", unknown.message);
+  return kind;
+}
+
+/* The document's `name`, else the fallback. `source` is read, too, as it may be wrong. */
+static void read_name(document_node *root, const char *fallback, struct field_value *name) {
+  struct field_value source;
+  *name = (struct field_value){.kind = FIELD_TEXT};
+  document_node *name_node = document_key(root, "name"), *source_node = document_key(root, "source");
+  if (name_node)
+    document_value(name_node, &name_row, name);
+  if (source_node)
+    document_value(source_node, &source_row, &source);
+  if (!name->text[0])
+    field_copy_text(name->text, fallback);
+}
+
+/* Reads the scene; errors of its content go into the document's report. */
+static status read_scene(document_node *root, const char *folder, const char *fallback, struct scene **out,
+                         struct error *error) {
+  struct field_value name;
+  const struct engine_kind *kind = read_engine(root);
+  read_name(root, fallback, &name);
+  if (!kind)
+    return STATUS_OK;
+  struct scene *scene = *out = create(kind);
+  if (!scene)
+    return status_fail(error, STATUS_MEMORY, "no memory for a scene");
+  scene_materials_take(root, kind->inputs, folder);
+  scene_files_take(root, kind->inputs, folder);
+  document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
+  snprintf(scene->name, sizeof scene->name, "%s", name.text);
+  scene_settings_read(document_key(root, "settings"), scene);
+  return STATUS_OK;
+}
+
 /* Frees the document. */
 static status read_document(struct document *document, const char *folder, const char *fallback, struct scene **out,
                             struct error *error) {
-  status code = STATUS_CONTENT;
-  struct scene *scene = NULL;
-  document_node *root = document_root(document), *engine = document_key(root, "engine");
-  struct error unknown;
-  const char *engine_name = engine ? document_scalar(engine) : NULL, *report = NULL;
-  const struct engine_kind *kind = engine_name ? engine_find(engine_name, &unknown) : NULL;
-  if (!engine)
-    document_report(root, "engine", "is missing; say which engine runs this scene, such as 'engine: dem'");
-  else if (!engine_name)
-    document_report(engine, "engine", "expected an engine's name, such as 'engine: dem'");
-  else if (!kind)
-    document_report(engine, "engine", "%s", unknown.message);
-  struct field_value name = {.kind = FIELD_TEXT}, ignored;
-  for (size_t i = 0; i < 2; i++) {
-    document_node *node = document_key(root, head_rows[i].path);
-    if (node)
-      document_value(node, &head_rows[i], i == 0 ? &name : &ignored);
+  const char *report;
+  *out = NULL;
+  status code = read_scene(document_root(document), folder, fallback, out, error);
+  if (!code) {
+    code = document_finish(document, &report);
+    if (code)
+      status_fail(error, code, "%s", report);
   }
-  if (kind) {
-    scene = create(kind);
-    if (!scene) {
-      code = status_fail(error, STATUS_MEMORY, "no memory for a scene");
-      goto cleanup;
-    }
-    scene_materials_take(root, kind->inputs, folder);
-    scene_files_take(root, kind->inputs, folder);
-    document_read_given(root, kind->inputs, own_keys, scene->inputs, scene->given, kind->complete);
-    snprintf(scene->name, sizeof scene->name, "%s", name.text[0] ? name.text : fallback);
-    scene_settings_read(document_key(root, "settings"), scene);
-  }
-  code = document_finish(document, &report);
-  if (code)
-    status_fail(error, code, "%s", report);
-cleanup:
   document_free(document);
   if (code) {
-    scene_free(scene);
-    scene = NULL;
+    scene_free(*out);
+    *out = NULL;
   }
-  *out = scene;
   return code;
 }
 
-static bool is_path(const char *reference) {
-  const char *dot = strrchr(reference, '.');
-  return strchr(reference, '/') || (dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml") || !strcmp(dot, ".json")));
+/* A scene's file. Names in it are relative to its own folder; without a name of its own the scene is called as it. */
+static status load_file(const char *path, struct scene **out, struct error *error) {
+  const char *slash = strrchr(path, '/');
+  const size_t length = slash ? (size_t)(slash - path) : 0;
+  char *folder = strndup(path, slash == path ? 1 : length); /* "/" for "/scene.yaml" */
+  char *stem = strdup(slash ? slash + 1 : path);
+  struct document *document = NULL;
+  status code;
+  if (!folder || !stem) {
+    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
+    goto cleanup;
+  }
+  char *dot = strrchr(stem, '.');
+  if (dot && dot != stem)
+    *dot = 0;
+  code = document_open(path, &document, error);
+  if (!code)
+    code = read_document(document, folder, stem, out, error);
+cleanup:
+  free(folder);
+  free(stem);
+  return code;
 }
 
 static status load_standard(const char *reference, const char *folder, struct scene **out, struct error *error) {
   *out = NULL;
-  struct document *document = NULL;
-  char *path = NULL, *stem = NULL, *own_folder = NULL;
-  status code;
-  if (!is_path(reference)) {
+  if (!file_name_is_document(reference)) {
     const char *text = scene_builtin_text(reference);
-    if (!text)
-      return unknown_builtin(reference, error);
-    return scene_parse(reference, text, out, error);
+    return text ? scene_parse(reference, text, out, error) : unknown_builtin(reference, error);
   }
-  bool absolute = reference[0] == '/' || !folder || !*folder;
-  size_t size = strlen(reference) + (absolute ? 0 : strlen(folder)) + 2;
-  const char *slash = strrchr(reference, '/');
-  path = malloc(size);
-  stem = strdup(slash ? slash + 1 : reference);
-  if (!path || !stem) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
-    goto cleanup;
-  }
-  snprintf(path, size, "%s%s%s", absolute ? "" : folder, absolute ? "" : "/", reference);
-  char *dot = strrchr(stem, '.');
-  if (dot && dot != stem)
-    *dot = 0;
-  const char *end = strrchr(path, '/');
-  own_folder = end ? strndup(path, (size_t)(end - path) + (end == path)) : NULL;
-  if (end && !own_folder) {
-    code = status_fail(error, STATUS_MEMORY, "no memory for a path");
-    goto cleanup;
-  }
-  code = document_open(path, &document, error);
-  if (!code)
-    code = read_document(document, own_folder, stem, out, error);
-cleanup:
+  char *path = file_name_in(folder, reference);
+  if (!path)
+    return status_fail(error, STATUS_MEMORY, "no memory for a path");
+  const status code = load_file(path, out, error);
   free(path);
-  free(stem);
-  free(own_folder);
   return code;
 }
 

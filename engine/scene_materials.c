@@ -4,14 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "engine/file_name.h"
+
 enum { PATH_SIZE = 256 };
 
 const char *const scene_materials_words[] = {"material", "source", "sources", NULL};
-
-static bool is_file(const char *word) {
-  const char *dot = strrchr(word, '.');
-  return strchr(word, '/') || (dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml") || !strcmp(dot, ".json")));
-}
 
 static bool has_row(const struct field_table *inputs, const char *section, const char *key) {
   char path[PATH_SIZE + 64];
@@ -27,14 +24,11 @@ static void include(document_node *section, document_node *place, const char *pa
                     const char *folder) {
   struct document *other = NULL;
   struct error error;
-  const bool absolute = file[0] == '/' || !folder || !*folder;
-  const size_t size = strlen(file) + (absolute ? 0 : strlen(folder)) + 2;
-  char *whole = malloc(size);
+  char *whole = file_name_in(folder, file);
   if (!whole) {
     document_report(place, path, "no memory for the name of a file");
     return;
   }
-  snprintf(whole, size, "%s%s%s", absolute ? "" : folder, absolute ? "" : "/", file);
   if (document_open(whole, &other, &error) != STATUS_OK)
     document_report(place, path, "%s", error.message);
   else if (!document_graft(section, other, scene_materials_words) || !document_graft_word(section, "name", "custom"))
@@ -43,26 +37,28 @@ static void include(document_node *section, document_node *place, const char *pa
   free(whole);
 }
 
-static void take(document_node *node, const char *path, const char *folder) {
-  if (document_kind(node) == DOCUMENT_MAPPING) {
-    document_node *file = document_key(node, "file");
-    const char *word = file ? document_scalar(file) : NULL;
-    if (!file)
-      return;
-    if (!word || !*word) {
-      document_report(file, path, "expected the name of a material's file, such as ./my-rock.yaml");
-      return;
-    }
-    document_graft_drop(node, "file");
-    include(node, file, path, word, folder);
+/* `material: {file: ./my-rock.yaml, ...}` */
+static void take_section(document_node *section, const char *path, const char *folder) {
+  document_node *file = document_key(section, "file");
+  if (!file)
+    return;
+  const char *word = document_scalar(file);
+  if (!word || !*word) {
+    document_report(file, path, "expected the name of a material's file, such as ./my-rock.yaml");
     return;
   }
+  document_graft_drop(section, "file");
+  include(section, file, path, word, folder);
+}
+
+/* `material: basalt`, or `material: ./my-rock.yaml` */
+static void take_word(document_node *node, const char *path, const char *folder) {
   const char *text = document_scalar(node);
   if (!text || !*text)
     return; /* the reader says what is wrong */
   char word[4096];
   snprintf(word, sizeof word, "%s", text);
-  if (is_file(word))
+  if (file_name_is_document(word))
     include(node, node, path, word, folder);
   else if (!document_graft_word(node, "name", word))
     document_report(node, path, "no memory to read it");
@@ -76,9 +72,12 @@ static void walk(document_node *mapping, const struct field_table *inputs, const
     char path[PATH_SIZE];
     if (!key || (size_t)snprintf(path, sizeof path, "%s%s%s", section, *section ? "." : "", key) >= sizeof path)
       continue;
-    if (has_row(inputs, path, "name"))
-      take(node, path, folder);
-    else if (document_kind(node) == DOCUMENT_MAPPING)
+    const bool is_material = has_row(inputs, path, "name"), is_section = document_kind(node) == DOCUMENT_MAPPING;
+    if (is_material && is_section)
+      take_section(node, path, folder);
+    else if (is_material)
+      take_word(node, path, folder);
+    else if (is_section)
       walk(node, inputs, path, folder);
   }
 }

@@ -6,22 +6,12 @@
 #include "campaign/terminal/explain_scene.h"
 #include "campaign/terminal/scene_option.h"
 #include "campaign/terminal/table.h"
+#include "engine/file_name.h"
 
 struct options {
   struct option_list set;
   struct table_options table;
 };
-
-static bool is_file_name(const char *name) {
-  static const char *const endings[] = {".yaml", ".yml", ".json"};
-  const char *ending = strrchr(name, '.');
-  if (strchr(name, '/'))
-    return true;
-  for (size_t i = 0; ending && i < sizeof endings / sizeof endings[0]; i++)
-    if (strcmp(ending, endings[i]) == 0)
-      return true;
-  return false;
-}
 
 static status run(const struct command_line *line, struct error *error) {
   const struct options *options = line->options;
@@ -33,7 +23,8 @@ static status run(const struct command_line *line, struct error *error) {
     return explain_path_list(format, error);
 
   const char *name = line->arguments[0];
-  const bool is_scene = is_file_name(name) || strchr(name, '@') || scene_builtin_text(name) || options->set.count;
+  const bool is_scene = file_name_is_document(name) || strchr(name, '@') || scene_builtin_text(name) ||
+                        options->set.count;
   if (!is_scene) {
     code = table_text_only(&options->table, "the explanation of a path", error);
     return code ? code : explain_path(name, error);

@@ -1,12 +1,12 @@
 /* The list of shape files that were read. It is short: a campaign has one or a few. */
 #include "engine/mesh/files.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "engine/atomic_file.h"
+#include "engine/file_name.h"
 #include "schemas/sha256.h"
 
 struct entry {
@@ -75,15 +75,12 @@ static status look(const char *path, struct error *error) {
 }
 
 status mesh_files_open(const char *name, const char *folder, const struct mesh_file **out, struct error *error) {
-  const bool whole = name[0] == '/' || !folder || !*folder;
-  const size_t length = strlen(name) + (whole ? 0 : strlen(folder)) + 2;
-  char *path = malloc(length);
+  char *path = file_name_in(folder, name);
   unsigned char *bytes = NULL;
   size_t size = 0;
   *out = NULL;
   if (!path)
     return status_fail(error, STATUS_MEMORY, "no memory for the name of a file");
-  snprintf(path, length, "%s%s%s", whole ? "" : folder, whole ? "" : "/", name);
   status code = look(path, error);
   if (!code)
     code = atomic_file_read(path, "shape file", &bytes, &size, error);

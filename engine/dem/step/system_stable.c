@@ -69,23 +69,25 @@ static double quotient(const struct dem_system *s, const double *u, double *f, d
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
   double top = 0.0, bottom = 0.0;
   *largest = 0.0;
-  for (size_t k = 0; k < 3 * s->count; k++) {
-    const double per_mass = mobility[k % 3][k / 3];
-    if (!(per_mass > 0.0))
-      continue;
-    top += u[k] * f[k];
-    bottom += u[k] * u[k] / per_mass;
-    f[k] *= per_mass;
-    *largest = fmax(*largest, fabs(f[k]));
-  }
+  for (size_t i = 0; i < s->count; i++)
+    for (size_t k = 0; k < 3; k++) {
+      const double per_mass = mobility[k][i], v = u[3 * i + k];
+      if (!(per_mass > 0.0))
+        continue;
+      top += v * f[3 * i + k];
+      bottom += v * v / per_mass;
+      f[3 * i + k] *= per_mass;
+      *largest = fmax(*largest, fabs(f[3 * i + k]));
+    }
   return bottom > 0.0 ? top / bottom : 0.0;
 }
 
 /* u = f, scaled; what is held stays at rest. */
 static void take_next(const struct dem_system *s, const double *f, double largest, double *u) {
   const double *const mobility[3] = {s->c.mobility_x, s->c.mobility_y, s->c.mobility_angle};
-  for (size_t k = 0; k < 3 * s->count; k++)
-    u[k] = mobility[k % 3][k / 3] > 0.0 ? f[k] / largest : 0.0;
+  for (size_t i = 0; i < s->count; i++)
+    for (size_t k = 0; k < 3; k++)
+      u[3 * i + k] = mobility[k][i] > 0.0 ? f[3 * i + k] / largest : 0.0;
 }
 
 double dem_system_stable_time_step(const struct dem_system *s) {

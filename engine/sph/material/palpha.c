@@ -162,51 +162,71 @@ static bool followed(const struct sph_palpha_law *law) {
   return fabs(alpha - sph_palpha_elastic(law, first, pressure)) < 0.01 * (first - 1);
 }
 
+/* Sound speed of the porous body over that of the solid. */
+static status find_ratio(const struct sph_palpha_law *law, double *ratio, struct error *error) {
+  if (!(law->solid.A > 0) || !(law->solid_density > 0))
+    return status_fail(error, STATUS_CONTENT, "porosity: the solid has no bulk modulus or density");
+  const double solid_speed = sqrt(law->solid.A / law->solid_density), speed = law->given.sound_speed;
+  *ratio = isnan(speed) ? 1 : speed / solid_speed;
+  if (*ratio > 0 && *ratio <= 1)
+    return STATUS_OK;
+  return status_fail(error, STATUS_CONTENT,
+                     "porosity.sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s", speed,
+                     solid_speed);
+}
+
+static status too_soft(const struct sph_palpha_law *law, struct error *error) {
+  return refuse(error, "distention", law->given.distention,
+                "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, "
+                "or a lower elastic_pressure");
+}
+
+/* alpha_e is given. */
+static status prepare_two_power(struct sph_palpha_law *law, double ratio, struct error *error) {
+  const struct sph_palpha *given = &law->given;
+  if (!set_stiffness(law, ratio, given->elastic_distention))
+    return refuse(error, "distention", given->distention, "it is too far above elastic_distention for sound_speed");
+  const double begin = sph_palpha_elastic(law, given->distention, given->elastic_pressure);
+  if (begin > given->elastic_distention * (1 + 1e-6))
+    return refuse(error, "distention", given->distention,
+                  "it is above elastic_distention, where the crush curve begins: lower it or raise that");
+  return followed(law) ? STATUS_OK : too_soft(law, error);
+}
+
+/* alpha_e is where the elastic branch ends, at P_e. The iteration begins above and falls to the largest solution. */
+static status prepare_quadratic(struct sph_palpha_law *law, double ratio, struct error *error) {
+  double alpha_e = law->given.distention;
+  for (int i = 0; i < 1000; i++) {
+    if (!set_stiffness(law, ratio, alpha_e))
+      return too_soft(law, error);
+    const double next = sph_palpha_elastic(law, law->given.distention, law->given.elastic_pressure);
+    if (fabs(next - alpha_e) < 1e-14 * alpha_e)
+      return followed(law) ? STATUS_OK : too_soft(law, error);
+    alpha_e = next;
+  }
+  return too_soft(law, error);
+}
+
 status sph_palpha_prepare(const struct sph_palpha *given, const struct sph_material *solid, struct sph_palpha_law *out,
                           struct error *error) {
   status code = check_curve(given, error);
-  if (code != STATUS_OK)
+  if (code)
     return code;
+  double ratio = 1;
   *out = (struct sph_palpha_law){.given = *given, .solid = solid->tillotson, .solid_density = solid->density};
-  if (!(solid->tillotson.A > 0) || !(solid->density > 0))
-    return status_fail(error, STATUS_CONTENT, "porosity: the solid has no bulk modulus or density");
-  double solid_speed = sqrt(solid->tillotson.A / solid->density);
-  double ratio = isnan(given->sound_speed) ? 1 : given->sound_speed / solid_speed;
-  if (!(ratio > 0) || !(ratio <= 1))
-    return status_fail(error, STATUS_CONTENT,
-                       "porosity.sound_speed is %.9g m/s: it must be above 0 and not above the solid's, %.6g m/s",
-                       given->sound_speed, solid_speed);
-  const char
-      *soft = "with this sound_speed the pores give way before elastic_pressure: give a higher sound_speed, or off, or "
-              "a lower elastic_pressure";
-  if (given->curve == SPH_CRUSH_TWO_POWER) {
-    if (!set_stiffness(out, ratio, given->elastic_distention))
-      return refuse(error, "distention", given->distention, "it is too far above elastic_distention for sound_speed");
-    const double begin = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
-    if (begin > given->elastic_distention * (1 + 1e-6))
-      return refuse(error, "distention", given->distention,
-                    "it is above elastic_distention, where the crush curve begins: lower it or raise that");
-    return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
-  }
-  /* alpha_e <- elastic branch at P_e, from above: falls to the largest solution */
-  double alpha_e = given->distention;
-  for (int i = 0; i < 1000; i++) {
-    if (!set_stiffness(out, ratio, alpha_e))
-      return refuse(error, "distention", given->distention, soft);
-    double next = sph_palpha_elastic(out, given->distention, given->elastic_pressure);
-    if (fabs(next - alpha_e) < 1e-14 * alpha_e)
-      return followed(out) ? STATUS_OK : refuse(error, "distention", given->distention, soft);
-    alpha_e = next;
-  }
-  return refuse(error, "distention", given->distention, soft);
+  code = find_ratio(out, &ratio, error);
+  if (code)
+    return code;
+  return given->curve == SPH_CRUSH_TWO_POWER ? prepare_two_power(out, ratio, error)
+                                             : prepare_quadratic(out, ratio, error);
 }
 
 /* 3. (alpha, P) of a density and an energy */
 
 struct trial {
   struct sph_pressure solid;
-  double pressure,
-      slope; /* bulk P(alpha) and dP/dalpha at constant rho, u: not negative, but for hot expanded matter */
+  double pressure; /* bulk P(alpha) */
+  double slope;    /* dP/dalpha at constant rho, u; never below 0: hot expanded matter counts as 0 */
 };
 
 static struct trial try_distention(const struct sph_palpha_law *law, double alpha, double rho, double u) {
@@ -218,6 +238,30 @@ static struct trial try_distention(const struct sph_palpha_law *law, double alph
   return t;
 }
 
+/* The distention that matter with the distention `rest` at rest has at a pressure: the lower one of the elastic branch
+ * and the crush curve. */
+struct target {
+  double alpha;
+  double rise; /* d(trial alpha - this alpha)/d(trial alpha) */
+  bool crush;
+};
+
+static struct target target_at(const struct sph_palpha_law *law, double rest, double alpha, const struct trial *t) {
+  const double p = t->pressure;
+  if (p >= law->given.solid_pressure)
+    return (struct target){1, 1, true};
+  const struct elastic e = elastic_change(law, rest, alpha, p);
+  struct target to = {rest + e.change, 1 - e.by_alpha - e.by_pressure * t->slope, false};
+  if (to.alpha >= law->given.distention)
+    to = (struct target){law->given.distention, 1, false};
+  if (!(p > law->given.elastic_pressure))
+    return to;
+  const double bound = sph_palpha_crush(law, p);
+  if (bound < to.alpha)
+    to = (struct target){bound, 1 - sph_palpha_crush_slope(law, p) * t->slope, true};
+  return to;
+}
+
 /* Both branches fall with P, and P rises with alpha, so alpha - min(elastic, crush)(P(alpha)) rises: its only zero lies
  * between 1 and alpha_0. Newton, kept within that bracket (on the crush curve, which is convex, it climbs steadily from
  * below). A last step from a miss below 1e-9 leaves the square of that: it is taken, but not evaluated again. */
@@ -225,38 +269,23 @@ static double solve(const struct sph_palpha_law *law, double rest, double alpha,
                     bool *crush) {
   double low = 1, high = law->given.distention;
   for (int i = 0; i < 200; i++) {
-    struct trial t = try_distention(law, alpha, rho, u);
-    double target = 1, rise = 1;
-    *crush = t.pressure >= law->given.solid_pressure;
-    if (!*crush) {
-      struct elastic e = elastic_change(law, rest, alpha, t.pressure);
-      target = rest + e.change;
-      rise = 1 - e.by_alpha - e.by_pressure * t.slope;
-      if (target >= law->given.distention)
-        target = law->given.distention, rise = 1;
-    }
-    if (!*crush && t.pressure > law->given.elastic_pressure) {
-      double bound = sph_palpha_crush(law, t.pressure);
-      if (bound < target) {
-        *crush = true;
-        target = bound;
-        rise = 1 - sph_palpha_crush_slope(law, t.pressure) * t.slope;
-      }
-    }
-    *at = t;
-    double miss = alpha - target;
+    *at = try_distention(law, alpha, rho, u);
+    const struct target to = target_at(law, rest, alpha, at);
+    const double miss = alpha - to.alpha;
+    *crush = to.crush;
     if (miss == 0)
       return alpha;
     if (miss > 0)
       high = alpha;
     else
       low = alpha;
-    double next = alpha - miss / (rise > 0.1 ? rise : 0.1);
-    bool inside = next >= low && next <= high;
-    if (fabs(miss) < 1e-9 || high - low < 1e-15) {
-      if (!inside)
-        return alpha;
-      at->pressure += t.slope * (next - alpha);
+    const double next = alpha - miss / (to.rise > 0.1 ? to.rise : 0.1);
+    const bool inside = next >= low && next <= high;
+    const bool settled = fabs(miss) < 1e-9 || high - low < 1e-15;
+    if (settled && !inside)
+      return alpha;
+    if (settled) {
+      at->pressure += at->slope * (next - alpha);
       return next;
     }
     alpha = inside && i % 32 < 31 ? next : low + (high - low) / 2;

@@ -10,6 +10,7 @@
 
 enum { HALVINGS = 100 }; /* of a bracket: to the last bit */
 static const double most_pressure = 1e16;
+static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};
 
 struct matter {
   const struct sph_material *material;
@@ -59,9 +60,30 @@ static struct sph_front front_of(const struct matter *m, const struct sph_front 
   return front_to(m, ahead, sqrt(low * high));
 }
 
+/* The fronts ahead of the piston: a precursor, a shock behind it, or both. */
+static void find_fronts(const struct matter *m, const struct sph_front *rest, double piston,
+                        struct sph_plane_shock *out) {
+  const double elastic = m->law ? m->law->given.elastic_pressure : 0;
+  if (elastic > 0) {
+    out->precursor = front_to(m, rest, elastic);
+    out->has_precursor = true;
+    if (!(piston > out->precursor.velocity)) { /* too slow for a shock */
+      out->precursor = front_of(m, rest, piston);
+      return;
+    }
+    out->shock = front_of(m, &out->precursor, piston);
+    out->has_shock = true;
+    if (out->shock.speed < out->precursor.speed)
+      return;
+    out->precursor = none; /* the shock has overtaken it */
+    out->has_precursor = false;
+  }
+  out->shock = front_of(m, rest, piston);
+  out->has_shock = true;
+}
+
 status sph_plane_shock(const struct sph_material *material, double piston, struct sph_plane_shock *out,
                        struct error *error) {
-  static const struct sph_front none = {NAN, NAN, NAN, NAN, NAN, NAN};
   const bool porous = sph_derived_solid_ratio(material) > 1;
   struct sph_palpha_law law;
   *out = (struct sph_plane_shock){.precursor = none, .shock = none};
@@ -71,25 +93,11 @@ status sph_plane_shock(const struct sph_material *material, double piston, struc
   const struct matter m = {.material = material, .law = porous ? &law : NULL};
   struct sph_front rest = {.distention = porous ? law.given.distention : 1};
   rest.density = out->first_density = material->density / rest.distention;
-  double elastic = porous ? law.given.elastic_pressure : 0;
-  if (elastic > 0) {
-    out->has_precursor = true;
-    out->precursor = front_to(&m, &rest, elastic);
-  }
-  out->has_shock = !out->has_precursor || piston > out->precursor.velocity;
-  if (out->has_shock) {
-    out->shock = front_of(&m, out->has_precursor ? &out->precursor : &rest, piston);
-    if (out->has_precursor && !(out->shock.speed < out->precursor.speed)) { /* the shock has overtaken the precursor */
-      out->has_precursor = false;
-      out->precursor = none;
-      out->shock = front_of(&m, &rest, piston);
-    }
-  } else {
-    out->precursor = front_of(&m, &rest, piston);
-  }
+  find_fronts(&m, &rest, piston, out);
+
   const struct sph_front *last = out->has_shock ? &out->shock : &out->precursor;
-  if (!(fabs(last->velocity - piston) < 1e-6 * piston) || !(last->speed > piston) ||
-      !(last->density > out->first_density))
+  const bool follows = fabs(last->velocity - piston) < 1e-6 * piston;
+  if (!follows || !(last->speed > piston) || !(last->density > out->first_density))
     return status_fail(error, STATUS_CONTENT,
                        "no shock wave in this matter moves it at %.6g m/s: give another piston.speed", piston);
   return STATUS_OK;

@@ -11,51 +11,65 @@ static void add(sph_hook *hooks, size_t *count, sph_hook hook) {
   hooks[(*count)++] = hook;
 }
 
+static bool has_module(const struct sph_solid *b, size_t module) {
+  return b->modules >> module & 1;
+}
+
 static void add_stage(const struct sph_system *s, const struct sph_solid *b, int stage, sph_hook *hooks,
                       size_t *count) {
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (b->modules >> m & 1 && s->ranges->module[m] && s->ranges->module[m][stage])
-      add(hooks, count, s->ranges->module[m][stage]);
+  for (size_t m = 0; m < SPH_MODULES; m++) {
+    const sph_hook *of_module = s->ranges->module[m];
+    if (has_module(b, m) && of_module && of_module[stage])
+      add(hooks, count, of_module[stage]);
+  }
 }
 
 static bool has_yield_law(const struct sph_solid *b) {
   for (size_t m = 0; m < SPH_MODULES; m++)
-    if (b->modules >> m & 1 && sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
+    if (has_module(b, m) && sph_modules_at(m)->sets == SPH_SETS_YIELD_LIMIT)
       return true;
   return false;
 }
 
-static void choose_hooks(struct sph_system *s, struct sph_solid *b) {
-  const struct sph_ranges *r = s->ranges;
-  const bool strength = sph_solid_has(b, SPH_COLUMN(stress)), damage = sph_solid_has(b, SPH_COLUMN(damage));
+/* Hooks before the sum over pairs. */
+static void choose_before(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
   const bool yields = has_yield_law(b);
-
-  add(b->before, &b->before_count, r->predict);
+  add(b->before, &b->before_count, s->ranges->predict);
   for (int stage = SPH_PREDICT; stage < SPH_RATES; stage++) {
+    const bool of_yielding = stage >= SPH_YIELD && stage <= SPH_RETURN;
     if (stage == SPH_CRACK)
       b->first_count = b->before_count;
-    if (yields || stage < SPH_YIELD || stage > SPH_RETURN)
+    if (yields || !of_yielding)
       add_stage(s, b, stage, b->before, &b->before_count);
   }
-  for (size_t m = 0; m < SPH_MODULES; m++)
-    if (b->modules >> m & 1 && sph_modules_at(m)->meet)
-      b->meet = sph_modules_at(m)->meet;
-  sph_hook output = strength ? r->output_whole : r->output_fluid;
-  add(b->before, &b->before_count, damage ? r->output_damaged : output);
+  const sph_hook output = strength ? s->ranges->output_whole : s->ranges->output_fluid;
+  add(b->before, &b->before_count, damage ? s->ranges->output_damaged : output);
+}
 
+/* Hooks after it. */
+static void choose_after(const struct sph_system *s, struct sph_solid *b, bool strength, bool damage) {
   if (s->held || s->c.damping)
-    add(b->after, &b->after_count, r->hold);
+    add(b->after, &b->after_count, s->ranges->hold);
   if (!strength)
-    add(b->after, &b->after_count, r->fluid_rates);
+    add(b->after, &b->after_count, s->ranges->fluid_rates);
   add_stage(s, b, SPH_RATES, b->after, &b->after_count);
-  sph_hook correct = strength ? r->correct_whole : r->correct_fluid;
-  add(b->after, &b->after_count, damage ? r->correct_damaged : correct);
+  const sph_hook correct = strength ? s->ranges->correct_whole : s->ranges->correct_fluid;
+  add(b->after, &b->after_count, damage ? s->ranges->correct_damaged : correct);
+}
+
+static void choose_hooks(const struct sph_system *s, struct sph_solid *b) {
+  const bool strength = sph_solid_has(b, SPH_COLUMN(stress)), damage = sph_solid_has(b, SPH_COLUMN(damage));
+  choose_before(s, b, strength, damage);
+  for (size_t m = 0; m < SPH_MODULES; m++)
+    if (has_module(b, m) && sph_modules_at(m)->meet)
+      b->meet = sph_modules_at(m)->meet;
+  choose_after(s, b, strength, damage);
 }
 
 static status make_body(struct sph_system *s, const struct sph_particles *p, struct sph_solid *b, struct error *error) {
   for (size_t m = 0; m < SPH_MODULES; m++) {
     const struct sph_module *module = sph_modules_at(m);
-    if (!(b->modules >> m & 1) || !module->prepare)
+    if (!has_module(b, m) || !module->prepare)
       continue;
     const status code = module->prepare(&s->in, p, b, error);
     if (code)
