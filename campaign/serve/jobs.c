@@ -8,13 +8,11 @@
 #include "campaign/driver/driver.h"
 #include "campaign/driver/pooling.h"
 #include "campaign/driver/record.h"
+#include "campaign/serve/runs.h"
 #include "schemas/clock.h"
 
-#define HASH_NONFATAL_OOM 1
-#include <uthash.h>
-
-struct job { /* an evaluation under way */
-  struct job *next;
+struct serve_job { /* an evaluation under way */
+  struct serve_job *next;
   struct serve_request request;
   struct scene *scene;
   int64_t point_id;
@@ -22,22 +20,6 @@ struct job { /* an evaluation under way */
   double started; /* s, clock_s() */
   bool answered;  /* it waited too long: only its runs are left */
   size_t missing; /* runs of it that are waiting or on slots */
-};
-
-struct wish { /* one job waits for one run */
-  struct job *job;
-  struct wish *next;
-};
-
-struct run { /* waiting or on a slot */
-  uint8_t identity[16];
-  uint64_t id; /* of the farm's task */
-  struct record record;
-  struct scene *scene;
-  struct wish *wishes;
-  struct run *next; /* in the queue */
-  int lost;         /* attempts that the machine ended */
-  UT_hash_handle hh, by_id;
 };
 
 struct serve_jobs {
@@ -48,11 +30,9 @@ struct serve_jobs {
   int64_t session_id, campaign_id;
   const char **paths; /* of the inputs that vary, for the store */
   size_t path_count;
-  struct job *first;
-  struct run *runs, *runs_by_id; /* uthash */
-  struct run *queue, *queue_end;
-  uint64_t last_id;
-  uint8_t *task; /* bytes of the last task given out */
+  struct serve_job *first;
+  struct serve_runs runs; /* that they wait for */
+  uint8_t *task;          /* bytes of the last task given out */
   struct serve_jobs_counts counts;
   bool stopping;
 };
@@ -98,31 +78,17 @@ status serve_jobs_open(const struct serve_model *model, struct store *store, con
   return code;
 }
 
-static void free_job(struct job *job) {
+static void free_job(struct serve_job *job) {
   serve_request_clear(&job->request);
   scene_free(job->scene);
   free(job);
 }
 
-static void free_run(struct run *run) {
-  for (struct wish *wish = run->wishes, *next; wish; wish = next) {
-    next = wish->next;
-    free(wish);
-  }
-  scene_free(run->scene);
-  free(run);
-}
-
 void serve_jobs_free(struct serve_jobs *jobs) {
   if (!jobs)
     return;
-  struct run *run, *next_run;
-  HASH_CLEAR(by_id, jobs->runs_by_id);
-  HASH_ITER(hh, jobs->runs, run, next_run) {
-    HASH_DEL(jobs->runs, run);
-    free_run(run);
-  }
-  for (struct job *job = jobs->first, *next; job; job = next) {
+  serve_runs_clear(&jobs->runs);
+  for (struct serve_job *job = jobs->first, *next; job; job = next) {
     next = job->next;
     free_job(job);
   }
@@ -139,7 +105,7 @@ struct serve_jobs_counts serve_jobs_counts(const struct serve_jobs *jobs) {
 
 struct reading {
   const struct serve_jobs *jobs;
-  const struct job *job;
+  const struct serve_job *job;
   double *values; /* NaN: no usable run. May be NULL */
   bool *there;    /* may be NULL */
 };
@@ -162,14 +128,14 @@ static void take_stored(void *context, const struct store_point_run *run) {
     reading->there[r - config->first] = true;
 }
 
-static status read_store(struct serve_jobs *jobs, const struct job *job, const struct serve_result *result,
+static status read_store(struct serve_jobs *jobs, const struct serve_job *job, const struct serve_result *result,
                          double *values, bool *there, struct error *error) {
   struct reading reading = {jobs, job, values, there};
   return store_point_runs(jobs->store, job->point_id, job->scene->kind, result->row, result->of_outcome, take_stored,
                           &reading, error);
 }
 
-static struct serve_answer answer_of(struct serve_jobs *jobs, const struct job *job) {
+static struct serve_answer answer_of(struct serve_jobs *jobs, const struct serve_job *job) {
   const struct serve_config *config = &job->request.config;
   const size_t count = (size_t)config->count, size = config->result_count * count;
   struct error error = {0};
@@ -187,69 +153,40 @@ static struct serve_answer answer_of(struct serve_jobs *jobs, const struct job *
 
 /* ---- evaluations in ---- */
 
-static struct run *find_run(struct serve_jobs *jobs, const uint8_t identity[16]) {
-  struct run *run = NULL;
-  HASH_FIND(hh, jobs->runs, identity, 16, run);
-  return run;
-}
-
-static void push(struct serve_jobs *jobs, struct run *run) {
-  run->next = NULL;
-  if (jobs->queue)
-    jobs->queue_end->next = run;
-  else
-    jobs->queue = run;
-  jobs->queue_end = run;
-}
-
-static struct run *add_run(struct serve_jobs *jobs, const struct job *job, int64_t replicate, uint64_t seed,
-                           const uint8_t identity[16], int failed) {
-  struct run *run = calloc(1, sizeof *run);
+/* The run of a replicate, waiting or on a slot. NULL with *code STATUS_OK: it has used up its attempts. */
+static struct serve_run *find_or_add_run(struct serve_jobs *jobs, const struct serve_job *job, int64_t replicate,
+                                         status *code, struct error *error) {
+  struct record record = {.point_id = job->point_id, .session_id = jobs->session_id, .replicate = replicate};
+  record.seed = campaign_seed(jobs->model->campaign, job->scene, replicate);
+  scene_identity(job->scene, record.seed, record.identity);
+  struct serve_run *run = serve_runs_find(&jobs->runs, record.identity);
+  if (run)
+    return run;
+  const int failed = store_attempts(jobs->store, record.identity, jobs->limits.time_limit_s,
+                                    (double)jobs->limits.memory_limit);
+  if (failed >= jobs->model->campaign->attempts)
+    return NULL;
+  record.attempt = failed + 1;
+  run = serve_runs_add(&jobs->runs, &record, job->scene);
   if (!run)
-    return NULL;
-  run->scene = scene_copy(job->scene);
-  run->id = ++jobs->last_id;
-  run->record = (struct record){.point_id = job->point_id,
-                                .session_id = jobs->session_id,
-                                .replicate = replicate,
-                                .seed = seed,
-                                .attempt = failed + 1};
-  memcpy(run->identity, identity, 16);
-  memcpy(run->record.identity, identity, 16);
-  if (!run->scene) {
-    free_run(run);
-    return NULL;
-  }
-  HASH_ADD(hh, jobs->runs, identity, 16, run);
-  HASH_ADD(by_id, jobs->runs_by_id, id, sizeof run->id, run);
-  push(jobs, run);
+    *code = status_fail(error, STATUS_MEMORY, "out of memory");
   return run;
 }
 
-/* The job waits for this run, unless it has used up its attempts. False: no memory. */
-static bool want(struct serve_jobs *jobs, struct job *job, int64_t replicate) {
-  uint8_t identity[16];
-  const uint64_t seed = campaign_seed(jobs->model->campaign, job->scene, replicate);
-  scene_identity(job->scene, seed, identity);
-  struct run *run = find_run(jobs, identity);
-  if (!run) {
-    const int failed = store_attempts(jobs->store, identity, jobs->limits.time_limit_s,
-                                      (double)jobs->limits.memory_limit);
-    if (failed >= jobs->model->campaign->attempts)
-      return true;
-    run = add_run(jobs, job, replicate, seed, identity, failed);
-  }
-  struct wish *wish = run ? malloc(sizeof *wish) : NULL;
-  if (!wish)
-    return false;
-  *wish = (struct wish){job, run->wishes};
-  run->wishes = wish;
+/* The job waits for this run, unless it has used up its attempts. */
+static status want(struct serve_jobs *jobs, struct serve_job *job, int64_t replicate, struct error *error) {
+  status code = STATUS_OK;
+  struct serve_run *run = find_or_add_run(jobs, job, replicate, &code, error);
+  if (!run)
+    return code;
+  if (!serve_runs_wish(run, job))
+    return status_fail(error, STATUS_MEMORY, "out of memory");
   job->missing++;
-  return true;
+  return STATUS_OK;
 }
 
 /* The point in the store, and a wish for each run that it lacks. */
-static status open_job(struct serve_jobs *jobs, struct job *job, struct error *error) {
+static status open_job(struct serve_jobs *jobs, struct serve_job *job, struct error *error) {
   const struct serve_config *config = &job->request.config;
   status code = store_add_point(jobs->store, jobs->campaign_id, job->scene, jobs->path_count, jobs->paths,
                                 &job->point_id, error);
@@ -261,8 +198,8 @@ static status open_job(struct serve_jobs *jobs, struct job *job, struct error *e
   code = read_store(jobs, job, &config->results[0], NULL, there, error);
   for (int64_t r = 0; !code && r < config->count; r++) {
     jobs->counts.found += there[r];
-    if (!there[r] && !want(jobs, job, config->first + r))
-      code = status_fail(error, STATUS_MEMORY, "out of memory");
+    if (!there[r])
+      code = want(jobs, job, config->first + r, error);
   }
   free(there);
   return code;
@@ -270,7 +207,7 @@ static status open_job(struct serve_jobs *jobs, struct job *job, struct error *e
 
 struct serve_answer serve_jobs_submit(struct serve_jobs *jobs, struct serve_request *request, void *ticket) {
   struct error error = {0};
-  struct job *job = calloc(1, sizeof *job);
+  struct serve_job *job = calloc(1, sizeof *job);
   struct serve_answer answer = {0};
   if (!job || jobs->stopping) {
     serve_request_clear(request);
@@ -307,7 +244,7 @@ struct serve_answer serve_jobs_submit(struct serve_jobs *jobs, struct serve_requ
 
 bool serve_jobs_next(void *context, struct farm_task *task) {
   struct serve_jobs *jobs = context;
-  struct run *run = jobs->queue;
+  const struct serve_run *run = jobs->runs.queue;
   if (!run || jobs->stopping)
     return false;
   const struct run_request request = {.kind = run->scene->kind, .inputs = run->scene->inputs, .seed = run->record.seed};
@@ -315,14 +252,14 @@ bool serve_jobs_next(void *context, struct farm_task *task) {
   jobs->task = run_encode_task(&request, &task->size);
   if (!jobs->task)
     return false; /* asked again at the next tick */
-  jobs->queue = run->next;
   task->id = run->id;
+  serve_runs_pop(&jobs->runs);
   task->bytes = jobs->task;
   return true;
 }
 
-static void unlink_job(struct serve_jobs *jobs, struct job *job) {
-  struct job **at = &jobs->first;
+static void unlink_job(struct serve_jobs *jobs, struct serve_job *job) {
+  struct serve_job **at = &jobs->first;
   while (*at != job)
     at = &(*at)->next;
   *at = job->next;
@@ -330,21 +267,19 @@ static void unlink_job(struct serve_jobs *jobs, struct job *job) {
 }
 
 /* The run is over, well or not: the jobs that waited for it alone are answered. */
-static void settle(struct serve_jobs *jobs, struct run *run) {
-  HASH_DELETE(hh, jobs->runs, run);
-  HASH_DELETE(by_id, jobs->runs_by_id, run);
-  for (struct wish *wish = run->wishes; wish; wish = wish->next) {
-    struct job *job = wish->job;
+static void settle(struct serve_jobs *jobs, struct serve_run *run) {
+  for (struct serve_wish *wish = run->wishes; wish; wish = wish->next) {
+    struct serve_job *job = wish->job;
     if (--job->missing > 0)
       continue;
     if (!job->answered)
       jobs->options.answered(jobs->options.context, job->ticket, answer_of(jobs, job));
     unlink_job(jobs, job);
   }
-  free_run(run);
+  serve_runs_remove(&jobs->runs, run);
 }
 
-static status take_result(struct serve_jobs *jobs, struct run *run, const struct farm_report *report,
+static status take_result(struct serve_jobs *jobs, struct serve_run *run, const struct farm_report *report,
                           struct error *error) {
   struct run_result result;
   status code = run_decode_result(run->scene->kind, report->bytes, report->size, &result, error);
@@ -358,8 +293,7 @@ static status take_result(struct serve_jobs *jobs, struct run *run, const struct
 
 status serve_jobs_report(void *context, const struct farm_report *report, struct error *error) {
   struct serve_jobs *jobs = context;
-  struct run *run = NULL;
-  HASH_FIND(by_id, jobs->runs_by_id, &report->id, sizeof report->id, run);
+  struct serve_run *run = serve_runs_with_id(&jobs->runs, report->id);
   if (!run)
     return status_fail(error, STATUS_INTERNAL, "the farm reported a task that it was not given");
   if (report->ending == FARM_DONE) {
@@ -376,7 +310,7 @@ status serve_jobs_report(void *context, const struct farm_report *report, struct
   run->lost += lost;
   run->record.attempt += !lost;
   if (!jobs->stopping && (lost ? run->lost : run->record.attempt - 1) < jobs->model->campaign->attempts) {
-    push(jobs, run);
+    serve_runs_push(&jobs->runs, run);
     return STATUS_OK;
   }
   jobs->counts.failed++;
@@ -386,7 +320,7 @@ status serve_jobs_report(void *context, const struct farm_report *report, struct
 
 status serve_jobs_tick(struct serve_jobs *jobs, struct error *error) {
   const double now = clock_s();
-  for (struct job *job = jobs->first; job && jobs->options.wait_s > 0; job = job->next) {
+  for (struct serve_job *job = jobs->first; job && jobs->options.wait_s > 0; job = job->next) {
     if (job->answered || now - job->started < jobs->options.wait_s)
       continue;
     job->answered = true;
@@ -401,7 +335,7 @@ status serve_jobs_tick(struct serve_jobs *jobs, struct error *error) {
 
 void serve_jobs_stop(struct serve_jobs *jobs, bool all) {
   jobs->stopping = true;
-  for (struct job *job = jobs->first; all && job; job = job->next) {
+  for (struct serve_job *job = jobs->first; all && job; job = job->next) {
     if (!job->answered)
       jobs->options.answered(jobs->options.context, job->ticket,
                              serve_request_error(503, "Unavailable", "the server was stopped"));
