@@ -11,21 +11,25 @@ struct options {
   bool csv, lines, bits, cinema, crate;
 };
 
+/* What cannot be asked for together. */
 static status check(const struct options *options, const char *target, struct error *error) {
-  const char *wrong = NULL;
-  if (options->csv + options->lines + options->bits + options->cinema + options->crate > 1)
-    wrong = "--csv, --jsonl, --bits, --cinema and --crate exclude each other";
-  else if (options->per && (options->bits || options->cinema || options->crate))
-    wrong = "--per excludes --bits, --cinema and --crate";
-  else if ((options->license || options->author) && !options->crate)
-    wrong = "--license and --author belong to --crate";
-  else if (options->lines && !options->per)
-    wrong = "--jsonl needs --per run or --per point";
-  else if (!options->per && !target)
-    wrong = "clast export needs a target, or --per run or --per point for rows on standard output; usage: "
-            "clast export STORE [TARGET]";
-  if (wrong)
-    return status_fail(error, STATUS_USAGE, "%s", wrong);
+  const bool other = options->bits || options->cinema || options->crate;
+  const struct rule {
+    bool broken;
+    const char *text;
+  } rules[] = {
+      {options->csv + options->lines + options->bits + options->cinema + options->crate > 1,
+       "--csv, --jsonl, --bits, --cinema and --crate exclude each other"},
+      {options->per && other, "--per excludes --bits, --cinema and --crate"},
+      {(options->license || options->author) && !options->crate, "--license and --author belong to --crate"},
+      {options->lines && !options->per, "--jsonl needs --per run or --per point"},
+      {!options->per && !target,
+       "clast export needs a target, or --per run or --per point for rows on standard output; usage: "
+       "clast export STORE [TARGET]"},
+  };
+  for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++)
+    if (rules[i].broken)
+      return status_fail(error, STATUS_USAGE, "%s", rules[i].text);
   if (options->per && strcmp(options->per, "run") != 0 && strcmp(options->per, "point") != 0)
     return status_fail(error, STATUS_USAGE, "--per expects run or point, got \"%.64s\"", options->per);
   return STATUS_OK;

@@ -1,14 +1,12 @@
 /* Draws the pictures of a Cinema database and writes its table. */
 #include "campaign/export/cinema.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
-#include <sys/stat.h>
 
 #include "campaign/charts/picture_draw.h"
 #include "campaign/charts/spectrum_curves.h"
+#include "campaign/export/part_file.h"
 #include "campaign/terminal/rows.h"
 #include "db/ask/kept.h"
 
@@ -74,31 +72,33 @@ static status take_run(void *context, size_t count, const struct query_value *va
   return STATUS_OK;
 }
 
+/* The table, and while it is written the pictures that it names. */
+static status write_table(struct cinema *cinema, struct error *error) {
+  const struct query_sink sink = {cinema, take_names, take_run};
+  const status code = ask_kept(cinema->store, &sink, error);
+  const status ended = table_end(cinema->table, code ? NULL : error);
+  if (code || ended)
+    return code ? code : ended;
+  if (cinema->rows > 0)
+    return STATUS_OK;
+  return status_fail(error, STATUS_USAGE,
+                     "no run of the store has its fields kept, so there is nothing to draw: give the campaign keep: "
+                     "{fields: first 1} and run it again");
+}
+
 status cinema_write(struct store *store, const char *folder, struct error *error) {
-  char path[PATH], part[PATH + 8];
-  if (mkdir(folder, 0777) && errno != EEXIST)
-    return status_fail(error, STATUS_IO, "cannot make the folder %s: %s", folder, strerror(errno));
+  char path[PATH];
+  struct part_file file;
+  status code = part_file_folder(folder, error);
+  if (code)
+    return code;
   if (snprintf(path, sizeof path, "%s/data.csv", folder) >= (int)sizeof path - 64)
     return status_fail(error, STATUS_USAGE, "the folder's name is too long");
-  snprintf(part, sizeof part, "%s.part", path);
-  FILE *out = fopen(part, "w");
-  if (!out)
-    return status_fail(error, STATUS_IO, "cannot write %s: %s", part, strerror(errno));
-  struct cinema cinema = {.store = store, .folder = folder, .table = table_new(TABLE_CSV, out)};
-  const struct query_sink sink = {&cinema, take_names, take_run};
-  status code = ask_kept(store, &sink, error);
-  const status ended = table_end(cinema.table, code ? NULL : error);
-  code = code ? code : ended;
-  if (fclose(out) && !code)
-    code = status_fail(error, STATUS_IO, "cannot write %s: %s", part, strerror(errno));
-  if (!code && cinema.rows == 0)
-    code = status_fail(error, STATUS_USAGE,
-                       "no run of the store has its fields kept, so there is nothing to draw: give the campaign keep: "
-                       "{fields: first 1} and run it again");
-  if (!code && rename(part, path))
-    code = status_fail(error, STATUS_IO, "cannot write %s: %s", path, strerror(errno));
+  code = part_file_open(&file, path, error);
   if (code)
-    remove(part);
+    return code;
+  struct cinema cinema = {.store = store, .folder = folder, .table = table_new(TABLE_CSV, file.out)};
+  code = part_file_close(&file, write_table(&cinema, error), error);
   if (!code && cinema.not_drawn > 0)
     fprintf(stderr, "clast: %zu of %zu runs have no picture: their fields files are gone or damaged\n",
             cinema.not_drawn, cinema.rows);

@@ -29,38 +29,63 @@ static const struct entry files[] = {
     {"STORE-fields/", "HDF5 files with the fields of the runs that the campaign keeps."},
 };
 
-enum text { PROSE, LITERAL };
-
 /* Escapes, because roff gives these characters a meaning, or a UTF-8 terminal shows others that cannot be pasted into a
- * shell. In prose, text in backquotes is bold, a hyphen between letters stays one, and lines are joined unless
- * indented. */
-static void print_text(const char *text, enum text kind, FILE *out) {
+ * shell. */
+static void print_escaped(char c, FILE *out) {
   static const char *const escapes[128] = {['\\'] = "\\(rs", ['-'] = "\\-",   ['\''] = "\\(aq", ['"'] = "\\(dq",
                                            ['`'] = "\\(ga",  ['^'] = "\\(ha", ['~'] = "\\(ti"};
-  bool code = false, indented = false;
+  const char *escape = (unsigned char)c < 128 ? escapes[(unsigned char)c] : NULL;
+  if (escape)
+    fputs(escape, out);
+  else
+    fputc(c, out);
+}
+
+/* roff takes a line that begins with a point for a command. */
+static void begin_line(const char *text, FILE *out) {
+  if (*text == '.')
+    fputs("\\&", out);
+}
+
+/* As it is, line for line. */
+static void print_literal(const char *text, FILE *out) {
+  begin_line(text, out);
   for (const char *c = text; *c; c++) {
-    const char *escape = (unsigned char)*c < 128 ? escapes[(unsigned char)*c] : NULL;
-    bool literal = kind == LITERAL || code || indented;
-    bool within_word = c > text && isalpha((unsigned char)c[-1]) && isalpha((unsigned char)c[1]);
-    if (*c == '.' && (c == text || c[-1] == '\n'))
-      fputs("\\&", out);
+    print_escaped(*c, out);
+    if (*c == '\n')
+      begin_line(c + 1, out);
+  }
+}
+
+static bool is_within_word(const char *text, const char *c) {
+  return c > text && isalpha((unsigned char)c[-1]) && isalpha((unsigned char)c[1]);
+}
+
+/* Text in backquotes is bold, a hyphen between letters stays one, and lines are joined unless indented. */
+static void print_prose(const char *text, FILE *out) {
+  bool code = false, indented = false;
+  begin_line(text, out);
+  for (const char *c = text; *c; c++) {
     if (*c == '\n') {
       indented = c[1] == ' ';
-      fputc(kind == LITERAL || indented ? '\n' : ' ', out);
-    } else if (*c == '`' && kind == PROSE)
-      fputs((code = !code) ? "\\fB" : "\\fR", out);
-    else if (escape && (literal || !within_word || *c != '-'))
-      fputs(escape, out);
-    else
-      fputc(*c, out);
+      fputc(indented ? '\n' : ' ', out);
+      begin_line(c + 1, out);
+    } else if (*c == '`') {
+      code = !code;
+      fputs(code ? "\\fB" : "\\fR", out);
+    } else if (*c == '-' && !code && !indented && is_within_word(text, c)) {
+      fputc('-', out);
+    } else {
+      print_escaped(*c, out);
+    }
   }
 }
 
 static void print_entry(const char *name, const char *meaning, FILE *out) {
   fputs(".TP 15\n\\fB", out);
-  print_text(name, LITERAL, out);
+  print_literal(name, out);
   fputs("\\fR\n", out);
-  print_text(meaning, PROSE, out);
+  print_prose(meaning, out);
   fputc('\n', out);
 }
 
@@ -72,7 +97,7 @@ static void print_entries(const char *section, size_t count, const struct entry 
 
 static void print_examples(const char *lines, FILE *out) {
   fputs(".RS 4\n.EX\n", out);
-  print_text(lines, LITERAL, out);
+  print_literal(lines, out);
   fputs("\n.EE\n.RE\n", out);
 }
 
@@ -81,14 +106,14 @@ static void print_option(const struct option_row *row, FILE *out) {
   if (row->letter)
     fprintf(out, "\\fB\\-%c\\fR, ", row->letter);
   fputs("\\fB\\-\\-", out);
-  print_text(row->name, LITERAL, out);
+  print_literal(row->name, out);
   fputs(row->argument ? "\\fR \\fI" : "", out);
-  print_text(row->argument ? row->argument : "", LITERAL, out);
+  print_literal(row->argument ? row->argument : "", out);
   fputs("\\fR\n", out);
-  print_text(row->doc, PROSE, out);
+  print_prose(row->doc, out);
   if (row->initial && *row->initial) {
     fputs(" (default ", out);
-    print_text(row->initial, LITERAL, out);
+    print_literal(row->initial, out);
     fputc(')', out);
   }
   fputc('\n', out);
@@ -97,9 +122,9 @@ static void print_option(const struct option_row *row, FILE *out) {
 static void print_command(const struct command *command, FILE *out) {
   fprintf(out, ".SS clast %s%s%s", command->name, command->option_count ? " [OPTIONS]" : "",
           *command->arguments ? " " : "");
-  print_text(command->arguments, LITERAL, out);
+  print_literal(command->arguments, out);
   fputc('\n', out);
-  print_text(command->doc, PROSE, out);
+  print_prose(command->doc, out);
   fputc('\n', out);
   for (size_t i = 0; i < command->option_count; i++)
     print_option(&command->options[i], out);
@@ -116,11 +141,11 @@ void manual_write(const struct manual_texts *texts, size_t count, const struct c
         ".br\n\\fBclast\\fR \\fICOMMAND\\fR \\fB\\-\\-help\\fR\n.br\n\\fBclast \\-\\-version\\fR\n"
         ".SH DESCRIPTION\n",
         out);
-  print_text(texts->purpose, PROSE, out);
+  print_prose(texts->purpose, out);
   fputs("\n.PP\nFirst steps:\n", out);
   print_examples(texts->first_steps, out);
   fputs(".PP\n", out);
-  print_text(texts->streams, PROSE, out);
+  print_prose(texts->streams, out);
   fputs("\n.SH COMMANDS\n.PD 0\n", out);
   for (size_t i = 0; i < count; i++)
     print_entry(commands[i]->name, commands[i]->summary, out);
