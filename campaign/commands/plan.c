@@ -20,7 +20,7 @@ static status print(const struct campaign *campaign, const struct plan *plan, in
     plan_print(campaign, plan, slots, stdout);
     return STATUS_OK;
   }
-  char *text = plan_json(campaign, plan, slots);
+  char *text = plan_print_json(campaign, plan, slots);
   if (!text)
     return status_fail(error, STATUS_MEMORY, "out of memory");
   puts(text);

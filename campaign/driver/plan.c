@@ -1,4 +1,4 @@
-/* Walks the design, times trial runs, and prints the plan as text or JSON. */
+/* Walks the design and times trial runs. */
 #include "campaign/driver/plan.h"
 
 #include <math.h>
@@ -7,13 +7,10 @@
 #include <time.h>
 
 #include "campaign/document/campaign_walk.h"
-#include "campaign/document/campaign_warn.h"
 #include "campaign/driver/pilot.h"
-#include "campaign/terminal/progress.h"
 #include "db/ask/run.h"
 #include "db/store/store.h"
 #include "schemas/clock.h"
-#include "schemas/text.h"
 
 enum { LOOKED_AT = 4096, WALKED = 4000000, ASKED = 50000, SAMPLED = 8 };
 #define NOTHING ((double)NAN)
@@ -47,36 +44,42 @@ static void ask(const struct campaign *campaign, const struct scene *scene, stru
   }
 }
 
+/* Counts a point in, and keeps a copy of it as a sample and the point itself when it is the costliest. Takes it. */
+static void take_point(struct plan *plan, struct looking *looking, struct scene *scene, bool sample) {
+  const double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
+  const double memory = scene->kind->memory ? (double)scene->kind->memory(scene->inputs) : 0;
+  plan->points_looked_at++;
+  plan->memory_most = fmax(plan->memory_most, memory);
+  looking->work += work;
+  struct scene *copy = sample ? scene_copy(scene) : NULL;
+  if (copy)
+    looking->sample[looking->sampled++] = copy;
+  if (looking->costliest && work <= looking->work_most) {
+    scene_free(scene);
+    return;
+  }
+  scene_free(looking->costliest);
+  looking->costliest = scene;
+  looking->work_most = work;
+}
+
+/* Looks at points evenly spread over the design, as far as it can be walked in a moment. */
 static status look(const struct campaign *campaign, struct store *store, struct plan *plan, struct looking *looking,
                    struct error *error) {
   struct campaign_walk walk;
+  struct error first = {0};
   status code = campaign_walk_begin(&walk, campaign, error);
   if (code != STATUS_OK)
     goto cleanup;
   plan->points = design_points(walk.design);
-  /* Points evenly spread over the design, as far as it can be walked in a moment. */
-  uint64_t walked = plan->points < WALKED ? plan->points : WALKED, stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
-  struct error first = {0};
+  const uint64_t walked = plan->points < WALKED ? plan->points : WALKED;
+  const uint64_t stride = (walked + LOOKED_AT - 1) / LOOKED_AT;
   for (uint64_t i = 0; i < walked && campaign_walk_next(&walk); i++) {
     struct scene *scene = i % stride ? NULL : campaign_walk_scene(&walk, &first);
     if (!scene)
       continue;
-    double work = scene->kind->work ? scene->kind->work(scene->inputs) : 1;
-    double memory = scene->kind->memory ? (double)scene->kind->memory(scene->inputs) : 0;
-    plan->points_looked_at++;
-    looking->work += work;
-    plan->memory_most = fmax(plan->memory_most, memory);
     ask(campaign, scene, store, looking);
-    if (looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED))
-      looking->sample[looking->sampled] = scene_copy(scene);
-    looking->sampled += looking->sampled < SAMPLED && looking->sample[looking->sampled];
-    if (!looking->costliest || work > looking->work_most) {
-      looking->work_most = work;
-      scene_free(looking->costliest);
-      looking->costliest = scene;
-    } else {
-      scene_free(scene);
-    }
+    take_point(plan, looking, scene, looking->sampled < SAMPLED && i >= looking->sampled * (walked / SAMPLED));
   }
   if (!looking->costliest)
     code = status_fail(error, STATUS_CONTENT, "no point of the design can be run: %s", first.message);
@@ -114,20 +117,37 @@ static double time_points(const struct campaign *campaign, const struct looking 
   return count ? sum / (double)count / one : (double)NAN;
 }
 
+/* The trial did not end: how long the whole run would take, and the setting and time of a coarse run that did. */
+static void extrapolate(const struct looking *looking, uint64_t seed, double seconds, const struct pilot_run *run,
+                        struct plan *plan, char setting[64], double *one) {
+  struct error ignored;
+  struct scene *coarse = NULL;
+  struct pilot_run *coarse_run = calloc(1, sizeof *coarse_run);
+  plan->run_s_most = run->prepare_s + run->step_s / run->progress + run->finish_s;
+  if (coarse_run && looking->work_most > 0)
+    pilot_coarsen(looking->costliest, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
+  if (coarse && pilot_try(coarse, seed, seconds / 2, coarse_run, &ignored) == STATUS_OK) {
+    const double whole = pilot_whole(run, coarse_run);
+    plan->trial_whole = !isnan(whole);
+    plan->run_s_most = plan->trial_whole ? whole : plan->run_s_most;
+    *one = whole_s(coarse_run);
+  }
+  scene_free(coarse);
+  free(coarse_run);
+}
+
 /* Steps the most expensive point for half of the time. If it does not end, a coarse run of the same point tells which
  * share of the steps that was; if there is none, the time is extrapolated to the hard end, which most runs do not
  * reach. The rest of the time tells how other points differ. */
 static status try_run(const struct campaign *campaign, const struct looking *looking, double seconds, struct plan *plan,
                       size_t *fragments, struct error *error) {
-  const struct scene *scene = looking->costliest;
-  const uint64_t seed = campaign_seed(campaign, scene, 0);
+  const uint64_t seed = campaign_seed(campaign, looking->costliest, 0);
   const double begin = clock_cpu_s();
-  struct pilot_run *run = calloc(2, sizeof *run), *coarse_run = run + 1;
-  struct scene *coarse = NULL;
   char setting[64] = "";
+  struct pilot_run *run = calloc(1, sizeof *run);
   if (!run)
     return status_fail(error, STATUS_MEMORY, "no memory for the trial");
-  status code = pilot_try(scene, seed, seconds / 2, run, error);
+  const status code = pilot_try(looking->costliest, seed, seconds / 2, run, error);
   if (code != STATUS_OK)
     goto cleanup;
   plan->trial_made = true;
@@ -136,22 +156,12 @@ static status try_run(const struct campaign *campaign, const struct looking *loo
   *fragments = run->fragments;
   plan->run_s_most = whole_s(run);
   double one = plan->run_s_most;
-  if (!run->finished) {
-    plan->run_s_most = run->prepare_s + run->step_s / run->progress + run->finish_s;
-    if (looking->work_most > 0)
-      pilot_coarsen(scene, plan->run_s_most / looking->work_most, seconds / 4, &coarse, setting);
-    if (coarse && pilot_try(coarse, seed, seconds / 2, coarse_run, error) == STATUS_OK) {
-      const double whole = pilot_whole(run, coarse_run);
-      plan->trial_whole = !isnan(whole);
-      plan->run_s_most = plan->trial_whole ? whole : plan->run_s_most;
-      one = whole_s(coarse_run);
-    }
-  }
+  if (!run->finished)
+    extrapolate(looking, seed, seconds, run, plan, setting, &one);
   if (plan->trial_whole)
     plan->share_of_most = time_points(campaign, looking, run->finished ? NULL : setting, one, begin + seconds);
   plan->trial_s = clock_cpu_s() - begin;
 cleanup:
-  scene_free(coarse);
   free(run);
   return code;
 }
@@ -238,134 +248,4 @@ void plan_clear(struct plan *plan) {
   free(plan->model);
   free(plan->alternatives);
   plan->model = plan->alternatives = NULL;
-}
-
-static const char *bytes(double count, char *buffer, size_t size) {
-  static const char *const units[] = {"B", "kB", "MB", "GB", "TB", "PB"};
-  int unit = 0;
-  if (isnan(count))
-    return "?";
-  for (; count >= 999.5 && unit < 5; unit++)
-    count /= 1000;
-  snprintf(buffer, size, unit ? "%.3g %s" : "%.0f %s", count, units[unit]);
-  return buffer;
-}
-
-/* Where the times of a run come from. */
-static const char *how_timed(const struct plan *plan) {
-  if (!plan->trial_made)
-    return isnan(plan->run_s_mean) ? " (no trial run)" : " (from runs in the store)";
-  if (plan->trial_finished)
-    return " (whole runs timed)";
-  if (plan->trial_whole)
-    return " (the first steps timed; a coarse run tells when it ends)";
-  return " (extrapolated to the hard end; runs stop earlier when fracture has ceased)";
-}
-
-void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out) {
-  static const char *const designs[] = {"grid", "list", "random", "latin hypercube", "Sobol"};
-  char a[64], b[64];
-  bool range = plan->runs_most != plan->runs_least;
-  fprintf(out, "campaign  %s, scene %s\n", campaign->name, campaign->scene_reference);
-  fprintf(out, "design    %s, %llu point%s", designs[campaign->design.kind], (unsigned long long)plan->points,
-          plan->points == 1 ? "" : "s");
-  for (size_t i = 0; i < campaign->axis_count; i++) {
-    fprintf(out, "\n%-8s  %s: ", i ? "" : "over", campaign->axes[i].row->path);
-    design_axis_describe(campaign->axes, i, out);
-  }
-  fputc('\n', out);
-  campaign_warn(campaign, "warning   ", out);
-  fprintf(out, "runs      %llu", (unsigned long long)plan->runs_least);
-  if (range)
-    fprintf(out, " to %llu (%s to ±%g)", (unsigned long long)plan->runs_most, campaign->until_quantity,
-            campaign->until_half_width);
-  fprintf(out, ", %llu of them in the store%s\n", (unsigned long long)plan->runs_there,
-          plan->store_exists ? "" : " (there is none yet)");
-  progress_duration(plan->run_s_mean, a, sizeof a);
-  progress_duration(plan->run_s_most, b, sizeof b);
-  fprintf(out, "a run     %s%s on average, %s for the most expensive%s\n",
-          plan->trial_made && !plan->trial_whole ? "at most " : "", a, b, how_timed(plan));
-  progress_duration(plan->wall_s_least, a, sizeof a);
-  progress_duration(plan->wall_s_most, b, sizeof b);
-  fprintf(out, "time      %s", a);
-  if (range)
-    fprintf(out, " to %s", b);
-  progress_duration(plan->cpu_s_most, a, sizeof a);
-  fprintf(out, " on %d slot%s (%s of processor time)\n", slots, slots == 1 ? "" : "s", a);
-  fprintf(out, "memory    %s per run", bytes(plan->memory_most, a, sizeof a));
-  fprintf(out, ", %s on all slots\n", bytes(plan->memory_most * slots, a, sizeof a));
-  fprintf(out, "disk      %s for the store %s", bytes(plan->disk_bytes, a, sizeof a), campaign->store);
-  if (campaign->keep != CAMPAIGN_KEEP_NONE)
-    fprintf(out, ", at most %s for fields", bytes(plan->fields_bytes, b, sizeof b));
-  fputc('\n', out);
-  if (plan->points_looked_at < plan->points)
-    fprintf(out, "          (averages over %llu of the points)\n", (unsigned long long)plan->points_looked_at);
-  if (plan->model)
-    fprintf(out, "\n%s%s", plan->model, plan->model[0] && plan->model[strlen(plan->model) - 1] == '\n' ? "" : "\n");
-}
-
-static void number(FILE *out, const char *name, double value) {
-  if (isfinite(value))
-    fprintf(out, ", \"%s\": %.17g", name, value);
-  else
-    fprintf(out, ", \"%s\": null", name);
-}
-
-static void axis_json(const struct campaign *campaign, size_t index, FILE *out) {
-  char *values = NULL;
-  size_t size = 0;
-  FILE *text = open_memstream(&values, &size);
-  if (!text)
-    return;
-  design_axis_describe(campaign->axes, index, text);
-  const struct field *row = campaign->axes[index].row;
-  fputs(index ? ", {\"path\": " : "{\"path\": ", out);
-  text_json_string(row->path, out);
-  fputs(", \"unit\": ", out);
-  text_json_string(row->unit ? row->unit : "", out);
-  fputs(", \"values\": ", out);
-  text_json_string(fclose(text) == 0 ? values : "", out);
-  fputc('}', out);
-  free(values);
-}
-
-char *plan_json(const struct campaign *campaign, const struct plan *plan, int slots) {
-  char *text = NULL;
-  size_t size = 0;
-  FILE *out = open_memstream(&text, &size);
-  if (!out)
-    return NULL;
-  fputs("{\"campaign\": ", out);
-  text_json_string(campaign->name, out);
-  fputs(", \"scene\": ", out);
-  text_json_string(campaign->scene_reference, out);
-  fputs(", \"store\": ", out);
-  text_json_string(campaign->store, out);
-  fputs(", \"axes\": [", out);
-  for (size_t i = 0; i < campaign->axis_count; i++)
-    axis_json(campaign, i, out);
-  fprintf(out,
-          "], \"points\": %llu, \"points_looked_at\": %llu, \"runs_least\": %llu, \"runs_most\": %llu, \"runs_there\": "
-          "%llu",
-          (unsigned long long)plan->points, (unsigned long long)plan->points_looked_at,
-          (unsigned long long)plan->runs_least, (unsigned long long)plan->runs_most,
-          (unsigned long long)plan->runs_there);
-  fprintf(out, ", \"store_exists\": %s, \"trial_made\": %s, \"trial_finished\": %s, \"slots\": %d",
-          plan->store_exists ? "true" : "false", plan->trial_made ? "true" : "false",
-          plan->trial_finished ? "true" : "false", slots);
-  number(out, "run_s_mean", plan->run_s_mean);
-  number(out, "run_s_most", plan->run_s_most);
-  number(out, "cpu_s_least", plan->cpu_s_least);
-  number(out, "cpu_s_most", plan->cpu_s_most);
-  number(out, "wall_s_least", plan->wall_s_least);
-  number(out, "wall_s_most", plan->wall_s_most);
-  number(out, "memory_most_bytes", plan->memory_most);
-  number(out, "disk_bytes", plan->disk_bytes);
-  number(out, "fields_bytes", plan->fields_bytes);
-  if (plan->alternatives)
-    fprintf(out, ", \"alternatives\": %s", plan->alternatives);
-  fputs(", \"model\": ", out);
-  text_json_string(plan->model ? plan->model : "", out);
-  fputs("}\n", out);
-  return text_close(out, &text);
 }

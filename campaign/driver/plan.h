@@ -36,6 +36,6 @@ status plan_make(const struct campaign *campaign, const struct plan_options *opt
                  struct error *error);
 void plan_clear(struct plan *plan);
 void plan_print(const struct campaign *campaign, const struct plan *plan, int slots, FILE *out); /* for people */
-char *plan_json(const struct campaign *campaign, const struct plan *plan, int slots);            /* malloc'd */
+char *plan_print_json(const struct campaign *campaign, const struct plan *plan, int slots);      /* malloc'd */
 
 #endif

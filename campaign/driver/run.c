@@ -242,6 +242,37 @@ static uint8_t *encode_result(const struct engine_kind *kind, const struct run_r
   return writer.bytes;
 }
 
+/* How many structs of this size follow: the other process must have the same size, and no more than `most`. */
+static size_t take_array_count(struct reader *reader, size_t size, size_t most) {
+  const uint64_t their_size = take_count(reader), count = take_count(reader);
+  if (their_size != size || count > most)
+    reader->good = false;
+  return reader->good ? (size_t)count : 0;
+}
+
+/* False: no memory. */
+static bool take_fragments(struct reader *reader, struct run_result *result) {
+  const size_t one = sizeof(struct fragment), count = take_array_count(reader, one, reader->left / one);
+  const uint8_t *bytes = take(reader, count * one);
+  if (!bytes || count == 0)
+    return true;
+  result->fragments = malloc(count * one);
+  if (!result->fragments)
+    return false;
+  memcpy(result->fragments, bytes, count * one);
+  result->fragment_count = count;
+  return true;
+}
+
+static void take_estimates(struct reader *reader, struct run_result *result) {
+  const size_t one = sizeof(struct estimate), count = take_array_count(reader, one, ESTIMATES_COUNT);
+  const uint8_t *bytes = take(reader, count * one);
+  if (!bytes)
+    return;
+  memcpy(result->estimates, bytes, count * one);
+  result->estimate_count = count;
+}
+
 status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, size_t size, struct run_result *result,
                          struct error *error) {
   struct reader reader = {bytes, size, true};
@@ -252,38 +283,18 @@ status run_decode_result(const struct engine_kind *kind, const uint8_t *bytes, s
   take_mark(&reader, RESULT_MARK);
   take_object(&reader, &outcome_table, &result->outcome);
   take_object(&reader, kind->results, result->result);
-  if (take_count(&reader) != sizeof(struct fragment))
-    reader.good = false;
-  uint64_t count = take_count(&reader);
-  const uint8_t *fragments = count <= reader.left / sizeof(struct fragment)
-                                 ? take(&reader, count * sizeof(struct fragment))
-                                 : take(&reader, UINT64_MAX);
-  if (fragments && count > 0) {
-    result->fragments = malloc((size_t)count * sizeof(struct fragment));
-    if (!result->fragments) {
-      run_result_clear(result);
-      return status_fail(error, STATUS_MEMORY, "no memory for a result");
-    }
-    memcpy(result->fragments, fragments, (size_t)count * sizeof(struct fragment));
-    result->fragment_count = (size_t)count;
+  if (!take_fragments(&reader, result)) {
+    run_result_clear(result);
+    return status_fail(error, STATUS_MEMORY, "no memory for a result");
   }
-  if (take_count(&reader) != sizeof(struct estimate))
-    reader.good = false;
-  uint64_t estimates = take_count(&reader);
-  if (estimates > ESTIMATES_COUNT)
-    reader.good = false;
-  const uint8_t *rows = reader.good ? take(&reader, estimates * sizeof(struct estimate)) : NULL;
-  if (rows)
-    memcpy(result->estimates, rows, (size_t)estimates * sizeof(struct estimate));
+  take_estimates(&reader, result);
   result->unwritten.status = (status)take_count(&reader);
   take_text(&reader, result->unwritten.message, sizeof result->unwritten.message);
-  if (!reader.good || reader.left) {
-    run_result_clear(result);
-    return status_fail(error, STATUS_INTERNAL,
-                       "a worker's answer cannot be read: it was damaged, or comes from another version of clast");
-  }
-  result->estimate_count = (size_t)estimates;
-  return STATUS_OK;
+  if (reader.good && reader.left == 0)
+    return STATUS_OK;
+  run_result_clear(result);
+  return status_fail(error, STATUS_INTERNAL,
+                     "a worker's answer cannot be read: it was damaged, or comes from another version of clast");
 }
 
 /* The files of the inputs, into the list of this process. */

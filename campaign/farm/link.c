@@ -191,42 +191,54 @@ static int drop_sent(struct farm_link *link) {
   return count;
 }
 
-status farm_link_drain(struct farm_link *link,
-                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
-                                      struct error *error),
-                       void *context, int *count, struct error *error) {
-  status result = STATUS_OK;
-  *count = drop_sent(link);
-  for (bool any = true; any;) {
-    result = receive(link, &any, error);
+/* Hands out the frames of a message that has arrived. */
+static status give(struct message *message, farm_link_take take, void *context, struct error *error) {
+  struct farm_frame frame;
+  const uint8_t *payload;
+  int got = 0;
+  while ((got = farm_frame_next(&message->bytes, &frame, &payload)) == 1) {
+    const status result = take(context, message->rank, &frame, payload, error);
     if (result != STATUS_OK)
       return result;
   }
-  for (struct message **at = &link->arriving; *at;) {
-    struct message *message = *at;
-    if (overtakes(link, message) || !done(message)) {
-      at = &message->next;
+  if (got == 0 && message->bytes.begin == message->bytes.end)
+    return STATUS_OK;
+  return status_fail(error, STATUS_INTERNAL,
+                     "rank %d sent a message this rank cannot read: do all ranks run the same version of clast?",
+                     message->rank);
+}
+
+/* Takes the message at *at out of the list. */
+static struct message *take_out(struct farm_link *link, struct message **at) {
+  struct message *message = *at;
+  *at = message->next;
+  if (link->arriving_last == &message->next)
+    link->arriving_last = at;
+  return message;
+}
+
+static status receive_all(struct farm_link *link, struct error *error) {
+  status result = STATUS_OK;
+  for (bool any = true; any && result == STATUS_OK;)
+    result = receive(link, &any, error);
+  return result;
+}
+
+status farm_link_drain(struct farm_link *link, farm_link_take take, void *context, int *count, struct error *error) {
+  *count = drop_sent(link);
+  status result = receive_all(link, error);
+  for (struct message **at = &link->arriving; result == STATUS_OK && *at;) {
+    if (overtakes(link, *at) || !done(*at)) {
+      at = &(*at)->next;
       continue;
     }
-    *at = message->next;
-    if (link->arriving_last == &message->next)
-      link->arriving_last = at;
+    struct message *message = take_out(link, at);
     ++*count;
-    int got = 0;
-    struct farm_frame frame;
-    const uint8_t *payload;
-    while (result == STATUS_OK && (got = farm_frame_next(&message->bytes, &frame, &payload)) == 1)
-      result = take(context, message->rank, &frame, payload, error);
-    if (result == STATUS_OK && (got < 0 || message->bytes.begin != message->bytes.end))
-      result = status_fail(error, STATUS_INTERNAL,
-                           "rank %d sent a message this rank cannot read: do all ranks run the same version of clast?",
-                           message->rank);
+    result = give(message, take, context, error);
     farm_frame_free(&message->bytes);
     free(message);
-    if (result != STATUS_OK)
-      return result;
   }
-  return STATUS_OK;
+  return result;
 }
 
 void farm_link_close(struct farm_link *link, bool together, int exit_code) {

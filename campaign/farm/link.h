@@ -25,11 +25,10 @@ int farm_link_ranks(const struct farm_link *link);
 status farm_link_send(struct farm_link *link, int rank, enum farm_frame_kind kind, uint64_t handle, int parts,
                       const struct iovec *part, struct error *error);
 status farm_link_flush(struct farm_link *link, struct error *error);
+typedef status (*farm_link_take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
+                                 struct error *error);
 /* Calls `take` for every frame that has arrived. *count: messages received and sends completed. */
-status farm_link_drain(struct farm_link *link,
-                       status (*take)(void *context, int rank, const struct farm_frame *frame, const uint8_t *payload,
-                                      struct error *error),
-                       void *context, int *count, struct error *error);
+status farm_link_drain(struct farm_link *link, farm_link_take take, void *context, int *count, struct error *error);
 /* Calls MPI_Finalize when `together` (all ranks call it now). Else calls MPI_Abort with this exit code and does not
  * return. */
 void farm_link_close(struct farm_link *link, bool together, int exit_code);

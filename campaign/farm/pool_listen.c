@@ -235,13 +235,9 @@ static int64_t keep_deadlines(struct farm_pool *pool) {
   return next;
 }
 
-bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
+/* What is waited for: the channel of each slot, the server, and the signals. */
+static void watch_files(struct farm_pool *pool, int signals) {
   const int slots = pool->setup.options.slots;
-  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
-  if (timeout_ns > CLOCK_S)
-    timeout_ns = CLOCK_S;
-  if (deadline - now < timeout_ns)
-    timeout_ns = deadline > now ? deadline - now : 0;
   for (int i = 0; i < slots; i++) {
     const struct slot *slot = &pool->slots[i];
     pool->fds[i] = (struct pollfd){.fd = slot->channel, .events = POLLIN};
@@ -250,24 +246,39 @@ bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
   }
   pool->fds[slots] = (struct pollfd){.fd = pool->control, .events = POLLIN};
   pool->fds[slots + 1] = (struct pollfd){.fd = signals, .events = POLLIN};
-  const struct timespec timeout = {timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
-  const int ready = ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL);
-  if (ready <= 0)
+}
+
+/* Up to a second, and no longer than to the next deadline. */
+static struct timespec sleep_time(struct farm_pool *pool, int64_t timeout_ns) {
+  const int64_t deadline = pool->control >= 0 ? keep_deadlines(pool) : INT64_MAX, now = clock_ns();
+  if (timeout_ns > CLOCK_S)
+    timeout_ns = CLOCK_S;
+  if (deadline - now < timeout_ns)
+    timeout_ns = deadline > now ? deadline - now : 0;
+  return (struct timespec){timeout_ns / CLOCK_S, (long)(timeout_ns % CLOCK_S)};
+}
+
+/* Closed: the slot has ended, and the server reports why. Nonsense: the slot is killed, and the server reports that. */
+static void close_slot(struct farm_pool *pool, int index) {
+  struct slot *const slot = &pool->slots[index];
+  if (pool->control >= 0)
+    farm_server_ask(pool->control, FARM_SERVER_KILL, index, slot->pid);
+  close(slot->channel);
+  slot->channel = -1;
+}
+
+bool farm_pool_listen(struct farm_pool *pool, int signals, int64_t timeout_ns) {
+  const int slots = pool->setup.options.slots;
+  const struct timespec timeout = sleep_time(pool, timeout_ns);
+  watch_files(pool, signals);
+  if (ppoll(pool->fds, (nfds_t)slots + 2, &timeout, NULL) <= 0)
     return false;
   for (int i = 0; i < slots; i++) {
-    struct slot *const slot = &pool->slots[i];
-    if (pool->fds[i].revents & POLLOUT)
-      farm_pool_flush(slot);
-    if (!(pool->fds[i].revents & (POLLIN | POLLHUP | POLLERR)))
-      continue;
-    if (listen_to(pool, slot))
-      continue;
-    /* Closed: the slot has ended, and the server reports why. Nonsense: the slot is killed, and the server reports
-     * that. */
-    if (pool->control >= 0)
-      farm_server_ask(pool->control, FARM_SERVER_KILL, i, slot->pid);
-    close(slot->channel);
-    slot->channel = -1;
+    const short events = pool->fds[i].revents;
+    if (events & POLLOUT)
+      farm_pool_flush(&pool->slots[i]);
+    if ((events & (POLLIN | POLLHUP | POLLERR)) && !listen_to(pool, &pool->slots[i]))
+      close_slot(pool, i);
   }
   if (pool->control >= 0 && pool->fds[slots].revents)
     hear_server(pool);

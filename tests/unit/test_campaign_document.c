@@ -234,7 +234,7 @@ static void examples_are_ready_to_run(void **state) {
     assert_true(plan.points >= 3 && plan.runs_least >= 12 && plan.memory_most > 1e5 && !plan.store_exists);
     assert_int_equal(plan.runs_there, 0);
     assert_true(isnan(plan.run_s_mean));
-    char *json = plan_json(campaign, &plan, 2);
+    char *json = plan_print_json(campaign, &plan, 2);
     assert_non_null(strstr(json, "\"run_s_mean\": null"));
     free(json);
     plan_clear(&plan);
